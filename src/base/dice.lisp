@@ -1,0 +1,101 @@
+;;;; dice.lisp -- all chance in the simulator comes from here.
+
+(in-package :ars-magna.base)
+
+;;; Dice are splitmix64 generators (Steele, Lea and Flood 2014): one 64-bit word of state, the
+;;; same numbers on every machine and every release of the compiler. A simulation owns one
+;;; stream per purpose, so that an extra look does not change how a box moves.
+
+(deftype word () '(unsigned-byte 64))
+
+(define-constant +golden-gamma+ #x9E3779B97F4A7C15)
+
+(declaim (inline mix-word))
+(defun mix-word (word)
+  "Return WORD with its bits well mixed."
+  (declare (type word word))
+  (let* ((word (ldb (byte 64 0) (* (logxor word (ash word -30)) #xBF58476D1CE4E5B9)))
+         (word (ldb (byte 64 0) (* (logxor word (ash word -27)) #x94D049BB133111EB))))
+    (declare (type word word))
+    (logxor word (ash word -31))))
+
+(declaim (inline %make-dice dice-state (setf dice-state)))
+(defstruct (dice (:constructor %make-dice (state)) (:copier copy-dice))
+  "A stream of chance. Two dice in the same state roll the same numbers for ever."
+  (state 0 :type word))
+(declaim (sb-ext:freeze-type dice))
+(setf (documentation 'copy-dice 'function)
+      "Return new dice that will roll what these dice would."
+      (documentation 'dice-state 'function)
+      "Return the state of the dice, an integer of 64 bits.")
+
+(defun name-word (name)
+  "Return a 64-bit word that depends on the characters of NAME only (FNV-1a)."
+  (let ((word #xCBF29CE484222325))
+    (declare (type word word))
+    (loop for char across (string name)
+          do (setf word (ldb (byte 64 0) (* (logxor word (char-code char)) #x100000001B3))))
+    word))
+
+(defun make-dice (seed &optional (purpose ""))
+  "Return dice for PURPOSE (a string designator) that depend on it and on the integer SEED only."
+  (check-argument make-dice seed (integerp seed) "an integer")
+  (%make-dice (mix-word (logxor (mix-word (ldb (byte 64 0) seed)) (name-word purpose)))))
+
+(declaim (inline roll-word roll chance roll-between))
+(defun roll-word (dice)
+  (declare (type dice dice))
+  (let ((state (ldb (byte 64 0) (+ (dice-state dice) +golden-gamma+))))
+    (setf (dice-state dice) state)
+    (mix-word state)))
+
+(defun roll (dice)
+  "Return a double-float uniform in [0, 1)."
+  (* (the double-float (float (ash (roll-word dice) -11) 1d0)) #.(expt 2d0 -53)))
+
+(defun chance (probability dice)
+  "True with PROBABILITY. Certain outcomes (0 or less, 1 or more) roll nothing."
+  (let ((probability (double probability)))
+    (cond ((<= probability 0d0) nil)
+          ((>= probability 1d0) t)
+          (t (< (roll dice) probability)))))
+
+(defun roll-between (low high dice)
+  "Return a double-float uniform in [LOW, HIGH)."
+  (let ((low (double low)) (high (double high)))
+    (+ low (* (roll dice) (- high low)))))
+
+(defun roll-within (range dice)
+  "Return a double-float uniform in [-RANGE, RANGE); 0 if RANGE is 0."
+  (if (zerop range) 0d0 (roll-between (- range) range dice)))
+
+(defun roll-index (count dice)
+  "Return an integer uniform in [0, COUNT)."
+  (values (floor (* (roll dice) count))))
+
+(defun roll-element (sequence dice)
+  "Return an element of the non-empty SEQUENCE, each as likely as another."
+  (elt sequence (roll-index (length sequence) dice)))
+
+(defun roll-gaussian (mean deviation dice)
+  "Return a normally distributed double-float. A DEVIATION of 0 returns MEAN and rolls nothing."
+  (if (zerop deviation)
+      (double mean)
+      (let ((radius (sqrt (* -2d0 (log (- 1d0 (roll dice))))))
+            (angle (* 2d0 pi (roll dice))))
+        (+ (double mean) (* (double deviation) radius (cos angle))))))
+
+(defun roll-interval (probability dice)
+  "Return how many trials of PROBABILITY fail before the next that succeeds (geometric).
+PROBABILITY must be above 0; the answer is never more than 2^40."
+  (declare #.*hot*)
+  (let ((probability (double probability)))
+    (declare (type double-float probability))
+    (if (>= probability 1d0)
+        0
+        (values
+         (the (unsigned-byte 41)
+              (truncate (min #.(expt 2d0 40)
+                             (/ (log (the (double-float (0d0) 1d0) (- 1d0 (roll dice))))
+                                (log (the (double-float (0d0) 1d0)
+                                          (- 1d0 probability)))))))))))

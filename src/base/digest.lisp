@@ -1,0 +1,33 @@
+;;;; digest.lisp -- one number for a state, so that "exactly the same" can be checked.
+
+(in-package :ars-magna.base)
+
+(defstruct (digest (:constructor make-digest ()) (:copier nil))
+  "A sum over data, in order, that differs if any of them differs (FNV-1a, 64 bits)."
+  (value #xCBF29CE484222325 :type word))
+(setf (documentation 'digest-value 'function) "Return the digest's sum so far, 64 bits.")
+
+(declaim (inline digest-word))
+(defun digest-word (digest word)
+  (setf (digest-value digest)
+        (mix-word (ldb (byte 64 0) (* (logxor (digest-value digest) word) #x100000001B3)))))
+
+(defun digest-add (digest datum)
+  "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by
+their elements, functions as such. Return DIGEST."
+  (etypecase datum
+    (double-float
+     (digest-word digest (logior (ash (ldb (byte 32 0) (sb-kernel:double-float-high-bits datum)) 32)
+                                 (sb-kernel:double-float-low-bits datum))))
+    (integer (digest-word digest (ldb (byte 64 0) datum)))
+    (real (digest-add digest (coerce datum 'double-float)))
+    ((or symbol string) (digest-word digest (name-word (name-string datum))))
+    (character (digest-word digest (char-code datum)))
+    (cons (loop for tail = datum then (cdr tail)
+                while (consp tail)
+                do (digest-add digest (car tail))
+                finally (digest-add digest tail)))
+    (vector (loop for element across datum do (digest-add digest element)))
+    (function (digest-word digest 1))
+    (structure-object (digest-word digest (name-word (princ-to-string datum)))))
+  digest)

@@ -1,0 +1,112 @@
+;;;; messages.lisp -- the queue of errors, warnings and messages (manual 3.7), and OUT.
+
+(in-package :ars-magna.base)
+
+;;; Messages are queued as lists of items and become text only when somebody reads them. The
+;;; queue is bounded: past *MESSAGE-LIMIT* the oldest go, and how many went is remembered.
+
+(defparameter *message-limit* 1000
+  "How many messages a queue holds before it forgets the oldest (manual 3.7; our bound).")
+
+(defvar flush-all-errors* nil
+  "When true, queued messages are discarded instead of displayed. Default NIL (manual 3.7).")
+
+(defstruct (message (:constructor make-message (kind items)) (:copier nil))
+  "What the simulator or a user has to say: KIND is :error, :warning or :message."
+  (kind :message :type (member :error :warning :message) :read-only t)
+  (items '() :type list :read-only t))
+
+(defstruct (message-queue (:constructor make-message-queue ()) (:copier nil))
+  "Messages nobody has read yet. LISTENER, if any, is called (with no arguments, in the thread
+that reports) after each message is queued."
+  (lock (make-lock "messages") :read-only t)
+  (newest-first '() :type list)
+  (count 0 :type fixnum)
+  (forgotten 0 :type fixnum)
+  (listener nil :type (or null function)))
+
+(defvar *message-queue* (make-message-queue)
+  "The queue that messages go to. A headless simulation binds its own.")
+
+(defun queue-message (message queue)
+  (with-lock ((message-queue-lock queue))
+    (push message (message-queue-newest-first queue))
+    (incf (message-queue-count queue))
+    (when (> (message-queue-count queue) (* 2 *message-limit*))
+      (incf (message-queue-forgotten queue) (- (message-queue-count queue) *message-limit*))
+      (setf (message-queue-newest-first queue)
+            (subseq (message-queue-newest-first queue) 0 *message-limit*)
+            (message-queue-count queue) *message-limit*)))
+  (let ((listener (message-queue-listener queue)))
+    (when listener (funcall listener))))
+
+(defun error-set (&rest stuff)
+  "Queue an error message made of the items STUFF, printed by OUT's rules. Return nothing
+(manual 3.7)."
+  (queue-message (make-message :error stuff) *message-queue*)
+  (values))
+
+(defun warning-set (&rest stuff)
+  "Queue a warning made of the items STUFF, printed by OUT's rules. Return nothing (manual 3.7)."
+  (queue-message (make-message :warning stuff) *message-queue*)
+  (values))
+
+(defun message-set (&rest stuff)
+  "Queue a message made of the items STUFF, printed by OUT's rules. Return nothing (manual 3.7)."
+  (queue-message (make-message :message stuff) *message-queue*)
+  (values))
+
+(defun take-messages (&optional (queue *message-queue*))
+  "Empty QUEUE. Return its messages, oldest first, at most *MESSAGE-LIMIT* of them. If older
+ones were forgotten, a warning that says how many comes first."
+  (with-lock ((message-queue-lock queue))
+    (let* ((messages (message-queue-newest-first queue))
+           (kept (subseq messages 0 (min (length messages) *message-limit*)))
+           (forgotten (+ (message-queue-forgotten queue) (- (length messages) (length kept)))))
+      (setf (message-queue-newest-first queue) '()
+            (message-queue-count queue) 0
+            (message-queue-forgotten queue) 0)
+      (setf kept (reverse kept))
+      (if (plusp forgotten)
+          (cons (make-message :warning (list forgotten " earlier messages were forgotten")) kept)
+          kept))))
+
+;;; Printing.
+
+(defun write-item (item stream)
+  "Write ITEM as OUT does: no quotes, floats without an exponent marker, T as a new line."
+  (cond ((eq item t) (terpri stream))
+        ((floatp item)
+         (let ((*read-default-float-format* (type-of item)))
+           (princ item stream)))
+        (t (princ item stream))))
+
+(defun write-items (items stream)
+  "Write each of ITEMS to STREAM by OUT's rules."
+  (dolist (item items) (write-item item stream)))
+
+(defun out (&rest items)
+  "Print each of ITEMS, without quotes, to standard output; T ends the line. Return nothing
+(manual 3.1.3)."
+  (write-items items *standard-output*)
+  (finish-output)
+  (values))
+
+(defun message-text (message)
+  "Return the items of MESSAGE as a string, without the marker of its kind."
+  (with-output-to-string (stream) (write-items (message-items message) stream)))
+
+(defun write-message (message stream)
+  "Write MESSAGE and a new line to STREAM, marked *ERROR* -> or *WARNING* -> (manual E)."
+  (format stream "~@[*~A* -> ~]~A~%"
+          (ecase (message-kind message) (:error "ERROR") (:warning "WARNING") (:message nil))
+          (message-text message)))
+
+(defun error-display (&optional (stream *standard-output*))
+  "Write all queued messages to STREAM, oldest first, and flush the queue. Writes nothing
+when FLUSH-ALL-ERRORS* is true. Return nothing (manual 3.7)."
+  (let ((messages (take-messages)))
+    (unless flush-all-errors*
+      (dolist (message messages) (write-message message stream))
+      (finish-output stream)))
+  (values))

@@ -1,0 +1,57 @@
+;;;; package.lisp -- the base layer: what every other layer stands on.
+
+(defpackage :ars-magna.base
+  (:documentation "Conditions, dice, threads, messages and parameters. Names alexandria
+and bordeaux-threads so that no other layer has to.")
+  (:use :cl)
+  (:import-from :alexandria
+                #:clamp #:ensure-list #:once-only #:parse-body #:removef #:when-let #:if-let
+                #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
+                #:read-file-into-string #:starts-with-subseq #:define-constant)
+  ;; alexandria
+  (:export #:clamp #:ensure-list #:once-only #:parse-body #:removef #:when-let #:if-let
+           #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
+           #:read-file-into-string #:starts-with-subseq #:define-constant)
+  ;; policy
+  (:export #:*hot* #:double #:cell-index #:tick-count)
+  ;; conditions
+  (:export #:ars-magna-error #:wrong-argument #:check-argument #:malformed-definition
+           #:reject-clause #:unknown-name #:reject-name #:misuse #:reject-use)
+  ;; threads
+  (:export #:make-lock #:with-lock #:make-semaphore #:signal-semaphore #:wait-on-semaphore
+           #:start-thread #:join-thread #:thread-alive-p #:current-thread #:spread-specials)
+  ;; dice
+  (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
+           #:roll-index #:roll-element #:roll-gaussian #:roll-interval #:chance)
+  ;; names
+  (:export #:same-name-p #:name-string #:nearest-name #:value-equal)
+  ;; messages
+  (:export #:error-set #:warning-set #:message-set #:error-display #:flush-all-errors*
+           #:*message-queue* #:make-message-queue #:message-queue #:message-queue-listener
+           #:message #:message-kind #:message-items #:take-messages #:message-text
+           #:write-message #:write-items #:out #:*message-limit*)
+  ;; user code
+  (:export #:call-user-code #:with-user-code #:*break-on-user-error*)
+  ;; parameters
+  (:export #:parameter #:parameter-name #:parameter-default #:parameter-unit #:parameter-kind
+           #:parameter-group #:parameter-sentence #:parameter-value #:define-parameter
+           #:all-parameters #:find-parameter #:call-with-parameters #:parameter-settings
+           #:check-parameters #:follow-global-parameters
+           #:clean-simulation #:dirty-simulation #:*noise-before-cleaning*)
+  ;; physics: the parameters of chapter 4
+  (:export #:max-speed* #:max-turn-angle* #:min-turn-angle* #:braking* #:motion-noise*
+           #:robot-turn-max-error* #:robot-align-error-prob* #:robot-move-delay*
+           #:robot-turn-delay* #:robot-align-delay*
+           #:camera-angle-max-error* #:scan-density* #:prob-lose-track*
+           #:prob-lose-false-track* #:false-desig-drift-dist* #:false-desig-drift-ang*
+           #:camera-insert-miss-prob* #:camera-insert-lose-desig-prob* #:camera-move-delay*
+           #:camera-align-delay* #:camera-desig-delay*
+           #:type-false-pos* #:type-false-neg* #:prob-stop* #:miss-thing-prob*
+           #:miss-place-prob* #:false-thing-prob* #:pixel-error-range* #:pixel-outlier-prob*
+           #:no-sensor-error* #:discrete-noise-factor* #:continuous-noise-factor*
+           #:standard-match-threshold*
+           #:prob-miss-grasp* #:prob-grasp-lose-desig* #:hand-insert-miss-prob*
+           #:hand-insert-lose-desig-prob* #:hand-move-delay* #:hand-grasp-delay*
+           #:bin-close-jam-prob* #:bin-delay* #:tick-quantum*)
+  ;; digest
+  (:export #:digest #:make-digest #:digest-add #:digest-value))

@@ -1,0 +1,157 @@
+;;;; parameters.lisp -- a parameter of the simulation is defined once (manual, chapter 4).
+
+(in-package :ars-magna.base)
+
+;;; Each parameter is a special variable that users may SETF. From its one definition come its
+;;; documentation, the check of its value, what CLEAN-SIMULATION does to it and the prompt's
+;;; list. A headless run binds all of them anew; a live run follows the global values.
+
+(defstruct (parameter (:copier nil))
+  "What is known of one simulation parameter besides its value."
+  (symbol nil :type symbol :read-only t)
+  (default nil :read-only t)
+  (unit "" :type string :read-only t)
+  (type t :read-only t)
+  (kind :limit :type (member :noise :delay :limit :setting) :read-only t)
+  (clean nil :read-only t)
+  (group "" :type string :read-only t)
+  (sentence "" :type string :read-only t))
+
+(defun parameter-name (parameter)
+  "Return what PARAMETER is called, a lower-case string such as \"max-speed*\"."
+  (string-downcase (parameter-symbol parameter)))
+
+(defvar *parameters* '()
+  "All parameters, in the order of their definition.")
+
+(defun all-parameters ()
+  "Return a list of all parameters in the order of chapter 4."
+  (copy-list *parameters*))
+
+(defun register-parameter (parameter)
+  (setf *parameters*
+        (append (remove (parameter-symbol parameter) *parameters* :key #'parameter-symbol)
+                (list parameter))))
+
+(defmacro define-parameter (symbol default (&key (unit "") (type t) (kind :limit) (group "") clean)
+                            sentence)
+  "Define SYMBOL as a special variable and simulation parameter. CLEAN is its value in a
+noiseless world, for parameters of kind :noise."
+  `(progn
+     (defvar ,symbol ,default
+       ,(format nil "~A Default ~A~@[ ~A~]. (Manual, chapter 4.)" sentence
+                (let ((*read-default-float-format* 'double-float))
+                  (princ-to-string (eval default)))
+                (and (string/= unit "") unit)))
+     (register-parameter
+      (make-parameter :symbol ',symbol :default ,default :unit ,unit :type ',type
+                      :kind ,kind :clean ,clean :group ,group :sentence ,sentence))
+     ',symbol))
+
+(defun find-parameter (name)
+  "Return the parameter called NAME (a string or symbol, with or without its final star).
+Signals UNKNOWN-NAME."
+  (let ((name (name-string name)))
+    (or (find-if (lambda (parameter)
+                   (let ((own (name-string (parameter-symbol parameter))))
+                     (or (string= own name)
+                         (string= own (concatenate 'string name "*")))))
+                 *parameters*)
+        (reject-name "simulation parameter" name (mapcar #'parameter-name *parameters*)))))
+
+(defun describe-type (type)
+  "Return TYPE, a parameter's, in words."
+  (cond ((eq type 'boolean) "T or NIL")
+        ((and (consp type) (member (first type) '(real integer)))
+         (format nil "~:[a number~;an integer~]~@[ from ~A~]~@[ to ~A~]"
+                 (eq (first type) 'integer) (second type) (third type)))
+        (t (format nil "a value of type ~(~S~)" type))))
+
+(defun check-parameter-value (parameter value)
+  (unless (typep value (parameter-type parameter))
+    (error 'wrong-argument :operator "set parameter" :name (parameter-name parameter)
+                           :value value
+                           :expected (describe-type (parameter-type parameter)))))
+
+(defun parameter-value (parameter)
+  "Return the value that PARAMETER (or the parameter so named) has now. Can be set; signals
+WRONG-ARGUMENT if the new value is of the wrong type or out of range."
+  (let ((parameter (if (parameter-p parameter) parameter (find-parameter parameter))))
+    (symbol-value (parameter-symbol parameter))))
+
+(defun (setf parameter-value) (value parameter)
+  (let ((parameter (if (parameter-p parameter) parameter (find-parameter parameter))))
+    (check-parameter-value parameter value)
+    (setf (symbol-value (parameter-symbol parameter)) value)))
+
+(defun check-parameters ()
+  "Signal WRONG-ARGUMENT if any parameter has a value of the wrong type or out of range."
+  (dolist (parameter *parameters*)
+    (check-parameter-value parameter (parameter-value parameter))))
+
+(defun parameter-settings ()
+  "Return a list (symbol value) for each parameter whose value is not its default."
+  (loop for parameter in *parameters*
+        for value = (parameter-value parameter)
+        unless (value-equal value (parameter-default parameter))
+          collect (list (parameter-symbol parameter) value)))
+
+;;; Noise on and off.
+
+(defvar *noise-before-cleaning* nil
+  "What CLEAN-SIMULATION changed: a list (symbol value), or NIL in a dirty simulation.")
+
+(defun clean-simulation ()
+  "Remove all noise and error: set every noise parameter to its noiseless value and
+NO-SENSOR-ERROR* to T. Delays and limits stay. A second call changes nothing. Returns nothing
+(manual, chapter 4)."
+  (unless *noise-before-cleaning*
+    (setf *noise-before-cleaning*
+          (loop for parameter in *parameters*
+                when (eq (parameter-kind parameter) :noise)
+                  collect (list (parameter-symbol parameter) (parameter-value parameter))
+                  and do (setf (parameter-value parameter) (parameter-clean parameter)))))
+  (values))
+
+(defun dirty-simulation ()
+  "Restore the noise parameters as they were before CLEAN-SIMULATION; without it, do nothing.
+Returns nothing (manual, chapter 4)."
+  (loop for (symbol value) in (shiftf *noise-before-cleaning* nil)
+        do (setf (symbol-value symbol) value))
+  (values))
+
+;;; A run binds its own.
+
+(defun call-with-parameters (settings function)
+  "Call FUNCTION with every parameter bound: as SETTINGS, a list (name value), says, and as it
+is now where they say nothing. Changes made inside end with the call."
+  (let* ((settings (loop for (name value) in settings
+                         collect (cons (parameter-symbol (find-parameter name)) value)))
+         (symbols (mapcar #'parameter-symbol *parameters*))
+         (values (loop for parameter in *parameters*
+                       for symbol = (parameter-symbol parameter)
+                       for setting = (assoc symbol settings)
+                       do (when setting (check-parameter-value parameter (cdr setting)))
+                       collect (if setting (cdr setting) (symbol-value symbol)))))
+    (progv (cons '*noise-before-cleaning* symbols) (cons *noise-before-cleaning* values)
+      (funcall function))))
+
+(defun follow-global-parameters (note)
+  "In a thread that has parameters bound by CALL-WITH-PARAMETERS: take over those that somebody
+has set globally, and publish those that were set here; where both happened the global one
+wins. Call NOTE with the symbol and value of each that changed here. A global value that
+cannot be used is put back, with an error message."
+  (declare (type function note))
+  (dolist (parameter *parameters*)
+    (let* ((symbol (parameter-symbol parameter))
+           (here (symbol-value symbol))
+           (global (sb-ext:symbol-global-value symbol)))
+      (unless (eql here global)
+        (handler-case (check-parameter-value parameter global)
+          (wrong-argument (trouble)
+            (error-set (princ-to-string trouble))
+            (setf global here
+                  (sb-ext:symbol-global-value symbol) here)))
+        (unless (eql here global)
+          (setf (symbol-value symbol) global)
+          (funcall note symbol global))))))

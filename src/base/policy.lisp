@@ -1,0 +1,20 @@
+;;;; policy.lisp -- how hot code is compiled, and the few number types that all layers share.
+
+(in-package :ars-magna.base)
+
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defparameter *hot* '(optimize (speed 3) (safety 1) (debug 0))
+    "How a function that a profile pointed at is compiled: (declare #.*hot*)."))
+
+(deftype cell-index ()
+  "The index of a grid cell: maps have at most 2^30 cells."
+  '(unsigned-byte 30))
+
+(deftype tick-count ()
+  "A moment or a span of simulated time, in ticks."
+  '(unsigned-byte 61))
+
+(declaim (inline double))
+(defun double (number)
+  "Return NUMBER as a double-float."
+  (if (typep number 'double-float) number (coerce (the real number) 'double-float)))

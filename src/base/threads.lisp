@@ -1,0 +1,50 @@
+;;;; threads.lisp -- the one door to bordeaux-threads.
+
+(in-package :ars-magna.base)
+
+;;; Nothing here interrupts or kills a thread: threads are asked to end and then joined.
+
+(defun make-lock (name)
+  "Return a new lock called NAME."
+  (bordeaux-threads:make-lock name))
+
+(defmacro with-lock ((lock) &body body)
+  "Run BODY while holding LOCK."
+  `(bordeaux-threads:with-lock-held (,lock) ,@body))
+
+(defun make-semaphore (name)
+  "Return a new semaphore called NAME with a count of 0."
+  (bordeaux-threads:make-semaphore :name name))
+
+(defun signal-semaphore (semaphore)
+  "Add one to the count of SEMAPHORE, waking a thread that waits on it."
+  (bordeaux-threads:signal-semaphore semaphore))
+
+(defun wait-on-semaphore (semaphore &optional seconds)
+  "Take one from SEMAPHORE; true if that succeeded within SECONDS (NIL: however long)."
+  (if seconds
+      (bordeaux-threads:wait-on-semaphore semaphore :timeout seconds)
+      (bordeaux-threads:wait-on-semaphore semaphore)))
+
+(defun start-thread (function name)
+  "Call FUNCTION in a new thread called NAME; return the thread."
+  (bordeaux-threads:make-thread function :name name))
+
+(defun join-thread (thread)
+  "Wait until THREAD has ended."
+  (bordeaux-threads:join-thread thread))
+
+(defun thread-alive-p (thread)
+  "True while THREAD runs."
+  (bordeaux-threads:thread-alive-p thread))
+
+(defun current-thread ()
+  "Return the thread that asks."
+  (bordeaux-threads:current-thread))
+
+(defun spread-specials (function &rest symbols)
+  "Return a function that calls FUNCTION with the values that SYMBOLS have here and now.
+Threads start with global values; this carries the dynamic ones over."
+  (let ((values (mapcar #'symbol-value symbols)))
+    (lambda (&rest arguments)
+      (progv symbols values (apply function arguments)))))
