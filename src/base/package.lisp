@@ -36,7 +36,7 @@ and bordeaux-threads so that no other layer has to.")
   (:export #:parameter #:parameter-name #:parameter-default #:parameter-unit #:parameter-kind
            #:parameter-group #:parameter-sentence #:parameter-value #:define-parameter
            #:all-parameters #:find-parameter #:call-with-parameters #:parameter-settings
-           #:check-parameters #:follow-global-parameters
+           #:check-parameters #:parameter-values #:follow-parameters
            #:clean-simulation #:dirty-simulation #:*noise-before-cleaning*)
   ;; physics: the parameters of chapter 4
   (:export #:max-speed* #:max-turn-angle* #:min-turn-angle* #:braking* #:motion-noise*

@@ -136,22 +136,31 @@ is now where they say nothing. Changes made inside end with the call."
     (progv (cons '*noise-before-cleaning* symbols) (cons *noise-before-cleaning* values)
       (funcall function))))
 
-(defun follow-global-parameters (note)
-  "In a thread that has parameters bound by CALL-WITH-PARAMETERS: take over those that somebody
-has set globally, and publish those that were set here; where both happened the global one
-wins. Call NOTE with the symbol and value of each that changed here. A global value that
-cannot be used is put back, with an error message."
-  (declare (type function note))
-  (dolist (parameter *parameters*)
-    (let* ((symbol (parameter-symbol parameter))
-           (here (symbol-value symbol))
-           (global (sb-ext:symbol-global-value symbol)))
-      (unless (eql here global)
-        (handler-case (check-parameter-value parameter global)
-          (wrong-argument (trouble)
-            (error-set (princ-to-string trouble))
-            (setf global here
-                  (sb-ext:symbol-global-value symbol) here)))
-        (unless (eql here global)
-          (setf (symbol-value symbol) global)
-          (funcall note symbol global))))))
+(defun parameter-values ()
+  "Return a vector of the values of all parameters as they are now, for FOLLOW-PARAMETERS."
+  (map 'vector #'parameter-value *parameters*))
+
+(defun usable-value-p (parameter value)
+  "True if PARAMETER can have VALUE; if not, queue an error message."
+  (handler-case (progn (check-parameter-value parameter value) t)
+    (wrong-argument (trouble) (error-set (princ-to-string trouble)) nil)))
+
+(defun follow-parameters (known global-p note)
+  "Find the parameters that have changed since KNOWN, a vector made by PARAMETER-VALUES, was
+last brought up to date, and do that. If GLOBAL-P, the caller is a thread with bindings of its
+own: values set globally by others come in and values set here go out. A value that cannot be
+used is put back, with an error message. NOTE is called with each symbol and its new value."
+  (declare #.*hot* (type simple-vector known) (type function note))
+  (loop for parameter in *parameters*
+        for index of-type fixnum from 0
+        for symbol = (parameter-symbol (the parameter parameter))
+        for old = (svref known index)
+        for here = (symbol-value symbol)
+        for global = (if global-p (sb-ext:symbol-global-value symbol) here)
+        unless (and (eql here old) (eql global old))
+          do (let ((new (if (eql global old) here global)))
+               (unless (usable-value-p parameter new) (setf new old))
+               (setf (svref known index) new
+                     (symbol-value symbol) new)
+               (when global-p (setf (sb-ext:symbol-global-value symbol) new))
+               (unless (eql new old) (funcall note symbol new)))))

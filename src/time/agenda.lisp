@@ -1,0 +1,216 @@
+;;;; agenda.lisp -- events waiting for their tick.
+
+(in-package :ars-magna.time)
+
+;;; A hierarchical timing wheel. The near wheel has a bucket for each tick of the current page of
+;;; 1024 ticks, the far wheel one for each page of the current volume of 1024 pages; what lies
+;;; beyond waits in one list. Turning a page moves its far bucket into the near wheel. Queueing
+;;; and running an event cost the same however many wait.
+;;;
+;;; Invariants: buckets hold events in the order of queueing; within a tick, higher priorities
+;;; run first and equal ones in that order; a resource has at most one pending event; cancelled
+;;; events stay in their bucket and are dropped when it comes up. Manual 3.8.
+
+(defconstant +page-bits+ 10)
+(defconstant +page-size+ (ash 1 +page-bits+))
+(defconstant +page-mask+ (1- +page-size+))
+
+(defstruct (event (:constructor %make-event (function)) (:copier nil))
+  "Something that FUNCTION, called with the event, will do in the tick TIME."
+  (function #'identity :type function)
+  (time 0 :type tick-count)
+  (priority 0 :type fixnum)
+  (resource nil)
+  (interrupt nil :type (or null function))
+  (pending-p nil)
+  ;; True while some bucket holds the event, pending or cancelled.
+  (queued-p nil)
+  (next nil :type (or null event)))
+(setf (documentation 'event-pending-p 'function) "True while the event waits for its tick."
+      (documentation 'event-resource 'function) "Return the resource of the event, or NIL.")
+
+(defstruct (bucket (:constructor make-bucket ()) (:copier nil))
+  (first nil :type (or null event))
+  (last nil :type (or null event)))
+
+(defun make-wheel ()
+  (let ((wheel (make-array +page-size+)))
+    (dotimes (i +page-size+ wheel) (setf (svref wheel i) (make-bucket)))))
+
+(defstruct (agenda (:constructor make-agenda ()) (:copier nil))
+  "The events of one simulation."
+  (tick 0 :type tick-count)
+  (near (make-wheel) :type (simple-vector #.+page-size+) :read-only t)
+  (far (make-wheel) :type (simple-vector #.+page-size+) :read-only t)
+  (beyond (make-bucket) :type bucket :read-only t)
+  ;; How many events are pending, and how many of those have a priority other than 0.
+  (pending 0 :type fixnum)
+  (unequal 0 :type fixnum)
+  ;; The pending event of each resource that is not a RESOURCE structure.
+  (claims (make-hash-table :test 'eql) :type hash-table :read-only t))
+(setf (documentation 'agenda-tick 'function) "Return the tick that the agenda has reached."
+      (documentation 'agenda-pending 'function) "Return how many events are pending.")
+
+(declaim (inline append-event))
+(defun append-event (event bucket)
+  (setf (event-next event) nil
+        (event-queued-p event) t)
+  (let ((last (bucket-last bucket)))
+    (if last
+        (setf (event-next last) event)
+        (setf (bucket-first bucket) event)))
+  (setf (bucket-last bucket) event))
+
+(defun shelve (agenda event)
+  "Put EVENT into the bucket of its time."
+  (declare #.*hot* (type agenda agenda) (type event event))
+  (let* ((time (event-time event))
+         (page (ash time (- +page-bits+)))
+         (current (ash (agenda-tick agenda) (- +page-bits+))))
+    (append-event event
+                  (the bucket
+                       (cond ((= page current)
+                              (svref (agenda-near agenda) (logand time +page-mask+)))
+                             ((= (ash page (- +page-bits+)) (ash current (- +page-bits+)))
+                              (svref (agenda-far agenda) (logand page +page-mask+)))
+                             (t (agenda-beyond agenda)))))))
+
+(defun empty-bucket (bucket)
+  "Take all events out of BUCKET; return the first."
+  (prog1 (bucket-first bucket)
+    (setf (bucket-first bucket) nil
+          (bucket-last bucket) nil)))
+
+(defun shelve-all (agenda event)
+  "Shelve EVENT and those that follow it anew, dropping the cancelled."
+  (loop while event
+        do (let ((next (event-next event)))
+             (if (event-pending-p event)
+                 (shelve agenda event)
+                 (setf (event-queued-p event) nil))
+             (setf event next))))
+
+(defun turn-page (agenda)
+  (let ((page (ash (agenda-tick agenda) (- +page-bits+))))
+    (when (zerop (logand page +page-mask+))
+      (shelve-all agenda (empty-bucket (agenda-beyond agenda))))
+    (shelve-all agenda (empty-bucket (svref (agenda-far agenda) (logand page +page-mask+))))))
+
+;;; Resources.
+
+(declaim (inline pending-event))
+(defun pending-event (agenda resource)
+  "Return the event that is pending on RESOURCE, or NIL."
+  (if (resource-p resource)
+      (resource-event resource)
+      (values (gethash resource (agenda-claims agenda)))))
+
+(defun claim (agenda event resource)
+  (cond ((null resource))
+        ((resource-p resource) (setf (resource-event resource) event))
+        (t (setf (gethash resource (agenda-claims agenda)) event))))
+
+(defun unclaim (agenda resource)
+  (cond ((null resource))
+        ((resource-p resource) (setf (resource-event resource) nil))
+        (t (remhash resource (agenda-claims agenda)))))
+
+;;; Queueing and cancelling.
+
+(declaim (inline activate))
+(defun activate (agenda event)
+  (setf (event-pending-p event) t)
+  (incf (agenda-pending agenda))
+  (unless (zerop (event-priority event)) (incf (agenda-unequal agenda))))
+
+(declaim (inline deactivate))
+(defun deactivate (agenda event)
+  (setf (event-pending-p event) nil)
+  (decf (agenda-pending agenda))
+  (unless (zerop (event-priority event)) (decf (agenda-unequal agenda))))
+
+(declaim (inline queue-again))
+(defun queue-again (agenda event delay)
+  "Queue EVENT, which is not pending, to run DELAY ticks from now (at least 1)."
+  (declare (type tick-count delay))
+  (when (event-queued-p event)
+    (reject-use "An event that still waits in its bucket cannot be queued again."))
+  (setf (event-time event) (the tick-count (+ (agenda-tick agenda) (max 1 delay))))
+  (activate agenda event)
+  (when (event-resource event) (claim agenda event (event-resource event)))
+  (shelve agenda event))
+
+(defun queue-event (agenda delay function &key resource (priority 0) interrupt)
+  "Queue a new event that calls FUNCTION with itself DELAY ticks from now (at least 1) and
+return it. RESOURCE must have no pending event. INTERRUPT, a function of no arguments, is called
+if the event is interrupted."
+  (let ((event (%make-event function)))
+    (setf (event-resource event) resource
+          (event-priority event) priority
+          (event-interrupt event) interrupt)
+    (queue-again agenda event delay)
+    event))
+
+(defun cancel-event (agenda event)
+  "Make sure that EVENT, if pending, never runs. No handler is called."
+  (when (event-pending-p event)
+    (deactivate agenda event)
+    (unclaim agenda (event-resource event))))
+
+(defun interrupt-event (agenda event)
+  "Cancel EVENT and call its interrupt handler."
+  (when (event-pending-p event)
+    (cancel-event agenda event)
+    (when (event-interrupt event)
+      (call-user-code (event-interrupt event) "an event's interrupt handler"))))
+
+;;; Running.
+
+(defun run-event (agenda event)
+  (declare #.*hot* (type agenda agenda) (type event event))
+  (deactivate agenda event)
+  (let ((resource (event-resource event)))
+    (when resource (unclaim agenda resource)))
+  (funcall (event-function event) event))
+
+(defun bucket-by-priority (event)
+  "Return a list of EVENT and those that follow it, higher priorities first."
+  (stable-sort (loop for e = event then (event-next e) while e collect e)
+               #'> :key #'event-priority))
+
+(defun run-in-order (agenda event)
+  (declare #.*hot* (type agenda agenda))
+  (loop while event
+        do (let ((next (event-next (the event event))))
+             (setf (event-queued-p event) nil)
+             (when (event-pending-p event) (run-event agenda event))
+             (setf event next))))
+
+(defun advance-agenda (agenda)
+  "Go on to the next tick and run the events due in it."
+  (declare #.*hot* (type agenda agenda))
+  (let ((tick (incf (agenda-tick agenda))))
+    (when (zerop (logand tick +page-mask+)) (turn-page agenda))
+    (let* ((bucket (svref (agenda-near agenda) (logand tick +page-mask+)))
+           (event (bucket-first (the bucket bucket))))
+      (when event
+        (empty-bucket bucket)
+        (if (zerop (agenda-unequal agenda))
+            (run-in-order agenda event)
+            (dolist (event (bucket-by-priority event))
+              (setf (event-queued-p event) nil)
+              (when (event-pending-p event) (run-event agenda event))))))))
+
+(defun next-due-tick (agenda)
+  "Return the tick of the earliest pending event, or NIL. Meant for reports: it searches."
+  (let ((earliest nil))
+    (flet ((look (bucket)
+             (loop for event = (bucket-first bucket) then (event-next event)
+                   while event
+                   when (and (event-pending-p event)
+                             (or (null earliest) (< (event-time event) earliest)))
+                     do (setf earliest (event-time event)))))
+      (map nil #'look (agenda-near agenda))
+      (map nil #'look (agenda-far agenda))
+      (look (agenda-beyond agenda)))
+    earliest))
