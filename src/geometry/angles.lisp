@@ -1,0 +1,44 @@
+;;;; angles.lisp -- angles and directions: radians, 0 along x, growing clockwise (manual 3.2).
+
+(in-package :ars-magna.geometry)
+
+;;; With y down, the heading of angle a is (cos a, sin a), and a left turn is -pi/2. Angles are
+;;; never normalised; only differences are reduced, to (-pi, pi].
+
+(defconstant 2pi (* 2 pi)
+  "Two pi, a full turn in radians (manual 3.2).")
+
+(defvar origin* (make-pt 0 0)
+  "The point (0, 0), where an odometer starts (manual, Figure D.8).")
+
+(defun atan2 (y x)
+  "Return the angle of the direction (X, Y), in radians from -pi to pi (manual, Figure D.8)."
+  (check-argument atan2 y (realp y) "a real number")
+  (check-argument atan2 x (realp x) "a real number")
+  (atan (as-double y) (as-double x)))
+
+(declaim (inline reduced-angle))
+(defun reduced-angle (angle)
+  "Return what of ANGLE is left in (-pi, pi] after whole turns."
+  (declare (type double-float angle))
+  (if (and (< #.(- pi) angle) (<= angle pi))
+      angle
+      (let ((turns (ceiling (the (double-float -4d18 4d18) (- (/ angle 2pi) 0.5d0)))))
+        (- angle (* 2pi turns)))))
+
+(defun angle-difference (a b)
+  "Return the angle A minus the angle B without whole turns: the signed turn, in (-pi, pi]
+radians, that leads from B to A."
+  (check-argument angle-difference a (realp a) "a real number")
+  (check-argument angle-difference b (realp b) "a real number")
+  (reduced-angle (- (as-double a) (as-double b))))
+
+(defun nearest-angle (angle candidate &rest more)
+  "Return the one of CANDIDATE and MORE that is the least turn away from ANGLE, all in radians,
+as it was given; the first of equals."
+  (declare (dynamic-extent more))
+  (let ((least (abs (angle-difference candidate angle))))
+    (dolist (other more candidate)
+      (let ((turn (abs (angle-difference other angle))))
+        (when (< turn least)
+          (setf candidate other least turn))))))

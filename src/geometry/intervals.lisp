@@ -1,0 +1,184 @@
+;;;; intervals.lisp -- comparing, joining and growing intervals (manual 3.2.1, Table 3.2).
+
+(in-package :ars-magna.geometry)
+
+;;; Bounds belong to their interval. In two dimensions a comparison holds if it holds along both
+;;; axes. Where the table says x, an element is asked for: a number or a point.
+
+(defmacro define-comparison (name combine (low-a high-a low-b high-b) documentation form)
+  "Define NAME as a function of two operands whose value along an axis is FORM, evaluated with
+the four variables bound to their bounds; COMBINE joins the values of two axes."
+  `(defun ,name (a b)
+     ,documentation
+     (flet ((compare (,low-a ,high-a ,low-b ,high-b)
+              (declare (type double-float ,low-a ,high-a ,low-b ,high-b)
+                       (ignorable ,low-a ,high-a ,low-b ,high-b))
+              ,form))
+       (declare (inline compare))
+       (dispatch ,name (a b) "two intervals or numbers, or two point intervals or points"
+         ((span span) (compare (low a) (high a) (low b) (high b)))
+         ((region region)
+          (,combine (compare (low-x a) (high-x a) (low-x b) (high-x b))
+                    (compare (low-y a) (high-y a) (low-y b) (high-y b))))))))
+
+(define-comparison interval-intersect? and (low-a high-a low-b high-b)
+  "True if the intervals A and B share an element, be it a bound (Table 3.2)."
+  (and (<= low-a high-b) (<= low-b high-a)))
+
+(define-comparison interval-subset? and (low-a high-a low-b high-b)
+  "True if every element of the interval A is in the interval B (Table 3.2)."
+  (and (<= low-b low-a) (<= high-a high-b)))
+
+(define-comparison less and (low-a high-a low-b high-b)
+  "True if every element of the interval A is less than every element of B, of point intervals
+along both axes (Table 3.2)."
+  (< high-a low-b))
+
+(define-comparison greater and (low-a high-a low-b high-b)
+  "True if every element of the interval A is greater than every element of B, of point
+intervals along both axes (Table 3.2)."
+  (> low-a high-b))
+
+(define-comparison interval-dist max (low-a high-a low-b high-b)
+  "Return the gap between the intervals A and B, of point intervals the wider of the gaps along
+the two axes; 0 just if they intersect (Table 3.2)."
+  (max 0d0 (- low-a high-b) (- low-b high-a)))
+
+(defun in-interval (x interval)
+  "True if the number or point X is in INTERVAL, bounds included (Table 3.2)."
+  (dispatch in-interval (x interval) "a number and an INTERVAL, or a PT and a PT-INTERVAL"
+    ((real span) (<= (low interval) (as-double x) (high interval)))
+    ((pt region) (and (<= (low-x interval) (%pt-x x) (high-x interval))
+                      (<= (low-y interval) (%pt-y x) (high-y interval))))))
+
+;;; Measures.
+
+(declaim (inline centre))
+(defun centre (low high)
+  (declare (type double-float low high))
+  (* 0.5d0 (+ low high)))
+
+(defun interval-width (interval)
+  "Return the largest distance between two elements of INTERVAL: of a point interval, its
+diagonal (Table 3.2)."
+  (dispatch interval-width (interval) "an INTERVAL or PT-INTERVAL"
+    ((span) (- (high interval) (low interval)))
+    ((region) (length-of (- (high-x interval) (low-x interval))
+                         (- (high-y interval) (low-y interval))))))
+
+(defun interval-overlap-width (a b)
+  "Return the width of what the intervals A and B have in common; 0 if nothing (Table 3.2)."
+  (let ((common (interval-intersect a b)))
+    (if common (interval-width common) 0d0)))
+
+(defun nominal (interval)
+  "Return the centre of INTERVAL, the best estimate: a number, or a fresh PT (Table 3.2)."
+  (dispatch nominal (interval) "an INTERVAL or PT-INTERVAL"
+    ((span) (centre (low interval) (high interval)))
+    ((region) (%make-pt (centre (low-x interval) (high-x interval))
+                        (centre (low-y interval) (high-y interval))))))
+
+;;; Intersection.
+
+(declaim (inline %intersect!))
+(defun %intersect! (interval low high)
+  (%set-interval! interval (max (%interval-min interval) low) (min (%interval-max interval) high)))
+
+(defun interval-intersect! (a b)
+  "Change A into what the intervals A and B have in common, and return A. If that is nothing,
+leave A as it is and return NIL (Table 3.2)."
+  (dispatch interval-intersect! (a b) "an INTERVAL or PT-INTERVAL and one like it"
+    ((interval span)
+     (when (interval-intersect? a b)
+       (%intersect! a (low b) (high b))))
+    ((pt-interval region)
+     (when (interval-intersect? a b)
+       (%intersect! (%pt-interval-x a) (low-x b) (high-x b))
+       (%intersect! (%pt-interval-y a) (low-y b) (high-y b))
+       a))))
+
+(defun interval-intersect (a b)
+  "Return what the intervals A and B have in common, as a fresh interval of their kind; NIL if
+that is nothing (Table 3.2)."
+  (dispatch interval-intersect (a b) "two intervals or two point intervals"
+    ((span span) (interval-intersect! (lift a) b))
+    ((region region) (interval-intersect! (lift a) b))))
+
+;;; The least bounding interval (LBI).
+
+(declaim (inline %bound!))
+(defun %bound! (interval low high)
+  (%set-interval! interval (min (%interval-min interval) low) (max (%interval-max interval) high)))
+
+(defun interval-lbi! (a b)
+  "Grow the interval A just so that it contains B too, and return A (Table 3.2)."
+  (dispatch interval-lbi! (a b) "an INTERVAL or PT-INTERVAL and one like it"
+    ((interval span) (%bound! a (low b) (high b)))
+    ((pt-interval region)
+     (%bound! (%pt-interval-x a) (low-x b) (high-x b))
+     (%bound! (%pt-interval-y a) (low-y b) (high-y b))))
+  a)
+
+(defun interval-lbi (a b)
+  "Return the least interval that contains the intervals A and B (Table 3.2)."
+  (dispatch interval-lbi (a b) "two intervals or two point intervals"
+    ((span span) (interval-lbi! (lift a) b))
+    ((region region) (interval-lbi! (lift a) b))))
+
+(defun add-to-lbi! (interval x)
+  "Grow INTERVAL just so that it contains the number or point X, and return it (Table 3.2)."
+  (dispatch add-to-lbi! (interval x) "an INTERVAL and a number, or a PT-INTERVAL and a PT"
+    ((interval real) (interval-lbi! interval x))
+    ((pt-interval pt) (interval-lbi! interval x))))
+
+(defun add-to-lbi (interval x)
+  "Return the least interval that contains INTERVAL and the number or point X (Table 3.2)."
+  (dispatch add-to-lbi (interval x) "an INTERVAL and a number, or a PT-INTERVAL and a PT"
+    ((span real) (interval-lbi! (lift interval) x))
+    ((region pt) (interval-lbi! (lift interval) x))))
+
+(defun interval-lift (x)
+  "Return the interval that contains only X: an INTERVAL of a number, a PT-INTERVAL of a point
+(Table 3.2)."
+  (dispatch interval-lift (x) "a number or a PT"
+    (((or real pt)) (lift x))))
+
+(defun lift-lbi (x &rest more)
+  "Return the least interval that contains X and each of MORE, all numbers or all points
+(Table 3.2)."
+  (declare (dynamic-extent more))
+  (check-argument lift-lbi x (typep x '(or real pt)) "a number or a PT")
+  (let ((interval (lift x)))
+    (dolist (x more interval)
+      (dispatch lift-lbi (interval x) "all numbers or all points"
+        ((interval real) (interval-lbi! interval x))
+        ((pt-interval pt) (interval-lbi! interval x))))))
+
+;;; Growth.
+
+(declaim (inline %grow!))
+(defun %grow! (interval amount)
+  "Push both bounds outward by AMOUNT; bounds that would pass each other meet in the centre."
+  (let ((low (- (%interval-min interval) amount))
+        (high (+ (%interval-max interval) amount)))
+    (if (<= low high)
+        (%set-interval! interval low high)
+        (let ((centre (centre (%interval-min interval) (%interval-max interval))))
+          (%set-interval! interval centre centre)))))
+
+(defun grow-interval! (interval amount)
+  "Push each boundary of INTERVAL outward by the number AMOUNT, and return INTERVAL. A negative
+AMOUNT shrinks it, at most to its centre (Table 3.2)."
+  (dispatch grow-interval! (interval amount) "an INTERVAL or PT-INTERVAL and a number"
+    ((interval real) (%grow! interval (as-double amount)))
+    ((pt-interval real)
+     (%grow! (%pt-interval-x interval) (as-double amount))
+     (%grow! (%pt-interval-y interval) (as-double amount))))
+  interval)
+
+(defun grow-interval (interval amount)
+  "Return INTERVAL with each boundary pushed outward by the number AMOUNT, which may be negative;
+INTERVAL then shrinks, at most to its centre (Table 3.2)."
+  (dispatch grow-interval (interval amount) "an INTERVAL or PT-INTERVAL and a number"
+    ((span real) (grow-interval! (lift interval) amount))
+    ((region real) (grow-interval! (lift interval) amount))))

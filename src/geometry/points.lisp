@@ -1,0 +1,135 @@
+;;;; points.lisp -- vector arithmetic on points, extended to intervals (manual 3.2.1, Table 3.1).
+
+(in-package :ars-magna.geometry)
+
+;;; Each destructive operation reads all that it needs of both operands before it stores, so
+;;; that (subtract! a a) is right; none of them conses. The others work on a fresh copy.
+
+(declaim (inline %add! %mul! %neg!))
+
+(defun %add! (interval low high)
+  (%set-interval! interval (+ (%interval-min interval) low) (+ (%interval-max interval) high)))
+
+(defun %neg! (interval)
+  ;; 0 - x, not -x, so that no negative zero turns an ATAN2 round.
+  (%set-interval! interval (- 0d0 (%interval-max interval)) (- 0d0 (%interval-min interval))))
+
+(defun %mul! (interval low high)
+  (let ((a (* (%interval-min interval) low))
+        (b (* (%interval-min interval) high))
+        (c (* (%interval-max interval) low))
+        (d (* (%interval-max interval) high)))
+    (%set-interval! interval (min a b c d) (max a b c d))))
+
+(defun add! (a b)
+  "Change A into the sum of A and B, and return A. Intervals add bound by bound (Table 3.1)."
+  (dispatch add! (a b) "a PT and a PT, or an INTERVAL or PT-INTERVAL and one like it"
+    ((pt pt) (set-pt! a (+ (%pt-x a) (%pt-x b)) (+ (%pt-y a) (%pt-y b))))
+    ((interval span) (%add! a (low b) (high b)))
+    ((pt-interval region)
+     (%add! (%pt-interval-x a) (low-x b) (high-x b))
+     (%add! (%pt-interval-y a) (low-y b) (high-y b))))
+  a)
+
+(defun add (a b)
+  "Return the sum of A and B: two points (as vectors), or two intervals or two point intervals,
+of which one may be an element (Table 3.1)."
+  (dispatch add (a b) "two points or point intervals, or two intervals or numbers"
+    ((pt pt) (%make-pt (+ (%pt-x a) (%pt-x b)) (+ (%pt-y a) (%pt-y b))))
+    ((real real) (+ (as-double a) (as-double b)))
+    ((span span) (add! (lift a) b))
+    ((region region) (add! (lift a) b))))
+
+(defun subtract! (a b)
+  "Change A into A minus B, and return A. Of intervals, the result holds every difference of
+their elements (Table 3.1)."
+  (dispatch subtract! (a b) "a PT and a PT, or an INTERVAL or PT-INTERVAL and one like it"
+    ((pt pt) (set-pt! a (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
+    ((interval span) (%add! a (- (high b)) (- (low b))))
+    ((pt-interval region)
+     (%add! (%pt-interval-x a) (- (high-x b)) (- (low-x b)))
+     (%add! (%pt-interval-y a) (- (high-y b)) (- (low-y b)))))
+  a)
+
+(defun subtract (a b)
+  "Return A minus B: two points (as vectors), or two intervals or two point intervals, of which
+one may be an element (Table 3.1)."
+  (dispatch subtract (a b) "two points or point intervals, or two intervals or numbers"
+    ((pt pt) (%make-pt (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
+    ((real real) (- (as-double a) (as-double b)))
+    ((span span) (subtract! (lift a) b))
+    ((region region) (subtract! (lift a) b))))
+
+(defun neg! (a)
+  "Change A into its negative, and return A. An interval swaps its bounds (Table 3.1)."
+  (dispatch neg! (a) "a PT, INTERVAL or PT-INTERVAL"
+    ((pt) (set-pt! a (- 0d0 (%pt-x a)) (- 0d0 (%pt-y a))))
+    ((interval) (%neg! a))
+    ((pt-interval)
+     (%neg! (%pt-interval-x a))
+     (%neg! (%pt-interval-y a))))
+  a)
+
+(defun neg (a)
+  "Return the negative of A, a point, number, interval or point interval (Table 3.1)."
+  (dispatch neg (a) "a PT, INTERVAL, PT-INTERVAL or number"
+    ((real) (- 0d0 (as-double a)))
+    (((or pt interval pt-interval)) (neg! (copy-obj a)))))
+
+(defun mul! (a factor)
+  "Multiply A by the number FACTOR, and return A. A negative FACTOR swaps the bounds of an
+interval; the FACTOR of an interval may be an interval itself (Table 3.1)."
+  (dispatch mul! (a factor) "a PT, INTERVAL or PT-INTERVAL and a number"
+    ((pt real) (let ((factor (as-double factor)))
+                 (set-pt! a (* (%pt-x a) factor) (* (%pt-y a) factor))))
+    ((interval span) (%mul! a (low factor) (high factor)))
+    ((pt-interval span)
+     (let ((low (low factor)) (high (high factor)))
+       (%mul! (%pt-interval-x a) low high)
+       (%mul! (%pt-interval-y a) low high))))
+  a)
+
+(defun mul (a factor)
+  "Return A, a point, number, interval or point interval, multiplied by the number FACTOR; an
+interval as FACTOR gives the interval or point interval of all products (Table 3.1)."
+  (dispatch mul (a factor) "a point, interval or point interval and a number"
+    ((pt real) (mul! (copy-obj a) factor))
+    ((real real) (* (as-double a) (as-double factor)))
+    ((span span) (mul! (lift a) factor))
+    ((region span) (mul! (lift a) factor))))
+
+;;; Lengths.
+
+(declaim (inline length-of least-size greatest-size))
+
+(defun length-of (x y)
+  (declare (type double-float x y))
+  (sqrt (+ (* x x) (* y y))))
+
+(defun least-size (interval)
+  "Return the least absolute value in INTERVAL."
+  (max 0d0 (%interval-min interval) (- (%interval-max interval))))
+
+(defun greatest-size (interval)
+  "Return the greatest absolute value in INTERVAL."
+  (max (abs (%interval-min interval)) (abs (%interval-max interval))))
+
+(defun norm (a)
+  "Return the Euclidean length of the point A as a vector, in metres; of an interval or point
+interval, the INTERVAL of the lengths of its elements (Table 3.1)."
+  (dispatch norm (a) "a PT, INTERVAL, PT-INTERVAL or number"
+    ((pt) (length-of (%pt-x a) (%pt-y a)))
+    ((real) (abs (as-double a)))
+    ((interval) (%make-interval (least-size a) (greatest-size a)))
+    ((pt-interval)
+     (let ((x (%pt-interval-x a)) (y (%pt-interval-y a)))
+       (%make-interval (length-of (least-size x) (least-size y))
+                       (length-of (greatest-size x) (greatest-size y)))))))
+
+(defun dist (a b)
+  "Return the Euclidean distance between the points A and B, in metres; if either is an interval
+or point interval, the INTERVAL of the distances between their elements (Table 3.1)."
+  (dispatch dist (a b) "two points or point intervals, or two intervals or numbers"
+    ((pt pt) (length-of (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
+    ((span span) (norm (subtract a b)))
+    ((region region) (norm (subtract a b)))))

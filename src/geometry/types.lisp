@@ -1,0 +1,227 @@
+;;;; types.lisp -- PT, INTERVAL and PT-INTERVAL: making, reading, changing, printing them.
+
+(in-package :ars-magna.geometry)
+
+;;; All numbers in here are double-floats; any real is accepted and coerced. An interval never
+;;; has its min above its max. A point interval owns its two intervals: no other object shares
+;;; them, so that a destructive operation changes its first operand only (manual 3.2.1).
+
+(declaim (inline as-double))
+(defun as-double (number)
+  "Return NUMBER as a double-float, without consing for the common kinds."
+  (typecase number
+    (double-float number)
+    (fixnum (coerce number 'double-float))
+    (single-float (coerce number 'double-float))
+    (t (double number))))
+
+;;; Points.
+
+(defstruct (pt (:constructor %make-pt (x y)) (:copier nil) (:conc-name %pt-))
+  "A point or vector in the plane, in metres: x grows to the right, y downward (manual 3.2.1)."
+  (x 0d0 :type double-float)
+  (y 0d0 :type double-float))
+(declaim (sb-ext:freeze-type pt))
+
+(declaim (inline make-pt pt-x pt-y (setf pt-x) (setf pt-y) set-pt!))
+
+(defun make-pt (x y)
+  "Return the point (X, Y); both are real numbers, in metres. Written (make PT X Y) in Nisp."
+  (check-argument make-pt x (realp x) "a real number")
+  (check-argument make-pt y (realp y) "a real number")
+  (%make-pt (as-double x) (as-double y)))
+
+(defun pt-x (pt)
+  "Return the horizontal coordinate of PT, in metres. Can be set."
+  (%pt-x pt))
+
+(defun (setf pt-x) (x pt)
+  (check-argument pt-x x (realp x) "a real number")
+  (setf (%pt-x pt) (as-double x)))
+
+(defun pt-y (pt)
+  "Return the vertical coordinate of PT, in metres, growing downward. Can be set."
+  (%pt-y pt))
+
+(defun (setf pt-y) (y pt)
+  (check-argument pt-y y (realp y) "a real number")
+  (setf (%pt-y pt) (as-double y)))
+
+(defun set-pt! (pt x y)
+  "Move PT to (X, Y) and return it."
+  (setf (%pt-x pt) (as-double x)
+        (%pt-y pt) (as-double y))
+  pt)
+
+;;; Intervals.
+
+(defstruct (interval (:constructor %make-interval (min max)) (:copier nil)
+                     (:conc-name %interval-))
+  "The real numbers from min to max, both included: an uncertain number (manual 3.2.1)."
+  (min 0d0 :type double-float)
+  (max 0d0 :type double-float))
+(declaim (sb-ext:freeze-type interval))
+
+(declaim (inline %set-interval! interval-min interval-max))
+
+(defun %set-interval! (interval min max)
+  (setf (%interval-min interval) min
+        (%interval-max interval) max)
+  interval)
+
+(defun make-interval (min max)
+  "Return the interval from MIN to MAX, real numbers. MIN above MAX is an error. Written
+(make INTERVAL MIN MAX) in Nisp."
+  (check-argument make-interval min (realp min) "a real number")
+  (check-argument make-interval max (realp max) "a real number")
+  (check-argument make-interval min (<= min max) "a number that is not above the max")
+  (%make-interval (as-double min) (as-double max)))
+
+(defun interval-min (interval)
+  "Return the lower bound of INTERVAL. Can be set, not above the upper bound."
+  (%interval-min interval))
+
+(defun (setf interval-min) (min interval)
+  (check-argument interval-min min (and (realp min) (<= min (%interval-max interval)))
+                  "a number that is not above the max; set the max first")
+  (setf (%interval-min interval) (as-double min)))
+
+(defun interval-max (interval)
+  "Return the upper bound of INTERVAL. Can be set, not below the lower bound."
+  (%interval-max interval))
+
+(defun (setf interval-max) (max interval)
+  (check-argument interval-max max (and (realp max) (>= max (%interval-min interval)))
+                  "a number that is not below the min; set the min first")
+  (setf (%interval-max interval) (as-double max)))
+
+(defun set-interval! (interval min max)
+  "Make INTERVAL reach from MIN to MAX, real numbers, and return it. MIN above MAX is an error."
+  (check-argument set-interval! min (<= min max) "a number that is not above the max")
+  (%set-interval! interval (as-double min) (as-double max)))
+
+;;; Point intervals.
+
+(defstruct (pt-interval (:constructor %make-pt-interval (x y)) (:copier nil)
+                        (:conc-name %pt-interval-))
+  "A box with sides parallel to the axes: an uncertain point (manual 3.2.1)."
+  (x (%make-interval 0d0 0d0) :type interval :read-only t)
+  (y (%make-interval 0d0 0d0) :type interval :read-only t))
+(declaim (sb-ext:freeze-type pt-interval))
+
+(defun make-pt-interval (a b)
+  "Return the box whose sides are the intervals A (along x) and B (along y), or whose opposite
+corners are the points A and B, in any order. The intervals are copied; a number stands for the
+interval that holds only it. Written (make PT-INTERVAL A B) in Nisp."
+  (cond ((and (pt-p a) (pt-p b))
+         (%make-pt-interval (span-between (%pt-x a) (%pt-x b))
+                            (span-between (%pt-y a) (%pt-y b))))
+        (t
+         (check-argument make-pt-interval a (typep a '(or real interval))
+                         "two intervals or two points")
+         (check-argument make-pt-interval b (typep b '(or real interval))
+                         "two intervals or two points")
+         (%make-pt-interval (lift a) (lift b)))))
+
+(defun span-between (a b)
+  "Return the interval with the ends A and B, in either order."
+  (declare (type double-float a b))
+  (%make-interval (min a b) (max a b)))
+
+(defun lift (x)
+  "Return a fresh interval or point interval that holds just what X is or holds."
+  (etypecase x
+    (real (let ((x (as-double x))) (%make-interval x x)))
+    (interval (%make-interval (%interval-min x) (%interval-max x)))
+    (pt (%make-pt-interval (lift (%pt-x x)) (lift (%pt-y x))))
+    (pt-interval (%make-pt-interval (lift (%pt-interval-x x)) (lift (%pt-interval-y x))))))
+
+(declaim (inline pt-interval-x pt-interval-y))
+
+(defun pt-interval-x (pt-interval)
+  "Return the INTERVAL along x of PT-INTERVAL, its own: changing it changes PT-INTERVAL. Setting
+it copies the bounds of an interval."
+  (%pt-interval-x pt-interval))
+
+(defun pt-interval-y (pt-interval)
+  "Return the INTERVAL along y of PT-INTERVAL, its own: changing it changes PT-INTERVAL. Setting
+it copies the bounds of an interval."
+  (%pt-interval-y pt-interval))
+
+(defun (setf pt-interval-x) (interval pt-interval)
+  (check-argument pt-interval-x interval (interval-p interval) "an interval")
+  (%set-interval! (%pt-interval-x pt-interval)
+                  (%interval-min interval) (%interval-max interval))
+  interval)
+
+(defun (setf pt-interval-y) (interval pt-interval)
+  (check-argument pt-interval-y interval (interval-p interval) "an interval")
+  (%set-interval! (%pt-interval-y pt-interval)
+                  (%interval-min interval) (%interval-max interval))
+  interval)
+
+(defun pt-interval-dx (pt-interval)
+  "Return how wide PT-INTERVAL is along x, in metres."
+  (let ((side (%pt-interval-x pt-interval)))
+    (- (%interval-max side) (%interval-min side))))
+
+(defun pt-interval-dy (pt-interval)
+  "Return how wide PT-INTERVAL is along y, in metres."
+  (let ((side (%pt-interval-y pt-interval)))
+    (- (%interval-max side) (%interval-min side))))
+
+(defun set-pt-interval! (pt-interval x-min x-max y-min y-max)
+  "Give PT-INTERVAL the bounds X-MIN to X-MAX and Y-MIN to Y-MAX, real numbers; return it."
+  (set-interval! (%pt-interval-x pt-interval) x-min x-max)
+  (set-interval! (%pt-interval-y pt-interval) y-min y-max)
+  pt-interval)
+
+;;; Copies, equality, print forms.
+
+(setf (documentation 'pt-p 'function) "True of a PT."
+      (documentation 'interval-p 'function) "True of an INTERVAL."
+      (documentation 'pt-interval-p 'function) "True of a PT-INTERVAL.")
+
+(defun copy-obj (object)
+  "Return a fresh copy of OBJECT, a PT, INTERVAL or PT-INTERVAL (its sides copied too); a number
+is its own copy (manual 3.2.1)."
+  (typecase object
+    (real object)
+    (pt (%make-pt (%pt-x object) (%pt-y object)))
+    ((or interval pt-interval) (lift object))
+    (t (check-argument copy-obj object nil "a PT, INTERVAL or PT-INTERVAL"))))
+
+(defun equal (a b)
+  "True if A and B are the same PT, INTERVAL or PT-INTERVAL value, exactly; of anything else, if
+they are CL:EQUAL (manual 3.2.1)."
+  (typecase a
+    (pt (and (pt-p b) (= (%pt-x a) (%pt-x b)) (= (%pt-y a) (%pt-y b))))
+    (interval (and (interval-p b)
+                   (= (%interval-min a) (%interval-min b))
+                   (= (%interval-max a) (%interval-max b))))
+    (pt-interval (and (pt-interval-p b)
+                      (equal (%pt-interval-x a) (%pt-interval-x b))
+                      (equal (%pt-interval-y a) (%pt-interval-y b))))
+    (t (cl:equal a b))))
+
+(defun print-value (object stream numbers control &rest parts)
+  "Print OBJECT unreadably, as all digits of NUMBERS; for PRINC, its PARTS by CONTROL."
+  (if (or *print-escape* *print-readably*)
+      (let ((*read-default-float-format* 'double-float))
+        (print-unreadable-object (object stream)
+          (format stream "~A~{ ~A~}" (symbol-name (type-of object)) numbers)))
+      (apply #'format stream control parts)))
+
+(defun bounds (interval)
+  (list (%interval-min interval) (%interval-max interval)))
+
+(defmethod print-object ((pt pt) stream)
+  (let ((numbers (list (%pt-x pt) (%pt-y pt))))
+    (print-value pt stream numbers "(~{~,2F~^,~})" numbers)))
+
+(defmethod print-object ((interval interval) stream)
+  (print-value interval stream (bounds interval) "[~{~,2F~^,~}]" (bounds interval)))
+
+(defmethod print-object ((pt-interval pt-interval) stream)
+  (let ((x (%pt-interval-x pt-interval)) (y (%pt-interval-y pt-interval)))
+    (print-value pt-interval stream (append (bounds x) (bounds y)) "(~A,~A)" x y)))

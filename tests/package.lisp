@@ -1,0 +1,19 @@
+;;;; package.lisp -- where all tests live, and the one door to FiveAM.
+
+(defpackage :ars-magna.tests
+  (:documentation "One suite per layer. Other layers' symbols are qualified by short local
+nicknames: geo:add, nisp:matchq, robot::%look.")
+  (:use :cl :fiveam))
+
+(in-package :ars-magna.tests)
+
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (loop for (nickname layer) in '((:base "BASE") (:geo "GEOMETRY") (:nisp "NISP")
+                                  (:world "WORLD") (:time "TIME") (:robot "ROBOT")
+                                  (:command "COMMAND") (:rpl "RPL") (:display "DISPLAY")
+                                  (:experiment "EXPERIMENT") (:cli "CLI"))
+        for package = (find-package (concatenate 'string "ARS-MAGNA." layer))
+        when package
+          do (sb-ext:add-package-local-nickname nickname package :ars-magna.tests)))
+
+(def-suite ars-magna :description "All that ARS MAGNA claims.")
