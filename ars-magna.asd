@@ -11,5 +11,32 @@
     :components ((:file "package") (:file "policy") (:file "conditions")
                  (:file "threads") (:file "dice") (:file "names")
                  (:file "messages") (:file "user-code")
-                 (:file "parameters") (:file "physics") (:file "digest"))))
+                 (:file "parameters") (:file "physics") (:file "digest")))
+   (:module "src/geometry" :serial t
+    :components ((:file "package") (:file "types") (:file "operands") (:file "points")
+                 (:file "intervals") (:file "angles")))
+   (:module "src/nisp" :serial t
+    :components ((:file "package") (:file "control") (:file "typed-lists") (:file "binding")
+                 (:file "types") (:file "slots") (:file "values") (:file "matching")
+                 (:file "reader") (:file "readtable") (:file "loading")))
+   (:module "src/world" :serial t
+    :components ((:file "package") (:file "clauses") (:file "attributes") (:file "substances")
+                 (:file "map") (:file "match-forms") (:file "place-types") (:file "places")
+                 (:file "built-in-places") (:file "walls") (:file "map-cache")
+                 (:file "access") (:file "location") (:file "thing") (:file "world")
+                 (:file "kickers") (:file "kicker-groups") (:file "attaching")
+                 (:file "placing") (:file "recipes") (:file "residents") (:file "new-thing")
+                 (:file "kicking") (:file "defmap") (:file "check")))
+   (:module "src/time" :serial t
+    :components ((:file "package") (:file "resource") (:file "agenda") (:file "simulation")
+                 (:file "journal") (:file "inbox") (:file "ticks") (:file "schedule")
+                 (:file "clock")))
+   (:module "src/robot" :serial t
+    :components ((:file "package") (:file "parts") (:file "odometer") (:file "motion")
+                 (:file "place-sense") (:file "body") (:file "simulation")
+                 (:file "references") (:file "replay") (:file "state")))
+   (:module "src/command" :serial t
+    :components ((:file "package") (:file "argument-types") (:file "command")
+                 (:file "operation") (:file "define-command") (:file "turning")
+                 (:file "places") (:file "driving") (:file "following"))))
   :in-order-to ((test-op (test-op "ars-magna/tests"))))

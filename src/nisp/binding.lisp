@@ -1,0 +1,45 @@
+;;;; binding.lisp -- forms that bind variables with declared types: LET, \, DEFFUNC and kin.
+
+(in-package :ars-magna.nisp)
+
+;;; From here on LET means ours in this package.
+
+(defmacro let (bindings &body body)
+  "Evaluate BODY with BINDINGS in force, as CL:LET; a hyphen and a type may follow each binding:
+(let ((v init) - TYPE (w init)) ...) (manual 3.1)."
+  `(cl:let ,(untyped-bindings bindings) ,@body))
+
+(defmacro \\ (lambda-list &body body)
+  "Return the function (lambda LAMBDA-LIST BODY...); a hyphen and a type may follow each parameter
+(manual 3.1). The name is one backslash, typed as two."
+  `#'(lambda ,(untyped-lambda-list lambda-list "\\") ,@body))
+
+(defmacro continuation (lambda-list &body body)
+  "Return a function for a robot command to call with an error code (NIL: none) and what else it
+reports. Like LAMBDA, but types may follow the parameters and unused ones are no matter
+(manual 3.1.1)."
+  (let ((lambda-list (untyped-lambda-list lambda-list "continuation")))
+    `#'(lambda ,lambda-list
+         (declare (ignorable ,@(lambda-list-variables lambda-list)))
+         ,@body)))
+
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defun expand-procedure (operator name definition)
+    "Return the DEFUN for what follows NAME in an OPERATOR form: a hyphen and the result type, if
+given, then the parameters and the body."
+    (let ((definition (if (hyphen-p (first definition)) (cddr definition) definition))
+          (operator (format nil "~(~A ~A~)" operator name)))
+      (when (or (null definition) (not (listp (first definition))))
+        (reject-clause operator (first definition) "a list of parameters after the result type"))
+      `(defun ,name ,(untyped-lambda-list (first definition) operator)
+         ,@(rest definition)))))
+
+(defmacro deffunc (name &rest definition)
+  "Define NAME as a function without side effects: (deffunc name - TYPE (args) body...). Types may
+follow the parameters (manual 3.1)."
+  (expand-procedure 'deffunc name definition))
+
+(defmacro defproc (name &rest definition)
+  "Define NAME as a procedure with side effects: (defproc name - TYPE (args) body...). Types may
+follow the parameters (manual 3.1)."
+  (expand-procedure 'defproc name definition))

@@ -1,0 +1,54 @@
+;;;; control.lisp -- Nisp's IF and LOOP, assignment, vectors, and doing nothing.
+
+(in-package :ars-magna.nisp)
+
+;;; From here on IF and LOOP mean ours in this package; both expand to Common Lisp's at once.
+
+(defmacro if (test then &rest else)
+  "Evaluate THEN if TEST is true, otherwise the forms ELSE, of which there may be any number
+(manual, Figure D.5)."
+  `(cl:if ,test ,then ,@(cl:if (rest else) `((progn ,@else)) else)))
+
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defun loop-keyword (forms)
+    "Return :UNTIL or :WHILE if FORMS are a Nisp loop: that word, a test, and then no loop
+keyword but compound forms or nothing."
+    (and (rest forms)
+         (symbolp (first forms))
+         (or (null (cddr forms)) (consp (third forms)))
+         (find (first forms) '(:until :while) :test #'string=))))
+
+(defmacro loop (&rest forms)
+  "Evaluate the body forms again and again: (loop UNTIL test body...) until the test is true
+before a round, (loop WHILE test body...) while it is. Other FORMS mean what they mean to CL:LOOP
+(manual, Figure D.3)."
+  (cl:let ((keyword (loop-keyword forms)))
+    (if (and keyword (cddr forms))
+        `(cl:loop ,keyword ,(second forms) :do (progn ,@(cddr forms)))
+        `(cl:loop ,@forms))))
+
+(defmacro != (place value &rest more)
+  "Set PLACE to VALUE, and so on through MORE pairs: SETF (manual 3.1)."
+  `(setf ,place ,value ,@more))
+
+(defun nop ()
+  "Do nothing, but let other threads run meanwhile. Return nothing (manual, Figure D.3)."
+  (sb-thread:thread-yield)
+  (values))
+
+;;; Vectors.
+
+(defun check-vref (vector index)
+  (check-argument vref vector (typep vector 'sequence) "a vector or a list")
+  (check-argument vref index (and (integerp index) (< -1 index (length vector)))
+                  (format nil "the index of one of ~D elements, from 0" (length vector))))
+
+(defun vref (vector index)
+  "Return the element of VECTOR (a vector or a list) at INDEX, counted from 0. Can be set
+(manual 3.1.3)."
+  (check-vref vector index)
+  (elt vector index))
+
+(defun (setf vref) (value vector index)
+  (check-vref vector index)
+  (setf (elt vector index) value))

@@ -1,0 +1,31 @@
+;;;; package.lisp -- the Nisp dialect, as far as the manual uses it (manual 3.1).
+
+(defpackage :ars-magna.nisp
+  (:documentation "Nisp's typed forms, slot access, matching and reader syntax, and the registries
+of types and slots that other layers fill. Shadows LET, LOOP and IF by forms that understand
+everything the Common Lisp ones do; its own code is written with them.")
+  (:use :cl :ars-magna.base)
+  (:shadow #:let #:loop #:if)
+  (:import-from :named-readtables #:in-readtable #:find-readtable #:make-readtable)
+  (:import-from :ars-magna.geometry
+                #:pt #:make-pt #:pt-x #:pt-y
+                #:interval #:make-interval #:interval-min #:interval-max
+                #:pt-interval #:make-pt-interval #:pt-interval-x #:pt-interval-y
+                #:pt-interval-dx #:pt-interval-dy)
+  ;; control
+  (:export #:if #:loop #:!= #:nop #:vref #:out)
+  ;; typed lists
+  (:export #:untyped-bindings #:untyped-lambda-list #:lambda-list-variables)
+  ;; binding
+  (:export #:let #:\\ #:continuation #:deffunc #:defproc)
+  ;; types
+  (:export #:void #:lst #:~ #:thing-descriptor #:robot-continuation
+           #:define-nisp-type #:make #:make-object)
+  ;; slots
+  (:export #:define-nisp-slot #:slot-ref #:slot-names)
+  ;; matching
+  (:export #:matchvar #:matchvar-p #:matchvar-name #:make-matchvar #:matchq)
+  ;; readtable
+  (:export #:in-readtable)
+  ;; loading
+  (:export #:dsklap))

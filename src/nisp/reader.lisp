@@ -1,0 +1,116 @@
+;;;; reader.lisp -- what !, ?, #t and #f read as (manual 3.1, 5.5.1).
+
+(in-package :ars-magna.nisp)
+
+;;; ! and ? start special syntax only at the start of a token: add! and interval-subset? stay
+;;; symbols. A user's own symbols are interned where the standard reader would; Nisp's operators
+;;; and slot accessors are symbols of this package, so that what is read works in any package.
+
+(defun delimiter-p (char)
+  "True if CHAR ends a token in the current readtable."
+  (or (member char '(#\Space #\Tab #\Newline #\Return #\Page #\Linefeed))
+      (multiple-value-bind (function non-terminating) (get-macro-character char)
+        (and function (not non-terminating)))))
+
+(defun read-escape (char stream token)
+  "Put what CHAR, a backslash or bar just read into TOKEN, escapes into TOKEN too."
+  (if (char= char #\\)
+      (vector-push-extend (read-char stream t nil t) token)
+      (loop for next = (read-char stream t nil t)
+            do (vector-push-extend next token)
+            until (char= next #\|))))
+
+(defun read-token (stream)
+  "Return the characters of STREAM up to the end of the token, escapes included, as a string."
+  (loop with token = (make-array 16 :element-type 'character :fill-pointer 0 :adjustable t)
+        for char = (peek-char nil stream nil nil t)
+        until (or (null char) (delimiter-p char))
+        do (vector-push-extend (read-char stream t nil t) token)
+           (when (find char "\\|") (read-escape char stream token))
+        finally (return (coerce token 'simple-string))))
+
+(defun token-object (token)
+  "Return what the standard reader makes of TOKEN in the current package."
+  (let ((*readtable* (find-readtable :standard)))
+    (values (read-from-string token))))
+
+(defun token-name (token)
+  "Return TOKEN as the name of a slot: the reader's upper case, no package."
+  (string-upcase (remove #\| token)))
+
+(defun reject-syntax (text expected)
+  (reject-clause "Nisp's reader" text expected))
+
+;;; ! and its forms.
+
+(defun split-path (token)
+  "Return the parts of TOKEN between its dots."
+  (loop for start = 0 then (1+ dot)
+        for dot = (position #\. token :start start)
+        collect (subseq token start dot)
+        while dot))
+
+(defun path-form (token)
+  "Return the form for !>TOKEN: each slot of the path read from what comes before it."
+  (let ((parts (split-path token)))
+    (when (member "" parts :test #'string=)
+      (reject-syntax (concatenate 'string "!>" token)
+                     "a variable and slots, as in !>robot.cameras"))
+    (reduce (lambda (object slot)
+              (list (ensure-slot-accessor (token-name slot)) object))
+            (rest parts)
+            :initial-value (token-object (first parts)))))
+
+(defun read-typed-accessor (stream)
+  "Return the reader function's name for the (TYPE slot) that comes next on STREAM."
+  (let ((form (read stream t nil t)))
+    (unless *read-suppress*
+      (unless (typep form '(cons symbol (cons symbol null)))
+        (reject-syntax form "(TYPE slot) after !, as in !(PT x)"))
+      (typed-reader (first form) (second form)))))
+
+(defun next-char-is (char stream)
+  (eql char (peek-char nil stream nil nil t)))
+
+(defun read-bang (stream char)
+  "Read what follows the ! that has just been read from STREAM."
+  (declare (ignore char))
+  (let* ((token (read-token stream))
+         (head (and (plusp (length token)) (char token 0)))
+         (tail (and head (subseq token 1))))
+    (cond ((and (member token '("" "_") :test #'string=) (next-char-is #\( stream))
+           (read-typed-accessor stream))
+          (*read-suppress* nil)
+          ((string= token "=") '!=)
+          ((and (eql head #\_) (string/= tail "")) (ensure-slot-accessor (token-name tail)))
+          ((eql head #\>) (path-form tail))
+          (t (token-object (concatenate 'string "!" token))))))
+
+;;; ? and the booleans.
+
+(defun read-anonymous-matchvar (stream)
+  (let ((form (read stream t nil t)))
+    (when (and form (not *read-suppress*))
+      (reject-syntax form "nothing between the parentheses of ?()"))
+    (make-matchvar nil)))
+
+(defun read-query (stream char)
+  "Read what follows the ? that has just been read from STREAM: a matchvar's name, or ()."
+  (declare (ignore char))
+  (let ((token (read-token stream)))
+    (cond ((and (string= token "") (next-char-is #\( stream))
+           (read-anonymous-matchvar stream))
+          (*read-suppress* nil)
+          ((string= token "") (token-object "?"))
+          (t (let ((name (token-object token)))
+               (unless (symbolp name)
+                 (reject-syntax name "a symbol after ?"))
+               (make-matchvar name))))))
+
+(defun read-true (stream char argument)
+  (declare (ignore stream char argument))
+  t)
+
+(defun read-false (stream char argument)
+  (declare (ignore stream char argument))
+  nil)

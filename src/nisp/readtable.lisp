@@ -1,0 +1,15 @@
+;;;; readtable.lisp -- the named readtable :NISP; (in-readtable :nisp) puts it to use.
+
+(in-package :ars-magna.nisp)
+
+(defun ensure-nisp-readtable ()
+  "Return the readtable :NISP: standard syntax plus #t, #f, ! and ?."
+  (let ((readtable (or (find-readtable :nisp)
+                       (make-readtable :nisp :merge '(:standard)))))
+    (set-macro-character #\! 'read-bang t readtable)
+    (set-macro-character #\? 'read-query t readtable)
+    (set-dispatch-macro-character #\# #\t 'read-true readtable)
+    (set-dispatch-macro-character #\# #\f 'read-false readtable)
+    readtable))
+
+(ensure-nisp-readtable)

@@ -1,0 +1,119 @@
+;;;; slots.lisp -- slot access by name, for the slots that the layers register (manual 3.1).
+
+(in-package :ars-magna.nisp)
+
+;;; Slot `x' of any type is read by the generic function !_X of this package, and set by (SETF
+;;; !_X): dispatch, subtypes and caching are CLOS's. The reader turns !_x and !>p.x into calls
+;;; of it, and a form with a type, !(PT x), into a call of that type's own reader.
+
+(defclass slot-accessor (standard-generic-function)
+  ()
+  (:metaclass sb-mop:funcallable-standard-class)
+  (:documentation "A function that reads or sets the slot of one name in objects of all types."))
+
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defun slot-accessor-name (slot)
+    "Return the symbol that names the accessor of the slot called SLOT."
+    (intern (concatenate 'string "!_" (string slot)) :ars-magna.nisp)))
+
+(defun ensure-slot-accessor (slot)
+  "Return the name of the accessor of the slot called SLOT, defining it if need be."
+  (let ((name (slot-accessor-name slot)))
+    (unless (fboundp name)
+      (ensure-generic-function `(setf ,name) :lambda-list '(value object)
+                                             :generic-function-class 'slot-accessor)
+      (ensure-generic-function name :lambda-list '(object)
+                                    :generic-function-class 'slot-accessor
+                                    :documentation "Return the slot of OBJECT with this name."))
+    name))
+
+;;; Which slots there are.
+
+(defun class-nisp-type (class)
+  "Return the type registered for CLASS itself, or NIL."
+  (let ((type (find-nisp-type (class-name class))))
+    (and type (eq (nisp-type-class type) (class-name class)) type)))
+
+(defun class-slots (class)
+  "Return an alist from names to readers of the slots of CLASS, inherited ones last."
+  (unless (sb-mop:class-finalized-p class)
+    (sb-mop:finalize-inheritance class))
+  (loop for class in (sb-mop:class-precedence-list class)
+        for type = (class-nisp-type class)
+        when type append (nisp-type-slots type)))
+
+(defun slot-names (object)
+  "Return the names of the slots of OBJECT that programs can reach, as strings."
+  (sort (remove-duplicates (mapcar #'car (class-slots (class-of object))) :test #'string=)
+        #'string<))
+
+(defmethod no-applicable-method ((accessor slot-accessor) &rest arguments)
+  (let* ((object (first (last arguments)))
+         (name (sb-mop:generic-function-name accessor))
+         (setter (consp name))
+         (slot (subseq (symbol-name (if setter (second name) name)) 2))
+         (known (slot-names object)))
+    (when (and setter (member slot known :test #'string=))
+      (reject-use "Slot ~A of a ~A cannot be set." slot (type-of object)))
+    (reject-name (format nil "slot of a ~A" (type-of object)) slot known)))
+
+;;; Registering them.
+
+(defun register-slot (class slot reader)
+  "Remember that READER (a function's name, or NIL) reads the slot called SLOT of CLASS."
+  (let ((type (ensure-nisp-type class))
+        (slot (string slot)))
+    (setf (nisp-type-class type) class
+          (nisp-type-slots type)
+          (acons slot reader (remove slot (nisp-type-slots type) :key #'car :test #'string=)))))
+
+(defun typed-reader (type slot)
+  "Return the name of the function that reads SLOT of the type called TYPE, and sets it with
+SETF if it can be set; the accessor for all types if TYPE has none of its own."
+  (let* ((known (find-nisp-type type))
+         (class (and known (find-class (nisp-type-class known) nil))))
+    (or (and class (cdr (assoc (string slot) (class-slots class) :test #'string=)))
+        (ensure-slot-accessor slot))))
+
+(defun setf-of-p (writer reader)
+  (and (consp writer) (eq (first writer) 'setf) (eq (second writer) reader)))
+
+(defun slot-setter-form (writer)
+  "Return the form by which WRITER stores VALUE into OBJECT."
+  (if (typep writer '(cons (eql setf)))
+      `(setf (,(second writer) object) value)
+      `(,writer value object)))
+
+(defmacro define-nisp-slot (type name reader &optional writer)
+  "Let programs reach the slot NAME of objects of TYPE, a class, and of its subtypes. READER is
+the name of a function of the object; WRITER, if the slot can be set, is (SETF READER) or the
+name of a function of the value and the object."
+  (let ((accessor (slot-accessor-name name))
+        (direct (and (symbolp reader)
+                     (or (null writer) (setf-of-p writer reader)))))
+    `(progn
+       (eval-when (:compile-toplevel :load-toplevel :execute)
+         (ensure-slot-accessor ',name))
+       (register-slot ',type ',name ',(and direct reader))
+       (defmethod ,accessor ((object ,type)) (,reader object))
+       ,@(when writer
+           `((defmethod (setf ,accessor) (value (object ,type))
+               ,(slot-setter-form writer))))
+       ',name)))
+
+;;; Access by a name known at run time.
+
+(defun slot-ref (object slot)
+  "Return the slot of OBJECT called SLOT, a symbol or string. Can be set. A name that its type
+has no slot of is an error that lists those it has."
+  (funcall (ensure-slot-accessor slot) object))
+
+(defun (setf slot-ref) (value object slot)
+  (funcall (fdefinition `(setf ,(ensure-slot-accessor slot))) value object))
+
+(define-compiler-macro slot-ref (&whole form object slot)
+  (let ((accessor (and (typep slot '(cons (eql quote) (cons symbol null)))
+                       (slot-accessor-name (second slot)))))
+    (if (and accessor (fboundp accessor))
+        `(,accessor ,object)
+        form)))

@@ -1,0 +1,100 @@
+;;;; types.lisp -- the names of types, and MAKE for all of them (manual 3.1).
+
+(in-package :ars-magna.nisp)
+
+;;; Types are known by name, whatever package it was read in. A layer registers a type when it
+;;; is loaded; after that the registry is only read.
+
+(deftype void ()
+  "The type of no values (manual 3.1)."
+  nil)
+
+(deftype lst (&optional (type t))
+  "The type of the lists of objects of TYPE, which is not looked into (manual 3.1)."
+  (declare (ignore type))
+  'list)
+
+(deftype ~ (type)
+  "The type of #F and the objects of TYPE (manual 3.1)."
+  `(or null ,type))
+
+(deftype thing-descriptor ()
+  "The type of object descriptors and of specifications of objects (manual 3.3)."
+  'list)
+
+(deftype robot-continuation ()
+  "The type of what a robot command takes as its continuation, NIL for none (manual 3.1.1)."
+  '(or function symbol))
+
+;;; The registry.
+
+(defstruct (nisp-type (:constructor make-nisp-type (name)) (:copier nil))
+  "What is known of the type called NAME. CLASS is its Lisp name, if it has registered slots;
+SLOTS an alist from slot names to reader functions' names; MAKER a function or NIL."
+  (name "" :type string :read-only t)
+  (class nil :type symbol)
+  (slots '() :type list)
+  (maker nil :type (or null function))
+  (parameters '() :type list))
+
+(defvar *nisp-types* (make-hash-table :test 'equal)
+  "All registered types by name.")
+
+(defun find-nisp-type (name)
+  "Return the type called NAME, or NIL."
+  (values (gethash (string name) *nisp-types*)))
+
+(defun ensure-nisp-type (name)
+  "Return the type called NAME, new if need be."
+  (or (find-nisp-type name)
+      (setf (gethash (string name) *nisp-types*) (make-nisp-type (string name)))))
+
+(defun makeable-types ()
+  (sort (loop for type being the hash-values of *nisp-types*
+              when (nisp-type-maker type) collect (nisp-type-name type))
+        #'string<))
+
+;;; Making objects.
+
+(defun register-maker (name parameters maker)
+  "Let (make NAME ...) call MAKER, which takes PARAMETERS."
+  (let ((type (ensure-nisp-type name)))
+    (setf (nisp-type-parameters type) parameters
+          (nisp-type-maker type) maker)
+    name))
+
+(defmacro define-nisp-type (name lambda-list constructor &optional documentation)
+  "Let (make NAME arguments...) evaluate the form CONSTRUCTOR with LAMBDA-LIST bound to the
+arguments, or call it with them if it is written #'function. DOCUMENTATION is for the reader."
+  (declare (ignore documentation))
+  `(register-maker ',name ',lambda-list
+                   ,(if (typep constructor '(cons (eql function)))
+                        constructor
+                        `(lambda ,lambda-list ,constructor))))
+
+(defun takes-p (parameters count)
+  "True if COUNT arguments go with the lambda list PARAMETERS."
+  (let* ((keyword (position-if #'lambda-keyword-p parameters))
+         (required (or keyword (length parameters)))
+         (optional (member '&optional parameters)))
+    (cond ((< count required) nil)
+          ((intersection parameters '(&rest &key)) t)
+          (t (<= count (+ required (length (rest optional))))))))
+
+(defun make-object (type &rest arguments)
+  "Return a new object of the type called TYPE, made from ARGUMENTS as that type wants them. An
+unknown TYPE and a wrong number of ARGUMENTS are errors."
+  (let* ((known (find-nisp-type type))
+         (maker (and known (nisp-type-maker known))))
+    (unless maker
+      (reject-name "type that MAKE can make" type (makeable-types)))
+    (unless (takes-p (nisp-type-parameters known) (length arguments))
+      (reject-use "(make ~A~{ ~S~}): a ~A is made by (make ~A~{ ~(~A~)~})."
+                  type arguments (nisp-type-name known)
+                  (nisp-type-name known) (nisp-type-parameters known)))
+    (apply maker arguments)))
+
+(defmacro make (type &rest arguments)
+  "Return a new object of TYPE, a name that is not evaluated, made from ARGUMENTS, such as
+(make PT 1 2) (manual 3.1)."
+  `(make-object ',type ,@arguments))
