@@ -1,0 +1,59 @@
+;;;; attaching.lisp -- putting kickers on things and taking them off (manual 5.3.1).
+
+(in-package :ars-magna.world)
+
+(defun find-attachment (thing name)
+  (find name (thing-kickers thing) :key #'attachment-name :test #'same-name-p))
+
+(defun detach-kicker (thing name)
+  "Take the kicker called NAME, if any, from THING."
+  (let ((attachment (find-attachment thing name)))
+    (when attachment
+      (setf (thing-kickers thing) (remove attachment (thing-kickers thing)))
+      (leave-group attachment))))
+
+(defun detach-all-kickers (thing)
+  (mapc #'leave-group (thing-kickers thing))
+  (setf (thing-kickers thing) '()))
+
+(defun attach-kicker (thing kicker)
+  "Put KICKER on THING instead of any other of its name. Return the attachment."
+  (detach-kicker thing (kicker-name kicker))
+  (let ((attachment (make-attachment kicker thing)))
+    (setf (thing-kickers thing) (append (thing-kickers thing) (list attachment)))
+    (when (and (thing-world thing) (thing-alive-p thing))
+      (join-group attachment (thing-world thing)))
+    attachment))
+
+(defun set-kicker (thing kicker-name)
+  "Attach to THING the kicker called KICKER-NAME, a symbol, or given as itself (manual 5.3.1).
+Signals WRONG-ARGUMENT and UNKNOWN-NAME. Return it as attached, what SELF is when it runs."
+  (check-argument set-kicker thing (thing-p thing) "a thing")
+  (let ((kicker (find-kicker kicker-name)))
+    (with-world-access ((thing-world thing) set-kicker thing kicker-name)
+      (attach-kicker thing kicker))))
+
+(defun call-put-kicker (thing name &key (prob 1) test body)
+  "Do what PUT-KICKER says; without a BODY, remove the kicker NAME."
+  (check-argument put-kicker thing (thing-p thing) "a thing")
+  (let ((kicker (and body (fill-kicker (make-kicker name) (format nil "put-kicker ~(~A~)" name)
+                                       prob test body))))
+    (with-world-access ((thing-world thing) put-kicker thing name)
+      (if kicker
+          (attach-kicker thing kicker)
+          (detach-kicker thing name)))))
+
+(defmacro put-kicker (name target &optional options &body body)
+  "Define a kicker NAME for one thing alone, with options as for DEFKICKER, instead of any other of
+that name on it; or, with an empty BODY, remove its kicker NAME, even a global one (manual
+5.3.1). TARGET is (variable thing); the variable is bound to the thing in test and body. Return
+the kicker as attached, if any."
+  (let ((definition (format nil "put-kicker ~(~A~)" name)))
+    (check-kicker-name definition name)
+    (unless (and (proper-list-p target) (= 2 (length target)))
+      (reject-clause definition target "(variable thing)"))
+    (destructuring-bind (variable thing) target
+      (if (every #'null body)
+          `(progn (call-put-kicker ,thing ',name) nil)
+          `(call-put-kicker ,thing ',name
+                            ,@(kicker-functions definition variable options body))))))

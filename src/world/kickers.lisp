@@ -1,0 +1,116 @@
+;;;; kickers.lisp -- code that things run at random: defining it and attaching it.
+
+(in-package :ars-magna.world)
+
+;;; A KICKER is abstract; an ATTACHMENT is a kicker on a thing. A thing has at most one kicker
+;;; of each name. Redefining a kicker changes it wherever it is attached: worlds notice by
+;;; *KICKER-GENERATION*. Manual 5.3.1.
+
+(defstruct (kicker (:constructor make-kicker (name)) (:copier nil))
+  "Code that is run with probability PROB on any tick on which TEST, if any, holds."
+  (name nil :type symbol :read-only t)
+  (prob 1d0 :type (double-float 0d0 1d0))
+  (test nil :type (or null function))
+  (body (constantly nil) :type function))
+(setf (documentation 'kicker-name 'function) "Return the symbol that the kicker is called."
+      (documentation 'kicker-prob 'function) "Return the kicker's probability per tick.")
+
+(defstruct (attachment (:constructor make-attachment (kicker thing)) (:copier nil))
+  "A kicker on a thing."
+  (kicker nil :type kicker :read-only t)
+  (thing nil :type thing :read-only t)
+  (alive-p t :type boolean)
+  (due 0 :type tick-count)
+  (ran 0 :type tick-count)
+  (group nil)
+  (index 0 :type fixnum))
+(setf (documentation 'attachment-kicker 'function) "Return the attached kicker."
+      (documentation 'attachment-thing 'function) "Return the thing that the kicker is on.")
+
+(defmethod print-object ((kicker kicker) stream)
+  (if (or *print-escape* *print-readably*)
+      (print-unreadable-object (kicker stream) (format stream "KICKER ~A" (kicker-name kicker)))
+      (princ (kicker-name kicker) stream)))
+
+(defun attachment-name (attachment)
+  (kicker-name (attachment-kicker attachment)))
+
+(defun write-attachment (attachment stream)
+  (format stream "kicker ~A of ~A" (attachment-name attachment) (attachment-thing attachment)))
+
+(defmethod print-object ((attachment attachment) stream)
+  (if (or *print-escape* *print-readably*)
+      (print-unreadable-object (attachment stream) (write-attachment attachment stream))
+      (write-attachment attachment stream)))
+
+(defvar *kickers* '() "All kickers that have been defined by name, in order of definition.")
+(defvar *kicker-generation* 0 "How many times a kicker has been redefined.")
+
+(defvar self nil
+  "While a kicker's test or body runs: the kicker being run, for RUN-KICKER (manual 5.3.1).")
+
+(defun all-kickers ()
+  "Return a list of all kickers that have been defined by name, in order of definition."
+  (copy-list *kickers*))
+
+(defun find-kicker (name)
+  "Return the kicker called NAME, a symbol or string; a kicker is returned as it is. Signals
+UNKNOWN-NAME."
+  (cond ((kicker-p name) name)
+        ((and (typep name '(or symbol string))
+              (find name *kickers* :key #'kicker-name :test #'same-name-p)))
+        (t (reject-name "kicker" name (mapcar #'kicker-name *kickers*)))))
+
+(defun ensure-kicker (name)
+  (let ((old (find name *kickers* :key #'kicker-name :test #'same-name-p)))
+    (if old
+        (progn (incf *kicker-generation*) old)
+        (let ((new (make-kicker name)))
+          (setf *kickers* (append *kickers* (list new)))
+          new))))
+
+(defun fill-kicker (kicker definition prob test body)
+  (setf (kicker-prob kicker) (check-probability definition :prob prob)
+        (kicker-test kicker) test
+        (kicker-body kicker) body)
+  kicker)
+
+(defun define-kicker (name &key (prob 1) test (body (constantly nil)))
+  "Define or redefine the kicker NAME; what DEFKICKER expands to. TEST and BODY are functions of
+a thing. Return the kicker."
+  (let ((definition (format nil "defkicker ~(~A~)" name)))
+    (check-probability definition :prob prob)
+    (fill-kicker (ensure-kicker name) definition prob test body)))
+
+(defun kicker-functions (definition variable options body)
+  "Return the keyword arguments, as forms, for a kicker with OPTIONS and BODY."
+  (unless (and variable (symbolp variable) (not (constantp variable)))
+    (reject-clause definition variable "a variable, to be bound to the kicker's thing"))
+  (check-options definition options '(:prob :test))
+  (flet ((thing-function (forms)
+           `(lambda (,variable) (declare (ignorable ,variable)) ,@forms)))
+    `(:prob ,(getf options :prob 1)
+      :test ,(and (getf options :test)
+                  (not (eq (getf options :test) t))
+                  (thing-function (list (getf options :test))))
+      :body ,(thing-function body))))
+
+(defun check-kicker-name (definition name)
+  (unless (and name (symbolp name) (not (constantp name)))
+    (reject-clause definition name "a symbol as the name of the kicker")))
+
+(defmacro defkicker (name lambda-list options &body body)
+  "Define the kicker NAME (manual 5.3.1), whose BODY runs with probability :prob (default 1) on
+any tick on which the form :test (default true) holds. LAMBDA-LIST is one variable, bound to the
+thing in both. NAME becomes a special variable bound to the kicker. Redefinition affects things
+that have it. Signals MALFORMED-DEFINITION. Return the name."
+  (let ((definition (format nil "defkicker ~(~A~)" name)))
+    (check-kicker-name definition name)
+    (unless (and (proper-list-p lambda-list) (= 1 (length lambda-list)))
+      (reject-clause definition lambda-list "a list of one variable"))
+    `(progn
+       (defvar ,name)
+       (setf (symbol-value ',name)
+             (define-kicker ',name
+               ,@(kicker-functions definition (first lambda-list) options body)))
+       ',name)))

@@ -1,0 +1,168 @@
+;;;; map.lisp -- the grid that never changes: maps, cells and places.
+
+(in-package :ars-magna.world)
+
+;;; A map is built once (see defmap.lisp) and shared, without locks, by all worlds made of it.
+;;; Cell (X, Y) covers [X, X+1) x [Y, Y+1) and has the index X + Y * width. Outside the map
+;;; everything is solid. Manual 2.1 and 5.1.
+
+(setf (fdefinition 'map) #'cl:map
+      (documentation 'map 'function) "Do as CL:MAP does. (As a type, MAP is a grid world.)")
+
+(define-constant +wall+ 1 :documentation "The flag of a cell filled by a wall.")
+(define-constant +obsmove+ 2
+  :documentation "The flag of a cell where a thing on the floor blocks movement.")
+(define-constant +obsview+ 4
+  :documentation "The flag of a cell where a thing on the floor blocks sight.")
+(define-constant +occupied+ 8
+  :documentation "The flag of a cell where any thing lies on the floor.")
+
+(deftype octets () '(simple-array (unsigned-byte 8) (*)))
+(deftype doubles () '(simple-array double-float (*)))
+(deftype indices () '(simple-array (unsigned-byte 16) (*)))
+
+(defstruct (map (:constructor %make-map) (:copier nil))
+  "A fixed grid of cells, with the recipe of the things that a fresh world of it holds."
+  (name nil :type symbol :read-only t)
+  (width 1 :type (integer 1 32767) :read-only t)
+  (height 1 :type (integer 1 32767) :read-only t)
+  (flags (make-octets 0) :type octets)
+  (parameters (make-doubles 0) :type doubles)
+  (substances (make-array 0 :element-type '(unsigned-byte 16)) :type indices)
+  (substance-types #(nil) :type simple-vector)
+  (places (make-octets 0) :type octets)
+  (directions (make-doubles 0) :type doubles)
+  (place-types #(nil) :type simple-vector)
+  (least-parameter 0d0 :type double-float)
+  (greatest-parameter 0d0 :type double-float)
+  (things '() :type list)
+  (clauses '() :type list)
+  (cache nil :type (or null string pathname))
+  (resident nil))
+
+(defun make-octets (size) (make-array size :element-type '(unsigned-byte 8) :initial-element 0))
+(defun make-doubles (size) (make-array size :element-type 'double-float :initial-element 0d0))
+
+(macrolet ((document (&rest pairs)
+             `(setf ,@(loop for (name text) on pairs by #'cddr
+                            append `((documentation ',name 'function) ,text)))))
+  (document
+   map-name "Return the symbol that the map is called."
+   map-width "Return how many cells the map is wide."
+   map-height "Return how many cells the map is high."
+   map-flags "Return the flags of the map's cells by index: +WALL+ where filled."
+   map-parameters "Return the substance parameters of the map's cells by index, 0 where empty."
+   map-substances "Return, by cell index, indices into the map's MAP-SUBSTANCE-TYPES."
+   map-substance-types "Return a vector of substance names; element 0 is NIL, for no wall."
+   map-places "Return, by cell index, indices into the map's MAP-PLACE-TYPES."
+   map-directions "Return the basic canonical directions of the map's cells by index, radians."
+   map-place-types "Return a vector of the place types known to the map; element 0 is NIL."
+   map-least-parameter "Return the least parameter of any wall in the map, 0 without walls."
+   map-greatest-parameter "Return the greatest parameter of any wall in the map, 0 without walls."
+   map-things "Return the recipes of the things that a fresh world of the map starts with."))
+
+(defmethod print-object ((map map) stream)
+  (if (or *print-escape* *print-readably*)
+      (print-unreadable-object (map stream)
+        (format stream "MAP ~A ~Dx~D" (map-name map) (map-width map) (map-height map)))
+      (princ (map-name map) stream)))
+
+;;; The registry.
+
+(defvar *maps* '() "All maps, in order of definition.")
+
+(defun all-maps ()
+  "Return a list of all maps, in order of definition."
+  (copy-list *maps*))
+
+(defun find-map (name)
+  "Return the map called NAME, a symbol or string; a map is returned as it is. Signals
+UNKNOWN-NAME."
+  (cond ((map-p name) name)
+        ((and (typep name '(or symbol string))
+              (find name *maps* :key #'map-name :test #'same-name-p)))
+        (t (reject-name "map" name (mapcar #'map-name *maps*)))))
+
+(defun register-map (map)
+  (let ((old (position (map-name map) *maps* :key #'map-name :test #'same-name-p)))
+    (setf *maps* (if old
+                     (substitute map (nth old *maps*) *maps*)
+                     (append *maps* (list map))))
+    map))
+
+;;; Cells.
+
+(declaim (inline cell-index-at point-index))
+(defun cell-index-at (map x y)
+  "Return the index of the cell of MAP with the integer coordinates X and Y, or NIL outside."
+  (declare (type fixnum x y))
+  (let ((width (map-width map)))
+    (and (< -1 x width) (< -1 y (map-height map))
+         (the cell-index (+ x (the cell-index (* y width)))))))
+
+(defun point-index (map x y)
+  "Return the index of the cell of MAP that holds X, Y (double-floats), or NIL outside."
+  (declare (type double-float x y))
+  (let ((width (map-width map)))
+    (and (<= 0d0 x) (<= 0d0 y) (< x (double width)) (< y (double (map-height map)))
+         (+ (truncate (the (double-float 0d0 32768d0) x))
+            (the cell-index (* width (truncate (the (double-float 0d0 32768d0) y))))))))
+
+(defun map-index (map x y)
+  "Return the index of the cell of MAP that holds the point (X, Y), in metres, or NIL outside."
+  (point-index map (double x) (double y)))
+
+(defun filled-at-p (map x y)
+  (let ((index (cell-index-at map x y)))
+    (or (null index) (logtest +wall+ (aref (map-flags map) index)))))
+
+(defun wall-at-p (map x y)
+  "True if the point (X, Y) of MAP, in metres, is in a wall or outside the map."
+  (let ((index (map-index map x y)))
+    (or (null index) (logtest +wall+ (aref (map-flags map) index)))))
+
+(defstruct (cell (:constructor make-cell (map x y)) (:copier nil))
+  "A cursor on the cell with the integer coordinates X and Y of MAP, perhaps outside it."
+  (map nil :type map :read-only t)
+  (x 0 :type fixnum)
+  (y 0 :type fixnum))
+(setf (documentation 'cell-map 'function) "Return the map that the cell is in."
+      (documentation 'cell-x 'function) "Return the cell's column, an integer."
+      (documentation 'cell-y 'function) "Return the cell's row, an integer.")
+
+(defmethod print-object ((cell cell) stream)
+  (print-unreadable-object (cell stream)
+    (format stream "CELL ~D ~D of ~A" (cell-x cell) (cell-y cell) (map-name (cell-map cell)))))
+
+(defun map-cell (map x y)
+  "Return the cell of MAP that holds the point (X, Y), in metres; it may be outside the map."
+  (check-argument map-cell map (map-p map) "a map")
+  (make-cell map (floor x) (floor y)))
+
+(defun cell-index-in-map (cell)
+  (cell-index-at (cell-map cell) (cell-x cell) (cell-y cell)))
+
+(defun cell-filled? (cell)
+  "True if CELL is a wall; outside the map everything is (manual 5.1.1)."
+  (filled-at-p (cell-map cell) (cell-x cell) (cell-y cell)))
+
+(defun cell-substance-type (cell)
+  "Return the name of the substance of the wall in CELL, or NIL."
+  (let ((map (cell-map cell)) (index (cell-index-in-map cell)))
+    (and index (aref (map-substance-types map) (aref (map-substances map) index)))))
+
+(defun cell-substance-parameter (cell)
+  "Return the substance parameter of the wall in CELL; 0 if it is empty or outside the map."
+  (let ((index (cell-index-in-map cell)))
+    (if index (aref (map-parameters (cell-map cell)) index) 0d0)))
+
+(defun cell-occupancy-window (cell width height)
+  "Return a list of HEIGHT rows, each a list of WIDTH entries, centred on CELL: T for a wall,
+NIL for an empty cell (manual 5.1.1). Of an even number of entries one more lies before CELL."
+  (check-argument cell-occupancy-window width (typep width '(integer 1)) "a positive integer")
+  (check-argument cell-occupancy-window height (typep height '(integer 1)) "a positive integer")
+  (let ((map (cell-map cell))
+        (left (- (cell-x cell) (floor width 2)))
+        (top (- (cell-y cell) (floor height 2))))
+    (loop for y from top repeat height
+          collect (loop for x from left repeat width collect (filled-at-p map x y)))))

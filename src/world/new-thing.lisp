@@ -1,0 +1,73 @@
+;;;; new-thing.lisp -- making things on the fly (manual 5.3).
+
+(in-package :ars-magna.world)
+
+(defun resolve-position (position)
+  "Return the world, :FLOOR and the coordinates for POSITION, a list (map x y)."
+  (destructuring-bind (map x y) position
+    (let ((world (current-world map)))
+      (check-inside 'new-thing (world-map world) x y)
+      (values world :floor x y))))
+
+(defun resolve-neighbour (thing)
+  "Return the world, location and perhaps coordinates where THING is."
+  (unless (and (thing-p thing) (thing-location thing))
+    (reject-value 'new-thing "location" (list :with thing) "(:with thing), a thing that is somewhere"))
+  (values (thing-world thing) (thing-location thing) (thing-x thing) (thing-y thing)))
+
+(defun resolve-location (location)
+  "Return, as values, the world, location and coordinates that LOCATION, as NEW-THING takes it
+but evaluated, stands for."
+  (cond ((null location) nil)
+        ((and (proper-list-p location) (= 2 (length location)) (eq :with (first location)))
+         (resolve-neighbour (second location)))
+        ((and (proper-list-p location) (= 3 (length location)))
+         (resolve-position location))
+        ((consp location)
+         (reject-value 'new-thing "location" location
+                       "NIL, what holds things, (:with thing) or (map x y)"))
+        (t (values (check-holder 'new-thing nil location) location))))
+
+(defun make-new-thing (name location descriptor &key prototype contents kickers)
+  "Return a new thing NAME, a symbol, with the attributes of DESCRIPTOR; NEW-THING as a function.
+LOCATION is NIL for a prototype, a container, hand or storage bin, or a list (:with thing) or
+(map x y), in metres; the map may also be a name or a world. PROTOTYPE is a thing whose attributes
+and contents are copied first. CONTENTS, ours, is a list of recipes made by THING-RECIPE; KICKERS,
+ours, a list of kickers or their names. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+  (let ((recipe (write-recipe 'new-thing name descriptor :prototype prototype
+                                                         :contents contents :kickers kickers)))
+    (multiple-value-bind (world location x y) (resolve-location location)
+      (with-world-access (world new-thing name location descriptor)
+        (let ((thing (follow-recipe recipe world)))
+          (cond (world (relocate thing location x y))
+                (location (place-thing thing location x y)))
+          thing)))))
+
+(defun position-form-p (form)
+  "True if FORM, three elements long, means (map x y) rather than a call: it does unless it
+begins with the name of a global function that is not also that of a variable, or with MAP."
+  (and (proper-list-p form) (= 3 (length form))
+       (let ((head (first form)))
+         (or (consp head)
+             (and (symbolp head)
+                  (or (not (fboundp head)) (boundp head) (same-name-p head 'map)))))))
+
+(defmacro new-thing (name location descriptor &key prototype)
+  "Make and return a thing NAME with the attributes of DESCRIPTOR, both unevaluated (manual 5.3).
+LOCATION is one of
+  a form whose value is a container, hand or storage bin, or NIL for a prototype;
+  (:with form) -- at the location of another thing;
+  (map x y) -- in a map, at coordinates in metres; all three are forms.
+PROTOTYPE is a form whose value is a thing; its attributes and contents are copied first, its
+kickers are not. To compute name or descriptor use MAKE-NEW-THING. Signals WRONG-ARGUMENT."
+  (unless (and name (symbolp name))
+    (reject-clause "new-thing" name "a symbol as the name of the thing"))
+  (unless (descriptor-p descriptor)
+    (reject-clause (format nil "new-thing ~(~A~)" name) descriptor
+                   "a list of lists (attribute value), each attribute once"))
+  `(make-new-thing ',name
+                   ,(cond ((and (consp location) (eq :with (first location)))
+                           `(list :with ,@(rest location)))
+                          ((position-form-p location) `(list ,@location))
+                          (t location))
+                   ',descriptor :prototype ,prototype))

@@ -1,0 +1,60 @@
+;;;; package.lisp -- the world layer: maps, places, things and what moves them.
+
+(defpackage :ars-magna.world
+  (:documentation "The fixed grid (maps, place types, substances) and what changes in it
+(worlds, things, kickers). Manual 2.1, 3.3 and 5.1 to 5.4.")
+  (:use :cl :ars-magna.base)
+  (:shadow #:map)
+  (:import-from :ars-magna.nisp #:matchvar-p)
+  ;; attributes
+  (:export #:attribute #:defattribute #:define-attribute #:find-attribute #:all-attributes
+           #:attribute-key #:attribute-name #:attribute-kind #:attribute-domain
+           #:attribute-success #:attribute-base #:attribute-max-mult #:attribute-noticed
+           #:attribute-supporters #:numeric
+           #:red #:green #:blue #:violet #:lightred #:lightgreen #:lightblue #:lightviolet)
+  ;; substances
+  (:export #:substance #:defsubstance #:define-substance #:all-substances #:substance-name
+           #:substance-parameter #:substance-value-type #:substance-value-parameter
+           #:wood #:metal #:bricks #:slate #:stone #:plaster #:glass #:cloth #:paper #:plastic)
+  ;; map
+  (:export #:map #:map-p #:map-name #:map-width #:map-height #:map-flags #:map-parameters
+           #:map-substances #:map-substance-types #:map-places #:map-directions
+           #:map-place-types #:map-least-parameter #:map-greatest-parameter #:map-things
+           #:map-resident-world #:map-index #:find-map #:all-maps #:map-cell #:wall-at-p
+           #:+wall+ #:+obsmove+ #:+obsview+ #:+occupied+
+           #:cell #:cell-p #:cell-map #:cell-x #:cell-y #:cell-filled? #:cell-type
+           #:cell-substance-type #:cell-substance-parameter #:cell-occupancy-window
+           #:place #:place-p #:place-cell #:place-canonical-dir #:place-directions)
+  ;; place types
+  (:export #:place-type #:place-type-p #:place-type-name #:place-type-rank
+           #:place-type-confusion #:place-type-invisible-p #:place-type-graphics
+           #:def-place-type #:define-place-type #:find-place-type #:all-place-types
+           #:place-type-index #:doorway #:convex #:concave #:beak)
+  ;; defmap
+  (:export #:defmap #:define-map #:rebuild-map)
+  ;; access
+  (:export #:*world-access* #:with-world-access #:call-with-world-access
+           #:direct-world-access)
+  ;; location
+  (:export #:location-contents #:location-position #:location-world #:location-closed-p
+           #:location-name #:remaining-capacity)
+  ;; thing
+  (:export #:thing #:thing-p #:thing-name #:thing-serial #:thing-world #:thing-location
+           #:thing-x #:thing-y #:thing-attributes #:thing-contents #:thing-kickers
+           #:thing-alive-p #:thing-position #:thing-outermost #:thing-total-weight
+           #:thing-obsmove-p #:thing-obsview-p #:thing-closed-p #:thing-size #:thing-weight
+           #:thing-capacity #:thing-substance-p #:thing-substance-parameter
+           #:get-attribute #:set-attribute #:change-attribute)
+  ;; world
+  (:export #:world #:world-p #:world-map #:world-seed #:world-flags #:world-cells
+           #:world-things #:world-thing-list #:world-robots #:world-simulation #:world-tick
+           #:world-dice #:world-dice-set #:world-move-watchers #:*world* #:current-world
+           #:make-world #:reset-world #:things-at #:find-thing #:find-things #:do-things)
+  ;; placing
+  (:export #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing)
+  ;; kickers
+  (:export #:kicker #:kicker-name #:kicker-prob #:defkicker #:define-kicker #:find-kicker
+           #:all-kickers #:set-kicker #:put-kicker #:run-kicker #:run-kickers #:kick-thing
+           #:attachment #:attachment-kicker #:attachment-thing #:self)
+  ;; check
+  (:export #:world-digest #:world-invariant-violations))

@@ -1,0 +1,152 @@
+;;;; places.lisp -- which cells are places: the classification of a map, and its readers.
+
+(in-package :ars-magna.world)
+
+;;; Types are tried in the order of their ranks, cells row by row; a cell stays what it first
+;;; became. Only empty cells become places. Patterns no larger than 3 x 3 are looked up in a
+;;; table by the code of the neighbourhood, see match-forms.lisp.
+
+(deftype codes () '(simple-array (unsigned-byte 16) (*)))
+
+(declaim (inline column-code))
+(defun column-code (flags x y width height)
+  "Return three bits: the walls at column X in the rows above, at and below Y."
+  (declare (type octets flags) (type (signed-byte 20) x y width height))
+  (flet ((bit-at (y)
+           (declare (type (signed-byte 20) y))
+           (if (and (< -1 x width) (< -1 y height))
+               (logand +wall+ (aref flags (the cell-index (+ x (* y width)))))
+               1)))
+    (declare (inline bit-at))
+    (logior (ash (bit-at (1- y)) 2) (ash (bit-at y) 1) (bit-at (1+ y)))))
+
+(defun neighbourhood-codes (map)
+  "Return the neighbourhood codes of all cells of MAP, by index."
+  (declare #.*hot*)
+  (let* ((width (map-width map)) (height (map-height map)) (flags (map-flags map))
+         (codes (make-array (* width height) :element-type '(unsigned-byte 16)))
+         (index 0))
+    (declare (type cell-index index))
+    (dotimes (y height codes)
+      (let ((code (logior (ash (column-code flags -1 y width height) 3)
+                          (column-code flags 0 y width height))))
+        (declare (type neighbourhood-code code))
+        (dotimes (x width)
+          (setf code (logior (ldb (byte 9 0) (ash code 3))
+                             (column-code flags (1+ x) y width height))
+                (aref codes index) code
+                index (1+ index)))))))
+
+(declaim (inline classify-cell))
+(defun classify-cell (map number x y direction)
+  "Make the cell X, Y of MAP a place of the type NUMBER, unless it is one already, filled or
+outside."
+  (declare (type (signed-byte 20) x y) (type (unsigned-byte 8) number))
+  (when (and (< -1 x (map-width map)) (< -1 y (map-height map)))
+    (let ((index (+ x (* y (map-width map)))))
+      (declare (type cell-index index))
+      (when (and (zerop (aref (map-places map) index))
+                 (not (logtest +wall+ (aref (map-flags map) index))))
+        (setf (aref (map-places map) index) number
+              (aref (map-directions map) index) direction)))))
+
+(defun classify-by-table (map type number codes)
+  (declare #.*hot* (type codes codes) (type (unsigned-byte 8) number))
+  (let ((table (place-type-table type))
+        (rules (coerce (the list (place-type-rules type)) 'simple-vector))
+        (width (map-width map)) (index 0))
+    (declare (type octets table) (type cell-index index))
+    (dotimes (y (map-height map))
+      (dotimes (x width)
+        (let ((found (aref table (ldb (byte 9 0) (aref codes index)))))
+          (incf index)
+          (unless (zerop found)
+            (let ((rule (svref rules (1- found))))
+              (declare (type rule rule))
+              (classify-cell map number
+                             (+ x (the (signed-byte 16) (rule-dx rule)))
+                             (+ y (the (signed-byte 16) (rule-dy rule)))
+                             (rule-direction rule)))))))))
+
+(defun classify-by-forms (map type number)
+  (dotimes (y (map-height map))
+    (dotimes (x (map-width map))
+      (let ((rule (find-if (lambda (rule) (form-matches-p (rule-form rule) map x y))
+                           (place-type-rules type))))
+        (when rule
+          (classify-cell map number (+ x (rule-dx rule)) (+ y (rule-dy rule))
+                         (rule-direction rule)))))))
+
+(defun reject-checker (type cell got)
+  (reject-clause (format nil "def-place-type ~(~A~)" (place-type-name type))
+                 (list :checker got)
+                 (format nil "four values at ~A: a boolean, two integers, a direction" cell)))
+
+(defun classify-by-checker (map type number)
+  (let ((cell (make-cell map 0 0)) (checker (place-type-checker type)))
+    (declare (type function checker))
+    (dotimes (y (map-height map))
+      (setf (cell-y cell) y)
+      (dotimes (x (map-width map))
+        (setf (cell-x cell) x)
+        (multiple-value-bind (found dx dy direction)
+            (handler-case (funcall checker cell)
+              (error (condition) (reject-checker type cell (princ-to-string condition))))
+          (when found
+            (unless (and (typep dx '(signed-byte 16)) (typep dy '(signed-byte 16))
+                         (realp direction))
+              (reject-checker type cell (list 'values found dx dy direction)))
+            (classify-cell map number (+ x dx) (+ y dy) (double direction))))))))
+
+(defun clear-places (map)
+  "Forget the places of MAP; number the place types known now."
+  (let ((size (* (map-width map) (map-height map))))
+    (setf (map-places map) (make-octets size)
+          (map-directions map) (make-doubles size)
+          (map-place-types map) (coerce (cons nil *place-types*) 'simple-vector))))
+
+(defun classify-places (map)
+  "Find the places of MAP anew, by the place types known now. Return MAP."
+  (clear-places map)
+  (let ((codes (neighbourhood-codes map)))
+    (loop for type in *place-types* for number from 1
+          do (cond ((place-type-checker type) (classify-by-checker map type number))
+                   ((place-type-table type) (classify-by-table map type number codes))
+                   (t (classify-by-forms map type number)))))
+  map)
+
+;;; Reading.
+
+(defstruct (place (:constructor make-place (type canonical-dir cell)) (:copier nil))
+  "A cell as a place: its PLACE-TYPE, basic canonical direction (radians) and the cell."
+  (type nil :type place-type :read-only t)
+  (canonical-dir 0d0 :type double-float :read-only t)
+  (cell nil :type cell :read-only t))
+(setf (documentation 'place-type 'function) "Return the PLACE-TYPE that the place is of."
+      (documentation 'place-canonical-dir 'function)
+      "Return the place's basic canonical direction, radians (manual 5.1.1)."
+      (documentation 'place-cell 'function) "Return the cell that is the place.")
+
+(defun cell-type (cell)
+  "Return the PLACE that CELL is, or NIL (manual 5.1.1)."
+  (let* ((map (cell-map cell))
+         (index (cell-index-in-map cell))
+         (number (if index (aref (map-places map) index) 0)))
+    (unless (zerop number)
+      (make-place (aref (map-place-types map) number)
+                  (aref (map-directions map) index)
+                  (make-cell map (cell-x cell) (cell-y cell))))))
+
+(defun place-directions (place)
+  "Return the two canonical directions of PLACE, radians: what its type's :directions form says,
+or its basic direction and the opposite. Trouble in the form is queued as an error message."
+  (let* ((basic (place-canonical-dir place))
+         (type (place-type place))
+         (function (place-type-directions type)))
+    (multiple-value-bind (one other)
+        (and function
+             (call-user-code function (list "the :directions of place type" (place-type-name type))
+                             (place-cell place)))
+      (if (and (realp one) (realp other))
+          (values (double one) (double other))
+          (values basic (+ basic pi))))))

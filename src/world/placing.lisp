@@ -1,0 +1,192 @@
+;;;; placing.lisp -- putting things somewhere, and keeping the index and flags right.
+
+(in-package :ars-magna.world)
+
+;;; Invariants: a thing on the floor is in the list of exactly the cell that holds its position;
+;;; a thing in something is in exactly its contents; a cell's flags say what lies there.
+;;; Everything that moves a thing goes through PLACE-THING.
+
+(defun thing-flags (thing)
+  (logior +occupied+
+          (if (thing-obsmove-p thing) +obsmove+ 0)
+          (if (thing-obsview-p thing) +obsview+ 0)))
+
+(defun refresh-cell-flags (world index)
+  "Make the flags of a cell of WORLD agree with the things on its floor."
+  (let ((flags (logand +wall+ (aref (world-flags world) index))))
+    (declare (type (unsigned-byte 8) flags))
+    (dolist (thing (svref (world-cells world) index))
+      (setf flags (logior flags (thing-flags thing))))
+    (setf (aref (world-flags world) index) flags)))
+
+(declaim (inline thing-index))
+(defun thing-index (thing)
+  "Return the index of the cell that THING, on the floor, lies in."
+  (the cell-index (point-index (world-map (thing-world thing)) (thing-x thing) (thing-y thing))))
+
+(defun take-from-floor (thing)
+  (let* ((world (thing-world thing)) (index (thing-index thing)) (cells (world-cells world)))
+    (setf (svref cells index) (delete thing (the list (svref cells index)) :test #'eq :count 1))
+    (refresh-cell-flags world index)))
+
+(defun put-on-floor (thing x y)
+  (setf (thing-x thing) x (thing-y thing) y (thing-location thing) :floor)
+  (let* ((world (thing-world thing)) (index (thing-index thing)) (flags (world-flags world)))
+    (setf (svref (world-cells world) index)
+          (nconc (svref (world-cells world) index) (list thing))
+          (aref flags index) (logior (aref flags index) (thing-flags thing)))))
+
+(defun take-away (thing)
+  "Take THING from where it is, leaving it nowhere."
+  (let ((location (thing-location thing)))
+    (case location
+      ((nil))
+      (:floor (take-from-floor thing))
+      (t (setf (location-contents location) (remove thing (location-contents location)))))
+    (setf (thing-location thing) nil)))
+
+(defun place-thing (thing location &optional x y)
+  "Put THING into LOCATION: NIL, what holds things, or :FLOOR at X, Y (metres, inside the map).
+The primitive: it checks and tells nothing. Return THING."
+  (if (eq location :floor)
+      (let ((x (double x)) (y (double y)))
+        (check-inside 'place-thing (world-map (thing-world thing)) x y)
+        (take-away thing)
+        (put-on-floor thing x y))
+      (progn
+        (take-away thing)
+        (setf (thing-location thing) location)
+        (when location
+          (setf (location-contents location)
+                (append (location-contents location) (list thing))))))
+  thing)
+
+(defun check-inside (operator map x y)
+  (unless (and (realp x) (realp y) (map-index map x y))
+    (reject-value operator "position" (list x y)
+                  (format nil "a point of ~A, which is ~D by ~D metres"
+                          map (map-width map) (map-height map)))))
+
+(defun note-move (thing old-location new-location)
+  "Tell the watchers of THING's world."
+  (dolist (watcher (world-move-watchers (thing-world thing)))
+    (funcall (the function watcher) thing old-location new-location)))
+
+;;; Moving.
+
+(defun holder-p (object)
+  "True if OBJECT can hold things."
+  (and (compute-applicable-methods #'location-contents (list object)) t))
+
+(defun check-holder (operator thing holder)
+  "Signal unless HOLDER can hold THING (NIL: a new thing); return its world."
+  (unless (holder-p holder)
+    (reject-value operator "location" holder
+                  "a container, hand or storage bin, or a position"))
+  (when thing
+    (unless (eq (location-world holder) (thing-world thing))
+      (reject-use "~A cannot go into ~A, which is in another world." thing (location-name holder)))
+    (loop for outer = holder then (thing-location outer)
+          while (thing-p outer)
+          when (eq outer thing)
+            do (reject-use "~A cannot go into itself." thing)))
+  (location-world holder))
+
+(defun check-movable (operator thing)
+  (unless (thing-p thing) (reject-value operator "thing" thing "a thing"))
+  (unless (thing-world thing)
+    (reject-use "~A is a prototype; make things from it with (new-thing ... :prototype)." thing))
+  (unless (thing-alive-p thing) (reject-use "~A has been destroyed." thing)))
+
+(defun relocate (thing location &optional x y)
+  "Place THING and tell the watchers."
+  (let ((old (thing-location thing)))
+    (place-thing thing location x y)
+    (note-move thing old location)
+    thing))
+
+(defun move-thing (thing location &optional (y nil y-p))
+  "Move THING to LOCATION: a container, hand or storage bin, or a position, either a list (x y)
+or, as two arguments, its coordinates in metres. Our addition to manual 5.3; walls, lids and
+capacities do not matter. Signals WRONG-ARGUMENT outside the map, MISUSE for prototypes, things
+destroyed, and a container put into itself. Return THING."
+  (check-movable 'move-thing thing)
+  (let ((position (cond (y-p (list location y))
+                        ((point-form-p location) location))))
+    (if position
+        (check-inside 'move-thing (world-map (thing-world thing)) (first position)
+                      (second position))
+        (check-holder 'move-thing thing location))
+    (with-world-access ((thing-world thing) move-thing thing (or position location))
+      (if position
+          (relocate thing :floor (first position) (second position))
+          (relocate thing location)))))
+
+(defun %destroy-thing (thing)
+  (let ((old (thing-location thing)) (x (thing-x thing)) (y (thing-y thing)))
+    (dolist (inside (copy-list (thing-contents thing)))
+      (relocate inside old x y))
+    (take-away thing)
+    (detach-all-kickers thing)
+    (setf (thing-alive-p thing) nil)
+    (remove-thing thing (thing-world thing))
+    (note-move thing old nil)))
+
+(defun destroy-thing (thing)
+  "Destroy THING; what it contains stays where it was. Destroying it again does nothing. Our
+addition to manual 5.3.1. Signals MISUSE for prototypes. Return nothing."
+  (unless (and (thing-p thing) (not (thing-alive-p thing)))
+    (check-movable 'destroy-thing thing)
+    (with-world-access ((thing-world thing) destroy-thing thing)
+      (when (thing-alive-p thing) (%destroy-thing thing))))
+  (values))
+
+;;; Attributes of things in a world.
+
+(defun change-attributes (thing descriptor)
+  "Give THING the attributes in DESCRIPTOR and make caches and flags agree."
+  (setf (thing-attributes thing) (merge-descriptors descriptor (thing-attributes thing)))
+  (refresh-physics thing)
+  (when (eq (thing-location thing) :floor)
+    (refresh-cell-flags (thing-world thing) (thing-index thing))))
+
+(defun normal-descriptor (operator descriptor)
+  "Return the object descriptor DESCRIPTOR with keywords as names. Signals WRONG-ARGUMENT."
+  (unless (descriptor-p descriptor)
+    (reject-value operator "descriptor" descriptor
+                  "a list of lists (attribute value), each attribute once"))
+  (loop for (name value) in descriptor
+        for key = (attribute-key name)
+        do (check-attribute-value operator key value)
+        collect (list key value)))
+
+(defun descriptor-p (object)
+  "True if OBJECT has the shape of an object descriptor."
+  (and (proper-list-p object)
+       (loop for entry in object
+             always (and (proper-list-p entry) (= 2 (length entry))
+                         (first entry) (symbolp (first entry))))
+       (loop for ((name) . rest) on object
+             never (find name rest :key #'first :test #'same-name-p))))
+
+(defun set-attribute (thing attribute new-value)
+  "Set ATTRIBUTE, a keyword, of THING to NEW-VALUE and return that (manual 5.3). NIL means false
+or unspecified. Signals WRONG-ARGUMENT for a value that the attribute cannot have."
+  (check-argument set-attribute thing (thing-p thing) "a thing")
+  (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
+  (let ((descriptor (normal-descriptor 'set-attribute (list (list attribute new-value)))))
+    (with-world-access ((thing-world thing) set-attribute thing attribute new-value)
+      (change-attributes thing descriptor)))
+  new-value)
+
+(defun (setf get-attribute) (new-value thing attribute)
+  (set-attribute thing attribute new-value))
+
+(defun change-attribute (thing descriptor)
+  "Set all attributes of THING that the object descriptor DESCRIPTOR gives; others stay
+(manual 5.3). Signals WRONG-ARGUMENT. Return THING."
+  (check-argument change-attribute thing (thing-p thing) "a thing")
+  (let ((descriptor (normal-descriptor 'change-attribute descriptor)))
+    (with-world-access ((thing-world thing) change-attribute thing descriptor)
+      (change-attributes thing descriptor)))
+  thing)

@@ -1,0 +1,83 @@
+;;;; recipes.lisp -- how to make a thing: what map clauses and prototypes come to.
+
+(in-package :ars-magna.world)
+
+;;; A recipe is fixed when it is written: a prototype's attributes and contents are copied then,
+;;; so that a world made of it later does not depend on what became of the prototype. Contents
+;;; are made before their container, each with the next serial number of the world; prototypes
+;;; take none. Manual 5.1 and 5.3.
+
+(defstruct (recipe (:constructor make-recipe (name attributes contents &key kickers x y))
+                   (:copier nil))
+  "A thing to be made: in a map's recipe, at X, Y."
+  (name nil :type symbol :read-only t)
+  (attributes '() :type list :read-only t)
+  (contents '() :type list :read-only t)
+  (kickers '() :type list :read-only t)
+  (x nil :type (or null double-float) :read-only t)
+  (y nil :type (or null double-float) :read-only t))
+
+(defun thing-recipe (thing)
+  "Return the recipe of things like THING: attributes and contents, but no kickers."
+  (make-recipe (thing-name thing) (thing-attributes thing)
+               (mapcar #'thing-recipe (thing-contents thing))))
+
+(defun write-recipe (operator name descriptor &key prototype contents kickers x y)
+  "Return the recipe of a thing NAME: the attributes of the thing PROTOTYPE, if any, overridden by
+DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMENT."
+  (unless (and name (symbolp name)) (reject-value operator "name" name "a symbol"))
+  (unless (or (null prototype) (thing-p prototype))
+    (reject-value operator "prototype" prototype "a thing, made by NEW-THING"))
+  (let ((own (normal-descriptor operator descriptor)))
+    (make-recipe name
+                 (merge-descriptors own (and prototype (thing-attributes prototype)))
+                 (append (and prototype (mapcar #'thing-recipe (thing-contents prototype)))
+                         contents)
+                 :kickers (mapcar #'find-kicker kickers)
+                 :x (and x (double x)) :y (and y (double y)))))
+
+(defun follow-recipe (recipe world)
+  "Return a new thing made by RECIPE, nowhere yet, in WORLD, or a prototype if WORLD is NIL."
+  (let* ((contents (loop for inside in (recipe-contents recipe)
+                         collect (follow-recipe inside world)))
+         (thing (%make-thing (recipe-name recipe) (if world (take-serial world) 0) world)))
+    (setf (thing-contents thing) contents
+          (thing-attributes thing) (recipe-attributes recipe))
+    (dolist (inside contents) (setf (thing-location inside) thing))
+    (refresh-physics thing)
+    (when world (add-thing thing world))
+    (dolist (kicker (recipe-kickers recipe)) (attach-kicker thing kicker))
+    thing))
+
+;;; Worlds.
+
+(defun empty-world (world)
+  "Leave WORLD without things and kickers, as its map is. What was in it is destroyed."
+  (let ((map (world-map world)))
+    (do-things (thing world)
+      (setf (thing-alive-p thing) nil (thing-location thing) nil (thing-contents thing) '())
+      (detach-all-kickers thing))
+    (setf (world-flags world) (copy-seq (map-flags map))
+          (world-cells world) (make-array (* (map-width map) (map-height map))
+                                          :initial-element '())
+          (world-things world) (make-list-vector)
+          (world-live-count world) 0
+          (world-next-serial world) 1
+          (world-tick world) 0
+          (world-kicker-groups world) '()
+          (world-kicker-tick world) 0
+          (world-kicker-generation world) *kicker-generation*
+          (world-due-kickers world) '())))
+
+(defun reset-world (world &key (seed (world-seed world)))
+  "Make WORLD as it was when it was fresh, with the integer SEED: the things of its map's recipe,
+tick 0. Robots, simulation and watchers stay. Return WORLD."
+  (empty-world world)
+  (setf (world-seed world) seed
+        (world-dice-set world) (make-dice-set seed))
+  (dolist (recipe (map-things (world-map world)) world)
+    (place-thing (follow-recipe recipe world) :floor (recipe-x recipe) (recipe-y recipe))))
+
+(defun make-world (map &key (seed 0))
+  "Return a fresh world of MAP (a map or its name) that depends on it and the integer SEED only."
+  (reset-world (%make-world (find-map map)) :seed seed))

@@ -1,0 +1,53 @@
+;;;; residents.lisp -- which world is meant, and finding things in it.
+
+(in-package :ars-magna.world)
+
+;;; A map has one resident world, made when first asked for: the one that top-level code works
+;;; in. Headless simulations bind *WORLD* to worlds of their own.
+
+(defvar *residents-lock* (make-lock "resident worlds"))
+
+(defun map-resident-world (map)
+  "Return the world of MAP that top-level code works in, made when first asked for."
+  (or (map-resident map)
+      (with-lock (*residents-lock*)
+        (or (map-resident map)
+            (setf (map-resident map) (make-world map))))))
+
+(defun current-world (map)
+  "Return the world of MAP (a map or its name) that code works in here and now: *WORLD* if it is
+of MAP, else MAP's resident world. A world is returned as it is."
+  (if (world-p map)
+      map
+      (let ((map (find-map map)))
+        (if (and *world* (eq map (world-map *world*)))
+            *world*
+            (map-resident-world map)))))
+
+;;; Finding.
+
+(defun worlds-in-view (world)
+  "Return a list of worlds: WORLD (also given as a map or its name), or if it is NIL *WORLD*, or
+if there is none the resident worlds of all maps."
+  (cond (world (list (current-world world)))
+        (*world* (list *world*))
+        (t (cl:map 'list #'map-resident-world *maps*))))
+
+(defun called-p (thing name)
+  "True if THING is called NAME: its symbol or string, with or without #serial, or its serial."
+  (if (integerp name)
+      (= name (thing-serial thing))
+      (or (same-name-p name (thing-name thing))
+          (string-equal name (princ-to-string thing)))))
+
+(defun find-things (name &optional world)
+  "Return a list of the things called NAME (a symbol or string, perhaps \"PEN#2\", or a serial
+number) in WORLD, in order of creation. WORLD may be a map; by default it is *WORLD* or, at top
+level, the resident worlds of all maps."
+  (loop for each in (worlds-in-view world)
+        append (loop for thing across (world-things each)
+                     when (and thing (called-p thing name)) collect thing)))
+
+(defun find-thing (name &optional world)
+  "Return the first of FIND-THINGS with the same arguments, or NIL."
+  (first (find-things name world)))

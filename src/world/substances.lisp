@@ -1,0 +1,81 @@
+;;;; substances.lisp -- what walls and things are made of.
+
+(in-package :ars-magna.world)
+
+;;; A substance has a type, a symbol, and a parameter, a number, as when a camera views it
+;;; (manual 2.1). Walls give both. The value of a thing's :substance is a number (the
+;;; parameter), a symbol (the type, its parameter as defined here) or a list of both.
+
+(defstruct (substance (:constructor make-substance (name %parameter)) (:copier nil))
+  "A type of substance with the parameter that things of it have unless they say otherwise."
+  (name nil :type symbol :read-only t)
+  (%parameter 0d0 :type double-float :read-only t))
+(setf (documentation 'substance-name 'function) "Return the symbol that the substance is called.")
+
+(defvar *substances* '() "All substances, in order of definition.")
+
+(defun all-substances ()
+  "Return a list of all substances, in order of definition."
+  (copy-list *substances*))
+
+(defun find-substance (name)
+  "Return the substance called NAME, a symbol, or NIL."
+  (find name *substances* :key #'substance-name :test #'same-name-p))
+
+(defun define-substance (name parameter)
+  "Define or redefine the substance NAME with PARAMETER; what DEFSUBSTANCE expands to. Return
+NAME."
+  (let ((definition (format nil "defsubstance ~(~A~)" name)))
+    (unless (realp parameter)
+      (reject-clause definition parameter "a number as the parameter of the substance"))
+    (let ((old (find-substance name))
+          (new (make-substance name (double parameter))))
+      (setf *substances* (if old
+                             (substitute new old *substances*)
+                             (append *substances* (list new))))
+      name)))
+
+(defmacro defsubstance (name parameter)
+  "Define the type of substance NAME, a symbol: things whose :substance is NAME are viewed as
+PARAMETER, a number. Our addition to manual 2.1 and 3.3. Return the name."
+  (unless (and name (symbolp name) (not (keywordp name)))
+    (reject-clause "defsubstance" name "a symbol as the name of the substance"))
+  `(define-substance ',name ,parameter))
+
+(defun substance-parameter (substance)
+  "Return the parameter of SUBSTANCE: a SUBSTANCE or its name. An unknown one has 0."
+  (let ((substance (if (substance-p substance) substance (find-substance substance))))
+    (if substance (substance-%parameter substance) 0d0)))
+
+(defun substance-value-p (value)
+  "True if VALUE can be the value of a thing's :substance."
+  (or (realp value)
+      (and value (symbolp value))
+      (and (proper-list-p value) (= 2 (length value))
+           (first value) (symbolp (first value)) (realp (second value)))))
+
+(defun substance-value-type (value)
+  "Return the type, a symbol, that VALUE of a :substance attribute names, or NIL if none."
+  (cond ((realp value) nil)
+        ((symbolp value) value)
+        (t (first value))))
+
+(defun substance-value-parameter (value)
+  "Return the parameter, a double-float, of VALUE of a :substance attribute; 0 for NIL."
+  (cond ((realp value) (double value))
+        ((null value) 0d0)
+        ((symbolp value) (substance-parameter value))
+        (t (double (second value)))))
+
+;;; Our choice; the manual's session views the inside of a wooden box as about 120.
+
+(defsubstance wood 120)
+(defsubstance metal 80)
+(defsubstance bricks 20)
+(defsubstance slate 30)
+(defsubstance stone 40)
+(defsubstance plaster 60)
+(defsubstance glass 5)
+(defsubstance cloth 100)
+(defsubstance paper 110)
+(defsubstance plastic 90)

@@ -1,0 +1,144 @@
+;;;; thing.lisp -- things: the structure, its attributes and its physics.
+
+(in-package :ars-magna.world)
+
+;;; The attributes of a thing are an object descriptor (manual 3.3): a list of lists (key
+;;; value), replaced and never altered in place. Those that physics needs are cached in typed
+;;; slots. A thing without a world is a prototype. Manual 3.3 and 5.3.
+
+(defstruct (thing (:constructor %make-thing (name serial world)) (:copier nil))
+  "An object in a world, or a prototype of such."
+  (name nil :type symbol :read-only t)
+  (serial 0 :type fixnum :read-only t)
+  (world nil)
+  (rank 0 :type fixnum)
+  (location nil)
+  (x 0d0 :type double-float)
+  (y 0d0 :type double-float)
+  (attributes '() :type list)
+  (contents '() :type list)
+  (kickers '() :type list)
+  (alive-p t :type boolean)
+  (obsmove-p nil :type boolean)
+  (obsview-p nil :type boolean)
+  (closed-p nil :type boolean)
+  (substance-p nil :type boolean)
+  (size 0d0 :type double-float)
+  (weight 0d0 :type double-float)
+  (capacity 0d0 :type double-float)
+  (substance-parameter 0d0 :type double-float))
+
+(macrolet ((document (&rest pairs)
+             `(setf ,@(loop for (name text) on pairs by #'cddr
+                            append `((documentation ',name 'function) ,text)))))
+  (document
+   thing-name "Return the symbol that the thing is called; others may be called the same."
+   thing-serial "Return the thing's number in its world, from 1; 0 for prototypes."
+   thing-world "Return the world that the thing is in, or NIL for a prototype."
+   thing-location "Return where the thing is: :FLOOR, what holds it, or NIL if it is nowhere."
+   thing-x "Return the x coordinate of a thing on the floor, metres."
+   thing-y "Return the y coordinate of a thing on the floor, metres."
+   thing-attributes "Return the thing's attributes as an object descriptor; do not alter it."
+   thing-contents "Return the list of things directly inside the thing, in order of arrival."
+   thing-kickers "Return the list of the thing's kickers, as ATTACHMENTs."
+   thing-alive-p "True until the thing is destroyed."
+   thing-obsmove-p "True if the thing blocks movement."
+   thing-obsview-p "True if the thing obstructs vision."
+   thing-closed-p "True if the thing, as a container, is closed."
+   thing-substance-p "True if the thing has a :substance."
+   thing-size "Return the thing's :size, 0 if unspecified."
+   thing-weight "Return the thing's own :weight, 0 if unspecified."
+   thing-capacity "Return the thing's :capacity, 0 if it is no container."
+   thing-substance-parameter "Return the parameter of the thing's :substance, 0 if unspecified."))
+
+(defmethod print-object ((thing thing) stream)
+  (let ((name (symbol-name (thing-name thing)))
+        (serial (and (plusp (thing-serial thing)) (thing-serial thing))))
+    (if (or *print-escape* *print-readably*)
+        (print-unreadable-object (thing stream)
+          (format stream "THING ~A~@[#~D~]" name serial))
+        (format stream "~A~@[#~D~]" name serial))))
+
+;;; Attributes.
+
+(defun reject-value (operator name value expected)
+  (error 'wrong-argument :operator operator :name name :value value :expected expected))
+
+(defun check-attribute-value (operator key value)
+  "Signal WRONG-ARGUMENT unless a thing's attribute KEY can be VALUE. NIL, for unspecified or
+false, always can."
+  (let ((attribute (find-attribute key)))
+    (flet ((reject (expected) (reject-value operator key value expected)))
+      (cond ((or (null value) (null attribute)))
+            ((eq key :substance)
+             (unless (substance-value-p value)
+               (reject "a number, a substance's name, or a list (name number)")))
+            ((eq (attribute-kind attribute) :discrete)
+             (unless (member value (attribute-domain attribute) :test #'value-equal)
+               (reject (format nil "one of ~(~{~A~^, ~}~)" (attribute-domain attribute)))))
+            ((not (realp value)) (reject "a number"))
+            ((and (member key '(:size :weight :capacity)) (minusp value))
+             (reject "a number not below 0"))))))
+
+(defun refresh-physics (thing)
+  "Make the cached slots of THING agree with its attributes."
+  (flet ((number-of (key)
+           (let ((value (get-attribute thing key))) (if (realp value) (double value) 0d0)))
+         (truth-of (key) (and (get-attribute thing key) t)))
+    (setf (thing-obsmove-p thing) (truth-of :obsmove)
+          (thing-obsview-p thing) (truth-of :obsview)
+          (thing-closed-p thing) (truth-of :closed)
+          (thing-size thing) (number-of :size)
+          (thing-weight thing) (number-of :weight)
+          (thing-capacity thing) (number-of :capacity)
+          (thing-substance-p thing) (truth-of :substance)
+          (thing-substance-parameter thing)
+          (substance-value-parameter (get-attribute thing :substance)))))
+
+(defun get-attribute (thing attribute)
+  "Return the value of ATTRIBUTE, a keyword, of THING, or NIL if it is unspecified. Can be set,
+which is SET-ATTRIBUTE (manual 5.3)."
+  (check-argument get-attribute thing (thing-p thing) "a thing")
+  (second (assoc (attribute-key attribute) (thing-attributes thing) :test #'eq)))
+
+(defun merge-descriptors (new old)
+  "Return the object descriptor OLD with what NEW says instead; order as in OLD, then as in NEW."
+  (append (loop for (key value) in old
+                collect (list key (let ((other (assoc key new :test #'eq)))
+                                    (if other (second other) value))))
+          (remove-if (lambda (entry) (assoc (first entry) old :test #'eq)) new)))
+
+;;; Containment.
+
+(defun thing-outermost (thing)
+  "Return the outermost thing that THING is in; THING itself if it is in no other thing."
+  (loop for location = (thing-location thing)
+        while (thing-p location) do (setf thing location)
+        finally (return thing)))
+
+(defun thing-position (thing)
+  "Return, as two values, the coordinates of THING, metres: where what holds it is. NIL and NIL
+if it is nowhere."
+  (let* ((outermost (thing-outermost thing)) (location (thing-location outermost)))
+    (case location
+      (:floor (values (thing-x outermost) (thing-y outermost)))
+      ((nil) (values nil nil))
+      (t (location-position location)))))
+
+(defun thing-total-weight (thing)
+  "Return the weight of THING with all that it contains."
+  (loop with sum double-float = (thing-weight thing)
+        for inside in (thing-contents thing)
+        do (incf sum (the double-float (thing-total-weight inside)))
+        finally (return sum)))
+
+(defmethod location-contents ((thing thing)) (thing-contents thing))
+(defmethod (setf location-contents) (things (thing thing)) (setf (thing-contents thing) things))
+(defmethod location-position ((thing thing)) (thing-position thing))
+(defmethod location-world ((thing thing)) (thing-world thing))
+(defmethod location-closed-p ((thing thing)) (thing-closed-p thing))
+(defmethod location-name ((thing thing)) (princ-to-string thing))
+
+(defmethod remaining-capacity ((thing thing))
+  (max 0d0 (- (thing-capacity thing)
+              (loop for inside in (thing-contents thing) sum (thing-size inside)))))

@@ -1,0 +1,127 @@
+;;;; walls.lisp -- drawing the wall, rect and circle clauses of a map.
+
+(in-package :ars-magna.world)
+
+;;; Coordinates are those of points: a corner lies in the cell that holds it, or, beyond the
+;;; map's edge, in the last cell on that side, so that a room as wide as the map is closed.
+;;; Later clauses overwrite earlier ones. Manual 5.1.
+
+(defun column-in (map x) (clamp (floor x) 0 (1- (map-width map))))
+(defun row-in (map y) (clamp (floor y) 0 (1- (map-height map))))
+
+(defun substance-number (map type)
+  "Return the number that stands for the substance named TYPE in MAP."
+  (position type (map-substance-types map) :start 1 :test #'same-name-p))
+
+(defun fill-cell (map x y substance parameter)
+  "Fill the cell nearest to X, Y (integers) in MAP with a wall."
+  (let ((index (+ (column-in map x) (* (row-in map y) (map-width map)))))
+    (setf (aref (map-flags map) index) +wall+
+          (aref (map-substances map) index) substance
+          (aref (map-parameters map) index) parameter)))
+
+(defun draw-line (map x0 y0 x1 y1 substance from to)
+  "Fill the cells from X0, Y0 to X1, Y1 (Bresenham); the parameter goes from FROM to TO by
+steps."
+  (let* ((dx (abs (- x1 x0))) (dy (- (abs (- y1 y0))))
+         (step-x (signum (- x1 x0))) (step-y (signum (- y1 y0)))
+         (steps (max dx (- dy) 1))
+         (slack (+ dx dy)))
+    (loop for step from 0
+          do (fill-cell map x0 y0 substance (+ from (* (- to from) (/ step steps))))
+          until (and (= x0 x1) (= y0 y1))
+          do (let ((twice (* 2 slack)))
+               (when (>= twice dy) (incf slack dy) (incf x0 step-x))
+               (when (<= twice dx) (incf slack dx) (incf y0 step-y))))))
+
+(defun draw-wall (map start end type from &optional (to from))
+  (draw-line map (column-in map (first start)) (row-in map (second start))
+             (column-in map (first end)) (row-in map (second end))
+             (substance-number map type) (double from) (double to)))
+
+(defun draw-rect (map corner opposite type &rest parameters)
+  "Draw the outline; the second corner is beside the first, the third opposite it."
+  (destructuring-bind (p0 &optional (p1 p0) (p2 p0) (p3 p0)) parameters
+    (destructuring-bind ((x0 y0) (x1 y1)) (list corner opposite)
+      (loop for (start end from to) in `(((,x0 ,y0) (,x1 ,y0) ,p0 ,p1)
+                                         ((,x1 ,y0) (,x1 ,y1) ,p1 ,p2)
+                                         ((,x1 ,y1) (,x0 ,y1) ,p2 ,p3)
+                                         ((,x0 ,y1) (,x0 ,y0) ,p3 ,p0))
+            do (draw-wall map start end type from to)))))
+
+(defun draw-circle (map center radius type parameter)
+  "Draw the digitised outline (midpoint algorithm), pressed against the map's edges."
+  (let ((cx (floor (first center))) (cy (floor (second center)))
+        (substance (substance-number map type)) (parameter (double parameter)))
+    (loop with x = (round radius) and y = 0
+          with slack = (- 1 x)
+          while (<= y x)
+          do (loop for (dx dy) in `((,x ,y) (,y ,x))
+                   do (loop for (sx sy) in '((1 1) (1 -1) (-1 1) (-1 -1))
+                            do (fill-cell map (+ cx (* sx dx)) (+ cy (* sy dy))
+                                          substance parameter)))
+             (incf y)
+             (cond ((minusp slack) (incf slack (+ 1 (* 2 y))))
+                   (t (decf x) (incf slack (+ 1 (* 2 (- y x)))))))))
+
+;;; Checking.
+
+(defun check-wall-clause (definition clause)
+  "Signal MALFORMED-DEFINITION unless CLAUSE, a wall or rect, can be drawn."
+  (destructuring-bind (kind &optional start end type &rest parameters) clause
+    (let ((counts (if (same-name-p kind '#:wall) '(1 2) '(1 4))))
+      (unless (and (point-form-p start) (point-form-p end) type (symbolp type)
+                   (member (length parameters) counts) (every #'realp parameters))
+        (reject-clause definition clause
+                       (if (same-name-p kind '#:wall)
+                           "(wall (x0 y0) (x1 y1) substance parameter [parameter]), with numbers"
+                           "(rect (x0 y0) (x1 y1) substance parameter [three more]), with numbers"))))))
+
+(defun check-circle-clause (definition clause)
+  (unless (= 5 (length clause))
+    (reject-clause definition clause "(circle (x y) radius substance parameter)"))
+  (destructuring-bind (center radius type parameter) (rest clause)
+    (unless (and (point-form-p center) (typep radius '(real 0)) type (symbolp type)
+                 (realp parameter))
+      (reject-clause definition clause
+                     "(circle (x y) radius substance parameter), with numbers, radius not below 0"))))
+
+;;; Building.
+
+(defun draw-clause (map clause)
+  (let ((kind (first clause)))
+    (apply (cond ((same-name-p kind '#:wall) #'draw-wall)
+                 ((same-name-p kind '#:rect) #'draw-rect)
+                 (t #'draw-circle))
+           map (rest clause))))
+
+(defun clause-substance (clause)
+  "Return the name of the substance that CLAUSE, a wall, rect or circle, is made of."
+  (fourth clause))
+
+(defun clear-walls (map)
+  "Empty all cells of MAP and number the substances of its clauses."
+  (let ((size (* (map-width map) (map-height map))))
+    (setf (map-flags map) (make-octets size)
+          (map-parameters map) (make-doubles size)
+          (map-substances map) (make-array size :element-type '(unsigned-byte 16))
+          (map-substance-types map)
+          (coerce (cons nil (remove-duplicates (mapcar #'clause-substance (map-clauses map))
+                                               :test #'same-name-p :from-end t))
+                  'simple-vector))))
+
+(defun note-parameter-range (map)
+  (loop for flag across (map-flags map)
+        for parameter across (map-parameters map)
+        when (logtest +wall+ flag)
+          minimize parameter into least and maximize parameter into greatest and count t into walls
+        finally (when (plusp walls)
+                  (setf (map-least-parameter map) least
+                        (map-greatest-parameter map) greatest))))
+
+(defun draw-walls (map)
+  "Draw all clauses of MAP into its empty grid. Return MAP."
+  (clear-walls map)
+  (dolist (clause (map-clauses map)) (draw-clause map clause))
+  (note-parameter-range map)
+  map)

@@ -1,0 +1,117 @@
+;;;; world.lisp -- what changes during a run: one world per simulation.
+
+(in-package :ars-magna.world)
+
+;;; A world is made fresh from its map's recipe. Nothing in it depends on anything but the map
+;;; and the seed. Serial numbers count from 1 in order of creation, so that things in order of
+;;; creation are things in order of serial number.
+
+(deftype thing-vector () '(and (vector t) (not simple-array)))
+
+(defun make-list-vector () (make-array 16 :adjustable t :fill-pointer 0))
+
+(defstruct (world (:constructor %make-world (map)) (:copier nil))
+  "Things, dice and kickers on a map, in the state that they have now."
+  (map nil :type map :read-only t)
+  (seed 0 :type integer)
+  (flags (make-octets 0) :type octets)
+  (cells #() :type simple-vector)
+  (things (make-list-vector) :type thing-vector)
+  (live-count 0 :type fixnum)
+  (next-serial 1 :type fixnum)
+  (dice-set #() :type simple-vector)
+  (robots '() :type list)
+  (simulation nil)
+  (tick 0 :type tick-count)
+  (move-watchers '() :type list)
+  (kicker-groups '() :type list)
+  (kicker-tick 0 :type tick-count)
+  (kicker-generation 0 :type fixnum)
+  (due-kickers '() :type list))
+
+(macrolet ((document (&rest pairs)
+             `(setf ,@(loop for (name text) on pairs by #'cddr
+                            append `((documentation ',name 'function) ,text)))))
+  (document
+   world-map "Return the map that the world is of."
+   world-seed "Return the integer that all chance in the world comes from."
+   world-flags "Return the flags of the world's cells by index: walls, and things on the floor."
+   world-cells "Return, by cell index, lists of the things on the floor, in order of arrival."
+   world-things "Return a vector of the world's things in order of creation; NIL where one has
+been destroyed. WORLD-THING-LIST leaves those out."
+   world-dice-set "Return a vector of the world's dice, one for each purpose."
+   world-robots "Return the list of the world's robots; the layer above keeps it."
+   world-simulation "Return the simulation that owns the world; the layer above keeps it."
+   world-tick "Return the number of the current tick; the layer above keeps it."
+   world-move-watchers "Return the list of functions (thing old-location new-location) called
+after a thing has moved, been made or been destroyed. Can be set."))
+
+(defmethod print-object ((world world) stream)
+  (print-unreadable-object (world stream :identity t)
+    (format stream "WORLD of ~A, ~D things" (map-name (world-map world))
+            (world-live-count world))))
+
+;;; Dice.
+
+(define-constant +dice-purposes+
+    '(:motion :odometry :place :looking :tracking :handling :kickers :manipulations :user)
+  :test #'equal :documentation "What chance decides; each has dice of its own.")
+
+(defun make-dice-set (seed)
+  (cl:map 'simple-vector (lambda (purpose) (make-dice seed purpose)) +dice-purposes+))
+
+(declaim (inline world-dice))
+(defun world-dice (world purpose)
+  "Return the dice of WORLD for PURPOSE: :motion, :odometry, :place, :looking, :tracking,
+:handling, :kickers, :manipulations or :user."
+  (the dice (svref (world-dice-set world)
+                   (ecase purpose
+                     (:motion 0) (:odometry 1) (:place 2) (:looking 3) (:tracking 4)
+                     (:handling 5) (:kickers 6) (:manipulations 7) (:user 8)))))
+
+(defvar *world* nil
+  "The world that code runs in, bound inside a headless simulation. NIL at top level, where
+each map's resident world counts.")
+
+;;; Things.
+
+(defmacro do-things ((thing world) &body body)
+  "Run BODY with THING bound to each thing alive in WORLD, in order of creation. Things made
+meanwhile are left out."
+  `(call-with-things (lambda (,thing) ,@body) ,world))
+
+(defun call-with-things (function world)
+  (declare (type function function))
+  (let ((things (world-things world)))
+    (dotimes (position (length things))
+      (let ((thing (aref things position)))
+        (when (and thing (thing-alive-p thing)) (funcall function thing))))))
+
+(defun world-thing-list (world)
+  "Return a fresh list of the things alive in WORLD, in order of creation."
+  (coerce (remove nil (world-things world)) 'list))
+
+(defun add-thing (thing world)
+  (setf (thing-rank thing) (vector-push-extend thing (world-things world)))
+  (incf (world-live-count world)))
+
+(defun remove-thing (thing world)
+  "Forget THING; now and then, close the gaps that the destroyed have left."
+  (setf (aref (world-things world) (thing-rank thing)) nil)
+  (decf (world-live-count world))
+  (when (> (length (world-things world)) (+ 64 (* 2 (world-live-count world))))
+    (let ((old (world-things world)))
+      (setf (world-things world) (make-list-vector))
+      (loop for other across old
+            when other
+              do (setf (thing-rank other) (vector-push-extend other (world-things world)))))))
+
+(defun take-serial (world)
+  (prog1 (world-next-serial world)
+    (incf (world-next-serial world))))
+
+(defun things-at (world x y)
+  "Return the list of things on the floor of the cell of WORLD that holds the point (X, Y), in
+order of arrival; do not alter it. NIL outside the map."
+  (let ((index (map-index (world-map world) x y)))
+    (and index (svref (world-cells world) index))))
