@@ -34,7 +34,7 @@
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "parts") (:file "odometer") (:file "motion")
                  (:file "place-sense") (:file "body") (:file "simulation")
-                 (:file "references") (:file "replay") (:file "state")))
+                 (:file "references") (:file "state") (:file "replay")))
    (:module "src/command" :serial t
     :components ((:file "package") (:file "argument-types") (:file "command")
                  (:file "operation") (:file "define-command") (:file "turning")

@@ -8,10 +8,11 @@ body) enters the debugger where it happens; when NIL, the default, it is queued 
 message that names its origin, and the run goes on.")
 
 (defun report-user-error (condition origin)
-  (error-set "Error in " origin ": "
-             (substitute #\Space #\Newline
-                         (handler-case (princ-to-string condition)
-                           (error () (string (type-of condition)))))))
+  (apply #'error-set "Error in "
+         (append (ensure-list origin)
+                 (list ": " (substitute #\Space #\Newline
+                                        (handler-case (princ-to-string condition)
+                                          (error () (string (type-of condition)))))))))
 
 (defun call-user-code (function origin &rest arguments)
   "Call FUNCTION with ARGUMENTS and return its values. Should it signal an error, queue an error

@@ -35,21 +35,16 @@ Things without a name of their own stand for themselves.")
   (:documentation
    "Return what REFERENCE, a list that begins with the keyword KIND, names in SIMULATION."))
 
-(defstruct (reference (:constructor make-reference (kind arguments)) (:copier nil))
-  "What EXTERNALIZE makes of a robot, part, thing or designator."
-  (kind nil :type symbol :read-only t)
-  (arguments '() :type list :read-only t))
-
-(defmethod make-load-form ((reference reference) &optional environment)
-  (make-load-form-saving-slots reference :environment environment))
+(defun make-reference (kind arguments)
+  "Return what EXTERNALIZE makes of a robot, part, thing or designator: (:the KIND ARGUMENT ...)."
+  (list* :the kind arguments))
 
 (defun internalize (datum simulation)
   "Return DATUM with every reference in it replaced by what it names in SIMULATION."
-  (cond ((reference-p datum)
-         (internalize-reference (reference-kind datum) (reference-arguments datum) simulation))
-        ((consp datum)
-         (cons (internalize (car datum) simulation) (internalize (cdr datum) simulation)))
-        (t datum)))
+  (cond ((atom datum) datum)
+        ((eq (first datum) :the)
+         (internalize-reference (second datum) (cddr datum) simulation))
+        (t (cons (internalize (car datum) simulation) (internalize (cdr datum) simulation)))))
 
 (defun note (simulation operation &rest arguments)
   "Enter OPERATION with ARGUMENTS, as of now, into the journal of SIMULATION, if it keeps one."
@@ -111,10 +106,6 @@ MISUSE if an entry holds a function."
         (dolist (entry (journal-entries journal)) (format out "~S~%" entry))
         (format out "~S~%" :end))))
   (truename file))
-
-(defmethod print-object ((reference reference) stream)
-  (format stream "#S(~S :KIND ~S :ARGUMENTS ~S)" 'reference
-          (reference-kind reference) (reference-arguments reference)))
 
 (defun read-forms (file)
   (handler-case

@@ -1,0 +1,43 @@
+;;;; argument-types.lisp -- what commands take, and how a wrong argument is told so.
+
+(in-package :ars-magna.command)
+
+(defstruct (argument-type (:constructor make-argument-type (name predicate words)) (:copier nil))
+  "A kind of argument: a test for it, and what it is in words."
+  (name nil :type symbol :read-only t)
+  (predicate nil :type function :read-only t)
+  (words "" :type string :read-only t))
+
+(defvar *argument-types* '() "All argument types.")
+
+(defun define-argument-type (name predicate text)
+  "Let NAME be an argument type: what satisfies PREDICATE, which TEXT says in words."
+  (setf *argument-types* (cons (make-argument-type name predicate text)
+                               (remove name *argument-types* :key #'argument-type-name)))
+  name)
+
+(defun find-argument-type (name)
+  (or (find name *argument-types* :key #'argument-type-name)
+      (reject-name "argument type" name (mapcar #'argument-type-name *argument-types*))))
+
+(defun argument-of-type-p (value type)
+  "True if VALUE can be an argument of the type named TYPE."
+  (funcall (argument-type-predicate (find-argument-type type)) value))
+
+(defun argument-type-text (type)
+  "Return in words what an argument of the type named TYPE is."
+  (argument-type-words (find-argument-type type)))
+
+(defun continuation-p (value)
+  (or (functionp value) (symbolp value)))
+
+(define-argument-type 'robot #'robot-p "a robot")
+(define-argument-type 'camera #'camera-p "a camera, as (robot-camera ROBOT 0) returns")
+(define-argument-type 'hand #'hand-p "a hand, as (robot-hand ROBOT 0) returns")
+(define-argument-type 'storage-bin #'storage-bin-p
+  "a storage bin, as (robot-storage-bin ROBOT 0) returns")
+(define-argument-type 'number #'realp "a number")
+(define-argument-type 'angle #'realp "an angle in radians")
+(define-argument-type 'ticks #'realp "a number of ticks")
+(define-argument-type 'continuation #'continuation-p
+  "a continuation: a function of an error code and the command's results, or NIL for none")

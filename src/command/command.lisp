@@ -1,0 +1,82 @@
+;;;; command.lisp -- what is known of a command.
+
+(in-package :ars-magna.command)
+
+;;; A command is defined once (see define-command.lisp); its COMMAND object is what the prompt, the
+;;; journal and the plan language know of it.
+
+(defstruct (parameter-spec (:conc-name spec-) (:constructor make-spec (name type text))
+                           (:copier nil))
+  "One argument or result of a command."
+  (name nil :type symbol :read-only t)
+  (type nil :type symbol :read-only t)
+  (text "" :type string :read-only t))
+
+(defstruct (error-code (:constructor make-error-code (keyword text)) (:copier nil))
+  "One way in which a command fails. TEXT is what the error message says: a string, or a
+function of the operation that returns one."
+  (keyword nil :type keyword :read-only t)
+  (text "" :type (or string function) :read-only t))
+
+(defstruct (command (:copier nil))
+  "A command as defined: its name, what it takes and returns, and how it can fail."
+  (name nil :type symbol :read-only t)
+  (prompt-name "" :type string :read-only t)
+  (prefix "" :type string :read-only t)
+  ;; What messages call the command's continuations.
+  (origin "" :type string :read-only t)
+  (family nil :type symbol :read-only t)
+  (section "" :type string :read-only t)
+  (documentation "" :type string :read-only t)
+  (resource nil :type parameter-spec :read-only t)
+  (parameters '() :type list :read-only t)
+  (results '() :type list :read-only t)
+  (errors '() :type list :read-only t)
+  (delay nil :type function :read-only t)
+  (report nil :type (or null function) :read-only t)
+  (body nil :type function :read-only t))
+
+(macrolet ((describe-readers (&rest pairs)
+             `(setf ,@(loop for (reader text) on pairs by #'cddr
+                            append `((documentation ',reader 'function) ,text)))))
+  (describe-readers
+   spec-name "Return the name of the argument or result, a symbol."
+   spec-type "Return the name of the argument's type."
+   spec-text "Return what the argument or result is, a sentence."
+   error-code-keyword "Return the keyword that the continuation gets."
+   error-code-text "Return the text of the message, a string or a function of the operation."
+   command-name "Return the symbol of the function that issues the command."
+   command-prompt-name "Return what the command is called at the prompt, in upper case."
+   command-prefix "Return the word that the command's messages begin with."
+   command-family "Return :MOVING, :LOOKING, :HANDLING or :MANIPULATING."
+   command-section "Return the section of the manual that describes the command."
+   command-documentation "Return the sentence that says what the command does."
+   command-resource "Return the specification of the command's first argument, its resource."
+   command-parameters "Return the specifications of the arguments between resource and continuation."
+   command-results "Return the specifications of what the continuation gets after error and resource."
+   command-errors "Return the command's own error codes; any can also end with :INTERRUPT."))
+
+(defmethod print-object ((command command) stream)
+  (print-unreadable-object (command stream :type t) (princ (command-name command) stream)))
+
+(defvar *commands* '() "All commands, in order of definition.")
+
+(defun all-commands ()
+  "Return a list of all commands, in order of definition."
+  (copy-list *commands*))
+
+(defun find-command (name)
+  "Return the command whose function, or whose command at the prompt, is called NAME. Signals
+UNKNOWN-NAME."
+  (or (find-if (lambda (command)
+                 (or (same-name-p name (command-name command))
+                     (same-name-p name (command-prompt-name command))))
+               *commands*)
+      (reject-name "command" name (mapcar #'command-name *commands*))))
+
+(defun register-command (command)
+  (let ((old (member (command-name command) *commands* :key #'command-name)))
+    (if old
+        (setf (first old) command)
+        (setf *commands* (append *commands* (list command))))
+    (command-name command)))

@@ -1,0 +1,97 @@
+;;;; define-command.lisp -- one form says everything that is to be known of a command.
+
+(in-package :ars-magna.command)
+
+(defun replace-start (prefix replacement string)
+  "Return STRING with PREFIX at its start replaced by REPLACEMENT, or NIL."
+  (when (starts-with-subseq prefix string)
+    (concatenate 'string replacement (subseq string (length prefix)))))
+
+(defun default-prompt-name (name)
+  "Return what the prompt calls the command NAME: without robot-, cam- for camera-, bin- for
+storage-bin- (manual E; the rule is inferred)."
+  (let ((name (symbol-name name)))
+    (or (replace-start "ROBOT-" "" name)
+        (replace-start "CAMERA-" "CAM-" name)
+        (replace-start "STORAGE-BIN-" "BIN-" name)
+        name)))
+
+(defun option (key options &optional default)
+  (let ((entry (assoc key options)))
+    (if entry (rest entry) default)))
+
+(defun describe-arguments (parameters)
+  (format nil "~@[Arguments: ~{~A~^; ~}.~%~]"
+          (loop for (name nil text) in parameters
+                collect (format nil "~A, ~A" name text))))
+
+(defun describe-command (sentence resource parameters results errors section)
+  "Return the documentation of the function that issues a command."
+  (format nil "~A Returns nothing; takes effect in the next tick.~%~A~
+               The continuation gets an error code or NIL, the ~(~A~)~{, ~A~}.~%~
+               Error codes: ~{~S, ~}:INTERRUPT. (Manual ~A.)"
+          sentence
+          (describe-arguments parameters)
+          (first resource)
+          (mapcar #'second results)
+          (mapcar #'first errors)
+          section))
+
+(defun spec-form (specification)
+  (destructuring-bind (name type &optional (text "")) specification
+    `(make-spec ',name ',type ,text)))
+
+(defun check-command-argument (operator name value type)
+  (unless (argument-of-type-p value type)
+    (error 'wrong-argument :operator operator :name name :value value
+                           :expected (argument-type-text type))))
+
+(defmacro define-command (name (operation resource &rest parameters) (&rest results)
+                          (&rest options) sentence &body body)
+  "Define the function NAME, which issues a command, and all that is known of it.
+
+OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each of PARAMETERS
+(variable type text) with a type of DEFINE-ARGUMENT-TYPE, each of RESULTS (name text). OPTIONS:
+  (:family keyword) (:section string)  where it belongs
+  (:delay form)                        ticks until BODY runs, evaluated when the command begins
+  (:errors (keyword text)...)          its error codes; TEXT, a form, gives a string or a
+                                       function of the operation, for the error message
+  (:report lambda-list form)           what the message of success says, from the results
+  (:prompt name) (:prefix string)      unlike the rule of DEFAULT-PROMPT-NAME
+BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now or later."
+  (let ((errors (option :errors options))
+        (variables (mapcar #'first parameters))
+        (report (option :report options)))
+    `(progn
+       (register-command
+        (make-command
+         :name ',name
+         :prompt-name ,(first (option :prompt options (list (default-prompt-name name))))
+         :prefix ,(first (option :prefix options (list (string-downcase name))))
+         :origin ,(format nil "the continuation of ~(~A~)" name)
+         :family ,(first (option :family options))
+         :section ,(first (option :section options))
+         :documentation ,sentence
+         :resource ,(spec-form resource)
+         :parameters (list ,@(mapcar #'spec-form parameters))
+         :results (list ,@(loop for (result text) in results
+                                collect (spec-form (list result t text))))
+         :errors (list ,@(loop for (keyword text) in errors
+                               collect `(make-error-code ,keyword ,text)))
+         :delay (lambda () ,(first (option :delay options '(1))))
+         :report ,(when report
+                    `(lambda (,operation ,@(first report))
+                       (declare (ignorable ,operation ,@(first report)))
+                       ,@(rest report)))
+         :body (lambda (,operation ,(first resource) ,@variables)
+                 (declare (ignorable ,operation ,(first resource)))
+                 ,@body)))
+       (defun ,name (,(first resource) ,@variables &optional continuation)
+         ,(describe-command sentence resource parameters results errors
+                            (first (option :section options)))
+         (check-command-argument ',name ',(first resource) ,(first resource) ',(second resource))
+         ,@(loop for (variable type) in parameters
+                 collect `(check-command-argument ',name ',variable ,variable ',type))
+         (check-command-argument ',name 'continuation continuation 'continuation)
+         (issue (find-command ',name) ,(first resource) (list ,@variables) continuation))
+       ',name)))

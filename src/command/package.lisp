@@ -1,0 +1,25 @@
+;;;; package.lisp -- the command layer: what a program can tell a robot to do.
+
+(defpackage :ars-magna.command
+  (:documentation "DEFINE-COMMAND, and the robot's commands by family. Manual 3.1 and 3.4 to 3.6.")
+  (:use :cl :ars-magna.base :ars-magna.geometry :ars-magna.world :ars-magna.time
+        :ars-magna.robot)
+  (:shadowing-import-from :cl #:equal)
+  (:shadowing-import-from :ars-magna.world #:map)
+  ;; command
+  (:export #:command #:command-name #:command-prompt-name #:command-family #:command-section
+           #:command-resource #:command-parameters #:command-results #:command-errors
+           #:command-documentation #:command-prefix
+           #:parameter-spec #:spec-name #:spec-type #:spec-text
+           #:error-code #:error-code-keyword #:error-code-text
+           #:all-commands #:find-command #:argument-type-text #:argument-of-type-p)
+  ;; operation
+  (:export #:operation #:operation-command #:operation-resource #:operation-arguments
+           #:operation-simulation #:operation-finished-p #:issue #:finish #:succeed #:fail-with
+           #:notify #:report #:once-more #:go-on)
+  ;; define-command, argument-types
+  (:export #:define-command #:define-argument-type)
+  ;; moving
+  (:export #:robot-set-speed #:robot-set-turn-angle #:robot-turn #:robot-about-face
+           #:robot-turn-left #:robot-turn-right #:robot-align-place #:robot-turn-corner
+           #:robot-go-forward #:robot-goto-wall #:robot-follow-wall #:robot-stop #:robot-place))

@@ -1,0 +1,110 @@
+;;;; turning.lisp -- setting speeds and turning in place (manual 3.5).
+
+(in-package :ars-magna.command)
+
+;;; The robot reports what its odometry read of a turn, not the truth. Turning takes as many ticks
+;;; as the turn angle goes into the angle.
+
+(defun set-within (value low high)
+  "Return VALUE as a double within LOW and HIGH, and whether it was too :LOW or :HIGH for them."
+  (cond ((< value low) (values (double low) :low))
+        ((> value high) (values (double high) :high))
+        (t (values (double value) nil))))
+
+(define-command robot-set-speed (operation (robot robot)
+                                 (speed number "the new speed, metres per tick"))
+    ((speed "the speed set"))
+    ((:family :moving) (:section "3.5")
+     (:errors (:negative-speed "Speed cannot be negative. Set to 0")
+              (:too-high-speed (lambda (operation)
+                                 (declare (ignore operation))
+                                 (format nil "Speed too high. Set to the maximum, ~,2F"
+                                         max-speed*))))
+     (:report (speed) (format nil "Speed set to ~,2F" speed)))
+    "Set the speed at which ROBOT drives, cut off at 0 and MAX-SPEED*."
+  (multiple-value-bind (speed outside) (set-within speed 0 max-speed*)
+    (setf (robot-speed robot) speed)
+    (finish operation (ecase outside ((nil) nil) (:low :negative-speed) (:high :too-high-speed))
+            speed)))
+
+(define-command robot-set-turn-angle (operation (robot robot)
+                                      (angle angle "the new turn angle, radians per tick"))
+    ((turn-angle "the turn angle set"))
+    ((:family :moving) (:section "3.5")
+     (:errors (:too-low-turn-angle (lambda (operation)
+                                     (declare (ignore operation))
+                                     (format nil "Turn angle too low. Set to the minimum, ~,2F"
+                                             min-turn-angle*)))
+              (:too-high-turn-angle (lambda (operation)
+                                      (declare (ignore operation))
+                                      (format nil "Turn angle too high. Set to the maximum, ~,2F"
+                                              max-turn-angle*))))
+     (:report (angle) (format nil "Turn angle set to ~,2F" angle)))
+    "Set how far ROBOT turns in a tick, cut off at MIN-TURN-ANGLE* and MAX-TURN-ANGLE*."
+  (multiple-value-bind (angle outside) (set-within angle min-turn-angle* max-turn-angle*)
+    (setf (robot-turn-angle robot) angle)
+    (finish operation
+            (ecase outside
+              ((nil) nil) (:low :too-low-turn-angle) (:high :too-high-turn-angle))
+            angle)))
+
+;;; Turning.
+
+(defun turn-step (robot left)
+  "Turn ROBOT for a tick, of the angle LEFT to be turned. Return what is then left, and the
+odometry's reading of the step."
+  (let* ((most (* (robot-turn-angle-now robot) (double tick-quantum*)))
+         (step (clamp left (- most) most)))
+    (turn-tick robot step)
+    (values (- left step)
+            (* 0.5d0 (+ (robot-turned-low robot) (robot-turned-high robot))))))
+
+(defun turn-robot (operation robot angle then)
+  "Turn ROBOT by about ANGLE, beginning in this tick; then call THEN with the reading of it."
+  (let ((left (double angle))
+        (reading 0d0))
+    (begin-movement robot)
+    (flet ((turn (operation)
+             (multiple-value-bind (rest read) (turn-step robot left)
+               (setf left rest)
+               (incf reading read))
+             (if (< (abs left) 1d-12)
+                 (funcall then reading)
+                 (once-more operation))))
+      (setf (operation-step operation) #'turn)
+      (if (zerop left) (funcall then 0d0) (turn operation)))))
+
+(defun turn-and-succeed (operation robot angle)
+  (turn-robot operation robot angle (lambda (reading) (succeed operation reading))))
+
+(defun turned-text (angle)
+  (format nil "Robot turned ~,2F" angle))
+
+(define-command robot-turn (operation (robot robot)
+                            (angle angle "how far in radians, to the right if positive"))
+    ((angle "a reading of the angle turned"))
+    ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
+     (:report (angle) (turned-text angle)))
+    "Turn ROBOT in place by about ANGLE."
+  (turn-and-succeed operation robot angle))
+
+(define-command robot-about-face (operation (robot robot))
+    ((angle "a reading of the angle turned"))
+    ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
+     (:report (angle) (turned-text angle)))
+    "Turn ROBOT in place by about half a circle."
+  (turn-and-succeed operation robot pi))
+
+(define-command robot-turn-left (operation (robot robot))
+    ((angle "a reading of the angle turned"))
+    ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
+     (:report (angle) (turned-text angle)))
+    "Turn ROBOT in place by about a quarter circle to the left."
+  (turn-and-succeed operation robot (/ pi -2)))
+
+(define-command robot-turn-right (operation (robot robot))
+    ((angle "a reading of the angle turned"))
+    ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
+     (:report (angle) (turned-text angle)))
+    "Turn ROBOT in place by about a quarter circle to the right."
+  (turn-and-succeed operation robot (/ pi 2)))

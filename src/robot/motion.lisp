@@ -1,0 +1,177 @@
+;;;; motion.lisp -- one tick of driving, coasting or turning (manual 3.5, chapter 4).
+
+(in-package :ars-magna.robot)
+
+;;; Motion is swept: the robot passes through each cell between where it is and where it would
+;;; be, and stops just short of the first that blocks. The cell it stands in never does, so that it
+;;; is never trapped by a thing that comes to it. What cells block is in the world's flags.
+
+(define-constant +contact-gap+ 1d-6
+  :documentation "How far from what blocks it the robot stops, in metres.")
+
+(defun set-robot-angle (robot angle)
+  "Turn ROBOT to the heading ANGLE, in radians, at once; its odometers do not notice."
+  (let ((angle (double angle)))
+    (setf (robot-angle robot) angle
+          (robot-cos robot) (cos angle)
+          (robot-sin robot) (sin angle)))
+  robot)
+
+(defun set-robot-pose (robot x y &optional (angle (robot-angle robot)))
+  "Put ROBOT at (X,Y), in metres, heading ANGLE, at once; its odometers do not notice."
+  (setf (robot-x robot) (double x)
+        (robot-y robot) (double y)
+        (robot-start-x robot) (robot-x robot)
+        (robot-start-y robot) (robot-y robot)
+        (robot-estimate-x robot) 0d0
+        (robot-estimate-y robot) 0d0)
+  (set-robot-angle robot angle))
+
+(defun robot-cell-index (robot)
+  "Return the index of the cell that ROBOT is in, or NIL if it has been put outside the map."
+  (map-index (world-map (robot-world robot)) (robot-x robot) (robot-y robot)))
+
+(defun robot-speed-now (robot)
+  "Return the speed of ROBOT within MAX-SPEED* as it is now, in metres per tick."
+  (min (robot-speed robot) (double max-speed*)))
+
+(defun robot-turn-angle-now (robot)
+  "Return the turn angle of ROBOT within its limits as they are now, in radians per tick."
+  (max (double min-turn-angle*) (min (robot-turn-angle robot) (double max-turn-angle*))))
+
+;;; Sweeping.
+
+(declaim (inline cell-block))
+(defun cell-block (flags width height x y)
+  "Return what keeps a robot out of the cell (X,Y): :WALL, :THING or NIL."
+  (declare (type (simple-array (unsigned-byte 8) (*)) flags)
+           (type fixnum width height x y))
+  (if (and (< -1 x width) (< -1 y height))
+      (let ((flag (aref flags (+ x (the fixnum (* y width))))))
+        (cond ((logtest flag +wall+) :wall)
+              ((logtest flag +obsmove+) :thing)))
+      :wall))
+
+(declaim (inline whole-part))
+(defun whole-part (x)
+  (declare (type double-float x))
+  (the fixnum (floor (the (double-float -1d9 1d9) x))))
+
+(declaim (inline within-cell))
+(defun within-cell (coordinate cell)
+  "Return COORDINATE, or the nearest inside CELL if rounding took it out."
+  (declare (type double-float coordinate) (type fixnum cell))
+  (max (float cell 1d0) (min coordinate (- (float (1+ cell) 1d0) 1d-12))))
+
+(defun sweep (robot distance)
+  "Move ROBOT along its heading by DISTANCE, or to what blocks it. Leave the metres in
+ROBOT-MOVED; return :WALL, :THING or NIL."
+  (declare #.*hot* (type robot robot) (type double-float distance))
+  (let* ((world (robot-world robot))
+         (flags (world-flags (the world world)))
+         (map (world-map world))
+         (width (map-width map)) (height (map-height map))
+         (x (robot-x robot)) (y (robot-y robot))
+         (dx (robot-cos robot)) (dy (robot-sin robot))
+         (cell-x (whole-part x)) (cell-y (whole-part y))
+         (new-x (+ x (* dx distance))) (new-y (+ y (* dy distance))))
+    (declare (type fixnum width height cell-x cell-y) (type double-float new-x new-y))
+    (flet ((arrive (x y moved)
+             (setf (robot-x robot) x
+                   (robot-y robot) y
+                   (robot-moved robot) moved)))
+      (declare (inline arrive))
+      (if (and (= (whole-part new-x) cell-x) (= (whole-part new-y) cell-y))
+          (progn (arrive new-x new-y distance) nil)
+          (let* ((step-x (if (minusp dx) -1 1))
+                 (step-y (if (minusp dy) -1 1))
+                 (per-x (if (zerop dx) 1d18 (abs (/ dx))))
+                 (per-y (if (zerop dy) 1d18 (abs (/ dy))))
+                 (to-x (* per-x (if (minusp dx) (- x cell-x) (- (1+ cell-x) x))))
+                 (to-y (* per-y (if (minusp dy) (- y cell-y) (- (1+ cell-y) y)))))
+            (declare (type double-float per-x per-y to-x to-y))
+            (loop
+              (let ((at (min to-x to-y)))
+                (when (>= at distance)
+                  (arrive (within-cell new-x cell-x) (within-cell new-y cell-y) distance)
+                  (return nil))
+                (let* ((across (<= to-x to-y))
+                       (next-x (if across (+ cell-x step-x) cell-x))
+                       (next-y (if across cell-y (+ cell-y step-y)))
+                       (block (cell-block flags width height next-x next-y)))
+                  (declare (type fixnum next-x next-y))
+                  (when block
+                    (let ((moved (max 0d0 (- at +contact-gap+))))
+                      (arrive (within-cell (+ x (* dx moved)) cell-x)
+                              (within-cell (+ y (* dy moved)) cell-y)
+                              moved))
+                    (return block))
+                  (setf cell-x next-x cell-y next-y)
+                  (if across (incf to-x per-x) (incf to-y per-y))))))))))
+
+;;; Driving and turning.
+
+(defun begin-movement (robot)
+  "Let the last movement of ROBOT begin here."
+  (setf (robot-start-x robot) (robot-x robot)
+        (robot-start-y robot) (robot-y robot)
+        (robot-estimate-x robot) 0d0
+        (robot-estimate-y robot) 0d0))
+
+(defun robot-last-move (robot)
+  "Return how far the last movement has taken ROBOT, in x and in y, in metres."
+  (values (- (robot-x robot) (robot-start-x robot))
+          (- (robot-y robot) (robot-start-y robot))))
+
+(defun robot-last-move-estimate (robot)
+  "Return how far ROBOT believes that its last movement has taken it, in x and in y."
+  (values (robot-estimate-x robot) (robot-estimate-y robot)))
+
+(defun count-distance (robot low high)
+  "Tell the odometers of ROBOT that it drove between LOW and HIGH metres."
+  (declare #.*hot* (type robot robot) (type double-float low high))
+  (dolist (odometer (robot-odometer-list robot))
+    (odometer-drive odometer low high))
+  (let ((estimate (* 0.5d0 (+ low high))))
+    (incf (robot-estimate-x robot) (* estimate (robot-cos robot)))
+    (incf (robot-estimate-y robot) (* estimate (robot-sin robot)))))
+
+(defun drive-tick (robot &optional (limit 1d18))
+  "Drive ROBOT for one tick at its speed, but not much more than LIMIT metres. Return :WALL or
+:THING if that blocked it, else NIL. The distance is uniform within MOTION-NOISE* of the
+speed; the odometers read an interval that contains it."
+  (declare #.*hot* (type robot robot) (type double-float limit))
+  (let* ((world (robot-world robot))
+         (noise (double motion-noise*))
+         (nominal (min limit (* (robot-speed-now robot) (double tick-quantum*))))
+         (distance (* nominal (+ 1d0 (* noise (- (* 2d0 (roll (world-dice world :motion)))
+                                                 1d0)))))
+         (block (sweep robot distance))
+         (moved (robot-moved robot))
+         (expected (if block moved nominal))
+         (dice (world-dice world :odometry)))
+    (declare (type double-float noise nominal distance moved expected))
+    (setf (robot-drove-tick robot) (simulation-tick (world-simulation world)))
+    (count-distance robot
+                    (- moved (* (roll dice) (max 0d0 (- moved (* expected (- 1d0 noise))))))
+                    (+ moved (* (roll dice) (max 0d0 (- (* expected (+ 1d0 noise)) moved)))))
+    block))
+
+(defun turn-tick (robot angle)
+  "Turn ROBOT for one tick by about ANGLE, in radians: uniform within ROBOT-TURN-MAX-ERROR* of
+it. The interval that the odometers read is left in ROBOT-TURNED-LOW and -HIGH."
+  (let* ((world (robot-world robot))
+         (size (abs (double angle)))
+         (noise (double robot-turn-max-error*))
+         (turned (* size (+ 1d0 (roll-within noise (world-dice world :motion)))))
+         (dice (world-dice world :odometry))
+         (low (- turned (* (roll dice) (max 0d0 (- turned (* size (- 1d0 noise)))))))
+         (high (+ turned (* (roll dice) (max 0d0 (- (* size (+ 1d0 noise)) turned))))))
+    (when (minusp angle)
+      (psetf turned (- turned) low (- high) high (- low)))
+    (set-robot-angle robot (+ (robot-angle robot) turned))
+    (setf (robot-turned-low robot) low
+          (robot-turned-high robot) high)
+    (dolist (odometer (robot-odometer-list robot))
+      (odometer-turn odometer low high)))
+  robot)

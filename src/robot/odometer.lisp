@@ -1,0 +1,144 @@
+;;;; odometer.lisp -- what the robot knows of its own motion (manual 3.2.2).
+
+(in-package :ars-magna.robot)
+
+;;; An odometer is dead reckoning with intervals. It starts at (0,0) with heading 0 when it is
+;;; reset, so the x axis of its positions is the heading at that moment. Each step adds an interval
+;;; that is sure to contain what really happened; so does the sum. The bounds of the cosine
+;;; and sine of the heading change only when the robot turns. Sums are widened by more than their
+;;; rounding error.
+
+(defstruct (odometer (:constructor %make-odometer (robot name)) (:copier nil))
+  "An uncertain estimate of the robot's position and heading since the odometer was reset."
+  (robot nil :type (or null robot))
+  (name nil :type symbol)
+  (x-min 0d0 :type double-float) (x-max 0d0 :type double-float)
+  (y-min 0d0 :type double-float) (y-max 0d0 :type double-float)
+  (angle-min 0d0 :type double-float) (angle-max 0d0 :type double-float)
+  (cos-min 1d0 :type double-float) (cos-max 1d0 :type double-float)
+  (sin-min 0d0 :type double-float) (sin-max 0d0 :type double-float))
+(setf (documentation 'odometer-name 'function) "Return the symbol that names the odometer.")
+
+(defmethod print-object ((odometer odometer) stream)
+  (print-named odometer stream (format nil "Odometer ~A" (odometer-name odometer))))
+
+(declaim (inline reaches-p))
+(defun reaches-p (angle low high)
+  "True if ANGLE plus a multiple of 2 pi is between LOW and HIGH."
+  (declare (type double-float angle low high))
+  (let ((turns (ceiling (- low angle) 2pi)))
+    (<= (+ angle (* turns 2pi)) high)))
+
+(defun refresh-bounds (odometer)
+  "Recompute the bounds of the cosine and sine of the heading."
+  (let ((low (odometer-angle-min odometer))
+        (high (odometer-angle-max odometer))
+        (slack 1d-15))
+    (flet ((bounds (function top bottom)
+             (let ((a (funcall function low)) (b (funcall function high)))
+               (values (if (reaches-p bottom low high) -1d0 (max -1d0 (- (min a b) slack)))
+                       (if (reaches-p top low high) 1d0 (min 1d0 (+ (max a b) slack)))))))
+      (setf (values (odometer-cos-min odometer) (odometer-cos-max odometer))
+            (bounds #'cos 0d0 pi)
+            (values (odometer-sin-min odometer) (odometer-sin-max odometer))
+            (bounds #'sin (/ pi 2) (/ pi -2))))))
+
+(declaim (inline rounding))
+(defun rounding (value)
+  "Return more than the rounding error of a sum that gave VALUE."
+  (declare (type double-float value))
+  (+ 1d-14 (* 1d-15 (abs value))))
+
+(defmacro widen (low-place low high-place high)
+  "Add the interval from LOW to HIGH to that in the places, rounding outwards."
+  `(progn
+     (let ((sum (+ ,low-place ,low))) (setf ,low-place (- sum (rounding sum))))
+     (let ((sum (+ ,high-place ,high))) (setf ,high-place (+ sum (rounding sum))))))
+
+(declaim (inline odometer-drive))
+(defun odometer-drive (odometer low high)
+  "Count a distance between LOW and HIGH, neither negative, along the heading."
+  (declare (type odometer odometer) (type double-float low high))
+  (flet ((least (factor) (* factor (if (minusp factor) high low)))
+         (most (factor) (* factor (if (minusp factor) low high))))
+    (declare (inline least most))
+    (widen (odometer-x-min odometer) (least (odometer-cos-min odometer))
+           (odometer-x-max odometer) (most (odometer-cos-max odometer)))
+    (widen (odometer-y-min odometer) (least (odometer-sin-min odometer))
+           (odometer-y-max odometer) (most (odometer-sin-max odometer)))))
+
+(defun odometer-turn (odometer low high)
+  "Count a turn between LOW and HIGH."
+  (declare (type double-float low high))
+  (widen (odometer-angle-min odometer) low (odometer-angle-max odometer) high)
+  (refresh-bounds odometer))
+
+;;; What programs use.
+
+(defun check-odometer (odometer operator)
+  (unless (odometer-p odometer)
+    (error 'wrong-argument :operator operator :name "odometer" :value odometer
+                           :expected "an odometer, as (robot-main-odometer ROBOT) returns")))
+
+(defun reset-odometer-pos (odometer)
+  "Let ODOMETER count its position from here. Return ODOMETER (manual 3.2.2)."
+  (check-odometer odometer 'reset-odometer-pos)
+  (setf (odometer-x-min odometer) 0d0 (odometer-x-max odometer) 0d0
+        (odometer-y-min odometer) 0d0 (odometer-y-max odometer) 0d0)
+  odometer)
+
+(defun reset-odometer-ang (odometer)
+  "Let ODOMETER count its angle from the present heading. Return ODOMETER (manual 3.2.2)."
+  (check-odometer odometer 'reset-odometer-ang)
+  (setf (odometer-angle-min odometer) 0d0 (odometer-angle-max odometer) 0d0)
+  (refresh-bounds odometer)
+  odometer)
+
+(defun reset-odometer (odometer)
+  "Let ODOMETER count position and angle from here. Return ODOMETER (manual 3.2.2)."
+  (reset-odometer-ang (reset-odometer-pos odometer)))
+
+(defun get-odometer-pos (odometer &optional interval)
+  "Return a PT-INTERVAL that contains the position, in metres, relative to where ODOMETER was
+last reset; its x axis is the heading then. INTERVAL, a PT-INTERVAL, is modified and returned if
+given (manual 3.2.2)."
+  (check-odometer odometer 'get-odometer-pos)
+  (check-argument get-odometer-pos interval (typep interval '(or null pt-interval))
+                  "a PT-INTERVAL to modify")
+  (set-pt-interval! (or interval (make-pt-interval (make-interval 0 0) (make-interval 0 0)))
+                    (odometer-x-min odometer) (odometer-x-max odometer)
+                    (odometer-y-min odometer) (odometer-y-max odometer)))
+
+(defun get-odometer-ang (odometer &optional interval)
+  "Return an INTERVAL that contains the angle turned, in radians, since ODOMETER was last reset.
+INTERVAL, if given, is modified and returned (manual 3.2.2)."
+  (check-odometer odometer 'get-odometer-ang)
+  (check-argument get-odometer-ang interval (typep interval '(or null interval))
+                  "an INTERVAL to modify")
+  (set-interval! (or interval (make-interval 0 0))
+                 (odometer-angle-min odometer) (odometer-angle-max odometer)))
+
+(defun make-odometer (robot name)
+  "Return a new odometer of ROBOT called NAME, a symbol. Another of that name is destroyed: it
+no longer changes (manual 3.2.2)."
+  (check-argument make-odometer robot (robot-p robot) "a robot")
+  (check-argument make-odometer name (and name (symbolp name)) "a symbol")
+  (let ((odometer (%make-odometer robot name)))
+    (setf (robot-odometer-list robot)
+          (append (remove name (robot-odometer-list robot)
+                          :key #'odometer-name :test #'same-name-p)
+                  (list odometer)))
+    odometer))
+
+(defun robot-odometers (robot)
+  "Return a list of the odometers of ROBOT, oldest first (manual 3.2.2)."
+  (check-argument robot-odometers robot (robot-p robot) "a robot")
+  (copy-list (robot-odometer-list robot)))
+
+(defun robot-odometer (robot name)
+  "Return the odometer of ROBOT called NAME, or NIL (manual 3.2.2)."
+  (find name (robot-odometers robot) :key #'odometer-name :test #'same-name-p))
+
+(defun robot-main-odometer (robot)
+  "Return the odometer that ROBOT started with; it is called MAIN (manual 3.2.2)."
+  (robot-odometer robot 'main))

@@ -1,0 +1,40 @@
+;;;; package.lisp -- the robot layer: the body, what it senses, and its run in a world.
+
+(defpackage :ars-magna.robot
+  (:documentation "Robots and their parts, odometers, motion and place sensing; the simulation
+of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
+  (:use :cl :ars-magna.base :ars-magna.geometry :ars-magna.world :ars-magna.time)
+  (:shadowing-import-from :cl #:equal)
+  (:shadowing-import-from :ars-magna.world #:map)
+  ;; parts
+  (:export #:robot #:robot-p #:robot-name #:robot-body #:robot-world #:robot-simulation
+           #:robot-x #:robot-y #:robot-angle #:robot-cos #:robot-sin #:robot-position
+           #:robot-speed #:robot-turn-angle #:robot-cameras #:robot-hands #:robot-bins
+           #:robot-last-place #:robot-drove-tick #:robot-designators
+           #:robot-camera #:robot-hand #:robot-storage-bin
+           #:part #:part-p #:part-robot #:part-index #:part-location
+           #:camera #:camera-p #:camera-robot #:camera-index #:camera-field-of-view
+           #:camera-resolution #:camera-angle #:camera-location #:camera-last-view #:camera-track
+           #:hand #:hand-p #:hand-robot #:hand-index #:hand-strength #:hand-location
+           #:hand-contents #:hand-holding
+           #:storage-bin #:storage-bin-p #:storage-bin-robot #:storage-bin-index
+           #:storage-bin-capacity #:storage-bin-closed-p #:storage-bin-contents)
+  ;; odometer
+  (:export #:odometer #:odometer-p #:odometer-name #:make-odometer #:robot-main-odometer
+           #:robot-odometer #:robot-odometers #:reset-odometer #:reset-odometer-pos
+           #:reset-odometer-ang #:get-odometer-pos #:get-odometer-ang)
+  ;; motion
+  (:export #:set-robot-pose #:set-robot-angle #:drive-tick #:coast-tick #:turn-tick
+           #:robot-speed-now #:robot-turn-angle-now #:robot-moved #:robot-turned-low
+           #:robot-turned-high #:begin-movement #:robot-last-move #:robot-last-move-estimate
+           #:robot-cell-index)
+  ;; places
+  (:export #:robot-place-here #:sense-place-type #:canonical-directions #:nearest-direction)
+  ;; body
+  (:export #:defrobot #:define-robot #:find-robot #:all-robots #:robot-body-p
+           #:body-name #:body-map)
+  ;; references, simulation, replay, state
+  (:export #:with-simulation #:call-with-simulation #:simulator #:stop-simulator #:set-seed
+           #:resident-simulation #:fresh-simulation #:simulation-robots #:replay
+           #:state-digest #:save-journal #:load-journal #:*simulator-hooks*
+           #:*tick-phases* #:*busy-tests* #:place-robot #:with-replay #:call-with-replay))

@@ -1,0 +1,170 @@
+;;;; parts.lisp -- the robot and the parts mounted on it (manual 2.2, 5.2).
+
+(in-package :ars-magna.robot)
+
+;;; The robot and each part is a resource: it does one thing at a time. A part's LOCATION is NIL
+;;; (with the robot), a container among the things, or a storage bin.
+
+(defstruct (robot (:include resource) (:constructor %make-robot) (:copier nil))
+  "A point robot: it turns in place, drives straight ahead, and carries its parts along."
+  (name nil :type symbol)
+  (body nil)
+  (world nil :type (or null world))
+  (x 0d0 :type double-float)
+  (y 0d0 :type double-float)
+  (angle 0d0 :type double-float)
+  ;; The cosine and sine of the angle.
+  (cos 1d0 :type double-float)
+  (sin 0d0 :type double-float)
+  (speed 0.8d0 :type double-float)
+  (turn-angle 0.3d0 :type double-float)
+  (cameras #() :type simple-vector)
+  (hands #() :type simple-vector)
+  (bins #() :type simple-vector)
+  (odometer-list (list) :type list)
+  ;; Designators by number; NIL where a number is free.
+  (designators (make-array 4 :adjustable t :fill-pointer 0) :type vector)
+  (last-place nil)
+  ;; The tick in which the robot last drove, for braking.
+  (drove-tick -1 :type fixnum)
+  ;; What the last step measured: metres driven, and the interval that the odometers read.
+  (moved 0d0 :type double-float)
+  (turned-low 0d0 :type double-float)
+  (turned-high 0d0 :type double-float)
+  ;; Where the last movement began, and what the robot believes it did since.
+  (start-x 0d0 :type double-float)
+  (start-y 0d0 :type double-float)
+  (estimate-x 0d0 :type double-float)
+  (estimate-y 0d0 :type double-float))
+
+(defstruct (part (:include resource) (:constructor nil) (:copier nil))
+  "A camera, hand or storage bin of a robot."
+  (robot nil :type (or null robot))
+  (index 0 :type fixnum)
+  (location nil))
+
+(defstruct (camera (:include part) (:copier nil))
+  "A camera: it sees a wedge FIELD-OF-VIEW radians wide around its ANGLE, which is relative to
+the robot, and its views have RESOLUTION pixels (manual 3.4)."
+  (field-of-view 1d0 :type double-float)
+  (resolution 1 :type (integer 1))
+  (angle 0d0 :type double-float)
+  (last-view '() :type list)
+  (track nil))
+
+(defstruct (hand (:include part) (:copier nil))
+  "A hand: an arm with a gripper that lifts up to STRENGTH weight units (manual 3.6)."
+  (strength 0d0 :type double-float)
+  (contents '() :type list))
+
+(defstruct (storage-bin (:include part) (:copier nil))
+  "A storage bin on the robot, with room for things of CAPACITY size units (manual 3.6)."
+  (capacity 0d0 :type double-float)
+  (closed-p nil :type boolean)
+  (contents '() :type list))
+
+(macrolet ((describe-readers (&rest pairs)
+             `(setf ,@(loop for (reader text) on pairs by #'cddr
+                            append `((documentation ',reader 'function) ,text)))))
+  (describe-readers
+   robot-name "Return the symbol that the robot was defined by."
+   robot-body "Return the definition from which the robot was made."
+   robot-world "Return the world that the robot is in."
+   robot-x "Return the robot's true x coordinate, in metres."
+   robot-y "Return the robot's true y coordinate, in metres."
+   robot-angle "Return the robot's true heading, in radians, never normalised."
+   robot-cos "Return the cosine of the robot's heading."
+   robot-sin "Return the sine of the robot's heading."
+   robot-speed "Return the speed that was set, in metres per tick."
+   robot-turn-angle "Return the turning speed that was set, in radians per tick."
+   robot-cameras "Return the vector of the robot's cameras."
+   robot-hands "Return the vector of the robot's hands."
+   robot-bins "Return the vector of the robot's storage bins."
+   robot-last-place "Return the name of the place type that the robot last sensed, or NIL."
+   robot-drove-tick "Return the tick in which the robot last drove."
+   robot-designators "Return the vector of the robot's designators by number; NIL: none."
+   robot-moved "Return the metres that the last step of driving really took the robot."
+   robot-turned-low "Return the lower bound read for the last step of turning, in radians."
+   robot-turned-high "Return the upper bound read for the last step of turning, in radians."
+   part-robot "Return the robot that the part is mounted on."
+   part-index "Return the part's index among its kind, from 0."
+   part-location "Return the container or storage bin that the part is inside of, or NIL."
+   camera-field-of-view "Return the width of what the camera sees, in radians."
+   camera-resolution "Return the number of pixels of the camera's views."
+   camera-angle "Return the camera's angle relative to the robot, in radians."
+   camera-last-view "Return the last view, a list of numbers; () before the first."
+   camera-track "Return the camera's track, or NIL if it tracks nothing."
+   hand-strength "Return the largest weight that the hand can lift."
+   hand-contents "Return a list of the thing that the hand holds, or ()."
+   storage-bin-capacity "Return the size of all that fits into the bin."
+   storage-bin-closed-p "True if the bin is closed."
+   storage-bin-contents "Return the things in the bin, newest first."))
+
+(defun robot-simulation (robot)
+  "Return the simulation of the world that ROBOT is in."
+  (world-simulation (robot-world robot)))
+
+(defun robot-position (robot)
+  "Return the true position of ROBOT, x and y as two values, in metres."
+  (values (robot-x robot) (robot-y robot)))
+
+(defun hand-holding (hand)
+  "Return the thing that HAND holds, or NIL."
+  (first (hand-contents hand)))
+
+(defun part-of (robot parts index kind)
+  (check-argument part robot (robot-p robot) "a robot")
+  (unless (typep index `(integer 0 (,(length parts))))
+    (error 'wrong-argument :operator (format nil "robot-~A" kind) :name "index" :value index
+                           :expected (format nil "an index below ~D: ~A has ~:*~D"
+                                             (length parts) (robot-name robot))))
+  (svref parts index))
+
+(defun robot-camera (robot index)
+  "Return the camera of ROBOT with INDEX, from 0. Signals WRONG-ARGUMENT (manual 3.4)."
+  (part-of robot (robot-cameras robot) index "camera"))
+
+(defun robot-hand (robot index)
+  "Return the hand of ROBOT with INDEX, from 0. Signals WRONG-ARGUMENT (manual 3.6)."
+  (part-of robot (robot-hands robot) index "hand"))
+
+(defun robot-storage-bin (robot index)
+  "Return the storage bin of ROBOT with INDEX, from 0. Signals WRONG-ARGUMENT (manual 3.6)."
+  (part-of robot (robot-bins robot) index "storage-bin"))
+
+;;; Parts are called by their numbers (manual E).
+
+(defun print-named (object stream name)
+  (if (or *print-escape* *print-readably*)
+      (print-unreadable-object (object stream) (write-string name stream))
+      (write-string name stream)))
+
+(defmethod print-object ((robot robot) stream)
+  (print-named robot stream (symbol-name (robot-name robot))))
+
+(defmethod print-object ((camera camera) stream)
+  (print-named camera stream (format nil "Camera ~D" (camera-index camera))))
+
+(defmethod print-object ((hand hand) stream)
+  (print-named hand stream (format nil "Hand ~D" (hand-index hand))))
+
+(defmethod print-object ((bin storage-bin) stream)
+  (print-named bin stream (format nil "Storage-bin ~D" (storage-bin-index bin))))
+
+;;; Hands and bins are places where things can be (see the world layer).
+
+(defmethod location-contents ((hand hand)) (hand-contents hand))
+(defmethod (setf location-contents) (contents (hand hand)) (setf (hand-contents hand) contents))
+(defmethod location-contents ((bin storage-bin)) (storage-bin-contents bin))
+(defmethod (setf location-contents) (contents (bin storage-bin))
+  (setf (storage-bin-contents bin) contents))
+
+(defmethod location-position ((part part))
+  (if (part-location part)
+      (location-position (part-location part))
+      (robot-position (part-robot part))))
+
+(defmethod location-world ((part part)) (robot-world (part-robot part)))
+(defmethod location-closed-p ((hand hand)) nil)
+(defmethod location-closed-p ((bin storage-bin)) (storage-bin-closed-p bin))
+(defmethod location-name ((part part)) (princ-to-string part))

@@ -1,0 +1,134 @@
+;;;; simulation.lisp -- a world with robots in it, run live or headless (manual A, 2.3).
+
+(in-package :ars-magna.robot)
+
+;;; Each world has one simulation. That of a map's resident world is made when it is first needed;
+;;; SIMULATOR lets it run live. WITH-SIMULATION makes a fresh world, with fresh robots in it, for
+;;; its extent. What a layer above does in each tick it adds to *TICK-PHASES*.
+
+(defvar *tick-phases* '()
+  "Functions of a simulation that each of its ticks calls after the events, in order.")
+
+(defvar *busy-tests* '()
+  "Functions of a simulation: true while it needs ticks although no event is pending.")
+
+(defvar *simulator-hooks* '()
+  "Functions of a robot and the plist of SIMULATOR's options, called when it has started.")
+
+(defun simulation-robots (&optional (simulation (current-simulation)))
+  "Return a list of the robots in SIMULATION."
+  (world-robots (simulation-world simulation)))
+
+(defun run-world-kickers (simulation)
+  (let ((world (simulation-world simulation)))
+    (setf (world-tick world) (simulation-tick simulation))
+    (run-kickers world)))
+
+(defun kickers-busy-p (simulation)
+  (world-has-kickers-p (simulation-world simulation)))
+
+(defun begin-journal (simulation)
+  (make-journal (list :map (string (map-name (world-map (simulation-world simulation))))
+                      :robots (mapcar (lambda (robot) (string (robot-name robot)))
+                                      (simulation-robots simulation))
+                      :seed (simulation-seed simulation)
+                      :parameters (parameter-settings))))
+
+(defun simulation-of (world seed journal)
+  "Return a new simulation of WORLD."
+  (let ((simulation (make-simulation
+                     :name (map-name (world-map world)) :world world :seed seed
+                     :phases (cons #'run-world-kickers (copy-list *tick-phases*))
+                     :busy-tests (cons #'kickers-busy-p (copy-list *busy-tests*))
+                     :messages *message-queue*)))
+    (setf (world-simulation world) simulation)
+    (when journal (setf (simulation-journal simulation) (begin-journal simulation)))
+    simulation))
+
+;;; Resident and fresh.
+
+(defun resident-simulation (map)
+  "Return the simulation of the resident world of MAP, or of the map so named."
+  (let ((world (map-resident-world (find-map map))))
+    (or (world-simulation world)
+        (simulation-of world (world-seed world) t))))
+
+(defun robot-named (designator)
+  "Return the body of the robot DESIGNATOR, which may be a robot or its name."
+  (if (robot-p designator) (robot-body designator) (find-body designator)))
+
+(defun fresh-simulation (robots &key (seed 0) journal)
+  "Return a simulation, at tick 0, of a fresh world that holds the things of its map and fresh
+ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
+  (let* ((bodies (mapcar #'robot-named robots))
+         (maps (remove-duplicates (mapcar #'body-map bodies))))
+    (unless (= (length maps) 1)
+      (reject-use "One simulation has one map, and these robots are defined in ~:[none~;~:*~{~A~^, ~}~]."
+                  maps))
+    (let ((world (make-world (find-map (first maps)) :seed seed)))
+      (dolist (body bodies) (make-robot body world))
+      (simulation-of world seed journal))))
+
+(defun call-with-simulation (function robots &key (seed 0) parameters clean journal)
+  "Call FUNCTION in a fresh headless simulation; see WITH-SIMULATION."
+  (check-argument with-simulation seed (integerp seed) "an integer")
+  (call-with-parameters
+   parameters
+   (lambda ()
+     (when clean (clean-simulation))
+     (let* ((*message-queue* (make-message-queue))
+            (simulation (fresh-simulation (ensure-list robots) :seed seed :journal journal))
+            (*simulation* simulation)
+            (*world* (simulation-world simulation))
+            (robots (simulation-robots simulation)))
+       (progv (mapcar #'robot-name robots) robots
+         (funcall function))))))
+
+(defmacro with-simulation ((robots &key (seed 0) parameters clean journal) &body body)
+  "Run BODY with ROBOTS, the name of a robot or a list of names, bound to fresh robots in a
+fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. The integer SEED
+decides all chance. Parameters are bound to what they are here, or as the list PARAMETERS of
+lists (name value) says; with CLEAN the simulation is clean. With JOURNAL it keeps a journal.
+Messages go to a queue of its own. Return the values of BODY."
+  `(call-with-simulation (lambda () ,@body) ',robots
+                         :seed ,seed :parameters ,parameters :clean ,clean :journal ,journal))
+
+;;; Live.
+
+(defun restart-world (world seed)
+  "Make WORLD and its robots what they were at the start."
+  (reset-world world :seed seed)
+  (mapc #'reset-robot (world-robots world))
+  (simulation-of world seed t))
+
+(defun simulator (robot &rest options &key (rate *default-rate*) (seed nil) &allow-other-keys)
+  "Run the world of ROBOT (a robot or its name) live, in a thread of its own, at RATE ticks per
+second or :FREE, and make it the current simulation. A world that has run before starts
+anew, with SEED if that is given. Return ROBOT (manual A). STOP-SIMULATOR stops it."
+  (let* ((robot (if (robot-p robot) robot (find-robot robot)))
+         (world (robot-world robot))
+         (simulation (or (world-simulation world) (resident-simulation (world-map world)))))
+    (stop-clock simulation)
+    (when (or seed (plusp (simulation-tick simulation)))
+      (setf simulation (restart-world world (or seed (simulation-seed simulation)))))
+    (setf *simulation* simulation)
+    (start-clock simulation :rate rate)
+    (dolist (hook *simulator-hooks*) (funcall hook robot options))
+    robot))
+
+(defun stop-simulator (&optional (simulation (current-simulation)))
+  "Stop the live SIMULATION after its current tick. What is under way stays pending. Return
+nothing."
+  (stop-clock simulation)
+  (values))
+
+(defun set-seed (seed &optional (simulation (current-simulation)))
+  "Make all chance in SIMULATION depend on the integer SEED from now on. Return SEED."
+  (check-argument set-seed seed (integerp seed) "an integer")
+  (change-from-outside simulation
+                       (lambda () (seed-world (simulation-world simulation) seed))
+                       (list :seed seed))
+  seed)
+
+(defmethod apply-entry ((operation (eql :seed)) arguments simulation)
+  (set-seed (first arguments) simulation))
