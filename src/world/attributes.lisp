@@ -17,18 +17,15 @@
   (noticed 0d0 :type double-float :read-only t)
   (supporters '() :type list :read-only t))
 
-(macrolet ((document (&rest pairs)
-             `(setf ,@(loop for (name text) on pairs by #'cddr
-                            append `((documentation ',name 'function) ,text)))))
-  (document
-   attribute-name "Return the keyword that the attribute is called."
-   attribute-kind "Return :discrete or :numeric."
-   attribute-domain "Return the list of possible values of a discrete attribute; NIL if numeric."
-   attribute-success "Return the base probability that a discrete reading is correct."
-   attribute-base "Return the base standard deviation of numeric readings."
-   attribute-max-mult "Return the largest multiplier of that deviation, far away."
-   attribute-noticed "Return the base probability that the attribute is sensed unasked."
-   attribute-supporters "Return the keywords of the attributes that support this one."))
+(document-functions
+ attribute-name "Return the keyword that the attribute is called."
+ attribute-kind "Return :discrete or :numeric."
+ attribute-domain "Return the list of possible values of a discrete attribute; NIL if numeric."
+ attribute-success "Return the base probability that a discrete reading is correct."
+ attribute-base "Return the base standard deviation of numeric readings."
+ attribute-max-mult "Return the largest multiplier of that deviation, far away."
+ attribute-noticed "Return the base probability that the attribute is sensed unasked."
+ attribute-supporters "Return the keywords of the attributes that support this one.")
 
 (defvar *attributes* '() "All attributes, in order of definition.")
 

@@ -42,7 +42,8 @@ THINGS functions that return recipes. Return the map."
   (handler-case (apply #'write-recipe 'defmap arguments)
     ((or wrong-argument unknown-name) (condition)
       (reject-clause definition clause
-                     (format nil "something else: ~A" condition)))))
+                     (format nil "a thing that can be made (~A)"
+                             (string-right-trim "." (princ-to-string condition)))))))
 
 (defun check-head (definition clause head)
   "Signal unless HEAD is a name or (name [:prototype form] [:kickers (name...)])."
@@ -98,7 +99,7 @@ THINGS functions that return recipes. Return the map."
 (defun check-grid-clause (definition clause kind)
   (if (eq kind :circle)
       (check-circle-clause definition clause)
-      (check-wall-clause definition clause))
+      (check-wall-clause definition clause kind))
   clause)
 
 (defun check-size (definition name size)

@@ -178,3 +178,16 @@ probability and test say; its own trial is left out that tick (manual 5.3.1). Re
           (setf (attachment-due attachment) next)
           (push attachment (world-due-kickers world))))))
   (values))
+
+(defun world-has-kickers-p (world)
+  "True if any kicker in WORLD may run, so that its ticks can matter."
+  (or (world-due-kickers world)
+      (some (lambda (group) (plusp (group-count group))) (world-kicker-groups world))))
+
+(defun seed-world (world seed)
+  "Let all chance in WORLD come from the integer SEED from now on. Return WORLD."
+  (check-argument seed-world seed (integerp seed) "an integer")
+  (dolist (group (world-kicker-groups world)) (setf (group-quantum group) 0))
+  (setf (world-seed world) seed
+        (world-dice-set world) (make-dice-set seed))
+  world)

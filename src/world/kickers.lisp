@@ -12,8 +12,9 @@
   (prob 1d0 :type (double-float 0d0 1d0))
   (test nil :type (or null function))
   (body (constantly nil) :type function))
-(setf (documentation 'kicker-name 'function) "Return the symbol that the kicker is called."
-      (documentation 'kicker-prob 'function) "Return the kicker's probability per tick.")
+(document-functions
+ kicker-name "Return the symbol that the kicker is called."
+ kicker-prob "Return the kicker's probability per tick.")
 
 (defstruct (attachment (:constructor make-attachment (kicker thing)) (:copier nil))
   "A kicker on a thing."
@@ -24,8 +25,9 @@
   (ran 0 :type tick-count)
   (group nil)
   (index 0 :type fixnum))
-(setf (documentation 'attachment-kicker 'function) "Return the attached kicker."
-      (documentation 'attachment-thing 'function) "Return the thing that the kicker is on.")
+(document-functions
+ attachment-kicker "Return the attached kicker."
+ attachment-thing "Return the thing that the kicker is on.")
 
 (defmethod print-object ((kicker kicker) stream)
   (if (or *print-escape* *print-readably*)

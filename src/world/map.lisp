@@ -43,23 +43,21 @@
 (defun make-octets (size) (make-array size :element-type '(unsigned-byte 8) :initial-element 0))
 (defun make-doubles (size) (make-array size :element-type 'double-float :initial-element 0d0))
 
-(macrolet ((document (&rest pairs)
-             `(setf ,@(loop for (name text) on pairs by #'cddr
-                            append `((documentation ',name 'function) ,text)))))
-  (document
-   map-name "Return the symbol that the map is called."
-   map-width "Return how many cells the map is wide."
-   map-height "Return how many cells the map is high."
-   map-flags "Return the flags of the map's cells by index: +WALL+ where filled."
-   map-parameters "Return the substance parameters of the map's cells by index, 0 where empty."
-   map-substances "Return, by cell index, indices into the map's MAP-SUBSTANCE-TYPES."
-   map-substance-types "Return a vector of substance names; element 0 is NIL, for no wall."
-   map-places "Return, by cell index, indices into the map's MAP-PLACE-TYPES."
-   map-directions "Return the basic canonical directions of the map's cells by index, radians."
-   map-place-types "Return a vector of the place types known to the map; element 0 is NIL."
-   map-least-parameter "Return the least parameter of any wall in the map, 0 without walls."
-   map-greatest-parameter "Return the greatest parameter of any wall in the map, 0 without walls."
-   map-things "Return the recipes of the things that a fresh world of the map starts with."))
+(document-functions
+ map-p "True of a map."
+ map-name "Return the symbol that the map is called."
+ map-width "Return how many cells the map is wide."
+ map-height "Return how many cells the map is high."
+ map-flags "Return the flags of the map's cells by index: +WALL+ where filled."
+ map-parameters "Return the substance parameters of the map's cells by index, 0 where empty."
+ map-substances "Return, by cell index, indices into the map's MAP-SUBSTANCE-TYPES."
+ map-substance-types "Return a vector of substance names; element 0 is NIL, for no wall."
+ map-places "Return, by cell index, indices into the map's MAP-PLACE-TYPES."
+ map-directions "Return the basic canonical directions of the map's cells by index, radians."
+ map-place-types "Return a vector of the place types known to the map; element 0 is NIL."
+ map-least-parameter "Return the least parameter of any wall in the map, 0 without walls."
+ map-greatest-parameter "Return the greatest parameter of any wall in the map, 0 without walls."
+ map-things "Return the recipes of the things that a fresh world of the map starts with.")
 
 (defmethod print-object ((map map) stream)
   (if (or *print-escape* *print-readably*)
@@ -126,9 +124,11 @@ UNKNOWN-NAME."
   (map nil :type map :read-only t)
   (x 0 :type fixnum)
   (y 0 :type fixnum))
-(setf (documentation 'cell-map 'function) "Return the map that the cell is in."
-      (documentation 'cell-x 'function) "Return the cell's column, an integer."
-      (documentation 'cell-y 'function) "Return the cell's row, an integer.")
+(document-functions
+ cell-p "True of a cell."
+ cell-map "Return the map that the cell is in."
+ cell-x "Return the cell's column, an integer."
+ cell-y "Return the cell's row, an integer.")
 
 (defmethod print-object ((cell cell) stream)
   (print-unreadable-object (cell stream)

@@ -12,7 +12,8 @@
 (defun resolve-neighbour (thing)
   "Return the world, location and perhaps coordinates where THING is."
   (unless (and (thing-p thing) (thing-location thing))
-    (reject-value 'new-thing "location" (list :with thing) "(:with thing), a thing that is somewhere"))
+    (reject-value 'new-thing "location" (list :with thing)
+                  "(:with thing), a thing that is somewhere"))
   (values (thing-world thing) (thing-location thing) (thing-x thing) (thing-y thing)))
 
 (defun resolve-location (location)

@@ -24,7 +24,8 @@
            #:+wall+ #:+obsmove+ #:+obsview+ #:+occupied+
            #:cell #:cell-p #:cell-map #:cell-x #:cell-y #:cell-filled? #:cell-type
            #:cell-substance-type #:cell-substance-parameter #:cell-occupancy-window
-           #:place #:place-p #:place-cell #:place-canonical-dir #:place-directions)
+           #:place #:make-place #:place-p #:place-cell #:place-canonical-dir
+           #:place-directions)
   ;; place types
   (:export #:place-type #:place-type-p #:place-type-name #:place-type-rank
            #:place-type-confusion #:place-type-invisible-p #:place-type-graphics
@@ -49,7 +50,8 @@
   (:export #:world #:world-p #:world-map #:world-seed #:world-flags #:world-cells
            #:world-things #:world-thing-list #:world-robots #:world-simulation #:world-tick
            #:world-dice #:world-dice-set #:world-move-watchers #:*world* #:current-world
-           #:make-world #:reset-world #:things-at #:find-thing #:find-things #:do-things)
+           #:make-world #:reset-world #:seed-world #:world-has-kickers-p #:things-at
+           #:find-thing #:find-things #:do-things #:world-live-count)
   ;; placing
   (:export #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing)
   ;; kickers

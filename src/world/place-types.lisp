@@ -20,16 +20,14 @@
   (graphics nil :type (or null function))
   (key 0 :type integer))
 
-(macrolet ((document (&rest pairs)
-             `(setf ,@(loop for (name text) on pairs by #'cddr
-                            append `((documentation ',name 'function) ,text)))))
-  (document
-   place-type-name "Return the symbol that the place type is called."
-   place-type-rank "Return the rank of the place type: 0 for the type that wins over all others."
-   place-type-confusion "Return the probability of a false designator in a search for the type."
-   place-type-invisible-p "True if no designator can be acquired for the place type."
-   place-type-graphics "Return the function (window x y) that draws the place type, or NIL; can
-be set. X and Y are the upper left corner of the cell in pixels."))
+(document-functions
+ place-type-p "True of a place type."
+ place-type-name "Return the symbol that the place type is called."
+ place-type-rank "Return the rank of the place type: 0 for the type that wins over all others."
+ place-type-confusion "Return the probability of a false designator in a search for the type."
+ place-type-invisible-p "True if no designator can be acquired for the place type."
+ place-type-graphics "Return the function (window x y) that draws the place type, or NIL; can
+be set. X and Y are the upper left corner of the cell in pixels.")
 
 (defmethod print-object ((type place-type) stream)
   (if (or *print-escape* *print-readably*)

@@ -122,10 +122,12 @@ outside."
   (type nil :type place-type :read-only t)
   (canonical-dir 0d0 :type double-float :read-only t)
   (cell nil :type cell :read-only t))
-(setf (documentation 'place-type 'function) "Return the PLACE-TYPE that the place is of."
-      (documentation 'place-canonical-dir 'function)
-      "Return the place's basic canonical direction, radians (manual 5.1.1)."
-      (documentation 'place-cell 'function) "Return the cell that is the place.")
+(document-functions
+ make-place "Return a place of a PLACE-TYPE with its basic canonical direction (radians) and cell."
+ place-p "True of a place."
+ place-type "Return the PLACE-TYPE that the place is of."
+ place-canonical-dir "Return the place's basic canonical direction, radians (manual 5.1.1)."
+ place-cell "Return the cell that is the place.")
 
 (defun cell-type (cell)
   "Return the PLACE that CELL is, or NIL (manual 5.1.1)."
@@ -145,7 +147,7 @@ or its basic direction and the opposite. Trouble in the form is queued as an err
          (function (place-type-directions type)))
     (multiple-value-bind (one other)
         (and function
-             (call-user-code function (list "the :directions of place type" (place-type-name type))
+             (call-user-code function (list "the :directions of place type " (place-type-name type))
                              (place-cell place)))
       (if (and (realp one) (realp other))
           (values (double one) (double other))

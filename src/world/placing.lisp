@@ -83,6 +83,8 @@ The primitive: it checks and tells nothing. Return THING."
   (unless (holder-p holder)
     (reject-value operator "location" holder
                   "a container, hand or storage bin, or a position"))
+  (when (and (thing-p holder) (not (thing-alive-p holder)))
+    (reject-use "~A has been destroyed." holder))
   (when thing
     (unless (eq (location-world holder) (thing-world thing))
       (reject-use "~A cannot go into ~A, which is in another world." thing (location-name holder)))

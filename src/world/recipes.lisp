@@ -73,8 +73,7 @@ DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMEN
   "Make WORLD as it was when it was fresh, with the integer SEED: the things of its map's recipe,
 tick 0. Robots, simulation and watchers stay. Return WORLD."
   (empty-world world)
-  (setf (world-seed world) seed
-        (world-dice-set world) (make-dice-set seed))
+  (seed-world world seed)
   (dolist (recipe (map-things (world-map world)) world)
     (place-thing (follow-recipe recipe world) :floor (recipe-x recipe) (recipe-y recipe))))
 

@@ -28,28 +28,26 @@
   (capacity 0d0 :type double-float)
   (substance-parameter 0d0 :type double-float))
 
-(macrolet ((document (&rest pairs)
-             `(setf ,@(loop for (name text) on pairs by #'cddr
-                            append `((documentation ',name 'function) ,text)))))
-  (document
-   thing-name "Return the symbol that the thing is called; others may be called the same."
-   thing-serial "Return the thing's number in its world, from 1; 0 for prototypes."
-   thing-world "Return the world that the thing is in, or NIL for a prototype."
-   thing-location "Return where the thing is: :FLOOR, what holds it, or NIL if it is nowhere."
-   thing-x "Return the x coordinate of a thing on the floor, metres."
-   thing-y "Return the y coordinate of a thing on the floor, metres."
-   thing-attributes "Return the thing's attributes as an object descriptor; do not alter it."
-   thing-contents "Return the list of things directly inside the thing, in order of arrival."
-   thing-kickers "Return the list of the thing's kickers, as ATTACHMENTs."
-   thing-alive-p "True until the thing is destroyed."
-   thing-obsmove-p "True if the thing blocks movement."
-   thing-obsview-p "True if the thing obstructs vision."
-   thing-closed-p "True if the thing, as a container, is closed."
-   thing-substance-p "True if the thing has a :substance."
-   thing-size "Return the thing's :size, 0 if unspecified."
-   thing-weight "Return the thing's own :weight, 0 if unspecified."
-   thing-capacity "Return the thing's :capacity, 0 if it is no container."
-   thing-substance-parameter "Return the parameter of the thing's :substance, 0 if unspecified."))
+(document-functions
+ thing-p "True of a thing."
+ thing-name "Return the symbol that the thing is called; others may be called the same."
+ thing-serial "Return the thing's number in its world, from 1; 0 for prototypes."
+ thing-world "Return the world that the thing is in, or NIL for a prototype."
+ thing-location "Return where the thing is: :FLOOR, what holds it, or NIL if it is nowhere."
+ thing-x "Return the x coordinate of a thing on the floor, metres."
+ thing-y "Return the y coordinate of a thing on the floor, metres."
+ thing-attributes "Return the thing's attributes as an object descriptor; do not alter it."
+ thing-contents "Return the list of things directly inside the thing, in order of arrival."
+ thing-kickers "Return the list of the thing's kickers, as ATTACHMENTs."
+ thing-alive-p "True until the thing is destroyed."
+ thing-obsmove-p "True if the thing blocks movement."
+ thing-obsview-p "True if the thing obstructs vision."
+ thing-closed-p "True if the thing, as a container, is closed."
+ thing-substance-p "True if the thing has a :substance."
+ thing-size "Return the thing's :size, 0 if unspecified."
+ thing-weight "Return the thing's own :weight, 0 if unspecified."
+ thing-capacity "Return the thing's :capacity, 0 if it is no container."
+ thing-substance-parameter "Return the parameter of the thing's :substance, 0 if unspecified.")
 
 (defmethod print-object ((thing thing) stream)
   (let ((name (symbol-name (thing-name thing)))
@@ -72,13 +70,18 @@ false, always can."
       (cond ((or (null value) (null attribute)))
             ((eq key :substance)
              (unless (substance-value-p value)
-               (reject "a number, a substance's name, or a list (name number)")))
+               (reject "a number, a substance's name, or a list (name number)"))
+             (note-unknown-substance value))
             ((eq (attribute-kind attribute) :discrete)
              (unless (member value (attribute-domain attribute) :test #'value-equal)
                (reject (format nil "one of ~(~{~A~^, ~}~)" (attribute-domain attribute)))))
             ((not (realp value)) (reject "a number"))
             ((and (member key '(:size :weight :capacity)) (minusp value))
              (reject "a number not below 0"))))))
+
+(defun note-unknown-substance (value)
+  (when (and (symbolp value) (null (find-substance value)))
+    (warning-set "No substance is called " value ": its parameter counts as 0; see DEFSUBSTANCE.")))
 
 (defun refresh-physics (thing)
   "Make the cached slots of THING agree with its attributes."

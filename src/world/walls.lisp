@@ -66,32 +66,30 @@ steps."
 
 ;;; Checking.
 
-(defun check-wall-clause (definition clause)
-  "Signal MALFORMED-DEFINITION unless CLAUSE, a wall or rect, can be drawn."
-  (destructuring-bind (kind &optional start end type &rest parameters) clause
-    (let ((counts (if (same-name-p kind '#:wall) '(1 2) '(1 4))))
-      (unless (and (point-form-p start) (point-form-p end) type (symbolp type)
-                   (member (length parameters) counts) (every #'realp parameters))
-        (reject-clause definition clause
-                       (if (same-name-p kind '#:wall)
-                           "(wall (x0 y0) (x1 y1) substance parameter [parameter]), with numbers"
-                           "(rect (x0 y0) (x1 y1) substance parameter [three more]), with numbers"))))))
+(defun check-wall-clause (definition clause kind)
+  "Signal MALFORMED-DEFINITION unless CLAUSE, of KIND :WALL or :RECT, can be drawn."
+  (destructuring-bind (&optional start end type &rest parameters) (rest clause)
+    (unless (and (point-form-p start) (point-form-p end) type (symbolp type)
+                 (member (length parameters) (if (eq kind :wall) '(1 2) '(1 4)))
+                 (every #'realp parameters))
+      (reject-clause definition clause
+                     (format nil "(~(~A~) (x0 y0) (x1 y1) substance parameter [~A]), with numbers"
+                             kind
+                             (if (eq kind :wall) "parameter1" "three parameters more"))))))
 
 (defun check-circle-clause (definition clause)
-  (unless (= 5 (length clause))
-    (reject-clause definition clause "(circle (x y) radius substance parameter)"))
-  (destructuring-bind (center radius type parameter) (rest clause)
+  (destructuring-bind (&optional center radius type parameter &rest others) (rest clause)
     (unless (and (point-form-p center) (typep radius '(real 0)) type (symbolp type)
-                 (realp parameter))
+                 (realp parameter) (null others))
       (reject-clause definition clause
-                     "(circle (x y) radius substance parameter), with numbers, radius not below 0"))))
+                     "(circle (x y) radius substance parameter), numbers, radius not below 0"))))
 
 ;;; Building.
 
 (defun draw-clause (map clause)
   (let ((kind (first clause)))
-    (apply (cond ((same-name-p kind '#:wall) #'draw-wall)
-                 ((same-name-p kind '#:rect) #'draw-rect)
+    (apply (cond ((same-name-p kind "WALL") #'draw-wall)
+                 ((same-name-p kind "RECT") #'draw-rect)
                  (t #'draw-circle))
            map (rest clause))))
 

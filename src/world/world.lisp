@@ -29,22 +29,21 @@
   (kicker-generation 0 :type fixnum)
   (due-kickers '() :type list))
 
-(macrolet ((document (&rest pairs)
-             `(setf ,@(loop for (name text) on pairs by #'cddr
-                            append `((documentation ',name 'function) ,text)))))
-  (document
-   world-map "Return the map that the world is of."
-   world-seed "Return the integer that all chance in the world comes from."
-   world-flags "Return the flags of the world's cells by index: walls, and things on the floor."
-   world-cells "Return, by cell index, lists of the things on the floor, in order of arrival."
-   world-things "Return a vector of the world's things in order of creation; NIL where one has
+(document-functions
+ world-p "True of a world."
+ world-map "Return the map that the world is of."
+ world-seed "Return the integer that all chance in the world comes from."
+ world-flags "Return the flags of the world's cells by index: walls, and things on the floor."
+ world-cells "Return, by cell index, lists of the things on the floor, in order of arrival."
+ world-things "Return a vector of the world's things in order of creation; NIL where one has
 been destroyed. WORLD-THING-LIST leaves those out."
-   world-dice-set "Return a vector of the world's dice, one for each purpose."
-   world-robots "Return the list of the world's robots; the layer above keeps it."
-   world-simulation "Return the simulation that owns the world; the layer above keeps it."
-   world-tick "Return the number of the current tick; the layer above keeps it."
-   world-move-watchers "Return the list of functions (thing old-location new-location) called
-after a thing has moved, been made or been destroyed. Can be set."))
+ world-dice-set "Return a vector of the world's dice, one for each purpose."
+ world-live-count "Return how many things are alive in the world."
+ world-robots "Return the list of the world's robots; the layer above keeps it."
+ world-simulation "Return the simulation that owns the world; the layer above keeps it."
+ world-tick "Return the number of the current tick; the layer above keeps it."
+ world-move-watchers "Return the list of functions (thing old-location new-location) called
+after a thing has moved, been made or been destroyed. Can be set.")
 
 (defmethod print-object ((world world) stream)
   (print-unreadable-object (world stream :identity t)
