@@ -38,5 +38,7 @@
    (:module "src/command" :serial t
     :components ((:file "package") (:file "argument-types") (:file "command")
                  (:file "operation") (:file "define-command") (:file "turning")
-                 (:file "places") (:file "driving") (:file "following"))))
+                 (:file "places") (:file "driving") (:file "following")))
+   (:module "src" :serial t
+    :components ((:file "slots") (:file "faces") (:file "ars"))))
   :in-order-to ((test-op (test-op "ars-magna/tests"))))

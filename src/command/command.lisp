@@ -74,7 +74,13 @@ UNKNOWN-NAME."
                *commands*)
       (reject-name "command" name (mapcar #'command-name *commands*))))
 
+(declaim (inline command-of))
+(defun command-of (symbol)
+  "Return the command that the function called SYMBOL issues."
+  (get symbol 'command))
+
 (defun register-command (command)
+  (setf (get (command-name command) 'command) command)
   (let ((old (member (command-name command) *commands* :key #'command-name)))
     (if old
         (setf (first old) command)

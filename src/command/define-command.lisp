@@ -93,5 +93,5 @@ BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now o
          ,@(loop for (variable type) in parameters
                  collect `(check-command-argument ',name ',variable ,variable ',type))
          (check-command-argument ',name 'continuation continuation 'continuation)
-         (issue (find-command ',name) ,(first resource) (list ,@variables) continuation))
+         (issue (command-of ',name) ,(first resource) (list ,@variables) continuation))
        ',name)))

@@ -1,0 +1,23 @@
+;;;; faces.lisp -- the packages that users see: ARS, NISP and ARS-USER.
+
+(defpackage :ars-magna.faces
+  (:documentation "Gathers the layers' symbols into the three packages that the manual knows.")
+  (:use :cl :ars-magna.base))
+
+(in-package :ars-magna.faces)
+
+(defun export-from (face layer names)
+  "Import the external symbols of LAYER called NAMES into the package FACE, and export them."
+  (dolist (name names)
+    (multiple-value-bind (symbol status) (find-symbol (string name) layer)
+      (unless (eq status :external)
+        (reject-use "~A does not export ~A, which ~A should show." layer name face))
+      (shadowing-import (list symbol) face)
+      (export (list symbol) face))))
+
+(defmacro define-face (face documentation &body layers)
+  "Define the package FACE, which exports what each of LAYERS, a list (layer name...), lists."
+  `(eval-when (:compile-toplevel :load-toplevel :execute)
+     (defpackage ,face (:use) (:documentation ,documentation))
+     ,@(loop for (layer . names) in layers
+             collect `(export-from ,face ,layer ',names))))
