@@ -16,5 +16,9 @@
 
 (declaim (inline double))
 (defun double (number)
-  "Return NUMBER as a double-float."
-  (if (typep number 'double-float) number (coerce (the real number) 'double-float)))
+  "Return NUMBER as a double-float. Conses nothing for the usual kinds of numbers."
+  (typecase number
+    (double-float number)
+    (fixnum (coerce number 'double-float))
+    (single-float (coerce number 'double-float))
+    (t (coerce (the real number) 'double-float))))

@@ -31,6 +31,7 @@
   "Return the index of the cell that ROBOT is in, or NIL if it has been put outside the map."
   (map-index (world-map (robot-world robot)) (robot-x robot) (robot-y robot)))
 
+(declaim (inline robot-speed-now))
 (defun robot-speed-now (robot)
   "Return the speed of ROBOT within MAX-SPEED* as it is now, in metres per tick."
   (min (robot-speed robot) (double max-speed*)))
@@ -63,6 +64,8 @@
   (declare (type double-float coordinate) (type fixnum cell))
   (max (float cell 1d0) (min coordinate (- (float (1+ cell) 1d0) 1d-12))))
 
+;; Inline, like what follows, so that no float has to be boxed on the way.
+(declaim (inline sweep))
 (defun sweep (robot distance)
   "Move ROBOT along its heading by DISTANCE, or to what blocks it. Leave the metres in
 ROBOT-MOVED; return :WALL, :THING or NIL."
@@ -127,6 +130,7 @@ ROBOT-MOVED; return :WALL, :THING or NIL."
   "Return how far ROBOT believes that its last movement has taken it, in x and in y."
   (values (robot-estimate-x robot) (robot-estimate-y robot)))
 
+(declaim (inline count-distance))
 (defun count-distance (robot low high)
   "Tell the odometers of ROBOT that it drove between LOW and HIGH metres."
   (declare #.*hot* (type robot robot) (type double-float low high))

@@ -28,12 +28,11 @@ the map."
 (defun define-map (name width height &key cache clauses things)
   "Define or redefine the map NAME; what DEFMAP expands to. CLAUSES are walls, rects and circles,
 THINGS functions that return recipes. Return the map."
-  (let* ((definition (format nil "defmap ~(~A~)" name))
-         (map (%make-map :name name :width width :height height :clauses clauses :cache cache)))
-    (unless (typep cache '(or null string pathname))
-      (reject-clause definition (list :cache cache) "the name of a file"))
-    (setf (map-things map) (loop for thing in things collect (funcall thing)))
-    (register-map (build-map map))))
+  (unless (typep cache '(or null string pathname))
+    (reject-clause (format nil "defmap ~(~A~)" name) (list :cache cache) "the name of a file"))
+  (register-map
+   (build-map (%make-map :name name :width width :height height :clauses clauses :cache cache
+                         :things (loop for thing in things collect (funcall thing))))))
 
 ;;; Things.
 
