@@ -1,0 +1,303 @@
+;;;; world-kickers.lisp -- kickers: what they do, how often, and in what order.
+
+(in-package :ars-magna.tests)
+(in-suite world)
+
+(defun run-world (world ticks) (dotimes (tick ticks) (world:run-kickers world)))
+
+(defun counting-world (count probability &key (seed 1) test)
+  "Return a world with COUNT things that count their kicks, and the vector of the counts."
+  (let ((world (open-world :seed seed)) (counts (make-array count :initial-element 0)))
+    (let ((kicker (world::fill-kicker
+                   (world::make-kicker 'count) "test" probability test
+                   (lambda (thing) (incf (aref counts (1- (world:thing-serial thing))))))))
+      (dotimes (index count)
+        (thing-in world 'box 1 1 '() :kickers (list kicker))))
+    (values world counts)))
+
+(defun within-binomial-p (successes trials probability &optional (deviations 4))
+  (<= (abs (- successes (* trials probability)))
+      (* deviations (sqrt (* trials probability (- 1 probability))))))
+
+;;; How often.
+
+(test kickers.fire-as-often-as-their-probability-says
+  (with-own-definitions
+    (loop for (probability things ticks)
+            in '((.01 200 1000) (.5 50 400) (.9 20 300) (1/1000 500 2000))
+          do (multiple-value-bind (world counts) (counting-world things probability)
+               (run-world world ticks)
+               (is (within-binomial-p (reduce #'+ counts) (* things ticks) probability)
+                   "p ~A: ~D of ~D" probability (reduce #'+ counts) (* things ticks))))))
+
+(test kickers.certain-and-impossible
+  (with-own-definitions
+    (multiple-value-bind (world counts) (counting-world 7 1)
+      (run-world world 10)
+      (is (equalp #(10 10 10 10 10 10 10) counts)))
+    (multiple-value-bind (world counts) (counting-world 7 0)
+      (run-world world 100)
+      (is (equalp #(0 0 0 0 0 0 0) counts)))))
+
+(test kickers.skipping-has-the-law-of-drawing-each-tick
+  "Each thing's kicks in T ticks are binomial: compare the variance over things, and the gaps
+between one thing's kicks with the geometric law, as a draw per thing and tick would give."
+  (with-own-definitions
+    (let ((p .2d0) (ticks 50) (things 4000))
+      (multiple-value-bind (world counts) (counting-world things p)
+        (run-world world ticks)
+        (let* ((mean (/ (reduce #'+ counts) things 1d0))
+               (variance (/ (loop for count across counts sum (expt (- count mean) 2)) things)))
+          (is (< (abs (- mean (* ticks p))) .2))
+          (is (< (abs (- variance (* ticks p (- 1 p)))) (* .1 ticks p (- 1 p))))
+          (let ((dice (base:make-dice 5)))
+            (loop for kicks from 5 to 15
+                  for here = (count kicks counts)
+                  for there = (loop repeat things
+                                    count (= kicks (loop repeat ticks
+                                                         count (base:chance p dice))))
+                  do (is (< (abs (- here there)) (* 4 (sqrt (+ here there 1d0))))
+                         "~D kicks: ~D things, drawn ~D" kicks here there))))))))
+
+(test kickers.gaps-are-geometric
+  (with-own-definitions
+    (multiple-value-bind (world counts) (counting-world 3 .25)
+      (let ((gaps '()) (last 0) (kicks 0))
+        (loop for tick from 1 to 20000
+              do (world:run-kickers world)
+                 (unless (= kicks (aref counts 1))
+                   (push (- tick last) gaps)
+                   (setf kicks (aref counts 1) last tick)))
+        (loop for gap from 1 to 8
+              do (is (within-binomial-p (count gap gaps) (length gaps)
+                                        (* .25 (expt .75 (1- gap))))
+                     "gap ~D: ~D of ~D" gap (count gap gaps) (length gaps)))))))
+
+(test kickers.test-only-thins
+  (with-own-definitions
+    (multiple-value-bind (world counts)
+        (counting-world 100 .2 :test (lambda (thing) (evenp (world:thing-serial thing))))
+      (run-world world 500)
+      (is (within-binomial-p (reduce #'+ counts) (* 50 500) .2))
+      (is (loop for index from 0 below 100 by 2 always (zerop (aref counts index)))))))
+
+(test kickers.follow-the-tick-quantum
+  (with-own-definitions
+    (multiple-value-bind (world counts) (counting-world 100 .1)
+      (let ((base:tick-quantum* 5))
+        (run-world world 1000)
+        (is (within-binomial-p (reduce #'+ counts) 100000 (- 1 (expt .9 5)))))
+      (fill counts 0)
+      (run-world world 1000)
+      (is (within-binomial-p (reduce #'+ counts) 100000 .1)))))
+
+(test kickers.depend-on-the-seed-alone
+  (with-own-definitions
+    (flet ((counts (seed)
+             (multiple-value-bind (world counts) (counting-world 50 .1 :seed seed)
+               (run-world world 100)
+               (copy-seq counts))))
+      (is (equalp (counts 1) (counts 1)))
+      (is (not (equalp (counts 1) (counts 2)))))))
+
+(test kickers.of-the-destroyed-are-silent-and-the-others-unchanged
+  "Things come and go during the ticks; each that lives is tried once per tick."
+  (with-own-definitions
+    (let* ((world (open-world)) (dice (base:make-dice 9)) (lived 0) (kicks 0))
+      (world:define-kicker 'mortal :prob .3
+        :body (lambda (thing)
+                (unless (world:thing-alive-p thing) (fail "a dead thing kicks"))
+                (incf kicks)
+                (when (base:chance .3 dice)
+                  (world:destroy-thing (base:roll-element (world:world-thing-list world) dice)))
+                (when (and (base:chance .35 dice) (< (world:world-live-count world) 200))
+                  (thing-in world 'box 1 1 '() :kickers '(mortal)))))
+      (dotimes (index 100) (thing-in world 'box 1 1 '() :kickers '(mortal)))
+      (dotimes (tick 2000)
+        (when (< (world:world-live-count world) 50)
+          (thing-in world 'box 1 1 '() :kickers '(mortal)))
+        (incf lived (world:world-live-count world))
+        (world:run-kickers world))
+      ;; Who dies before its turn in a tick loses that trial.
+      (is (< (* .27 lived) kicks (* .31 lived)) "~D kicks in ~D trials" kicks lived)
+      (is-sound world))))
+
+;;; What they do.
+
+(test defkicker.binds-and-attaches-by-name-or-value
+  (with-own-definitions
+    (let* ((world (open-world)) (box (thing-in world 'box 1 5)) (cup (thing-in world 'cup 1 6)))
+      (is (eq 'slide (eval '(world:defkicker slide (th) (:prob 1 :test (< (world:thing-x th) 4))
+                             (world:kick-thing th 1 0 nil)))))
+      (world:set-kicker box 'slide)
+      (world:set-kicker cup (symbol-value 'slide))
+      (run-world world 2)
+      (is (equal '(3d0 5d0) (position-of box)))
+      (run-world world 5)
+      (is (equal '(4d0 5d0) (position-of box)) "the test stops it")
+      (is (equal '(4d0 6d0) (position-of cup)))
+      (eval '(world:defkicker slide (th) () (world:kick-thing th 0 1 nil)))
+      (run-world world 1)
+      (is (equal '(4d0 6d0) (position-of box)) "redefinition reaches what has it")
+      (signals base:unknown-name (world:set-kicker box 'slyde))
+      (signals base:wrong-argument (world:set-kicker 'box 'slide)))))
+
+(test put-kicker.is-for-one-thing-and-removes
+  (with-own-definitions
+    (let* ((world (open-world)) (box (thing-in world 'box 1 5)) (world:*world* world))
+      (eval '(world:defkicker creep (th) () (world:kick-thing th 1 0 nil)))
+      (world:set-kicker box 'creep)
+      (eval `(world:put-kicker creep (th ,box) (:prob (/ 2 2)) (world:kick-thing th 2 0 nil)))
+      (run-world world 1)
+      (is (equal '(3d0 5d0) (position-of box)) "it stands in for the global one")
+      (eval `(world:put-kicker creep (th ,box)))
+      (is (null (world:thing-kickers box)))
+      (run-world world 1)
+      (is (equal '(3d0 5d0) (position-of box)))
+      (world:set-kicker box 'creep)
+      (eval `(world:put-kicker creep (th ,box) () nil))
+      (run-world world 1)
+      (is (equal '(3d0 5d0) (position-of box)) "global ones are removed too"))))
+
+(test defkicker.rejects-malformed-options
+  (loop for (form . expected)
+          in '(((world:defkicker "x" (th) () t) . "a symbol")
+               ((world:defkicker :x (th) () t) . "a symbol")
+               ((world:defkicker x th () t) . "one variable")
+               ((world:defkicker x (th box) () t) . "one variable")
+               ((world:defkicker x (7) () t) . "a variable")
+               ((world:defkicker x (th) (:prob) t) . "pairs")
+               ((world:defkicker x (th) (:probability 1) t) . ":prob")
+               ((world:defkicker x (th) (:prob 1.5) t) . "a probability")
+               ((world:put-kicker x th () t) . "(variable thing)")
+               ((world:put-kicker x (th (world:new-thing a nil ())) (:prob -1) t)
+                . "a probability"))
+        for complaint = (complaint-about form)
+        do (is (and complaint (search expected complaint)) "~S: ~A" form complaint)))
+
+(test run-kicker.runs-once-on-the-next-tick
+  (with-own-definitions
+    (let* ((world (open-world)) (box (thing-in world 'box 1 1)) (runs '()) (tick 0) (asked nil))
+      (world:define-kicker 'again :prob 1 :test (lambda (thing) (declare (ignore thing)) (< tick 3))
+        :body (lambda (thing)
+                (is (eq thing (world:attachment-thing world:self)))
+                (push tick runs)
+                (when (and (= tick 2) (not asked))
+                  (setf asked t)
+                  (world:run-kicker world:self)
+                  (world:run-kicker world:self))
+                (when (= tick 3) (world:run-kicker world:self))))
+      (world:set-kicker box 'again)
+      (loop repeat 6 do (world:run-kickers world) (incf tick))
+      (is (equal '(0 1 2 3 4) (reverse runs))
+          "asked at 2 and 3: it runs at 3 and 4, against the test, once each")
+      (is (null world:self))
+      (signals base:wrong-argument (world:run-kicker nil)))))
+
+(test run-kicker.goes-on-as-a-trajectory
+  (with-own-definitions
+    (let* ((world (open-world)) (ball (thing-in world 'ball 1 1)))
+      (world:define-kicker 'roll :prob 0
+        :body (lambda (thing)
+                (when (world:kick-thing thing 1 0 nil) (world:run-kicker world:self))))
+      (world:run-kicker (world:set-kicker ball 'roll))
+      (run-world world 30)
+      (is (equal '(19d0 1d0) (position-of ball)) "until the map's edge"))))
+
+(test kickers.trouble-is-queued-and-the-tick-goes-on
+  (with-own-definitions
+    (multiple-value-bind (world counts) (counting-world 5 1)
+      (let ((bad (world:find-thing 3 world)))
+        (eval `(world:put-kicker count (th ,bad) (:prob 1) (error "no more"))))
+      (run-world world 2)
+      (is (equalp #(2 2 0 2 2) counts))
+      (is (equal '("Error in kicker COUNT of BOX#3: no more"
+                   "Error in kicker COUNT of BOX#3: no more")
+                 (message-texts))))))
+
+(test kickers.copied-by-the-map-not-from-prototypes
+  (with-own-definitions
+    (eval '(world:defkicker jump (th) () (world:kick-thing th 1 1 nil)))
+    (let ((proto (world:make-new-thing 'proto nil '() :kickers '(jump))))
+      (progv '(proto) (list proto)
+        (eval '(world:defmap test-map (9 9)
+                (obj (a :kickers (jump)) (1 1) ())
+                (obj (b :prototype (symbol-value 'proto)) (1 1) ()))))
+      (let ((world (world:make-world 'test-map)))
+        (run-world world 2)
+        (is (equal '(3d0 3d0) (position-of (world:find-thing 'a world))))
+        (is (equal '(1d0 1d0) (position-of (world:find-thing 'b world))))))))
+
+;;; Kicking.
+
+(test kick-thing.into-walls
+  (with-own-definitions
+    (let* ((world (open-world :clauses '((wall (5 0) (5 19) bricks 1))))
+           (box (thing-in world 'box 4.5 4.5)))
+      (is (null (world:kick-thing box 1 0 nil)))
+      (is (equal '(4.5d0 4.5d0) (position-of box)))
+      (is (eq t (world:kick-thing box 1 2 t)))
+      (is (equal '(4.5d0 5.5d0) (position-of box)) "the opening nearest to where it was")
+      (is (eq t (world:kick-thing box 2 0 nil)) "the path is not checked")
+      (is (equal '(6.5d0 5.5d0) (position-of box)))
+      (is (null (world:kick-thing box -100 0 t)) "far outside there is no opening")
+      (world:move-thing box 10 19.5)
+      (is (eq t (world:kick-thing box 0 1 t)) "off the map is as in a wall")
+      (is (equal '(10.5d0 19.5d0) (position-of box)))
+      (is-sound world))))
+
+(test kick-thing.out-of-containers
+  (with-own-definitions
+    (let* ((world (open-world)) (box (thing-in world 'box 4 4 '((:capacity 9))))
+           (tin (world:make-new-thing 'tin box '((:capacity 3) (:closed t))))
+           (pea (world:make-new-thing 'pea tin '())))
+      (is (null (world:kick-thing pea 1 1 t)) "the tin is closed")
+      (world:set-attribute tin :closed nil)
+      (world:set-attribute box :closed t)
+      (is (null (world:kick-thing pea 1 1 t)) "the box around it is closed")
+      (world:set-attribute box :closed nil)
+      (is (eq t (world:kick-thing pea 1 1 t)))
+      (is (eq :floor (world:thing-location pea)))
+      (is (equal '(5d0 5d0) (position-of pea)))
+      (world:destroy-thing pea)
+      (is (null (world:kick-thing pea 1 1 t)))
+      (is-sound world))))
+
+(defstruct (grip (:copier nil)) (contents '()) (world nil) (closed nil))
+(defmethod world:location-contents ((grip grip)) (grip-contents grip))
+(defmethod (setf world:location-contents) (things (grip grip)) (setf (grip-contents grip) things))
+(defmethod world:location-position ((grip grip)) (values 7d0 8d0))
+(defmethod world:location-world ((grip grip)) (grip-world grip))
+(defmethod world:location-closed-p ((grip grip)) (grip-closed grip))
+(defmethod world:location-name ((grip grip)) "GRIP")
+
+(test kick-thing.out-of-a-hand
+  "What holds things in the layer above takes part by its methods alone."
+  (with-own-definitions
+    (let* ((world (open-world)) (grip (make-grip :world world)) (told '())
+           (cup (world:make-new-thing 'cup grip '())) (pea (world:make-new-thing 'pea cup '())))
+      (is (equal (list cup) (grip-contents grip)))
+      (is (equal '(7d0 8d0) (position-of pea)))
+      (is-sound world)
+      (push (lambda (&rest move) (push move told)) (world:world-move-watchers world))
+      (setf (grip-closed grip) t)
+      (is (null (world:kick-thing pea 1 0 t)))
+      (setf (grip-closed grip) nil)
+      (is (eq t (world:kick-thing cup 1 0 t)))
+      (is (null (grip-contents grip)))
+      (is (equal '(8d0 8d0) (position-of pea)))
+      (is (equal (list (list cup grip :floor)) told))
+      (is-sound world))))
+
+(test kicked-world.stays-sound
+  (with-own-definitions
+    (let* ((world (open-world :clauses '((rect (3 3) (12 12) bricks 1) (circle (9 9) 3 bricks 1))))
+           (dice (world:world-dice world :user)))
+      (world:define-kicker 'hop :prob .1
+        :body (lambda (thing)
+                (world:kick-thing thing (base:roll-within 4 dice) (base:roll-within 4 dice)
+                                  (base:chance .5 dice))))
+      (dotimes (index 200)
+        (thing-in world 'box (base:roll-between 0 20 dice) (base:roll-between 0 20 dice)
+                  '((:obsmove t)) :kickers '(hop)))
+      (loop repeat 20 do (run-world world 20) (is-sound world)))))
