@@ -33,12 +33,15 @@
                  (:file "clock")))
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "parts") (:file "odometer") (:file "motion")
-                 (:file "place-sense") (:file "body") (:file "simulation")
-                 (:file "references") (:file "state") (:file "replay")))
+                 (:file "designator") (:file "place-sense") (:file "body")
+                 (:file "simulation") (:file "references") (:file "sight") (:file "tracks")
+                 (:file "state") (:file "replay")))
    (:module "src/command" :serial t
     :components ((:file "package") (:file "argument-types") (:file "command")
                  (:file "operation") (:file "define-command") (:file "turning")
                  (:file "places") (:file "driving") (:file "following")))
+   (:module "src/display" :serial t
+    :components ((:file "package") (:file "text-map")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "ars"))))
   :in-order-to ((test-op (test-op "ars-magna/tests"))))

@@ -72,8 +72,8 @@ holds. Signals UNKNOWN-NAME."
           (robot-turn-angle robot) 0.3d0
           (robot-last-place robot) nil
           (robot-drove-tick robot) -1
-          (robot-odometer-list robot) '()
-          (fill-pointer (robot-designators robot)) 0)
+          (robot-odometer-list robot) '())
+    (forget-designators robot)
     (set-robot-pose robot (body-x body) (body-y body) (body-angle body))
     (make-odometer robot 'main)
     (map nil #'reset-camera (robot-cameras robot))

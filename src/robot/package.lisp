@@ -28,6 +28,17 @@ of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
            #:robot-speed-now #:robot-turn-angle-now #:robot-moved #:robot-turned-low
            #:robot-turned-high #:begin-movement #:robot-last-move #:robot-last-move-estimate
            #:robot-cell-index)
+  ;; designator
+  (:export #:designator #:designator-p #:designator-type #:designator-angle #:designator-data
+           #:designator-robot #:designator-number #:designator-denotation
+           #:designator-distance #:designator-valid-p #:designator-x #:designator-y
+           #:designator-location #:find-designator #:live-designators #:designators-on
+           #:*designator-limit* #:thing-space #:within-reach-p #:designator-position
+           #:designator-local-p*)
+  ;; sight, tracks
+  (:export #:line-clear-p #:in-sight-p
+           #:camera-tracks #:tracking-p #:tracking-cameras #:tracked-p #:end-track
+           #:drop-designator #:part-moved #:add-designator)
   ;; places
   (:export #:robot-place-here #:sense-place-type #:canonical-directions #:nearest-direction)
   ;; body

@@ -24,6 +24,9 @@
   (odometer-list (list) :type list)
   ;; Designators by number; NIL where a number is free.
   (designators (make-array 4 :adjustable t :fill-pointer 0) :type vector)
+  ;; How many designators it ever had, and the tracks that ended in this tick, newest first.
+  (designators-made 0 :type fixnum)
+  (ended-tracks '() :type list)
   (last-place nil)
   ;; The tick in which the robot last drove, for braking.
   (drove-tick -1 :type fixnum)
@@ -112,25 +115,29 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   "Return the thing that HAND holds, or NIL."
   (first (hand-contents hand)))
 
-(defun part-of (robot parts index kind)
-  (check-argument part robot (robot-p robot) "a robot")
-  (unless (typep index `(integer 0 (,(length parts))))
-    (error 'wrong-argument :operator (format nil "robot-~A" kind) :name "index" :value index
-                           :expected (format nil "an index below ~D: ~A has ~:*~D"
-                                             (length parts) (robot-name robot))))
-  (svref parts index))
+(defun part-of (robot reader index operator)
+  "Return the part of ROBOT with INDEX among those that READER returns."
+  (unless (robot-p robot)
+    (error 'wrong-argument :operator operator :name "robot" :value robot :expected "a robot"))
+  (let ((parts (funcall reader robot)))
+    (unless (and (integerp index) (< -1 index (length parts)))
+      (error 'wrong-argument :operator operator :name "index" :value index
+                             :expected (format nil "an index from 0 and below ~D, the number ~
+                                                    of such parts of ~A"
+                                               (length parts) (robot-name robot))))
+    (svref parts index)))
 
 (defun robot-camera (robot index)
   "Return the camera of ROBOT with INDEX, from 0. Signals WRONG-ARGUMENT (manual 3.4)."
-  (part-of robot (robot-cameras robot) index "camera"))
+  (part-of robot #'robot-cameras index 'robot-camera))
 
 (defun robot-hand (robot index)
   "Return the hand of ROBOT with INDEX, from 0. Signals WRONG-ARGUMENT (manual 3.6)."
-  (part-of robot (robot-hands robot) index "hand"))
+  (part-of robot #'robot-hands index 'robot-hand))
 
 (defun robot-storage-bin (robot index)
   "Return the storage bin of ROBOT with INDEX, from 0. Signals WRONG-ARGUMENT (manual 3.6)."
-  (part-of robot (robot-bins robot) index "storage-bin"))
+  (part-of robot #'robot-bins index 'robot-storage-bin))
 
 ;;; Parts are called by their numbers (manual E).
 

@@ -1,0 +1,154 @@
+;;;; designator.lisp -- handles on what the robot has seen (manual 3.4.1).
+
+(in-package :ars-magna.robot)
+
+;;; A designator denotes a thing, a PLACE, or nothing: then it is false and X, Y is where the robot
+;;; believes something to be. Type, angle and data are for programs to read, the rest is the
+;;; simulator's. It is valid until it is dropped (see tracks.lisp); its number is then free,
+;;; its serial number never again. Its LOCATION is where the camera was that saw it: a
+;;; container, a storage bin, or NIL in the open.
+
+(defstruct (designator (:constructor make-designator) (:copier nil))
+  "A handle on a thing or place that a camera has seen, or believes that it has."
+  (type :non-local :type (member :local :non-local))
+  (angle 0d0 :type double-float)
+  (data '() :type list)
+  (robot nil :type (or null robot))
+  (number 0 :type fixnum)
+  (serial 0 :type fixnum)
+  (denotation nil :type (or null thing place))
+  (distance 0d0 :type double-float)
+  (valid-p t :type boolean)
+  (x 0d0 :type double-float)
+  (y 0d0 :type double-float)
+  (location nil)
+  ;; The true direction in which it was last seen, unless that was too near to have one; by how
+  ;; much that has changed in the tick REFRESHED.
+  (bearing 0d0 :type double-float)
+  (bearing-p nil :type boolean)
+  (swing 0d0 :type double-float)
+  (refreshed -1 :type fixnum))
+
+(macrolet ((describe-readers (&rest pairs)
+             `(setf ,@(loop for (reader text) on pairs by #'cddr
+                            append `((documentation ',reader 'function) ,text)))))
+  (describe-readers
+   designator-p "True of a designator."
+   designator-type "Return :LOCAL or :NON-LOCAL (manual 3.4.1)."
+   designator-angle "Return the estimated angle of what the designator denotes relative to the
+robot's heading, in radians, not normalised (manual 3.4.1)."
+   designator-data "Return what was seen: a list of lists (attribute value), or of the name of a
+place type (manual 3.4.1)."
+   designator-robot "Return the robot that the designator is a handle for."
+   designator-number "Return the designator's number; one that was dropped has lost it to others."
+   designator-denotation "Return the THING or PLACE that the designator denotes, NIL if it is false."
+   designator-distance "Return the distance at which the denotation was last seen, in metres."
+   designator-valid-p "True until the designator is dropped."
+   designator-x "Return the x coordinate where the denotation was last seen, in metres."
+   designator-y "Return the y coordinate where the denotation was last seen, in metres."
+   designator-location "Return the container or storage bin in which the denotation was seen, or NIL."))
+
+(defmethod print-object ((designator designator) stream)
+  (print-named designator stream (format nil "Designator ~D" (designator-number designator))))
+
+;;; A robot's designators by number.
+
+(defparameter *designator-limit* 1000
+  "How many designators a robot keeps; past that, the oldest that no camera tracks is removed.")
+
+(defun find-designator (robot number)
+  "Return the designator of ROBOT with NUMBER, or NIL."
+  (let ((designators (robot-designators robot)))
+    (and (typep number `(integer 0 (,(length designators))))
+         (aref designators number))))
+
+(defun live-designators (robot)
+  "Return a list of the valid designators of ROBOT, by number."
+  (coerce (remove nil (robot-designators robot)) 'list))
+
+(defun designators-on (robot thing)
+  "Return a list of the valid designators of ROBOT that denote THING, by number."
+  (loop for designator across (robot-designators robot)
+        when (and designator (eq (designator-denotation designator) thing))
+          collect designator))
+
+(defun take-number (robot designator)
+  "Give DESIGNATOR the smallest free number of ROBOT, and a serial number."
+  (let* ((designators (robot-designators robot))
+         (number (or (position nil designators)
+                     (vector-push-extend nil designators))))
+    (setf (designator-number designator) number
+          (designator-serial designator) (robot-designators-made robot)
+          (aref designators number) designator)
+    (incf (robot-designators-made robot))
+    designator))
+
+(defun free-number (designator)
+  "Make DESIGNATOR invalid and its number free."
+  (let ((designators (robot-designators (designator-robot designator))))
+    (setf (designator-valid-p designator) nil
+          (aref designators (designator-number designator)) nil)
+    (loop while (and (plusp (length designators))
+                     (null (aref designators (1- (length designators)))))
+          do (vector-pop designators))))
+
+(defun forget-designators (robot)
+  "Make all designators of ROBOT invalid, silently, as at the start of a run."
+  (mapc #'free-number (live-designators robot))
+  (setf (robot-designators-made robot) 0
+        (robot-ended-tracks robot) '()))
+
+;;; Where things are, to a robot.
+
+(defun thing-space (thing)
+  "Return the container or storage bin that THING is in, :NOWHERE, or NIL for the open. A thing in
+a hand is where the hand is."
+  (let ((location (thing-location thing)))
+    (cond ((eq location :floor) nil)
+          ((null location) :nowhere)
+          ((hand-p location) (part-location location))
+          (t location))))
+
+(defun within-reach-p (robot x y)
+  "True if (X,Y), in metres, is local to ROBOT: less than a metre away or in the same cell (manual
+2.1, 3.5)."
+  (let ((dx (- x (robot-x robot))) (dy (- y (robot-y robot))))
+    (or (< (+ (* dx dx) (* dy dy)) 1d0)
+        (in-same-cell-p robot x y))))
+
+(defun in-same-cell-p (robot x y)
+  "True if (X,Y), in metres, is in the cell of ROBOT."
+  (and (= (floor x) (floor (robot-x robot)))
+       (= (floor y) (floor (robot-y robot)))))
+
+(defun designator-position (designator)
+  "Return, as two values, where what DESIGNATOR denotes really is, or seems to be, in metres; NIL
+and NIL if it is nowhere."
+  (let ((denotation (designator-denotation designator)))
+    (etypecase denotation
+      (thing (thing-position denotation))
+      (place (let ((cell (place-cell denotation)))
+               (values (+ 0.5d0 (cell-x cell)) (+ 0.5d0 (cell-y cell)))))
+      (null (values (designator-x designator) (designator-y designator))))))
+
+(defun designator-local-p* (designator)
+  "True if what DESIGNATOR denotes really is local now: where it was seen, be that in the open, in
+a container or in a bin, and within reach. False of places."
+  (let ((denotation (designator-denotation designator)))
+    (and (designator-valid-p designator)
+         (not (place-p denotation))
+         (or (null denotation)
+             (eq (thing-space denotation) (designator-location designator)))
+         (multiple-value-bind (x y) (designator-position designator)
+           (and x (within-reach-p (designator-robot designator) x y))))))
+
+;;; In a journal.
+
+(defmethod externalize ((designator designator))
+  (make-reference :designator (list (string (robot-name (designator-robot designator)))
+                                    (designator-serial designator)
+                                    (designator-number designator)
+                                    (designator-type designator))))
+
+(defun serial-designator (robot serial)
+  (find serial (live-designators robot) :key #'designator-serial))

@@ -1,0 +1,146 @@
+;;;; tracks.lisp -- cameras that follow what they have seen, and how they lose it (manual 3.4.3).
+
+(in-package :ars-magna.robot)
+
+;;; A track is what a camera does in the background of its commands: it keeps pointing where its
+;;; designator's denotation is. Tracks are looked after once a tick, after events and kickers. What
+;;; ends a track at any moment of a tick takes effect, and says so, at once; but the one who asked
+;;; for the track is told only in the tracks phase, so after the command that ended it has told
+;;; its own. Only an interruption is told at once. A designator that was tracked does not
+;;; survive the loss of its last track; one that was not does not survive that its denotation
+;;; moves, or that a local one is out of reach.
+
+(defstruct (track (:constructor make-track (designator teller)) (:copier nil))
+  "What a camera does while it tracks DESIGNATOR; TELLER is called with the code that ends it."
+  (designator nil :type designator :read-only t)
+  (teller nil :type function :read-only t))
+
+(defun camera-tracks (camera)
+  "Return the designator that CAMERA tracks, or NIL."
+  (let ((track (camera-track camera)))
+    (and track (track-designator track))))
+
+(defun tracking-p (camera designator)
+  "True if CAMERA tracks DESIGNATOR."
+  (eq (camera-tracks camera) designator))
+
+(defun tracking-cameras (designator)
+  "Return a list of the cameras that track DESIGNATOR, by index."
+  (loop for camera across (robot-cameras (designator-robot designator))
+        when (tracking-p camera designator)
+          collect camera))
+
+(defun tracked-p (designator)
+  "True if a camera tracks DESIGNATOR."
+  (loop for camera across (robot-cameras (designator-robot designator))
+          thereis (tracking-p camera designator)))
+
+;;; Ending.
+
+(defun stop-track (camera code warning)
+  "End the track of CAMERA and nothing else. Return its designator, or NIL if it had no track."
+  (let ((track (camera-track camera)))
+    (when track
+      (setf (camera-track camera) nil)
+      (when warning (warning-set warning))
+      (if (eq code :interrupt)
+          (funcall (track-teller track) code)
+          (push (cons track code) (robot-ended-tracks (camera-robot camera))))
+      (track-designator track))))
+
+(defun drop-designator (designator &key silently)
+  "Make DESIGNATOR invalid and its number free; the cameras that track it lose it. Warnings say
+so unless SILENTLY."
+  (when (designator-valid-p designator)
+    (unless silently (warning-set (format nil "Removing ~A" designator)))
+    (dolist (camera (tracking-cameras designator))
+      (stop-track camera :lost-track
+                  (unless silently
+                    (format nil "~A no longer valid. ~A lost track" designator camera))))
+    (free-number designator)))
+
+(defun end-track (camera code &optional warning)
+  "End the track of CAMERA, if it has one, with the error CODE, and queue WARNING, a string. If it
+is lost and no other camera tracks the designator, that is dropped."
+  (let ((designator (stop-track camera code warning)))
+    (when (and designator (not (eq code :interrupt)) (not (tracked-p designator)))
+      (drop-designator designator))))
+
+(defun lose-track (camera)
+  (end-track camera :lost-track
+             (format nil "~A lost track of ~A" camera (camera-tracks camera))))
+
+(defmethod release-resource ((camera camera) simulation)
+  (declare (ignore simulation))
+  (call-next-method)
+  (end-track camera :interrupt))
+
+;;; When things and parts move.
+
+(defun watch-thing (thing old-location new-location)
+  "Let the robots' designators know that THING has moved. A world's move watcher."
+  (declare (ignore old-location))
+  (dolist (robot (world-robots (thing-world thing)))
+    (when (plusp (length (robot-designators robot)))
+      (mapc (if new-location #'denotation-moved #'drop-designator)
+            (designators-on robot thing)))))
+
+(defun denotation-moved (designator)
+  "Drop DESIGNATOR if it does not survive that its denotation has moved."
+  (let ((thing (designator-denotation designator)))
+    (unless (if (tracked-p designator)
+                (eq (thing-space thing) (designator-location designator))
+                (and (eq (designator-type designator) :local)
+                     (designator-local-p* designator)))
+      (drop-designator designator))))
+
+(defun part-moved (part old-location)
+  "Let PART, a camera or hand, have been taken from OLD-LOCATION into PART-LOCATION: a camera loses
+its track, and what a hand holds has moved. Warnings say so."
+  (unless (eq old-location (part-location part))
+    (etypecase part
+      (camera
+       (when (camera-track part)
+         (end-track part :lost-track (format nil "~A moved. No longer tracking ~A"
+                                             part (camera-tracks part)))))
+      (hand
+       (dolist (thing (hand-contents part))
+         (warning-set (format nil "~A has moved" thing))
+         (watch-thing thing part part))))))
+
+;;; Making designators.
+
+(defun forget-oldest (robot)
+  "Drop the oldest designator of ROBOT that no camera tracks."
+  (let ((oldest nil))
+    (dolist (designator (live-designators robot))
+      (when (and (or (null oldest)
+                     (< (designator-serial designator) (designator-serial oldest)))
+                 (not (tracked-p designator)))
+        (setf oldest designator)))
+    (when oldest (drop-designator oldest))))
+
+(defun add-designator (robot &key (type :non-local) (angle 0d0) (distance 0d0) data denotation
+                                  x y location)
+  "Return a new designator of ROBOT: of TYPE, for DENOTATION (a THING, a PLACE, or NIL for one that
+seems to be at X, Y), seen at DISTANCE metres and at ANGLE to the heading, described by
+DATA, in LOCATION (NIL: in the open)."
+  (when (>= (length (robot-designators robot)) *designator-limit*) (forget-oldest robot))
+  (let ((designator (make-designator :type type :robot robot :data data :location location
+                                     :denotation denotation
+                                     :angle (double angle) :distance (double distance)
+                                     :x (double (or x 0)) :y (double (or y 0)))))
+    (unless x
+      (multiple-value-bind (x y) (designator-position designator)
+        (setf (designator-x designator) (double x)
+              (designator-y designator) (double y))))
+    (pushnew #'watch-thing (world-move-watchers (robot-world robot)))
+    (take-number robot designator)))
+
+(defmethod internalize-reference ((kind (eql :designator)) arguments simulation)
+  (destructuring-bind (name serial number type) arguments
+    (let ((robot (robot-in simulation name)))
+      (or (serial-designator robot serial)
+          ;; It had been dropped when the journal was told of it.
+          (make-designator :robot robot :serial serial :number number :type type
+                           :valid-p nil)))))
