@@ -95,6 +95,7 @@
                   "a number that is not below the min; set the min first")
   (setf (%interval-max interval) (as-double max)))
 
+(declaim (inline set-interval!))
 (defun set-interval! (interval min max)
   "Make INTERVAL reach from MIN to MAX, real numbers, and return it. MIN above MAX is an error."
   (check-argument set-interval! min (<= min max) "a number that is not above the max")
@@ -170,6 +171,8 @@ it copies the bounds of an interval."
   (let ((side (%pt-interval-y pt-interval)))
     (- (%interval-max side) (%interval-min side))))
 
+;; Inline, so that bounds need not be boxed on the way.
+(declaim (inline set-pt-interval!))
 (defun set-pt-interval! (pt-interval x-min x-max y-min y-max)
   "Give PT-INTERVAL the bounds X-MIN to X-MAX and Y-MIN to Y-MAX, real numbers; return it."
   (set-interval! (%pt-interval-x pt-interval) x-min x-max)

@@ -1,0 +1,120 @@
+;;;; determinism.lisp -- a run is a function of world, parameters, seed and commands.
+
+(in-package :ars-magna.tests)
+
+(def-suite* determinism :in ars-magna)
+
+(defun end-journal (simulation)
+  (robot::end-of-journal simulation))
+
+(test journal.replays-to-the-bit
+  "Commands from continuations, parameters set on the way, things changed by hand."
+  (let (digest journal)
+    (with-rover (:seed 21 :journal t)
+      (wander rover (base:make-dice 3))
+      (time:run-ticks 300)
+      (setf base:motion-noise* 0.5)
+      (time:run-ticks 300)
+      (world:move-thing (world:find-thing 'crate) (list 6.5 6.5))
+      (world:set-attribute (world:find-thing 'crate) :obsmove t)
+      (robot:place-robot rover 5 5 1)
+      (time:run-ticks 200)
+      (robot:set-seed 99)
+      (time:grab-resource rover)
+      (command:robot-goto-wall rover)
+      (time:run-ticks 200)
+      (setf digest (robot:state-digest)
+            journal (end-journal time:*simulation*)))
+    (is (= 1000 (time:journal-end journal)))
+    (is (= digest (nth-value 1 (robot:replay journal))))
+    (with-temporary-file (file)
+      (time:write-journal journal file)
+      (is (= digest (nth-value 1 (robot:replay file))) "from a file"))))
+
+(test journal.rewinds-and-forks
+  (let (digests journal)
+    (with-rover (:seed 22 :journal t)
+      (wander rover (base:make-dice 4))
+      (time:run-ticks 150)
+      (push (robot:state-digest) digests)
+      (time:run-ticks 150)
+      (push (robot:state-digest) digests)
+      (setf journal (end-journal time:*simulation*)))
+    (robot:with-replay (journal :until 150)
+      (is (= 150 (time:simulation-tick)))
+      (is (= (second digests) (robot:state-digest)))
+      (command:robot-turn rover 1)
+      (time:run-ticks 150)
+      (is (/= (first digests) (robot:state-digest))))
+    (is (= (first digests) (nth-value 1 (robot:replay journal))))))
+
+(test live.and-headless-alike
+  "What a live run did, its journal repeats headless."
+  (with-messages
+    (let* ((simulation (robot:fresh-simulation '(rover) :seed 23 :journal t))
+           (robot (first (robot:simulation-robots simulation)))
+           (ended (base:make-semaphore "ended")))
+      (unwind-protect
+           (progn
+             (time:start-clock simulation :rate :free)
+             (labels ((again (left)
+                        (if (zerop left)
+                            (base:signal-semaphore ended)
+                            (command:robot-turn
+                             robot (* left 0.3)
+                             (lambda (&rest ignore)
+                               (declare (ignore ignore))
+                               (command:robot-go-forward
+                                robot (mod left 5)
+                                (lambda (&rest ignore)
+                                  (declare (ignore ignore))
+                                  (again (1- left)))))))))
+               (again 40))
+             (is-true (base:wait-on-semaphore ended 60)))
+        (time:stop-clock simulation))
+      (is (= (robot:state-digest simulation)
+             (nth-value 1 (robot:replay (end-journal simulation))))))))
+
+(test threads.every-continuation-once
+  "Eight threads command one live robot; each command is answered exactly once."
+  (with-messages
+    (let* ((simulation (robot:fresh-simulation '(rover) :seed 24))
+           (robot (first (robot:simulation-robots simulation)))
+           (threads 8) (each 500)
+           (answers (make-array (* threads each) :initial-element 0)))
+      (unwind-protect
+           (progn
+             (time:start-clock simulation :rate :free)
+             (mapc #'base:join-thread
+                   (loop for thread below threads
+                         collect (let ((thread thread))
+                                   (base:start-thread
+                                    (lambda ()
+                                      (dotimes (i each)
+                                        (let ((index (+ i (* thread each))))
+                                          (command:robot-turn
+                                           robot 0.1
+                                           (lambda (&rest ignore)
+                                             (declare (ignore ignore))
+                                             (incf (aref answers index)))))))
+                                    "commander"))))
+             (is-true (time:await-idle simulation)))
+        (time:stop-clock simulation))
+      (is (every (lambda (count) (= 1 count)) answers)))))
+
+(test parallel.simulations-do-not-touch
+  "Two at once, each in its thread, give what they give alone."
+  (flet ((digest (seed)
+           (with-rover (:seed seed)
+             (wander rover (base:make-dice seed))
+             (time:run-ticks 2000)
+             (robot:state-digest))))
+    (let* ((alone (list (digest 1) (digest 2)))
+           (together (list nil nil))
+           (threads (loop for seed from 1 to 2
+                          collect (let ((seed seed))
+                                    (base:start-thread
+                                     (lambda () (setf (nth (1- seed) together) (digest seed)))
+                                     "trial")))))
+      (mapc #'base:join-thread threads)
+      (is (equal alone together)))))

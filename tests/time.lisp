@@ -1,0 +1,259 @@
+;;;; time.lisp -- the agenda, the tick, schedule, threads and the journal.
+
+(in-package :ars-magna.tests)
+
+(def-suite* time :in ars-magna)
+
+(defmacro with-bare-simulation ((variable) &body body)
+  "Run BODY with VARIABLE bound to a simulation of nothing."
+  `(with-messages
+     (let* ((,variable (time:make-simulation :name "bare"))
+            (time:*simulation* ,variable))
+       ,@body)))
+
+(defmacro recording ((record) &body body)
+  "Run BODY, in which (RECORD datum) remembers DATUM; return the data in order."
+  (let ((data (gensym)))
+    `(let ((,data '()))
+       (flet ((,record (datum) (push datum ,data)))
+         ,@body)
+       (reverse ,data))))
+
+;;; Agenda.
+
+(test agenda.runs-each-event-in-its-tick
+  "Delays of all sizes, over pages and volumes of the wheel, against their due times."
+  (let* ((agenda (time:make-agenda)) (dice (base:make-dice 5)) (late 0) (ran 0))
+    (dotimes (i 3000)
+      (let ((delay (ceiling (expt 10 (base:roll-between 0 6.3 dice)))))
+        (time:queue-event agenda delay
+                          (lambda (event)
+                            (declare (ignore event))
+                            (incf ran)
+                            (unless (= delay (time:agenda-tick agenda)) (incf late))))))
+    (is (= 3000 (time:agenda-pending agenda)))
+    (loop repeat 2000000 do (time:advance-agenda agenda))
+    (is (= 0 late))
+    (is (= 3000 ran))
+    (is (= 0 (time:agenda-pending agenda)))))
+
+(test agenda.keeps-the-order-of-queueing
+  "Events for one tick, queued from far and from near, run in the order in which they were queued."
+  (let ((agenda (time:make-agenda)))
+    (is (equal (loop for i below 40 collect i)
+               (recording (record)
+                 (dotimes (i 40)
+                   (let ((i i))
+                     (time:queue-event agenda (- 3000000 (time:agenda-tick agenda))
+                                       (lambda (event) (declare (ignore event)) (record i))))
+                   (loop repeat (if (< i 20) 100000 49000)
+                         do (time:advance-agenda agenda)))
+                 (loop until (zerop (time:agenda-pending agenda))
+                       do (time:advance-agenda agenda)))))))
+
+(test agenda.priority-comes-before-order
+  (let ((agenda (time:make-agenda)))
+    (is (equal '(:high :first :second :low)
+               (recording (record)
+                 (loop for (name priority) in '((:first 0) (:low -1) (:second 0) (:high 3))
+                       do (let ((name name))
+                            (time:queue-event agenda 4
+                                              (lambda (event) (declare (ignore event)) (record name))
+                                              :priority priority)))
+                 (loop repeat 4 do (time:advance-agenda agenda)))))))
+
+(test agenda.cancelled-events-never-run
+  (let* ((agenda (time:make-agenda)) (ran nil)
+         (event (time:queue-event agenda 2 (lambda (e) (declare (ignore e)) (setf ran t))
+                                  :resource :x)))
+    (is (eq event (time:pending-event agenda :x)))
+    (time:cancel-event agenda event)
+    (is (null (time:pending-event agenda :x)))
+    (loop repeat 5 do (time:advance-agenda agenda))
+    (is-false ran)
+    (is (= 0 (time:agenda-pending agenda)))))
+
+;;; Schedule (manual 3.8).
+
+(test schedule.default-is-the-next-tick
+  (with-bare-simulation (s)
+    (is (equal '(1 1 4)
+               (recording (record)
+                 (time:schedule (nil) (record (time:simulation-tick)))
+                 (time:schedule (nil :timer 0) (record (time:simulation-tick)))
+                 (time:schedule (nil :timer 4) (record (time:simulation-tick)))
+                 (time:run-ticks 10))))))
+
+(test schedule.the-first-of-equals-stays-the-higher-wins
+  (with-bare-simulation (s)
+    (is (equal '(:second-lost :first-lost :third)
+               (recording (record)
+                 (time:schedule (:arm :interrupt (record :first-lost)) (record :first))
+                 (time:schedule (:arm :interrupt (record :second-lost)) (record :second))
+                 (time:schedule (:arm :priority 1) (record :third))
+                 (time:run-ticks 3))))))
+
+(test schedule.when-and-timeout
+  (with-bare-simulation (s)
+    (is (equal '((:true 8))
+               (recording (record)
+                 (time:schedule (nil :timer 3 :when (>= (time:simulation-tick) 8) :timeout 20)
+                   (record (list :true (time:simulation-tick))))
+                 (time:schedule (nil :when (>= (time:simulation-tick) 8) :timeout 5)
+                   (record :evaporated))
+                 (time:schedule (nil :when nil :timeout 5 :interrupt (record :interrupted))
+                   (record :never))
+                 (time:run-ticks 30))))
+    (is-true (time:idle-p s))))
+
+(test schedule.an-event-can-queue-the-next
+  (with-bare-simulation (s)
+    (is (equal '(1 3 5 7)
+               (recording (record)
+                 (labels ((again ()
+                            (record (time:simulation-tick))
+                            (time:schedule (:chain :timer 2) (again))))
+                   (time:schedule (:chain) (again))
+                   (time:run-ticks 8)))))))
+
+(test schedule.trouble-in-a-body-is-reported
+  (with-bare-simulation (s)
+    (time:schedule (nil) (error "bad body"))
+    (time:run-ticks 2)
+    (is (search "bad body" (displayed)))
+    (is (= 2 (time:simulation-tick)))))
+
+(test schedule.rejects-what-is-no-number
+  (with-bare-simulation (s)
+    (signals base:wrong-argument (time:schedule (nil :timer -1) nil))
+    (signals base:wrong-argument (time:schedule (nil :priority :high) nil))))
+
+;;; Ticks.
+
+(test ticks.have-their-order
+  "Inbox, events, phases, notifications, observers."
+  (with-messages
+    (is (equal '(:inbox :event :phase :notification :observer)
+               (recording (record)
+                 (let ((s (time:make-simulation
+                           :phases (list (lambda (s)
+                                           (record :phase)
+                                           (time:notify-later s (lambda ()
+                                                                  (record :notification))))))))
+                   (time:call-scheduled (lambda () (record :event)) nil :simulation s)
+                   (time:post s (lambda () (record :inbox)))
+                   (time:add-observer (lambda (s) (declare (ignore s)) (record :observer)) s)
+                   (time:run-ticks 1 s)))))))
+
+(test ticks.run-until-a-predicate-or-a-limit
+  (with-bare-simulation (s)
+    (is (equal '(t 5) (multiple-value-list
+                       (time:run-until (lambda () (= 5 (time:simulation-tick)))))))
+    (is (equal '(nil 12) (multiple-value-list
+                          (time:run-until (constantly nil) :limit 7))))))
+
+(test ticks.no-simulation-names-the-remedy
+  (let ((time:*simulation* nil))
+    (handler-case (progn (time:run-ticks 1) (fail "ran"))
+      (base:misuse (trouble) (is (search "with-simulation" (princ-to-string trouble)))))))
+
+;;; Live.
+
+(defun wait-for-event (simulation timer)
+  "Wait until TIMER ticks of the live SIMULATION have passed; true if that came to be."
+  (let ((passed (base:make-semaphore "passed")))
+    (time:call-scheduled (lambda () (base:signal-semaphore passed)) nil
+                         :timer timer :simulation simulation)
+    (base:wait-on-semaphore passed 60)))
+
+(defmacro with-live ((simulation rate) &body body)
+  `(unwind-protect (progn (time:start-clock ,simulation :rate ,rate) ,@body)
+     (time:stop-clock ,simulation)))
+
+(test live.ticks-pass-by-themselves
+  (with-bare-simulation (s)
+    (with-live (s :free)
+      (is-true (wait-for-event s 5000))
+      (is-true (time:await-idle s))
+      (let ((tick (time:ask s (lambda () (time:simulation-tick s)))))
+        (is (>= tick 5000))
+        (is (= tick (time:ask s (lambda () (time:simulation-tick s)))) "idle time stands still")))
+    (is-false (time:live-p s))))
+
+(test live.pause-step-resume
+  (with-bare-simulation (s)
+    (with-live (s :free)
+      (time:pause s)
+      (let ((stepped (base:make-semaphore "stepped")))
+        (time:call-scheduled (lambda () (base:signal-semaphore stepped)) nil :simulation s)
+        (is (= 0 (time:ask s (lambda () (time:simulation-tick s)))))
+        (time:step-ticks 1 s)
+        (is-true (base:wait-on-semaphore stepped 60))
+        (time:call-scheduled (lambda () (base:signal-semaphore stepped)) nil :timer 50
+                                                                             :simulation s)
+        (time:resume s)
+        (is-true (base:wait-on-semaphore stepped 60))))))
+
+(test live.run-ticks-is-refused
+  (with-bare-simulation (s)
+    (with-live (s 20)
+      (signals base:misuse (time:run-ticks 1 s))
+      (signals base:misuse (time:start-clock s)))
+    (signals base:wrong-argument (time:start-clock s :rate 0))))
+
+(test live.questions-bring-back-values-and-errors
+  (with-bare-simulation (s)
+    (with-live (s :free)
+      (is (equal '(1 2) (multiple-value-list (time:ask s (lambda () (values 1 2))))))
+      (signals base:misuse (time:ask s (lambda () (base:reject-use "no"))))
+      (is-true (wait-for-event s 10)))))
+
+(test live.posts-from-many-threads-all-arrive-once
+  (with-bare-simulation (s)
+    (let ((count 0) (each 2000))
+      (with-live (s :free)
+        (let ((threads (loop repeat 4
+                             collect (base:start-thread
+                                      (lambda ()
+                                        (loop repeat each
+                                              do (time:post s (lambda () (incf count)))))
+                                      "poster"))))
+          (mapc #'base:join-thread threads)
+          (is-true (wait-for-event s 2)))
+        (is (= (* 4 each) (time:ask s (lambda () count))))))))
+
+;;; Journals on file.
+
+(defmacro with-temporary-file ((file) &body body)
+  `(uiop:with-temporary-file (:pathname ,file :type "journal") ,@body))
+
+(test journal.file-round-trip
+  (with-bare-simulation (s)
+    (setf (time:simulation-journal s) (time:make-journal '(:seed 3)))
+    (time:note s :parameter 'base:braking* 3)
+    (time:run-ticks 4)
+    (time:note s :command "robot-turn" 0.5d0)
+    (with-temporary-file (file)
+      (time:write-journal (time:simulation-journal s) file)
+      (let ((journal (time:read-journal file)))
+        (is (equal '((0 :parameter base:braking* 3) (4 :command "robot-turn" 0.5d0))
+                   (time:journal-entries journal)))
+        (is (equal '(:seed 3) (time:journal-header journal)))
+        (is (= 4 (time:journal-end journal)))))))
+
+(test journal.damaged-files-are-refused
+  (with-temporary-file (file)
+    (dolist (text '("" "(:something-else)" "(:ars-magna-journal 1 :end 3 :header ())"
+                    "(:ars-magna-journal 1 :end 3 :header ()) (3 :com" "#.(quit)"
+                    "(:ars-magna-journal 99 :end 3 :header ()) :end"
+                    "(:ars-magna-journal 1 :end 3 :header ()) 17 :end"))
+      (with-open-file (out file :direction :output :if-exists :supersede)
+        (write-string text out))
+      (signals time:damaged-journal (time:read-journal file)))))
+
+(test journal.functions-cannot-be-written
+  (with-bare-simulation (s)
+    (setf (time:simulation-journal s) (time:make-journal '()))
+    (time:schedule (nil) nil)
+    (with-temporary-file (file)
+      (signals base:misuse (time:write-journal (time:simulation-journal s) file)))))
