@@ -1,13 +1,9 @@
 ;;;; map-building.lisp -- how long it takes to build, cache and reload a large map.
 
-;;; Load with the system loaded. Prints seconds for a map of 1000 x 1000 cells in rooms, with the
+;;; Prints milliseconds for a map of 1000 x 1000 cells in rooms, with the
 ;;; four built-in place types, and for the same with a fifth that is written as a checker.
 
-(defpackage :ars-magna.benchmarks.map-building
-  (:use :cl)
-  (:local-nicknames (:world :ars-magna.world)))
-
-(in-package :ars-magna.benchmarks.map-building)
+(in-package :ars-magna.benchmarks)
 
 (defparameter *clauses*
   (append '((rect (0 0) (1000 1000) bricks 0 10 30 25))
@@ -17,25 +13,23 @@
                              collect `(wall (,(+ x 10) ,y) (,(+ x 19) ,y) bricks 5)
                              collect `(wall (,x ,y) (,x ,(+ y 14)) slate 10 30)))))
 
-(defun report (name function)
-  (let ((start (get-internal-real-time)))
-    (funcall function)
-    (format t "~40A ~8,3F s~%" name
-            (/ (- (get-internal-real-time) start) internal-time-units-per-second))))
+(defun say-milliseconds (name function)
+  (say name (* 1000 (median (loop repeat 3 collect (seconds-for function)))) "ms"))
+
+(defun forget (cache)
+  (when (probe-file cache) (delete-file cache)))
 
 (defun build (&optional cache)
   (world:define-map 'map-benchmark 1000 1000 :clauses *clauses* :cache cache))
 
 (let ((cache (merge-pathnames "ars-magna-map-benchmark" (uiop:temporary-directory))))
-  (when (probe-file cache) (delete-file cache))
-  (report "build" #'build)
-  (report "build and write the cache" (lambda () (build cache)))
-  (report "reload from the cache" (lambda () (build cache)))
-  (delete-file cache)
-  (report "make a world" (lambda () (world:make-world 'map-benchmark)))
-  (format t "~40A ~8D~%" "walls" (count 1 (world:map-flags (world:find-map 'map-benchmark))))
-  (format t "~40A ~8D~%" "places" (count-if #'plusp
-                                            (world:map-places (world:find-map 'map-benchmark)))))
+  (say-milliseconds "build" #'build)
+  (say-milliseconds "build and write the cache" (lambda () (forget cache) (build cache)))
+  (say-milliseconds "reload from the cache" (lambda () (build cache)))
+  (forget cache)
+  (say-milliseconds "make a world" (lambda () (world:make-world 'map-benchmark)))
+  (say "walls" (count 1 (world:map-flags (world:find-map 'map-benchmark))) "cells")
+  (say "places" (count-if #'plusp (world:map-places (world:find-map 'map-benchmark))) "cells"))
 
 (world:def-place-type benchmark-spot (cell)
   :checker (if (world:cell-filled? cell)
@@ -44,4 +38,4 @@
                        0 1 0)
                (values nil 0 0 0)))
 
-(report "build with a user's checker as well" #'build)
+(say-milliseconds "build with a user's checker as well" #'build)
