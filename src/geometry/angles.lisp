@@ -8,6 +8,10 @@
 (defconstant 2pi (* 2 pi)
   "Two pi, a full turn in radians (manual 3.2).")
 
+;;; The manual names PI too; SBCL leaves it undocumented.
+(unless (documentation 'pi 'variable)
+  (setf (documentation 'pi 'variable) "Half a turn in radians."))
+
 (defvar origin* (make-pt 0 0)
   "The point (0, 0), where an odometer starts (manual, Figure D.8).")
 
