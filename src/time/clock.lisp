@@ -62,12 +62,21 @@
               finally (return (+ (max due (- (seconds-now) 0.25d0)) (/ 1d0 (float rate 1d0))))))))
 
 (defun live-tick (simulation)
-  (tick simulation)
+  "Pass a tick. Trouble that no user code answers for is reported and pauses the clock."
+  (handler-bind ((error (lambda (trouble)
+                          (unless *break-on-user-error*
+                            (error-set "The simulator failed and is paused; RESUME goes on: "
+                                       (princ-to-string trouble))
+                            (setf (simulation-paused-p simulation) t)
+                            (return-from live-tick)))))
+    (tick simulation))
   (when (plusp (simulation-steps simulation)) (decf (simulation-steps simulation))))
 
 (defun run-live (simulation)
   (loop with due = (seconds-now)
-        until (simulation-stopping-p simulation)
+        until (or (simulation-stopping-p simulation)
+                  ;; Stopped from within and started again: another thread has taken over.
+                  (not (eq (current-thread) (simulation-thread simulation))))
         do (answer-questions simulation)
            (cond ((nothing-to-do-p simulation)
                   (rest-thread simulation)
