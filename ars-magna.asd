@@ -43,5 +43,8 @@
    (:module "src/display" :serial t
     :components ((:file "package") (:file "text-map")))
    (:module "src" :serial t
-    :components ((:file "slots") (:file "faces") (:file "ars"))))
+    :components ((:file "slots") (:file "faces") (:file "ars")))
+   (:module "worlds" :serial t
+    :components ((:file "prototypes") (:file "kickers") (:file "watson") (:file "office")
+                 (:file "hall") (:file "tiny"))))
   :in-order-to ((test-op (test-op "ars-magna/tests"))))

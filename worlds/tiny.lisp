@@ -1,0 +1,38 @@
+;;;; tiny.lisp -- a single small room, for tests and first steps.
+
+;;; Good for trying a command on few things, all of them near: nothing moves by itself, and
+;;; there are no places but the four corners and what surrounds one post. North is up, y grows
+;;; downwards; each character is a metre square: # wall, > DOT at its start.
+;;;
+;;;   ############
+;;;   #..........#     (8.5 3.5)  a ball
+;;;   #..........#
+;;;   #..........#     (3.5 8.5)  a table with a cup on it
+;;;   #..........#
+;;;   #..........#     (9.5 9.5)  a box, in it a tin, in it a key
+;;;   #..>.......#
+;;;   #..........#
+;;;   #......##..#
+;;;   #......##..#
+;;;   #..........#
+;;;   ############
+
+(in-package :ars-user)
+(in-readtable :nisp)
+
+(defmap tiny (12 12)
+  (rect (0 0) (12 12) plaster 10 20 30 20)
+  (wall (7 8) (8 8) slate 25)
+  (wall (7 9) (8 9) slate 25)
+
+  (obj (ball :prototype ball*) (8.5 3.5) ())
+  (obj (table :prototype table*) (3.5 8.5) ())
+  (obj (cup :prototype cup*) (3.5 8.5) ())
+  (obj (box :prototype box*) (9.5 9.5) ((:color lightblue) (:substance wood))
+    ((tin :prototype tin*) ()
+      ((key :prototype key*) ()))))
+
+(defrobot dot (tiny (3.5 6.5) 0)
+  :cameras (((/ pi 2) 5))
+  :hands (5)
+  :bins (10))
