@@ -1,0 +1,122 @@
+;;;; procedure.lisp -- plan procedures by name, and calling them.
+
+(in-package :ars-magna.rpl)
+
+;;; A name that a plan calls leads to a cell, whether or not there is a procedure of that name yet.
+;;; So procedures can be defined in any order, and defined anew while plans run: a call takes what
+;;; is in the cell when it happens.
+
+(defstruct (procedure (:constructor make-procedure (name)) (:copier nil))
+  "A plan with parameters. ENTRY takes the arguments and returns the environment to run BODY in;
+it is NIL as long as there is only the name. STUB is what Lisp code gets that calls the name."
+  (name nil :type symbol :read-only t)
+  (lambda-list '() :type list)
+  (entry nil :type (or null function))
+  (body nil :type (or null node))
+  (stub nil :type (or null function)))
+(setf (documentation 'procedure-name 'function)
+      "Return the name of a plan procedure, NIL for one made by INTERP-LAMBDA.")
+
+(defvar *procedures* (make-hash-table :test 'eq :synchronized t)
+  "The cells of all names that plans define or call.")
+
+(defun ensure-procedure (name)
+  "Return the cell of the procedure called NAME."
+  (or (gethash name *procedures*)
+      (setf (gethash name *procedures*) (make-procedure name))))
+
+(defun live-p (procedure)
+  "True if PROCEDURE is defined and its name has not been defined as a Lisp function since."
+  (and (procedure-entry procedure)
+       (or (null (procedure-stub procedure))
+           (let ((name (procedure-name procedure)))
+             (and (fboundp name)
+                  (eq (symbol-function name) (procedure-stub procedure)))))))
+
+(defun find-procedure (name)
+  "Return the plan procedure called NAME; an error if there is none."
+  (let ((procedure (gethash name *procedures*)))
+    (if (and procedure (live-p procedure))
+        procedure
+        (reject-name "plan procedure" name
+                     (loop for procedure in (hash-table-values *procedures*)
+                           when (live-p procedure) collect (procedure-name procedure))))))
+
+(defmethod print-object ((procedure procedure) stream)
+  (print-unreadable-object (procedure stream :type t)
+    (format stream "~:[~;~:*~A ~]~:A" (procedure-name procedure) (procedure-lambda-list procedure))))
+
+;;; Which names are plans' is also known while the file that defines them is compiled.
+
+(defvar *declared-procedures* (make-hash-table :test 'eq :synchronized t)
+  "Names that a DEF-INTERP-PROC has been compiled or loaded for.")
+
+(defun declare-procedure (name)
+  (setf (gethash name *declared-procedures*) t))
+
+(defun procedure-name-p (name)
+  "True if NAME is known to name a plan procedure."
+  (and (gethash name *declared-procedures*)
+       (let ((procedure (gethash name *procedures*)))
+         (or (null procedure) (null (procedure-entry procedure)) (live-p procedure)))))
+
+(defun procedure-stub-for (name)
+  "Return the Lisp function called NAME: it says that NAME is a plan."
+  (lambda (&rest arguments)
+    (declare (ignore arguments))
+    (reject-use "~S is a plan procedure and was called by Lisp code. Call it from a plan, outside ~
+                 of any lambda; at top level run it: (run-plan-alone '~S ...)." name name)))
+
+(defun install-procedure (name lambda-list documentation entry body)
+  "Make NAME a plan procedure. Calls from now on, also in running plans, mean this one."
+  (let ((procedure (ensure-procedure name))
+        (stub (procedure-stub-for name)))
+    (declare-procedure name)
+    (setf (procedure-lambda-list procedure) lambda-list
+          (procedure-entry procedure) entry
+          (procedure-body procedure) body
+          (procedure-stub procedure) stub
+          (fdefinition name) stub
+          (documentation name 'function) documentation)
+    name))
+
+(defun anonymous-procedure (lambda-list entry body)
+  (let ((procedure (make-procedure nil)))
+    (setf (procedure-lambda-list procedure) lambda-list
+          (procedure-entry procedure) entry
+          (procedure-body procedure) body)
+    procedure))
+
+;;; Calling. CALLER is compiled from the call's arguments: it takes the environment and a function,
+;;; either the procedure's entry or a Lisp function, and calls that with them.
+
+(define-node call ((procedure procedure) (caller function))
+  "A call of a procedure, or of a Lisp function that was unknown when the plan was compiled."
+  :step step-call)
+
+(defun step-call (node task frame value)
+  (declare (ignore task))
+  (let ((procedure (call-procedure node))
+        (caller (call-caller node))
+        (environment (frame-environment frame)))
+    (cond ((plusp (frame-counter frame)) (values (frame-up frame) value))
+          ((live-p procedure)
+           (setf (frame-counter frame) 1)
+           (enter (the node (procedure-body procedure))
+                  (funcall caller environment (procedure-entry procedure))
+                  frame))
+          (t (values (frame-up frame)
+                     (multiple-value-call #'bundle-up
+                       (funcall caller environment
+                                (lisp-function (procedure-name procedure)))))))))
+
+(defun bundle-up (&optional value &rest more)
+  "Return the values it is called with as one object."
+  (if more (make-bundle (cons value more)) value))
+
+(defun lisp-function (name)
+  (if (and (fboundp name) (not (macro-function name)))
+      (fdefinition name)
+      (reject-name "plan procedure or function" name
+                   (loop for procedure in (hash-table-values *procedures*)
+                         when (live-p procedure) collect (procedure-name procedure)))))

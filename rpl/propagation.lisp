@@ -1,0 +1,163 @@
+;;;; propagation.lisp -- setting and pulsing fluents, and who hears of it.
+
+(in-package :ars-magna.rpl)
+
+;;; A change is heard by the watchers of what was set, in order of arrival, and then by the
+;;; dependent fluents in order of height, so that none is computed from a mixture of old and new
+;;; values and each at most once. Watchers hear only of true values (and of errors). Whoever was
+;;; heard to be true is committed to waking: what happens to the fluent afterwards is no matter.
+
+(defstruct (agenda (:constructor make-agenda ()) (:copier nil))
+  "Derived fluents to be computed, by height: those of each height in order of arrival."
+  (heads (make-array 8 :initial-element nil) :type simple-vector)
+  (tails (make-array 8 :initial-element nil) :type simple-vector)
+  (highest 0 :type fixnum))
+
+(defvar *agenda* nil
+  "The agenda of the plan runner at work, so that a change need not make one.")
+
+(defvar *spreading* nil
+  "True while a change is being spread: networks must not set fluents.")
+
+(defun grow-agenda (agenda height)
+  (flet ((grown (vector)
+           (replace (make-array (* 2 (1+ height)) :initial-element nil) vector)))
+    (setf (agenda-heads agenda) (grown (agenda-heads agenda))
+          (agenda-tails agenda) (grown (agenda-tails agenda)))))
+
+(defun enqueue (derived agenda)
+  (let ((height (fluent-height derived)))
+    (unless (derived-queued derived)
+      (when (>= height (length (agenda-heads agenda))) (grow-agenda agenda height))
+      (setf (derived-queued derived) t
+            (derived-successor derived) nil
+            (agenda-highest agenda) (max height (agenda-highest agenda)))
+      (let ((tail (svref (agenda-tails agenda) height)))
+        (if tail
+            (setf (derived-successor tail) derived)
+            (setf (svref (agenda-heads agenda) height) derived))
+        (setf (svref (agenda-tails agenda) height) derived)))))
+
+(defun dequeue (height agenda)
+  "Return the next derived fluent of HEIGHT, or NIL."
+  (let ((derived (svref (agenda-heads agenda) height)))
+    (when derived
+      (let ((successor (shiftf (derived-successor derived) nil)))
+        (setf (svref (agenda-heads agenda) height) successor
+              (derived-queued derived) nil)
+        (unless successor (setf (svref (agenda-tails agenda) height) nil))
+        derived))))
+
+(defun announce (fluent)
+  "Tell the watchers of FLUENT, whose value has changed, if it is true now."
+  (let ((value (fluent-now fluent))
+        (trouble (and (derived-p fluent) (derived-trouble fluent))))
+    (when (or value trouble)
+      (loop for watcher = (fluent-first-watcher fluent) then next
+            while watcher
+            for next = (watcher-next watcher)
+            do (funcall (watcher-wake watcher) watcher value trouble)))))
+
+(defun enqueue-dependents (fluent agenda)
+  (loop for link = (fluent-first-link fluent) then (link-next link)
+        while link
+        do (enqueue (link-dependent link) agenda)))
+
+(defun spread-by-height (agenda)
+  "Compute all that is in AGENDA, and what depends on it, lowest first."
+  (loop for height from 1
+        while (<= height (agenda-highest agenda))
+        do (loop for derived = (dequeue height agenda)
+                 while derived
+                 do (when (and (plusp (derived-users derived)) (recompute derived))
+                      (announce derived)
+                      (enqueue-dependents derived agenda))))
+  (setf (agenda-highest agenda) 0))
+
+(defun spread-to-dependents (fluent)
+  "Compute what depends on FLUENT. As long as only one fluent does, no agenda is needed."
+  (declare #.*hot*)
+  (let ((*spreading* t))
+    (loop
+      (let ((link (fluent-first-link fluent)))
+        (cond ((null link) (return))
+              ((link-next link)
+               (let ((agenda (or *agenda* (make-agenda))))
+                 (enqueue-dependents fluent agenda)
+                 (return (spread-by-height agenda))))
+              (t (setf fluent (link-dependent link))
+                 (if (recompute fluent)
+                     (announce fluent)
+                     (return))))))))
+
+(defun spread (fluent)
+  "Let everybody concerned know that the base fluent FLUENT has changed."
+  (announce fluent)
+  (when (fluent-first-link fluent)
+    (spread-to-dependents fluent)))
+
+(defun spread-all (fluents)
+  "Let everybody concerned know that the base FLUENTS have changed, all at one instant."
+  (if (and fluents (null (rest fluents)))
+      (spread (first fluents))
+      (let ((agenda (or *agenda* (make-agenda)))
+            (*spreading* t))
+        (mapc #'announce fluents)
+        (dolist (fluent fluents) (enqueue-dependents fluent agenda))
+        (spread-by-height agenda))))
+
+(defun check-settable (operator fluent)
+  (unless (and (fluent-p fluent) (not (derived-p fluent)))
+    (error 'wrong-argument :operator operator :name 'fluent :value fluent
+                           :expected "a fluent made by create-fluent or state"))
+  (when *spreading*
+    (reject-use "A function lifted over fluents set ~A. Set fluents in plans; networks only compute."
+                fluent)))
+
+(defun set-value (fluent value)
+  "Give FLUENT the value VALUE and return it. Those who wait for FLUENT, or for a network that it
+is in, hear of it if that changed something (EQL) and the outcome is true. FLUENT must not be a
+network (manual D.2)."
+  (check-settable 'set-value fluent)
+  (unless (eql value (fluent-now fluent))
+    (setf (fluent-now fluent) value)
+    (spread fluent))
+  value)
+
+(defun (setf fluent-value) (value fluent)
+  (set-value fluent value))
+
+;;; A pulse is one instant at which the fluents are true, and then they are false.
+
+(defun pulse-all (fluents values)
+  (loop for fluent in fluents
+        for value in values
+        do (setf (fluent-now fluent) value))
+  (spread-all fluents)
+  (dolist (fluent fluents) (setf (fluent-now fluent) nil))
+  (spread-all fluents))
+
+(defun pulse (fluent &optional (value t))
+  "Let FLUENT have VALUE for an instant and be false afterwards. All who wait for it, or for a
+network that is true at that instant, will wake. Return VALUE (manual C)."
+  (check-settable 'pulse fluent)
+  (setf (fluent-now fluent) value)
+  (spread fluent)
+  (setf (fluent-now fluent) nil)
+  (spread fluent)
+  value)
+
+(defun apply-settings (settings)
+  "Apply SETTINGS at one instant: first each (:set fluent value), then each (:pulse fluent [value]),
+all together. So whoever sees the pulses sees the values that came with them."
+  (let ((changed '()) (pulsed '()) (values '()))
+    (loop for (kind fluent . more) in settings
+          do (check-settable kind fluent)
+             (ecase kind
+               (:set (unless (eql (first more) (fluent-now fluent))
+                       (setf (fluent-now fluent) (first more))
+                       (pushnew fluent changed)))
+               (:pulse (push fluent pulsed)
+                (push (if more (first more) t) values))))
+    (when changed (spread-all (nreverse changed)))
+    (when pulsed (pulse-all (nreverse pulsed) (nreverse values)))))

@@ -1,0 +1,113 @@
+;;;; scope.lisp -- what is visible at a place in a plan's text.
+
+(in-package :ars-magna.rpl)
+
+;;; Variables that a plan binds live in environments, vectors linked by element 0. A leaf is a Lisp
+;;; function of the environment at its place; within it each visible variable is a symbol macro for
+;;; its element. Local functions live in environments too.
+
+(defstruct (scope (:copier copy-scope))
+  "What is visible at a place in a plan. LAYERS tell, innermost first, how leaves get to see it.
+The others map names to the variables, in the code that builds the plan, that hold their nodes."
+  (environment nil)
+  (level 0 :type fixnum)
+  (layers '() :type list)
+  (blocks '() :type list)
+  (tags '() :type list)
+  (procedures '() :type list)
+  (retry nil :type symbol)
+  (task-tags '() :type list)
+  (several nil :type boolean))
+
+(defun inner-scope (scope &rest changes &key environment &allow-other-keys)
+  "Return a copy of SCOPE with CHANGES, slots and values; ENVIRONMENT is a list of arguments for
+augmenting the macro environment."
+  (let ((inner (copy-scope scope)))
+    (loop for (slot value) on changes by #'cddr
+          unless (eq slot :environment)
+            do (setf (slot-value inner (find-symbol (symbol-name slot) :ars-magna.rpl)) value))
+    (when environment
+      (setf (scope-environment inner)
+            (apply #'sb-cltl2:augment-environment (scope-environment scope) environment)))
+    inner))
+
+(defun single-scope (scope)
+  "Return SCOPE for an expression of which only one value matters."
+  (if (scope-several scope) (inner-scope scope :several nil) scope))
+
+(defun several-scope (scope)
+  "Return SCOPE for an expression all of whose values matter."
+  (inner-scope scope :several t))
+
+(defun variable-scope (scope variables)
+  "Return SCOPE with VARIABLES bound in an environment of their own."
+  (inner-scope scope
+               :level (1+ (scope-level scope))
+               :layers (cons (list :variables (1+ (scope-level scope)) variables)
+                             (scope-layers scope))
+               :environment (list :variable (remove-duplicates variables))))
+
+(defun function-scope (scope names)
+  "Return SCOPE with the local functions NAMES held in an environment of their own."
+  (inner-scope scope
+               :level (1+ (scope-level scope))
+               :layers (cons (list :functions (1+ (scope-level scope)) names)
+                             (scope-layers scope))
+               :environment (list :function names)))
+
+(defun wrapped-scope (scope wrapping environment)
+  "Return SCOPE with WRAPPING, a form to be completed by a body, around leaves."
+  (inner-scope scope
+               :layers (cons (list :wrapping wrapping) (scope-layers scope))
+               :environment environment))
+
+(defun special-variable-p (variable scope)
+  (eq :special (sb-cltl2:variable-information variable (scope-environment scope))))
+
+;;; How a leaf sees its scope.
+
+(defun element-form (scope level index)
+  "Return the form, within a leaf of SCOPE, for element INDEX of the environment made at LEVEL."
+  `(svref ,(loop with form = '%environment
+                 repeat (- (scope-level scope) level)
+                 do (setf form `(the simple-vector (svref ,form 0)))
+                 finally (return form))
+          ,index))
+
+(defun environment-form (scope level)
+  "Return the form, within a leaf of SCOPE, for the environment made at LEVEL."
+  (second (element-form scope level 0)))
+
+(defun layer-wrapping (layer scope)
+  "Return the form, to be completed by a body, that makes LAYER visible in a leaf of SCOPE."
+  (destructuring-bind (kind &rest parts) layer
+    (ecase kind
+      (:variables
+       (destructuring-bind (level variables) parts
+         `(symbol-macrolet
+              ,(remove-duplicates
+                (loop for variable in variables
+                      for index from 1
+                      collect (list variable (element-form scope level index)))
+                :key #'first))))
+      (:functions
+       (destructuring-bind (level names) parts
+         `(flet ,(loop for name in names
+                       for index from 1
+                       collect `(,name (&rest arguments)
+                                  (declare (dynamic-extent arguments))
+                                  (apply (the function ,(element-form scope level index))
+                                         arguments)))
+            (declare (ignorable ,@(loop for name in names collect `(function ,name)))))))
+      (:wrapping (first parts)))))
+
+(defun wrap-for-leaf (form scope)
+  "Return FORM with everything that is visible in SCOPE around it."
+  (dolist (layer (scope-layers scope) form)
+    (setf form `(,@(layer-wrapping layer scope) ,form))))
+
+(defun leaf-lambda (form scope &rest parameters)
+  "Return the lambda expression for FORM in SCOPE: it takes the environment and PARAMETERS."
+  `(lambda (%environment ,@parameters)
+     (declare (type simple-vector %environment) (ignorable %environment))
+     ,(wrap-for-leaf form scope)))
