@@ -16,7 +16,7 @@
 
 (defun random-step (length)
   "Return a step of LENGTH metres in any direction, as a list (dx dy)."
-  (let ((angle (ars-magna.base:roll-between 0 2pi (user-dice))))
+  (let ((angle (roll-between 0 2pi (user-dice))))
     (list (* length (cos angle)) (* length (sin angle)))))
 
 (defun scale-step (factor step)
@@ -41,12 +41,12 @@ moved."
           (run-kicker self)))))
 
 (defkicker blow-about (sheet) (:prob .002)
-  (take-step sheet (random-step (ars-magna.base:roll-between .1 .8 (user-dice)))))
+  (take-step sheet (random-step (roll-between .1 .8 (user-dice)))))
 
 (defkicker be-borrowed (thing) (:prob .0005 :test (and (eq :floor (thing-location thing))
                                                        (get-attribute thing :haunts)))
   ;; Somebody uses what lies about and leaves it at one of its :haunts, a list of points (x y).
-  (move-thing thing (ars-magna.base:roll-element (get-attribute thing :haunts) (user-dice))))
+  (move-thing thing (roll-element (get-attribute thing :haunts) (user-dice))))
 
 (defkicker change-light (lamp) (:prob .02)
   (set-attribute lamp :color
@@ -60,7 +60,7 @@ moved."
 (defkicker wander-about (walker) (:prob .03)
   ;; Walks a few metres straight on and stands still again.
   (let ((step (or (get-attribute walker :heading) (random-step .4))))
-    (if (and (take-step walker step) (ars-magna.base:chance .9 (user-dice)))
+    (if (and (take-step walker step) (chance .9 (user-dice)))
         (progn
           (set-attribute walker :heading step)
           (run-kicker self))
