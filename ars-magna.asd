@@ -4,7 +4,7 @@
   :description "An abstract robot simulator for people who build reactive planners."
   :version "1.0.0"
   :license "MIT"
-  :depends-on ("alexandria" "bordeaux-threads" "named-readtables")
+  :depends-on ("alexandria" "bordeaux-threads" "named-readtables" "sb-cltl2")
   :serial t
   :components
   ((:module "src/base" :serial t
@@ -35,16 +35,53 @@
     :components ((:file "package") (:file "parts") (:file "odometer") (:file "motion")
                  (:file "designator") (:file "place-sense") (:file "body")
                  (:file "simulation") (:file "references") (:file "sight") (:file "tracks")
-                 (:file "state") (:file "replay")))
+                 (:file "inside") (:file "state") (:file "replay")))
    (:module "src/command" :serial t
     :components ((:file "package") (:file "argument-types") (:file "command")
                  (:file "operation") (:file "define-command") (:file "turning")
-                 (:file "places") (:file "driving") (:file "following")))
+                 (:file "places") (:file "driving") (:file "following")
+                 (:file "handling") (:file "hands") (:file "inserting") (:file "bins")
+                 (:file "patterns") (:file "manipulations") (:file "manipulating")))
    (:module "src/display" :serial t
     :components ((:file "package") (:file "text-map")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "ars")))
    (:module "worlds" :serial t
     :components ((:file "prototypes") (:file "kickers") (:file "watson") (:file "office")
-                 (:file "hall") (:file "tiny"))))
+                 (:file "hall") (:file "tiny")))
+   (:module "rpl" :serial t
+    :components ((:file "package") (:file "ring") (:file "fluent") (:file "network")
+                 (:file "propagation") (:file "operators") (:file "timer") (:file "failure")
+                 (:file "task") (:file "trace") (:file "runner") (:file "machine")
+                 (:file "source") (:file "procedure") (:file "scope") (:file "suspension")
+                 (:file "leaf") (:file "compiler") (:file "steps") (:file "binding")
+                 (:file "leaving") (:file "branching") (:file "repeating") (:file "tags")
+                 (:file "failing") (:file "waiting") (:file "trying") (:file "parallel")
+                 (:file "policy") (:file "ordering") (:file "valve") (:file "local-functions")
+                 (:file "definitions") (:file "report") (:file "engine") (:file "alone"))))
   :in-order-to ((test-op (test-op "ars-magna/tests"))))
+
+(defsystem "ars-magna/cli"
+  :description "The prompt Robot>."
+  :depends-on ("ars-magna")
+  :serial t
+  :components
+  ((:module "cli" :serial t
+    :components ((:file "package") (:file "console") (:file "session") (:file "line")
+                 (:file "arguments") (:file "layout") (:file "errands") (:file "robot-lines")
+                 (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
+                 (:file "status-lines") (:file "running-lines") (:file "worlds")
+                 (:file "world-lines") (:file "prompt") (:file "options") (:file "main")))))
+
+(defsystem "ars-magna/tests"
+  :description "All that ARS MAGNA claims."
+  :depends-on ("ars-magna" "ars-magna/cli" "fiveam")
+  :serial t
+  :components
+  ((:module "tests" :serial t
+    :components ((:file "package") (:file "geometry") (:file "nisp") (:file "world")
+                 (:file "world-places") (:file "world-things") (:file "base") (:file "time")
+                 (:file "main"))))
+  :perform (test-op (operation system)
+             (declare (ignore operation system))
+             (symbol-call :ars-magna.tests :run-all)))

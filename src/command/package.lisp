@@ -6,6 +6,7 @@
         :ars-magna.robot)
   (:shadowing-import-from :cl #:equal)
   (:shadowing-import-from :ars-magna.world #:map)
+  (:import-from :ars-magna.nisp #:matchvar-p #:matchvar-name)
   ;; command
   (:export #:command #:command-name #:command-prompt-name #:command-family #:command-section
            #:command-resource #:command-parameters #:command-results #:command-errors
@@ -22,4 +23,11 @@
   ;; moving
   (:export #:robot-set-speed #:robot-set-turn-angle #:robot-turn #:robot-about-face
            #:robot-turn-left #:robot-turn-right #:robot-align-place #:robot-turn-corner
-           #:robot-go-forward #:robot-goto-wall #:robot-follow-wall #:robot-stop #:robot-place))
+           #:robot-go-forward #:robot-goto-wall #:robot-follow-wall #:robot-stop #:robot-place)
+  ;; handling
+  (:export #:hand-grasp-desig #:hand-ungrasp #:hand-grasp-check #:hand-track #:hand-insert
+           #:hand-insert-bin #:hand-remove #:camera-insert #:camera-remove #:storage-bin-open
+           #:storage-bin-close)
+  ;; manipulations
+  (:export #:defmanipulation #:define-manipulation #:manipulate #:run-manipulation
+           #:all-manipulations))

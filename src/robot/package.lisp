@@ -39,6 +39,9 @@ of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
   (:export #:line-clear-p #:in-sight-p
            #:camera-tracks #:tracking-p #:tracking-cameras #:tracked-p #:end-track
            #:drop-designator #:part-moved #:add-designator)
+  ;; inside
+  (:export #:in-location #:outer-location #:inside-p #:part-inside #:part-reaches-p
+           #:part-reaches-bin-p #:take-up #:set-down #:move-part #:space-around #:settle-parts)
   ;; places
   (:export #:robot-place-here #:sense-place-type #:canonical-directions #:nearest-direction)
   ;; body

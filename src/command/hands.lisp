@@ -1,0 +1,137 @@
+;;;; hands.lisp -- grasping, and keeping track of the grip (manual 3.6).
+
+(in-package :ars-magna.command)
+
+;;; A grip is only lost by what the world does to the thing held: kickers, manipulations, another
+;;; hand, destruction.
+
+;;; Grasping.
+
+(defun same-location-p (hand camera)
+  (and (eq (hand-robot hand) (camera-robot camera))
+       (eq (hand-location hand) (camera-location camera))))
+
+(defun grasp-obstacle (hand camera designator)
+  "Return the error code that keeps HAND from trying to grasp, or NIL."
+  (cond ((hand-holding hand) :hand-grasping)
+        ((not (same-location-p hand camera)) :different-location)
+        ((not (own-designator-p hand designator)) :bad-designator)
+        ((eq (designator-type designator) :non-local) :non-local-grasp)
+        ((not (tracking-p camera designator)) :not-tracked)))
+
+(defun grasp (hand thing dice)
+  "Let HAND grasp THING, NIL for one that only seems to be there. Return an error code or NIL."
+  (cond ((or (null thing) (chance prob-miss-grasp* dice)) :missed-grasp)
+        ((> (thing-total-weight thing) (hand-strength hand)) :insufficient-strength)
+        (t (take-up hand thing)
+           nil)))
+
+(defun try-grasp (hand designator dice)
+  "Let HAND grasp what DESIGNATOR denotes. Return an error code or NIL."
+  (let ((thing (designator-thing designator)))
+    (if (and thing (not (part-reaches-p hand thing)))
+        :missed-grasp
+        (prog1 (grasp hand thing dice)
+          (perhaps-lose-designators designator prob-grasp-lose-desig* dice :silently t)))))
+
+(defun grasp-location-text (operation)
+  (format nil "~A not in same location as ~A"
+          (operation-resource operation) (first (operation-arguments operation))))
+
+(defun hand-text (control)
+  "Return a function that makes an error's text of CONTROL and the hand."
+  (lambda (operation) (format nil control (operation-resource operation))))
+
+(define-command hand-grasp-desig (operation (hand hand)
+                                  (camera camera "a camera that tracks the designator")
+                                  (designator designator "a local designator"))
+    ((designator "the designator"))
+    ((:family :handling) (:section "3.6") (:prompt "HAND-GRASP") (:prefix "hand-grasp")
+     (:delay (+ hand-move-delay* hand-grasp-delay*))
+     (:errors (:hand-grasping (hand-text "~A is already holding something"))
+              (:different-location #'grasp-location-text)
+              (:bad-designator "Designator is not valid")
+              (:non-local-grasp "Designator is not local")
+              (:not-tracked (lambda (operation)
+                              (format nil "~A is not tracking ~A"
+                                      (first (operation-arguments operation))
+                                      (second (operation-arguments operation)))))
+              (:missed-grasp (hand-text "~A missed"))
+              (:insufficient-strength (hand-text "~A is not strong enough")))
+     (:report (designator)
+              (format nil "~A grasped ~A" (operation-resource operation)
+                      (hand-holding (operation-resource operation)))))
+    "Let HAND grasp what a local designator denotes. Hits or misses, it may bump that, which loses
+designators silently."
+  (let ((obstacle (grasp-obstacle hand camera designator)))
+    (finish operation
+            (or obstacle (try-grasp hand designator (handling-dice hand)))
+            designator)))
+
+(defun dropped-text (hand thing)
+  (format nil "~A dropped ~A~@[ into ~A~]" hand thing
+          (and (hand-location hand) (location-name (hand-location hand)))))
+
+(define-command hand-ungrasp (operation (hand hand))
+    ()
+    ((:family :handling) (:section "3.6")
+     (:errors (:not-grasping (hand-text "~A is not holding anything"))))
+    "Let HAND drop what it holds: into what the hand is inside of, or where the robot stands."
+  (let ((thing (hand-holding hand)))
+    (cond (thing (set-down hand thing)
+                 (succeed-saying operation (dropped-text hand thing)))
+          (t (fail-with operation :not-grasping)))))
+
+;;; Feeling.
+
+(defun answer (operation code text)
+  "End OPERATION with CODE, which answers a question and is no failure; TEXT says it."
+  (message-set (command-prefix (operation-command operation)) ": " text)
+  (setf (operation-finished-p operation) t)
+  (notify operation code '()))
+
+(define-command hand-grasp-check (operation (hand hand))
+    ()
+    ((:family :handling) (:section "3.6")
+     (:errors (:grasping (hand-text "~A is holding something"))
+              (:not-grasping (hand-text "~A is not holding anything"))))
+    "Feel whether HAND holds something. One of the two error codes is the answer."
+  (if (hand-holding hand)
+      (answer operation :grasping (format nil "~A is holding something" hand))
+      (answer operation :not-grasping (format nil "~A is not holding anything" hand))))
+
+(defconstant +watch-period+ 1000
+  "How long the event of a watch waits, in ticks, before it is queued anew.")
+
+(defun watch-grip (operation hand)
+  "Let OPERATION occupy HAND until it no longer holds what it holds now."
+  (let ((thing (hand-holding hand)))
+    (flet ((watch (operation)
+             (cond ((not (eq thing (hand-holding hand))) (fail-with operation :grasp-lost))
+                   ((not (event-pending-p operation)) (go-on operation (operation-step operation)
+                                                             +watch-period+)))))
+      (go-on operation #'watch +watch-period+))))
+
+(define-command hand-track (operation (hand hand))
+    ()
+    ((:family :handling) (:section "3.6")
+     (:errors (:grasp-lost (hand-text "~A lost its grip"))
+              (:not-grasping (hand-text "~A is not holding anything"))))
+    "Watch the grip of HAND until that is lost, or any other command to HAND interrupts."
+  (if (hand-holding hand)
+      (watch-grip operation hand)
+      (fail-with operation :not-grasping)))
+
+(defun check-grip (hand)
+  (let ((operation (resource-event hand)))
+    (when (and (operation-p operation)
+               (eq (operation-command operation) (command-of 'hand-track)))
+      (run-operation operation))))
+
+(defun check-grips (simulation)
+  "Let the watches of grips in SIMULATION see whether they still hold."
+  (dolist (robot (simulation-robots simulation))
+    (loop for hand across (robot-hands robot)
+          when (resource-event hand) do (check-grip hand))))
+
+(setf *tick-phases* (append *tick-phases* (list #'check-grips)))

@@ -1,0 +1,176 @@
+;;;; inserting.lisp -- hands and cameras into containers and bins, and out (manual 3.4.3, 3.6).
+
+(in-package :ars-magna.command)
+
+;;; Insertion goes one level in, removal one level out. The robot's bins, and what stands in the
+;;; open, are reached from the open only.
+
+(defun inserted-text (part destination)
+  (format nil "~A inserted into ~A" part (destination-name destination)))
+
+(defun bump-text (operation)
+  (format nil "~A bumped ~A" (operation-resource operation)
+          (destination-name (first (operation-arguments operation)))))
+
+(defun destination-text (control)
+  "Return a function that makes an error's text of CONTROL and the destination."
+  (lambda (operation)
+    (format nil control (destination-name (first (operation-arguments operation))))))
+
+;;; Hands.
+
+(defun held-inside-p (hand container)
+  "True if CONTAINER is what HAND holds, or in it."
+  (loop for outer = container then (thing-location outer)
+        while (thing-p outer)
+        thereis (eq outer (hand-holding hand))))
+
+(defun held-size (hand)
+  (if (hand-holding hand) (thing-size (hand-holding hand)) 0d0))
+
+(defun hand-obstacle (hand container)
+  "Return the error code that keeps HAND out of CONTAINER, a thing or bin, or NIL."
+  (cond ((location-closed-p container) :bin-closed)
+        ((not (has-room-p container (held-size hand))) :insufficient-capacity)
+        ((held-inside-p hand container) :holding-thing)
+        ((not (reaches-container-p hand container)) :different-location)))
+
+(defun try-hand-insertion (hand container)
+  "Move HAND into CONTAINER, NIL for one that is not there. Return an error code or NIL."
+  (cond ((and container (hand-obstacle hand container)))
+        ((or (null container) (chance hand-insert-miss-prob* (handling-dice hand))) :hand-bump)
+        (t (move-part hand container)
+           nil)))
+
+(defun insert-hand (operation hand destination)
+  "Insert HAND into DESTINATION, a designator that is valid and local or a bin."
+  (let ((code (try-hand-insertion hand (destination-container destination))))
+    (when (and (eq code :hand-bump) (designator-p destination))
+      (perhaps-lose-designators destination hand-insert-lose-desig-prob* (handling-dice hand)))
+    (finish operation code destination)))
+
+(macrolet
+    ((define-hand-insertion (name (variable type text) result options sentence &body body)
+       `(define-command ,name (operation (hand hand) (,variable ,type ,text))
+            (,result)
+            ((:family :handling) (:section "3.6") (:prefix "hand-insert")
+             (:delay hand-move-delay*)
+             (:errors (:bin-closed (destination-text "~A is closed"))
+                      (:insufficient-capacity
+                       (lambda (operation)
+                         (format nil "No room for ~A in ~A" (operation-resource operation)
+                                 (destination-name (first (operation-arguments operation))))))
+                      (:holding-thing (hand-text "~A is holding that"))
+                      (:hand-bump #'bump-text)
+                      (:different-location
+                       (lambda (operation)
+                         (format nil "~A not in same location as ~A"
+                                 (operation-resource operation)
+                                 (destination-name (first (operation-arguments operation))))))
+                      ,@(first options))
+             ,@(rest options)
+             (:report (,variable) (inserted-text (operation-resource operation) ,variable)))
+            ,sentence
+          ,@body)))
+  (define-hand-insertion hand-insert
+      (destination destination "a local designator of a container, or a storage bin")
+      (destination "the designator or bin")
+      (((:bad-designator "Designator is not valid")
+        (:non-local-designator "Designator is not local"))
+       (:prompt "HAND-INSERT-DESIG"))
+    "Insert HAND, with what it holds, into a container."
+    (cond ((storage-bin-p destination) (insert-hand operation hand destination))
+          ((not (own-designator-p hand destination))
+           (fail-with operation :bad-designator destination))
+          ((eq (designator-type destination) :non-local)
+           (fail-with operation :non-local-designator destination))
+          (t (insert-hand operation hand destination))))
+  (define-hand-insertion hand-insert-bin
+      (storage-bin storage-bin "a storage bin of the same robot")
+      (storage-bin "the storage bin")
+      (())
+    "Insert HAND, with what it holds, into a storage bin."
+    (insert-hand operation hand storage-bin)))
+
+;;; Out again.
+
+(defun take-out (operation part)
+  "Take PART one level out of what it is inside of and end OPERATION."
+  (let ((location (part-location part)))
+    (cond (location
+           (move-part part (space-around part))
+           (succeed-saying operation
+                           (format nil "~A removed from ~A" part (location-name location))))
+          (t (fail-with operation :not-inside)))))
+
+(define-command hand-remove (operation (hand hand))
+    ()
+    ((:family :handling) (:section "3.6") (:delay hand-move-delay*)
+     (:errors (:not-inside (hand-text "~A is not inside anything"))))
+    "Take HAND, with what it holds, out of the container that it is inside of, one level."
+  (take-out operation hand))
+
+(define-command camera-remove (operation (camera camera))
+    ()
+    ((:family :handling) (:section "3.4.3") (:delay camera-move-delay*)
+     (:errors (:not-inside (hand-text "~A is not inside anything"))))
+    "Take CAMERA out of the container that it is inside of, one level. It loses its track."
+  (take-out operation camera))
+
+;;; Cameras.
+
+(defun camera-obstacle (camera destination container)
+  "Return the error code that keeps CAMERA from trying to enter CONTAINER, NIL if there is none."
+  (cond ((and container (location-closed-p container)) :bin-closed)
+        ((storage-bin-p destination) nil)
+        ((null (camera-tracks camera)) :not-tracking)
+        ((not (tracking-p camera destination)) :not-tracking-destination)))
+
+(defun camera-misses-p (camera destination container)
+  "True if CAMERA, on its way into DESTINATION, bumps it, or is where there is nothing. What it
+cannot reach it cannot bump."
+  (cond ((null container) (eq (designator-type destination) :local))
+        ((reaches-container-p camera container)
+         (chance camera-insert-miss-prob* (handling-dice camera)))))
+
+(defun try-camera-insertion (camera destination container)
+  "Move CAMERA into CONTAINER, which DESTINATION stands for. Return an error code or NIL."
+  (cond ((camera-obstacle camera destination container))
+        ((camera-misses-p camera destination container) :camera-bump)
+        ((and container (not (has-room-p container 0d0))) :insufficient-capacity)
+        ((and (designator-p destination) (eq (designator-type destination) :non-local))
+         :non-local-designator)
+        ((not (reaches-container-p camera container)) :local-not-local)
+        (t (move-part camera container)
+           nil)))
+
+(defun settle-designator (camera designator code)
+  "Drop DESIGNATOR if the insertion of CAMERA, which ended with CODE, loses it."
+  (when (or (eq code :camera-bump)
+            (and (null code) (chance camera-insert-lose-desig-prob* (handling-dice camera))))
+    (drop-designator designator)))
+
+(define-command camera-insert (operation (camera camera)
+                               (destination destination
+                                "a local designator that the camera tracks, or a storage bin"))
+    ((destination "the designator or bin"))
+    ((:family :handling) (:section "3.4.3") (:prompt "CAM-INSERT-DESIG")
+     (:delay camera-move-delay*)
+     (:errors (:bin-closed (destination-text "~A is closed"))
+              (:not-tracking (hand-text "~A is not tracking anything"))
+              (:not-tracking-destination
+               (lambda (operation)
+                 (format nil "~A is not tracking ~A" (operation-resource operation)
+                         (first (operation-arguments operation)))))
+              (:camera-bump #'bump-text)
+              (:insufficient-capacity (destination-text "No room for a camera in ~A"))
+              (:non-local-designator "Designator is not local")
+              (:local-not-local
+               (lambda (operation)
+                 (format nil "~A not in same location as ~A" (operation-resource operation)
+                         (destination-name (first (operation-arguments operation)))))))
+     (:report (destination) (inserted-text (operation-resource operation) destination)))
+    "Insert CAMERA into a container, to look at what is in there. It loses its track."
+  (let ((code (try-camera-insertion camera destination (destination-container destination))))
+    (when (designator-p destination) (settle-designator camera destination code))
+    (finish operation code destination)))

@@ -1,0 +1,179 @@
+;;;; manipulating.lisp -- carrying out manipulations (manual 5.5.2).
+
+(in-package :ars-magna.command)
+
+;;; What is given for an object is a designator. One that is invalid, false, non-local, or of
+;;; another robot designates nothing that could be manipulated.
+
+(defun designated-thing (designator resource)
+  "Return the thing that DESIGNATOR of the robot of RESOURCE denotes and that is local, or NIL."
+  (and (own-designator-p resource designator)
+       (eq (designator-type designator) :local)
+       (designator-local-p* designator)
+       (designator-thing designator)))
+
+;;; Which methods there are for some arguments.
+
+(defun fits-type-p (value type)
+  "True if VALUE can be of the type called TYPE. Types that commands do not know fit all."
+  (let ((known (find type *argument-types* :key #'argument-type-name :test #'same-name-p)))
+    (or (null type) (null known) (funcall (argument-type-predicate known) value))))
+
+(defun resource-p* (object)
+  (or (robot-p object) (part-p object)))
+
+(defun method-takes-p (method arguments)
+  "True if ARGUMENTS are of the number and types that METHOD wants."
+  (let* ((parameters (method-parameters method))
+         (count (length (parameter-list-objects parameters)))
+         (typed (cons (parameter-list-by parameters) (parameter-list-others parameters))))
+    (and (= (length arguments) (+ count (length typed)))
+         (every #'designator-p (subseq arguments 0 count))
+         (resource-p* (nth count arguments))
+         (loop for value in (nthcdr count arguments)
+               for (nil type) in typed
+               always (fits-type-p value type)))))
+
+(defun method-usage (method)
+  (format nil "~(~A~)" (parameter-variables (method-parameters method))))
+
+(defun methods-for (manipulation arguments)
+  "Return the methods of MANIPULATION that take ARGUMENTS. Signals WRONG-ARGUMENT if none does."
+  (or (remove-if-not (lambda (method) (method-takes-p method arguments))
+                     (manipulation-methods manipulation))
+      (error 'wrong-argument
+             :operator (manipulation-name manipulation) :name "argument list" :value arguments
+             :expected (format nil "~{~A~^ or ~}, objects as designators and the resource as a ~
+                                    robot or part, and then a continuation"
+                               (mapcar #'method-usage (manipulation-methods manipulation))))))
+
+(defun method-resource (method arguments)
+  (nth (length (parameter-list-objects (method-parameters method))) arguments))
+
+;;; Which method is for some things.
+
+(defun method-things (method arguments)
+  "Return the things that ARGUMENTS designate for METHOD, NIL for each that is none."
+  (loop with resource = (method-resource method arguments)
+        for nil in (parameter-list-objects (method-parameters method))
+        for designator in arguments
+        collect (designated-thing designator resource)))
+
+(defun method-applies-p (method arguments)
+  (let ((things (method-things method arguments)))
+    (and (notany #'null things)
+         (patterns-fit-p (parameter-list-patterns (method-parameters method)) things))))
+
+(defun applicable-method (manipulation arguments resource)
+  "Return the first method of MANIPULATION that is for ARGUMENTS, with RESOURCE, now, or NIL."
+  (find-if (lambda (method)
+             (and (method-takes-p method arguments)
+                  (eq resource (method-resource method arguments))
+                  (method-applies-p method arguments)))
+           (manipulation-methods manipulation)))
+
+;;; In its tick.
+
+(defun run-body (operation method)
+  "Run the body of METHOD. Return the values it returns as a list, (:FAILED) after an error."
+  (let* ((arguments (operation-arguments operation))
+         (things (method-things method arguments))
+         (results '(:failed))
+         (*world* (simulation-world (operation-simulation operation))))
+    (call-user-code (lambda ()
+                      (setf results
+                            (multiple-value-list
+                             (apply (method-body method)
+                                    (append things (nthcdr (length things) arguments))))))
+                    (list "manipulation " (command-prefix (operation-command operation))))
+    results))
+
+(defun perform (operation method)
+  "Do what METHOD does, if that is still possible and succeeds, and end OPERATION."
+  (let ((dice (world-dice (simulation-world (operation-simulation operation)) :manipulations)))
+    (if (and (method-applies-p method (operation-arguments operation))
+             (chance (method-success method) dice))
+        (destructuring-bind (&optional code value &rest more) (run-body operation method)
+          (declare (ignore more))
+          (finish operation code value))
+        (fail-with operation :failed))))
+
+(defun begin-manipulation (operation resource &rest arguments)
+  "Choose the method for ARGUMENTS, and let it be performed when its delay has passed."
+  (let ((method (applicable-method
+                 (find-manipulation (command-name (operation-command operation)))
+                 arguments resource)))
+    (cond ((null method) (fail-with operation :failed))
+          ((<= (method-delay method) 1) (perform operation method))
+          (t (go-on operation (lambda (operation) (perform operation method))
+                    (1- (method-delay method)))))))
+
+;;; Issuing.
+
+(defun objects-text (operation)
+  (format nil "~{~A~^, ~} by ~A"
+          (loop for argument in (operation-arguments operation)
+                when (designator-p argument) collect (destination-name argument))
+          (operation-resource operation)))
+
+(defun make-manipulation-command (name)
+  "Return the command by which the manipulation NAME is carried out."
+  (let ((prefix (string-downcase name)))
+    (make-command
+     :name name :prompt-name (string-upcase name) :prefix prefix
+     :origin (format nil "the continuation of manipulation ~A" prefix)
+     :family :manipulating :section "5.5"
+     :documentation (format nil "Carry out the manipulation ~A." name)
+     :resource (make-spec 'by t "the robot or part that does it")
+     :results (list (make-spec 'value t "what the manipulation returns"))
+     :errors (list (make-error-code :failed (format nil "~A failed" prefix)))
+     :delay (constantly 1)
+     :report (lambda (operation value) (declare (ignore value)) (objects-text operation))
+     :body #'begin-manipulation)))
+
+(defun command-for (manipulation)
+  (or (manipulation-command manipulation)
+      (setf (manipulation-command manipulation)
+            (make-manipulation-command (manipulation-name manipulation)))))
+
+(defun value-continuation (continuation)
+  "Return a function that calls CONTINUATION with error code and value, without the resource."
+  (and continuation
+       (lambda (code resource value)
+         (declare (ignore resource))
+         (funcall continuation code value))))
+
+(defun issue-manipulation (manipulation resource arguments continuation)
+  "Post MANIPULATION on RESOURCE with ARGUMENTS, which fit one of its methods."
+  (let* ((simulation (resource-simulation resource))
+         (operation (make-operation (command-for manipulation) resource arguments
+                                    (value-continuation continuation) simulation)))
+    (post simulation
+          (lambda ()
+            (apply #'note simulation :manipulate
+                   (string (manipulation-name manipulation)) arguments)
+            (begin operation)))))
+
+(defun run-manipulation (name &rest arguments)
+  "Carry out the manipulation NAME, a symbol, with ARGUMENTS, of which the last is the continuation
+(NIL for none) and the others are as one of its methods wants them: designators for the objects,
+then its resource, a robot or part, and the rest (manual 5.5.2). Returns nothing; takes effect in
+the next tick. The continuation gets an error code or NIL, and a value.
+Error codes: :FAILED if no method is for the things designated, or by chance; :INTERRUPT; the
+manipulation's own. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method takes ARGUMENTS."
+  (let* ((manipulation (find-manipulation name))
+         (continuation (first (last arguments)))
+         (arguments (butlast arguments))
+         (method (first (methods-for manipulation arguments))))
+    (check-command-argument name 'continuation continuation 'continuation)
+    (issue-manipulation manipulation (method-resource method arguments) arguments continuation)
+    (values)))
+
+(defmacro manipulate (name &rest arguments)
+  "Do as RUN-MANIPULATION does with the manipulation NAME, which is not evaluated, such as
+(manipulate lock box-designator key-designator hand continuation) (manual 5.5.2)."
+  `(run-manipulation ',name ,@arguments))
+
+(defmethod apply-entry ((operation (eql :manipulate)) arguments simulation)
+  (declare (ignore simulation))
+  (apply #'run-manipulation (append arguments '(nil))))

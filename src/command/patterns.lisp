@@ -1,0 +1,101 @@
+;;;; patterns.lisp -- which things a manipulation is for: descriptors with matchvars (manual 5.5.1).
+
+(in-package :ars-magna.command)
+
+;;; A pattern is a list of clauses (key value threshold). It looks at what a thing really is, with
+;;; no noise, and with no threshold but one that is given. A list of values means a range for a
+;;; numeric attribute and alternatives for any other; of an attribute that nobody has defined,
+;;; two numbers mean a range. NIL means false or unspecified. A matchvar is bound where
+;;; it comes first and must meet the same value wherever it comes again, in this pattern or a later.
+
+(defun proper-list-p (object)
+  (and (listp object) (ignore-errors (list-length object)) (null (cdr (last object)))))
+
+(defun clause-p (clause)
+  (and (proper-list-p clause)
+       (<= 2 (length clause) 3)
+       (first clause) (symbolp (first clause))
+       (typep (third clause) '(or null (real 0)))))
+
+(defun parse-pattern (definition specification)
+  "Return the pattern that SPECIFICATION, a list of lists (attribute value [threshold]), stands
+for. Signals MALFORMED-DEFINITION about DEFINITION."
+  (unless (and (proper-list-p specification) (every #'clause-p specification))
+    (reject-clause definition
+                   (if (proper-list-p specification)
+                       (find-if-not #'clause-p specification)
+                       specification)
+                   "a descriptor ((attribute value [threshold]) ...) after each object's hyphen"))
+  (loop for (name value threshold) in specification
+        collect (list (attribute-key name) value (or threshold 0))))
+
+;;; Values.
+
+(defun within-p (number low high threshold)
+  (<= (- low threshold) number (+ high threshold)))
+
+(defun range-p (value)
+  (and (proper-list-p value) (= 2 (length value)) (every #'realp value)))
+
+(defun alternatives-p (key value)
+  "True if VALUE, a list, means for the attribute KEY that any of its elements will do."
+  (let ((attribute (find-attribute key)))
+    (if attribute
+        (or (eq :discrete (attribute-kind attribute)) (not (range-p value)))
+        (not (range-p value)))))
+
+(defun comparable-value (key value wanted)
+  "Return what of VALUE, of the attribute KEY, is to be compared with WANTED: of a substance, its
+parameter or its type."
+  (cond ((not (eq key :substance)) value)
+        ((or (realp wanted) (range-p wanted)) (substance-value-parameter value))
+        (t (substance-value-type value))))
+
+(defun value-fits-p (key wanted threshold value)
+  "True if VALUE, which a thing has for KEY, is as WANTED."
+  (cond ((or (null wanted) (null value)) (and (listp wanted) (member value (or wanted '(nil)))))
+        ((and (realp wanted) (realp value)) (within-p value wanted wanted threshold))
+        ((atom wanted) (value-equal wanted value))
+        ((alternatives-p key wanted)
+         (or (member value wanted :test #'value-equal) (value-equal wanted value)))
+        ((realp value) (within-p value (first wanted) (second wanted) threshold))))
+
+;;; Matchvars.
+
+(defun has-value-p (key value)
+  "True if VALUE is a value of the attribute KEY; NIL is one of those that can be true or false."
+  (or value
+      (let ((attribute (find-attribute key)))
+        (and attribute (member nil (attribute-domain attribute))))))
+
+(defun bind-matchvar (matchvar key value bindings)
+  "True if MATCHVAR, for KEY, can be VALUE; BINDINGS with what it is bound to as second value."
+  (let ((binding (assoc matchvar bindings)))
+    (cond ((not (has-value-p key value)) (values nil bindings))
+          ((null (matchvar-name matchvar)) (values t bindings))
+          (binding (values (value-equal value (cdr binding)) bindings))
+          (t (values t (acons matchvar value bindings))))))
+
+(defun clause-fits (clause thing bindings)
+  (destructuring-bind (key wanted threshold) clause
+    (let ((value (get-attribute thing key)))
+      (if (matchvar-p wanted)
+          (bind-matchvar wanted key value bindings)
+          (values (value-fits-p key wanted threshold (comparable-value key value wanted))
+                  bindings)))))
+
+(defun pattern-fits (pattern thing bindings)
+  "True if THING is as PATTERN says where BINDINGS hold; the bindings after it as second value."
+  (dolist (clause pattern (values t bindings))
+    (multiple-value-bind (fits after) (clause-fits clause thing bindings)
+      (unless fits (return (values nil bindings)))
+      (setf bindings after))))
+
+(defun patterns-fit-p (patterns things)
+  "True if each of THINGS is as the one of PATTERNS at its place says, matchvars shared."
+  (loop with bindings = '()
+        for pattern in patterns
+        for thing in things
+        always (multiple-value-bind (fits after) (pattern-fits pattern thing bindings)
+                 (setf bindings after)
+                 fits)))

@@ -1,0 +1,141 @@
+;;;; inside.lisp -- parts inside containers, and things inside parts (manual 3.4.3, 3.6).
+
+(in-package :ars-magna.robot)
+
+;;; A hand or camera is in the open with its robot (location NIL), inside a thing, or inside one of
+;;; the robot's storage bins. What a hand holds is where the hand is. Invariants: nothing is inside
+;;; itself by way of a hand; after each tick, what a part is inside of is within the robot's
+;;; reach, and a hand holds one thing at most. Parts take up no room: what they reach into has as
+;;; much capacity left as before.
+
+(defun in-location (thing location)
+  "True if THING is directly in LOCATION: a hand, a storage bin, another thing, or :FLOOR (manual
+5.5.1)."
+  (check-argument in-location thing (thing-p thing) "a thing")
+  (eq (thing-location thing) location))
+
+(defun outer-location (location)
+  "Return what LOCATION, a thing or part, is directly in, or NIL for the open."
+  (etypecase location
+    (thing (let ((outer (thing-location location))) (if (eq outer :floor) nil outer)))
+    (part (part-location location))))
+
+(defun inside-p (part container)
+  "True if PART is in CONTAINER, a thing or storage bin, directly or not."
+  (loop for outer = (part-location part) then (outer-location outer)
+        while outer
+        thereis (eq outer container)))
+
+(defun part-inside (bin)
+  "Return the first camera or hand that is in the storage BIN, directly or not, or NIL."
+  (let ((robot (storage-bin-robot bin)))
+    (flet ((there-p (part) (inside-p part bin)))
+      (or (find-if #'there-p (robot-cameras robot))
+          (find-if #'there-p (robot-hands robot))))))
+
+(defun part-reaches-p (part thing)
+  "True if PART can get at THING: it is where the part is, and within the robot's reach."
+  (and (eq (thing-space thing) (part-location part))
+       (multiple-value-bind (x y) (thing-position thing)
+         (and x (within-reach-p (part-robot part) x y)))))
+
+(defun part-reaches-bin-p (part bin)
+  "True if PART can get at the storage BIN: it is its robot's, and the part is in the open."
+  (and (eq (part-robot part) (storage-bin-robot bin))
+       (null (part-location part))))
+
+(defmethod remaining-capacity ((bin storage-bin))
+  (max 0d0 (- (storage-bin-capacity bin)
+              (loop for thing in (storage-bin-contents bin) sum (thing-size thing)))))
+
+;;; A hand in something closed keeps what it holds in there.
+
+(defmethod location-closed-p :around ((hand hand))
+  (or (call-next-method)
+      (loop for outer = (part-location hand) then (outer-location outer)
+            while outer
+            thereis (location-closed-p outer))))
+
+;;; Things into and out of hands.
+
+(defmacro with-own-access (&body body)
+  "Run BODY, which moves things as the simulation's own doing, not a program's."
+  `(let ((*world-access* 'direct-world-access)) ,@body))
+
+(defun take-up (hand thing)
+  "Let HAND hold THING, wherever that was."
+  (with-own-access (move-thing thing hand)))
+
+(defun set-down (hand thing)
+  "Leave THING, which HAND holds, where the hand is: in what it is inside of, or on the floor where
+the robot stands."
+  (let ((robot (hand-robot hand)))
+    (with-own-access
+      (if (hand-location hand)
+          (move-thing thing (hand-location hand))
+          (move-thing thing (robot-x robot) (robot-y robot))))))
+
+;;; Parts into and out of containers.
+
+(defun move-part (part location)
+  "Take PART, a camera or hand, into LOCATION: a thing, a storage bin, or NIL for the open. What
+it holds moves along, what it tracks is lost; warnings say so."
+  (let ((old (part-location part)))
+    (when (thing-p location)
+      (pushnew #'watch-container (world-move-watchers (location-world part))))
+    (setf (part-location part) location)
+    (part-moved part old)))
+
+(defun space-around (part)
+  "Return where PART comes to when it is taken out of what it is inside of."
+  (let* ((location (part-location part))
+         (space (and (thing-p location) (thing-space location))))
+    (if (eq space :nowhere) nil space)))
+
+(defun pull-out (part)
+  (warning-set (format nil "~A was pulled out of ~A" part (location-name (part-location part))))
+  (move-part part nil))
+
+(defun astray-p (part)
+  "True if PART is inside a thing that is not within its robot's reach any more."
+  (let ((location (part-location part)))
+    (and (thing-p location)
+         (multiple-value-bind (x y) (thing-position location)
+           (not (and x (within-reach-p (part-robot part) x y)))))))
+
+(declaim (inline settle-part))
+(defun settle-part (part)
+  (when (and (part-location part) (astray-p part)) (pull-out part)))
+
+(defun settle-hand (hand)
+  (settle-part hand)
+  (loop while (rest (hand-contents hand))
+        do (set-down hand (first (last (hand-contents hand))))))
+
+(defun settle-parts (robot)
+  "Pull out the parts of ROBOT that are inside things out of its reach, and let its hands drop
+what they hold too much."
+  (declare (type robot robot))
+  (loop for hand across (robot-hands robot) do (settle-hand hand))
+  (loop for camera across (robot-cameras robot) do (settle-part camera)))
+
+(defun break-circle (thing location)
+  "If THING, now in LOCATION, is so inside itself, pull out the hand by way of which it is."
+  (let ((hand nil))
+    (loop for outer = (if (eq location :floor) nil location) then (outer-location outer)
+          until (or (null outer) (eq outer thing))
+          when (and (hand-p outer) (thing-p (hand-location outer)))
+            do (setf hand outer)
+          finally (when outer (pull-out hand)))))
+
+(defun watch-container (thing old-location new-location)
+  "Pull parts out of THING if need be, now that it has moved. A world's move watcher."
+  (declare (ignore old-location))
+  (break-circle thing new-location)
+  (when (or (null new-location) (thing-contents thing) (plusp (thing-capacity thing)))
+    (mapc #'settle-parts (world-robots (thing-world thing)))))
+
+(defun settle-robots (simulation)
+  (mapc #'settle-parts (simulation-robots simulation)))
+
+(push #'settle-robots *tick-phases*)
