@@ -38,17 +38,13 @@
   (format nil "~A not in same location as ~A"
           (operation-resource operation) (first (operation-arguments operation))))
 
-(defun hand-text (control)
-  "Return a function that makes an error's text of CONTROL and the hand."
-  (lambda (operation) (format nil control (operation-resource operation))))
-
 (define-command hand-grasp-desig (operation (hand hand)
                                   (camera camera "a camera that tracks the designator")
                                   (designator designator "a local designator"))
     ((designator "the designator"))
     ((:family :handling) (:section "3.6") (:prompt "HAND-GRASP") (:prefix "hand-grasp")
      (:delay (+ hand-move-delay* hand-grasp-delay*))
-     (:errors (:hand-grasping (hand-text "~A is already holding something"))
+     (:errors (:hand-grasping (part-text "~A is already holding something"))
               (:different-location #'grasp-location-text)
               (:bad-designator "Designator is not valid")
               (:non-local-grasp "Designator is not local")
@@ -56,8 +52,8 @@
                               (format nil "~A is not tracking ~A"
                                       (first (operation-arguments operation))
                                       (second (operation-arguments operation)))))
-              (:missed-grasp (hand-text "~A missed"))
-              (:insufficient-strength (hand-text "~A is not strong enough")))
+              (:missed-grasp (part-text "~A missed"))
+              (:insufficient-strength (part-text "~A is not strong enough")))
      (:report (designator)
               (format nil "~A grasped ~A" (operation-resource operation)
                       (hand-holding (operation-resource operation)))))
@@ -75,7 +71,7 @@ designators silently."
 (define-command hand-ungrasp (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6")
-     (:errors (:not-grasping (hand-text "~A is not holding anything"))))
+     (:errors (:not-grasping (part-text "~A is not holding anything"))))
     "Let HAND drop what it holds: into what the hand is inside of, or where the robot stands."
   (let ((thing (hand-holding hand)))
     (cond (thing (set-down hand thing)
@@ -93,8 +89,8 @@ designators silently."
 (define-command hand-grasp-check (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6")
-     (:errors (:grasping (hand-text "~A is holding something"))
-              (:not-grasping (hand-text "~A is not holding anything"))))
+     (:errors (:grasping (part-text "~A is holding something"))
+              (:not-grasping (part-text "~A is not holding anything"))))
     "Feel whether HAND holds something. One of the two error codes is the answer."
   (if (hand-holding hand)
       (answer operation :grasping (format nil "~A is holding something" hand))
@@ -115,8 +111,8 @@ designators silently."
 (define-command hand-track (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6")
-     (:errors (:grasp-lost (hand-text "~A lost its grip"))
-              (:not-grasping (hand-text "~A is not holding anything"))))
+     (:errors (:grasp-lost (part-text "~A lost its grip"))
+              (:not-grasping (part-text "~A is not holding anything"))))
     "Watch the grip of HAND until that is lost, or any other command to HAND interrupts."
   (if (hand-holding hand)
       (watch-grip operation hand)

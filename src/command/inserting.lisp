@@ -5,17 +5,15 @@
 ;;; Insertion goes one level in, removal one level out. The robot's bins, and what stands in the
 ;;; open, are reached from the open only.
 
-(defun inserted-text (part destination)
-  (format nil "~A inserted into ~A" part (destination-name destination)))
+(defun inserted-text (operation destination)
+  (format nil "~A inserted into ~A" (operation-resource operation)
+          (destination-name destination)))
 
-(defun bump-text (operation)
-  (format nil "~A bumped ~A" (operation-resource operation)
-          (destination-name (first (operation-arguments operation)))))
-
-(defun destination-text (control)
-  "Return a function that makes an error's text of CONTROL and the destination."
+(defun inserting-text (control)
+  "Return a function that makes an error's text of CONTROL, the part and the destination."
   (lambda (operation)
-    (format nil control (destination-name (first (operation-arguments operation))))))
+    (format nil control (operation-resource operation)
+            (destination-name (first (operation-arguments operation))))))
 
 ;;; Hands.
 
@@ -49,48 +47,40 @@
       (perhaps-lose-designators destination hand-insert-lose-desig-prob* (handling-dice hand)))
     (finish operation code destination)))
 
-(macrolet
-    ((define-hand-insertion (name (variable type text) result options sentence &body body)
-       `(define-command ,name (operation (hand hand) (,variable ,type ,text))
-            (,result)
-            ((:family :handling) (:section "3.6") (:prefix "hand-insert")
-             (:delay hand-move-delay*)
-             (:errors (:bin-closed (destination-text "~A is closed"))
-                      (:insufficient-capacity
-                       (lambda (operation)
-                         (format nil "No room for ~A in ~A" (operation-resource operation)
-                                 (destination-name (first (operation-arguments operation))))))
-                      (:holding-thing (hand-text "~A is holding that"))
-                      (:hand-bump #'bump-text)
-                      (:different-location
-                       (lambda (operation)
-                         (format nil "~A not in same location as ~A"
-                                 (operation-resource operation)
-                                 (destination-name (first (operation-arguments operation))))))
-                      ,@(first options))
-             ,@(rest options)
-             (:report (,variable) (inserted-text (operation-resource operation) ,variable)))
-            ,sentence
-          ,@body)))
-  (define-hand-insertion hand-insert
-      (destination destination "a local designator of a container, or a storage bin")
-      (destination "the designator or bin")
-      (((:bad-designator "Designator is not valid")
-        (:non-local-designator "Designator is not local"))
-       (:prompt "HAND-INSERT-DESIG"))
+(define-command hand-insert (operation (hand hand)
+                             (destination destination
+                              "a local designator of a container, or a storage bin"))
+    ((destination "the designator or bin"))
+    ((:family :handling) (:section "3.6") (:prompt "HAND-INSERT-DESIG")
+     (:delay hand-move-delay*)
+     (:errors (:bin-closed (inserting-text "~*~A is closed"))
+              (:insufficient-capacity (inserting-text "No room for ~A in ~A"))
+              (:holding-thing (inserting-text "~A is holding ~A"))
+              (:hand-bump (inserting-text "~A bumped ~A"))
+              (:bad-designator "Designator is not valid")
+              (:non-local-designator "Designator is not local")
+              (:different-location (inserting-text "~A not in same location as ~A")))
+     (:report (destination) (inserted-text operation destination)))
     "Insert HAND, with what it holds, into a container."
-    (cond ((storage-bin-p destination) (insert-hand operation hand destination))
-          ((not (own-designator-p hand destination))
-           (fail-with operation :bad-designator destination))
-          ((eq (designator-type destination) :non-local)
-           (fail-with operation :non-local-designator destination))
-          (t (insert-hand operation hand destination))))
-  (define-hand-insertion hand-insert-bin
-      (storage-bin storage-bin "a storage bin of the same robot")
-      (storage-bin "the storage bin")
-      (())
+  (cond ((storage-bin-p destination) (insert-hand operation hand destination))
+        ((not (own-designator-p hand destination))
+         (fail-with operation :bad-designator destination))
+        ((eq (designator-type destination) :non-local)
+         (fail-with operation :non-local-designator destination))
+        (t (insert-hand operation hand destination))))
+
+(define-command hand-insert-bin (operation (hand hand)
+                                 (storage-bin storage-bin "a storage bin of the same robot"))
+    ((storage-bin "the storage bin"))
+    ((:family :handling) (:section "3.6") (:prefix "hand-insert") (:delay hand-move-delay*)
+     (:errors (:bin-closed (inserting-text "~*~A is closed"))
+              (:insufficient-capacity (inserting-text "No room for ~A in ~A"))
+              (:holding-thing (inserting-text "~A is holding ~A"))
+              (:hand-bump (inserting-text "~A bumped ~A"))
+              (:different-location (inserting-text "~A not in same location as ~A")))
+     (:report (storage-bin) (inserted-text operation storage-bin)))
     "Insert HAND, with what it holds, into a storage bin."
-    (insert-hand operation hand storage-bin)))
+  (insert-hand operation hand storage-bin))
 
 ;;; Out again.
 
@@ -106,14 +96,14 @@
 (define-command hand-remove (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6") (:delay hand-move-delay*)
-     (:errors (:not-inside (hand-text "~A is not inside anything"))))
+     (:errors (:not-inside (part-text "~A is not inside anything"))))
     "Take HAND, with what it holds, out of the container that it is inside of, one level."
   (take-out operation hand))
 
 (define-command camera-remove (operation (camera camera))
     ()
     ((:family :handling) (:section "3.4.3") (:delay camera-move-delay*)
-     (:errors (:not-inside (hand-text "~A is not inside anything"))))
+     (:errors (:not-inside (part-text "~A is not inside anything"))))
     "Take CAMERA out of the container that it is inside of, one level. It loses its track."
   (take-out operation camera))
 
@@ -156,20 +146,17 @@ cannot reach it cannot bump."
     ((destination "the designator or bin"))
     ((:family :handling) (:section "3.4.3") (:prompt "CAM-INSERT-DESIG")
      (:delay camera-move-delay*)
-     (:errors (:bin-closed (destination-text "~A is closed"))
-              (:not-tracking (hand-text "~A is not tracking anything"))
+     (:errors (:bin-closed (inserting-text "~*~A is closed"))
+              (:not-tracking (part-text "~A is not tracking anything"))
               (:not-tracking-destination
                (lambda (operation)
                  (format nil "~A is not tracking ~A" (operation-resource operation)
                          (first (operation-arguments operation)))))
-              (:camera-bump #'bump-text)
-              (:insufficient-capacity (destination-text "No room for a camera in ~A"))
+              (:camera-bump (inserting-text "~A bumped ~A"))
+              (:insufficient-capacity (inserting-text "No room for ~A in ~A"))
               (:non-local-designator "Designator is not local")
-              (:local-not-local
-               (lambda (operation)
-                 (format nil "~A not in same location as ~A" (operation-resource operation)
-                         (destination-name (first (operation-arguments operation)))))))
-     (:report (destination) (inserted-text (operation-resource operation) destination)))
+              (:local-not-local (inserting-text "~A not in same location as ~A")))
+     (:report (destination) (inserted-text operation destination)))
     "Insert CAMERA into a container, to look at what is in there. It loses its track."
   (let ((code (try-camera-insertion camera destination (destination-container destination))))
     (when (designator-p destination) (settle-designator camera destination code))
