@@ -35,13 +35,17 @@
     :components ((:file "package") (:file "parts") (:file "odometer") (:file "motion")
                  (:file "designator") (:file "place-sense") (:file "body")
                  (:file "simulation") (:file "references") (:file "sight") (:file "tracks")
-                 (:file "inside") (:file "state") (:file "replay")))
+                 (:file "inside") (:file "state") (:file "replay")
+                 (:file "rays") (:file "noise") (:file "matching") (:file "sightings")
+                 (:file "scanning") (:file "views") (:file "tending")))
    (:module "src/command" :serial t
     :components ((:file "package") (:file "argument-types") (:file "command")
                  (:file "operation") (:file "define-command") (:file "turning")
                  (:file "places") (:file "driving") (:file "following")
                  (:file "handling") (:file "hands") (:file "inserting") (:file "bins")
-                 (:file "patterns") (:file "manipulations") (:file "manipulating")))
+                 (:file "patterns") (:file "manipulations") (:file "manipulating")
+                 (:file "looking") (:file "searching") (:file "tracking")
+                 (:file "turning-cameras") (:file "approaching")))
    (:module "src/display" :serial t
     :components ((:file "package") (:file "text-map")))
    (:module "src" :serial t

@@ -24,6 +24,11 @@
   (:export #:robot-set-speed #:robot-set-turn-angle #:robot-turn #:robot-about-face
            #:robot-turn-left #:robot-turn-right #:robot-align-place #:robot-turn-corner
            #:robot-go-forward #:robot-goto-wall #:robot-follow-wall #:robot-stop #:robot-place)
+  ;; looking
+  (:export #:camera-view #:camera-get-place-designator #:camera-get-all-place-designators
+           #:camera-get-object-designator #:camera-get-all-object-designators
+           #:camera-track #:camera-untrack #:camera-turn #:camera-align-robot
+           #:camera-align-place #:robot-goto-designator)
   ;; handling
   (:export #:hand-grasp-desig #:hand-ungrasp #:hand-grasp-check #:hand-track #:hand-insert
            #:hand-insert-bin #:hand-remove #:camera-insert #:camera-remove #:storage-bin-open

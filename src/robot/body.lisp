@@ -89,7 +89,7 @@ holds. Signals UNKNOWN-NAME."
   (reset-part camera)
   (setf (camera-angle camera) 0d0
         (camera-last-view camera) '()
-        (camera-track camera) nil))
+        (camera-tracking camera) nil))
 
 (defun reset-hand (hand)
   (reset-part hand)

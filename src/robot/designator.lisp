@@ -22,10 +22,11 @@
   (x 0d0 :type double-float)
   (y 0d0 :type double-float)
   (location nil)
-  ;; The true direction in which it was last seen, unless that was too near to have one; by how
-  ;; much that has changed in the tick REFRESHED.
+  ;; The true direction in which it was last seen, unless that was too near to have one, in the
+  ;; world and relative to the robot; by how much it changed in the tick REFRESHED.
   (bearing 0d0 :type double-float)
   (bearing-p nil :type boolean)
+  (truth 0d0 :type double-float)
   (swing 0d0 :type double-float)
   (refreshed -1 :type fixnum))
 
@@ -59,7 +60,8 @@ place type (manual 3.4.1)."
 (defun find-designator (robot number)
   "Return the designator of ROBOT with NUMBER, or NIL."
   (let ((designators (robot-designators robot)))
-    (and (typep number `(integer 0 (,(length designators))))
+    (and (integerp number)
+         (< -1 number (length designators))
          (aref designators number))))
 
 (defun live-designators (robot)

@@ -14,7 +14,8 @@ of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
            #:robot-camera #:robot-hand #:robot-storage-bin
            #:part #:part-p #:part-robot #:part-index #:part-location
            #:camera #:camera-p #:camera-robot #:camera-index #:camera-field-of-view
-           #:camera-resolution #:camera-angle #:camera-location #:camera-last-view #:camera-track
+           #:camera-resolution #:camera-angle #:camera-location #:camera-last-view
+           #:camera-tracking
            #:hand #:hand-p #:hand-robot #:hand-index #:hand-strength #:hand-location
            #:hand-contents #:hand-holding
            #:storage-bin #:storage-bin-p #:storage-bin-robot #:storage-bin-index
@@ -39,6 +40,11 @@ of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
   (:export #:line-clear-p #:in-sight-p
            #:camera-tracks #:tracking-p #:tracking-cameras #:tracked-p #:end-track
            #:drop-designator #:part-moved #:add-designator)
+  ;; noise, matching, scanning, views, tending
+  (:export #:reading-reliability #:reading-deviation #:read-attribute #:angle-error
+           #:specification-p #:notice-probability #:sighting #:designate #:look-for-things
+           #:look-for-places #:camera-heading #:take-view #:start-track #:trackable-p
+           #:in-same-cell-p)
   ;; inside
   (:export #:in-location #:outer-location #:inside-p #:part-inside #:part-reaches-p
            #:part-reaches-bin-p #:take-up #:set-down #:move-part #:space-around #:settle-parts)
@@ -51,4 +57,4 @@ of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
   (:export #:with-simulation #:call-with-simulation #:simulator #:stop-simulator #:set-seed
            #:resident-simulation #:fresh-simulation #:simulation-robots #:replay
            #:state-digest #:save-journal #:load-journal #:*simulator-hooks*
-           #:*tick-phases* #:*busy-tests* #:place-robot #:with-replay #:call-with-replay))
+           #:*tick-phases* #:*busy-tests* #:*simulation-variables* #:place-robot #:with-replay #:call-with-replay))

@@ -53,7 +53,8 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   (resolution 1 :type (integer 1))
   (angle 0d0 :type double-float)
   (last-view '() :type list)
-  (track nil))
+  ;; What it does in the background of its commands, see tracks.lisp.
+  (tracking nil))
 
 (defstruct (hand (:include part) (:copier nil))
   "A hand: an arm with a gripper that lifts up to STRENGTH weight units (manual 3.6)."
@@ -96,7 +97,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
    camera-resolution "Return the number of pixels of the camera's views."
    camera-angle "Return the camera's angle relative to the robot, in radians."
    camera-last-view "Return the last view, a list of numbers; () before the first."
-   camera-track "Return the camera's track, or NIL if it tracks nothing."
+   camera-tracking "Return the camera's TRACK, or NIL if it tracks nothing; see CAMERA-TRACKS."
    hand-strength "Return the largest weight that the hand can lift."
    hand-contents "Return a list of the thing that the hand holds, or ()."
    storage-bin-capacity "Return the size of all that fits into the bin."

@@ -17,7 +17,7 @@
 
 (defun camera-tracks (camera)
   "Return the designator that CAMERA tracks, or NIL."
-  (let ((track (camera-track camera)))
+  (let ((track (camera-tracking camera)))
     (and track (track-designator track))))
 
 (defun tracking-p (camera designator)
@@ -39,9 +39,9 @@
 
 (defun stop-track (camera code warning)
   "End the track of CAMERA and nothing else. Return its designator, or NIL if it had no track."
-  (let ((track (camera-track camera)))
+  (let ((track (camera-tracking camera)))
     (when track
-      (setf (camera-track camera) nil)
+      (setf (camera-tracking camera) nil)
       (when warning (warning-set warning))
       (if (eq code :interrupt)
           (funcall (track-teller track) code)
@@ -100,7 +100,7 @@ its track, and what a hand holds has moved. Warnings say so."
   (unless (eq old-location (part-location part))
     (etypecase part
       (camera
-       (when (camera-track part)
+       (when (camera-tracking part)
          (end-track part :lost-track (format nil "~A moved. No longer tracking ~A"
                                              part (camera-tracks part)))))
       (hand

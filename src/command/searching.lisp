@@ -1,0 +1,130 @@
+;;;; searching.lisp -- looking for things and places to designate (manual 3.4.2, 3.4.3).
+
+(in-package :ars-magna.command)
+
+;;; The search itself takes no time once its delay is over, but naming all that was found takes a
+;;; tick for each after the first. What has moved away by then is left out.
+
+(define-argument-type 'designator-type
+  (lambda (value) (member value '(:local :non-local)))
+  ":local or :non-local")
+
+(define-argument-type 'specification #'specification-p
+  "a descriptor specification, as ((:color (red blue)) (:size 4 .5)): a list of attributes with a ~
+   value that they can have, or several, or a range")
+
+(define-argument-type 'place-type
+  (lambda (value) (and value (typep value '(or symbol string place-type))))
+  "the name of a place type")
+
+(defun found-text (operation designators)
+  (format nil "~A found ~{~A~^, ~}" (operation-resource operation) designators))
+
+(defun name-sightings (camera sightings)
+  "Return designators for those of SIGHTINGS that CAMERA still has."
+  (loop for sighting in sightings
+        for designator = (designate sighting camera)
+        when designator collect designator))
+
+(defun name-one (operation camera sightings)
+  "End OPERATION with a designator for the first of SIGHTINGS by CAMERA."
+  (let ((designator (first (name-sightings camera sightings))))
+    (if designator
+        (succeed operation designator)
+        (fail-with operation :designator-not-found))))
+
+(defun name-all (operation camera sightings)
+  "End OPERATION with designators for all of SIGHTINGS by CAMERA."
+  (flet ((name (operation)
+           (let ((designators (name-sightings camera sightings)))
+             (if designators
+                 (succeed operation designators)
+                 (fail-with operation :designator-not-found)))))
+    (if (rest sightings)
+        (go-on operation #'name (length (rest sightings)))
+        (name operation))))
+
+;;; Places.
+
+(defun place-search-obstacle (camera place-type)
+  "Return the error code that keeps CAMERA from a search for places of PLACE-TYPE, or NIL."
+  (let ((type (find-place-type place-type)))
+    (cond ((camera-tracking camera) :already-tracking)
+          ((null type) :invalid-place-type)
+          ((place-type-invisible-p type) :invisible-place-type)
+          ((camera-location camera) :camera-enclosed))))
+
+(defun search-for-places (operation camera place-type all)
+  (let ((obstacle (place-search-obstacle camera place-type)))
+    (if obstacle
+        (fail-with operation obstacle)
+        (funcall (if all #'name-all #'name-one)
+                 operation camera
+                 (look-for-places camera (find-place-type place-type) :all all)))))
+
+(define-command camera-get-place-designator (operation (camera camera)
+                                             (place-type place-type "the name of a place type"))
+    ((designator "a designator of a place of that type, non-local"))
+    ((:family :looking) (:section "3.4.3") (:prompt "PLACE-DESIG") (:prefix "get-designator")
+     (:delay camera-desig-delay*)
+     (:errors (:already-tracking #'already-tracking-text)
+              (:invalid-place-type (text-of "~*~A is not a place type"))
+              (:invisible-place-type (text-of "~*~A cannot be recognized at a distance"))
+              (:camera-enclosed (text-of "~A is inside a container"))
+              (:designator-not-found (text-of "~A found no ~A")))
+     (:report (designator) (found-text operation (list designator))))
+    "Look with CAMERA for a place of a type; of several, find any one."
+  (search-for-places operation camera place-type nil))
+
+(define-command camera-get-all-place-designators (operation (camera camera)
+                                                  (place-type place-type
+                                                   "the name of a place type"))
+    ((designators "a list of designators of places of that type, non-local"))
+    ((:family :looking) (:section "3.4.3") (:prompt "ALL-PLACE-DESIGS")
+     (:prefix "get-all-designators") (:delay camera-desig-delay*)
+     (:errors (:already-tracking #'already-tracking-text)
+              (:invalid-place-type (text-of "~*~A is not a place type"))
+              (:invisible-place-type (text-of "~*~A cannot be recognized at a distance"))
+              (:camera-enclosed (text-of "~A is inside a container"))
+              (:designator-not-found (text-of "~A found no ~A")))
+     (:report (designators) (found-text operation designators)))
+    "Look with CAMERA for all places of a type. Takes a tick more for each after the first."
+  (search-for-places operation camera place-type t))
+
+;;; Things.
+
+(defun search-for-things (operation camera type specification all)
+  (if (camera-tracking camera)
+      (fail-with operation :already-tracking)
+      (funcall (if all #'name-all #'name-one)
+               operation camera
+               (look-for-things camera type specification :all all))))
+
+(define-command camera-get-object-designator (operation (camera camera)
+                                              (type designator-type
+                                               ":local for what is next to the robot, else :non-local")
+                                              (specification specification
+                                               "what the object is like, a descriptor specification"))
+    ((designator "a designator of such an object"))
+    ((:family :looking) (:section "3.4.3") (:prompt "OBJ-DESIG") (:prefix "get-designator")
+     (:delay camera-desig-delay*)
+     (:errors (:already-tracking #'already-tracking-text)
+              (:designator-not-found (text-of "~A found no such object")))
+     (:report (designator) (found-text operation (list designator))))
+    "Look with CAMERA for an object that fits a description; of several, find any one."
+  (search-for-things operation camera type specification nil))
+
+(define-command camera-get-all-object-designators (operation (camera camera)
+                                                   (type designator-type
+                                                    ":local for what is next to the robot, else :non-local")
+                                                   (specification specification
+                                                    "what the objects are like, a descriptor specification"))
+    ((designators "a list of designators of such objects"))
+    ((:family :looking) (:section "3.4.3") (:prompt "ALL-OBJ-DESIGS")
+     (:prefix "get-all-designators") (:delay camera-desig-delay*)
+     (:errors (:already-tracking #'already-tracking-text)
+              (:designator-not-found (text-of "~A found no such object")))
+     (:report (designators) (found-text operation designators)))
+    "Look with CAMERA for all objects that fit a description. Takes a tick more for each after
+the first."
+  (search-for-things operation camera type specification t))

@@ -1,0 +1,181 @@
+;;;; scanning.lisp -- searches of the field of view for things and places (manual 3.4.3).
+
+(in-package :ars-magna.robot)
+
+;;; SCAN-DENSITY* rays cross the field of view. Whatever lies in a cell that one of them meets is in
+;;; view, up to and with the first cell that is a wall or holds something that obstructs vision; so
+;;; is all that lies in the robot's own cell. A camera inside a container or storage bin sees
+;;; what is directly in it, at distance 0. What a hand holds is where the hand is.
+
+(defconstant +no-limit+ 32767
+  "How many columns and rows a ray crosses at most when nothing else ends it.")
+
+(declaim (inline mark-seen))
+(defun mark-seen (flags index flag)
+  (declare (type flag-vector flags) (type cell-index index) (type (unsigned-byte 8) flag))
+  (setf (aref flags index) (logior flag +seen+)))
+
+(defun unmark-seen (flags cells)
+  (declare #.*hot* (type flag-vector flags) (type list cells))
+  (dolist (index cells)
+    (declare (type cell-index index))
+    (setf (aref flags index) (logandc2 (aref flags index) +seen+))))
+
+(defun occupied-cells (world x y angle width count reach)
+  "Return a list of the cells of WORLD with things on their floor that a fan of COUNT rays from
+(X,Y) meets, of WIDTH radians around ANGLE, within REACH columns and rows."
+  (declare #.*hot* (type world world) (type double-float x y angle width)
+           (type (unsigned-byte 15) count reach))
+  (let* ((flags (world-flags world)) (map (world-map world))
+         (columns (map-width map)) (rows (map-height map)) (found '()))
+    (flet ((visit (index flag)
+             (declare (type cell-index index) (type (unsigned-byte 8) flag))
+             (unless (zerop flag)
+               (when (= (logand flag (logior +occupied+ +seen+)) +occupied+)
+                 (mark-seen flags index flag)
+                 (push index found))
+               (logtest flag +opaque+))))
+      (declare (inline visit))
+      (do-fan (dx dy) (angle width count)
+        (walk-ray #'visit flags columns rows x y (nonzero dx) (nonzero dy) reach)))
+    (unmark-seen flags found)
+    (nreverse found)))
+
+(defun place-cells (world number x y angle width count)
+  "Return a list of the cells of WORLD that a fan of rays as in OCCUPIED-CELLS meets and whose
+place type has NUMBER in the map."
+  (declare #.*hot* (type world world) (type double-float x y angle width)
+           (type (unsigned-byte 15) count) (type (unsigned-byte 8) number))
+  (let* ((flags (world-flags world)) (map (world-map world)) (places (map-places map))
+         (columns (map-width map)) (rows (map-height map)) (found '()))
+    (declare (type flag-vector places))
+    (flet ((visit (index flag)
+             (declare (type cell-index index) (type (unsigned-byte 8) flag))
+             (when (and (= (aref places index) number) (not (logtest flag +seen+)))
+               (mark-seen flags index flag)
+               (push index found))
+             (logtest flag +opaque+)))
+      (declare (inline visit))
+      (do-fan (dx dy) (angle width count)
+        (walk-ray #'visit flags columns rows x y (nonzero dx) (nonzero dy) +no-limit+)))
+    (unmark-seen flags found)
+    (nreverse found)))
+
+;;; Which things are in view.
+
+(defun camera-heading (camera)
+  "Return the direction in which CAMERA points, in radians, in the world."
+  (+ (robot-angle (camera-robot camera)) (camera-angle camera)))
+
+(defun held-things (robot location)
+  "Return the things in those hands of ROBOT that are in LOCATION."
+  (loop for hand across (robot-hands robot)
+        when (eq (hand-location hand) location)
+          append (hand-contents hand)))
+
+(defun cells-in-view (camera reach)
+  "Return a list of the cells where CAMERA may see things: the robot's own, then those that rays
+meet within REACH columns and rows."
+  (let* ((robot (camera-robot camera)) (own (robot-cell-index robot)))
+    (when own
+      (cons own (occupied-cells (robot-world robot) (robot-x robot) (robot-y robot)
+                                (camera-heading camera) (camera-field-of-view camera)
+                                scan-density* reach)))))
+
+(defun things-in-open-view (camera local)
+  "Return the things on the floor that CAMERA has in view, those within reach if LOCAL, else the
+others."
+  (let* ((robot (camera-robot camera)) (cells (world-cells (robot-world robot))))
+    (loop for index in (cells-in-view camera (if local 1 +no-limit+))
+          append (loop for thing in (svref cells index)
+                       when (eq local (within-reach-p robot (thing-x thing) (thing-y thing)))
+                         collect thing))))
+
+(defun things-in-view (camera type)
+  "Return the things that CAMERA has in view and that are of TYPE, :LOCAL or :NON-LOCAL."
+  (let ((location (camera-location camera)) (local (eq type :local)))
+    (append (cond ((null location) (things-in-open-view camera local))
+                  (local (location-contents location)))
+            (and local (held-things (camera-robot camera) location)))))
+
+;;; Finding some of them, and others.
+
+(defun phantom-count (probability all dice)
+  "Return how many false designators a search finds: if not ALL, at most one."
+  (loop with probability = (sensing-chance probability)
+        while (and (< count 8) (chance probability dice))
+        count t into count
+        while all
+        finally (return count)))
+
+(defun some-of (finds all dice)
+  "Return FINDS if ALL, else a list of any one of them; () if there are none."
+  (if (or all (null finds)) finds (list (roll-element finds dice))))
+
+(defun matching-things (camera type demands dice)
+  "Return a list of (thing . readings) for what CAMERA has in view, does not overlook and takes
+for what DEMANDS describe."
+  (loop with missing = (sensing-chance miss-thing-prob*)
+        for thing in (things-in-view camera type)
+        for distance = (seen-from camera thing)
+        unless (chance missing dice)
+          append (multiple-value-bind (matches readings)
+                     (match-thing thing demands distance dice)
+                   (and matches (list (cons thing readings))))))
+
+(defun seen-from (camera thing)
+  "Return the distance at which CAMERA sees THING, in metres."
+  (if (camera-location camera)
+      0d0
+      (multiple-value-call #'distance-to (camera-robot camera) (thing-position thing))))
+
+(defun thing-sighting (camera type find dice)
+  (destructuring-bind (thing . readings) find
+    (multiple-value-bind (x y) (thing-position thing)
+      (make-sighting type thing x y
+                     (describe-thing thing readings (seen-from camera thing) dice)))))
+
+(defun look-for-things (camera type specification &key all)
+  "Return sightings by CAMERA of things of TYPE that fit SPECIFICATION: of one, or of ALL that it
+finds. What is not there may be among them."
+  (let* ((world (robot-world (camera-robot camera)))
+         (dice (world-dice world :looking))
+         (demands (parse-specification specification))
+         (finds (matching-things camera type demands dice))
+         (phantoms (if (and (camera-location camera) (eq type :non-local))
+                       0
+                       (phantom-count false-thing-prob* all dice))))
+    (loop for find in (some-of (append finds (make-list phantoms)) all dice)
+          collect (if find
+                      (thing-sighting camera type find dice)
+                      (imagine camera type (imagine-description world demands dice) dice)))))
+
+(defun places-in-view (camera type)
+  "Return the places of TYPE that CAMERA, in the open, has in view, but for the robot's own cell."
+  (let* ((robot (camera-robot camera)) (world (robot-world robot)) (map (world-map world))
+         (number (place-type-index map type)) (own (robot-cell-index robot)))
+    (when (and number own)
+      (loop for index in (place-cells world number (robot-x robot) (robot-y robot)
+                                      (camera-heading camera) (camera-field-of-view camera)
+                                      scan-density*)
+            unless (= index own)
+              collect (multiple-value-bind (y x) (floor index (map-width map))
+                        (cell-type (map-cell map x y)))))))
+
+(defun place-sighting (place)
+  (let ((cell (place-cell place)))
+    (make-sighting :non-local place (+ 0.5d0 (cell-x cell)) (+ 0.5d0 (cell-y cell))
+                   (list (place-type-name (place-type place))))))
+
+(defun look-for-places (camera type &key all)
+  "Return sightings by CAMERA, in the open, of places of the place type TYPE: of one, or of ALL
+that it finds. What is not there may be among them."
+  (let* ((dice (world-dice (robot-world (camera-robot camera)) :looking))
+         (missing (sensing-chance miss-place-prob*))
+         (finds (remove-if (lambda (place) (declare (ignore place)) (chance missing dice))
+                           (places-in-view camera type)))
+         (phantoms (phantom-count (place-type-confusion type) all dice)))
+    (loop for place in (some-of (append finds (make-list phantoms)) all dice)
+          collect (if place
+                      (place-sighting place)
+                      (imagine camera :non-local (list (place-type-name type)) dice)))))

@@ -1,0 +1,145 @@
+;;;; sightings.lisp -- what a search finds, real or not, and the designators made of it.
+
+(in-package :ars-magna.robot)
+
+;;; A sighting is what a camera takes for a thing or place. Those found together become designators
+;;; one after another, so each must still be where it was seen when its turn comes.
+
+(defstruct (sighting (:constructor make-sighting (type denotation x y data)) (:copier nil))
+  "Something seen, or imagined if it has no DENOTATION, at (X,Y)."
+  (type :non-local :type (member :local :non-local) :read-only t)
+  (denotation nil :type (or null thing place) :read-only t)
+  (x 0d0 :type double-float :read-only t)
+  (y 0d0 :type double-float :read-only t)
+  (data '() :type list :read-only t))
+
+;;; From the robot, things have a direction unless they are right where it is.
+
+(defconstant +no-distance+ 1d-9
+  "At no more than this, in metres, things have no direction.")
+
+(defun distance-to (robot x y)
+  (let ((dx (- x (robot-x robot))) (dy (- y (robot-y robot))))
+    (sqrt (+ (* dx dx) (* dy dy)))))
+
+(defun bearing-to (robot x y)
+  "Return the true direction from ROBOT to (X,Y), in radians."
+  (atan (- y (robot-y robot)) (- x (robot-x robot))))
+
+;;; Imagination (manual 3.4.1, chapter 4).
+
+(defun clip-to-map (map x y)
+  "Return (X,Y), or the nearest point of MAP."
+  (values (clamp x 0d0 (- (map-width map) 1d-6))
+          (clamp y 0d0 (- (map-height map) 1d-6))))
+
+(defun walk-to-phantom (robot angle dice)
+  "Return where a walk from ROBOT in the direction ANGLE ends: metre by metre, outside the robot's
+cell, with the chance PROB-STOP* at each, or at the edge of the map."
+  (let ((map (world-map (robot-world robot)))
+        (dx (cos angle)) (dy (sin angle)))
+    (loop for metres from 1d0 by 1d0
+          for x = (+ (robot-x robot) (* metres dx))
+          for y = (+ (robot-y robot) (* metres dy))
+          while (map-index map x y)
+          when (and (not (in-same-cell-p robot x y)) (chance prob-stop* dice))
+            return (values x y)
+          finally (return (edge-point robot map (1- metres) dx dy)))))
+
+(defun edge-point (robot map metres dx dy)
+  "Return where the ray from ROBOT in direction DX, DY leaves MAP, between METRES and one more."
+  (flet ((exit (position direction size)
+           (cond ((plusp direction) (/ (- size position) direction))
+                 ((minusp direction) (/ (- position) direction))
+                 (t 1d18))))
+    (let ((exit (max metres (min (exit (robot-x robot) dx (map-width map))
+                                 (exit (robot-y robot) dy (map-height map))))))
+      (clip-to-map map
+                   (+ (robot-x robot) (* exit dx))
+                   (+ (robot-y robot) (* exit dy))))))
+
+(defun random-direction (camera dice)
+  "Return any direction in the field of view of CAMERA, in radians."
+  (+ (robot-angle (camera-robot camera))
+     (camera-angle camera)
+     (roll-within (* 0.5d0 (camera-field-of-view camera)) dice)))
+
+(defun imagine (camera type data dice)
+  "Return a false sighting of TYPE with DATA."
+  (let ((robot (camera-robot camera)))
+    (multiple-value-bind (x y)
+        (if (eq type :local)
+            (robot-position robot)
+            (walk-to-phantom robot (random-direction camera dice) dice))
+      (make-sighting type nil x y data))))
+
+(defun random-thing (world dice)
+  "Return any thing of WORLD; NIL if there are none, or by bad luck."
+  (let ((things (world-things world)))
+    (and (plusp (length things))
+         (aref things (roll-index (length things) dice)))))
+
+(defun imagined-reading (demand dice)
+  "Return a reading that fits DEMAND."
+  (if (demand-low demand)
+      (roll-between (demand-low demand) (demand-high demand) dice)
+      (roll-element (demand-choices demand) dice)))
+
+(defun imagine-description (world demands dice)
+  "Return a random description that meets DEMANDS. What is noticed besides is true of some thing
+in WORLD, each attribute of another."
+  (let ((readings (loop for demand in demands
+                        collect (list (demand-key demand) (imagined-reading demand dice)))))
+    (append (notice-attributes (mapcar #'first readings)
+                               (lambda (attribute)
+                                 (let* ((thing (random-thing world dice))
+                                        (value (and thing
+                                                    (thing-value thing
+                                                                 (attribute-name attribute)))))
+                                   (values value (and thing
+                                                      (not (says-nothing-p attribute value))))))
+                               0d0 dice)
+            readings)))
+
+;;; Designators.
+
+(defun unchanged-p (sighting camera)
+  "True if what SIGHTING is of is still where CAMERA saw it, and the camera with it."
+  (let ((thing (sighting-denotation sighting))
+        (robot (camera-robot camera)) (x (sighting-x sighting)) (y (sighting-y sighting)))
+    (and (or (not (thing-p thing))
+             (and (thing-alive-p thing)
+                  (eq (thing-space thing) (camera-location camera))
+                  (multiple-value-bind (now-x now-y) (thing-position thing)
+                    (and (= x now-x) (= y now-y)))))
+         (or (eq (sighting-type sighting) :non-local)
+             (within-reach-p robot x y)))))
+
+(defun set-bearing (designator bearing dice)
+  "Let DESIGNATOR have been seen in the true direction BEARING; its angle becomes an estimate of
+that, the nearest to what it was."
+  (let* ((heading (robot-angle (designator-robot designator)))
+         (angle (designator-angle designator))
+         (change (angle-difference bearing (+ heading angle))))
+    (setf (designator-bearing designator) bearing
+          (designator-bearing-p designator) t
+          (designator-truth designator) (- bearing heading)
+          (designator-angle designator) (+ angle change (angle-error dice)))))
+
+(defun designate (sighting camera)
+  "Return a new designator for what CAMERA sees in SIGHTING, or NIL if that is no longer there."
+  (when (unchanged-p sighting camera)
+    (let* ((robot (camera-robot camera))
+           (dice (world-dice (robot-world robot) :looking))
+           (x (sighting-x sighting)) (y (sighting-y sighting))
+           (distance (if (camera-location camera) 0d0 (distance-to robot x y)))
+           (designator (add-designator robot :type (sighting-type sighting)
+                                             :distance distance :x x :y y
+                                             :data (sighting-data sighting)
+                                             :denotation (sighting-denotation sighting)
+                                             :location (camera-location camera))))
+      (setf (designator-angle designator) (camera-angle camera))
+      (if (> distance +no-distance+)
+          (set-bearing designator (bearing-to robot x y) dice)
+          (incf (designator-angle designator) (angle-error dice)))
+      designator)))

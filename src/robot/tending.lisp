@@ -1,0 +1,209 @@
+;;;; tending.lisp -- what happens to tracks and designators in each tick (manual 3.4.3, chapter 4).
+
+(in-package :ars-magna.robot)
+
+;;; A track refreshes angle and distance of its designator, never the data, and points the camera
+;;; there. It is lost when the denotation is occluded, moves too fast -- its direction from the
+;;; robot changes in a tick by more than half the field of view -- or is arrived at, and by chance.
+;;; The robot's own turning does not count as fast: the camera makes up for it. Nor does what passes
+;;; within reach. A local designator of something that is out of reach becomes a non-local
+;;; one, if it is in the open. A false designator drifts.
+
+;;; Refreshing.
+
+(defun quantum-chance (probability dice)
+  "True with the chance that something of PROBABILITY per unit of time happens within a tick."
+  (chance (if (= tick-quantum* 1)
+              probability
+              (- 1 (expt (- 1 (double probability)) tick-quantum*)))
+          dice))
+
+(defun drift (designator dice)
+  "Let the false DESIGNATOR wander: if non-local, nearer or farther and to the side."
+  (let* ((robot (designator-robot designator))
+         (map (world-map (robot-world robot)))
+         (x (designator-x designator)) (y (designator-y designator)))
+    (unless (or no-sensor-error* (eq (designator-type designator) :local))
+      (let ((distance (abs (+ (distance-to robot x y)
+                              (roll-within (* (double false-desig-drift-dist*) tick-quantum*)
+                                           dice))))
+            (bearing (+ (bearing-to robot x y)
+                        (roll-within (* (double false-desig-drift-ang*) tick-quantum*)
+                                     dice))))
+        (setf (values (designator-x designator) (designator-y designator))
+              (clip-to-map map
+                           (+ (robot-x robot) (* distance (cos bearing)))
+                           (+ (robot-y robot) (* distance (sin bearing)))))))))
+
+(defun refresh-designator (designator dice)
+  "Bring the tracked DESIGNATOR up to date; DESIGNATOR-SWING is then how far its direction has
+changed."
+  (let ((robot (designator-robot designator)))
+    (unless (designator-denotation designator) (drift designator dice))
+    (multiple-value-bind (x y) (designator-position designator)
+      (setf (designator-x designator) x
+            (designator-y designator) y
+            (designator-swing designator) 0d0)
+      (unless (designator-location designator)
+        (let ((distance (distance-to robot x y)))
+          (setf (designator-distance designator) distance)
+          (if (> distance +no-distance+)
+              (swing-to designator (bearing-to robot x y) dice)
+              (setf (designator-bearing-p designator) nil)))))))
+
+(defun swing-to (designator bearing dice)
+  "Let DESIGNATOR now be in the true direction BEARING."
+  (let ((relative (- bearing (robot-angle (designator-robot designator))))
+        (known (designator-bearing-p designator)))
+    (when known
+      (setf (designator-swing designator)
+            (abs (angle-difference bearing (designator-bearing designator)))))
+    (unless (and known (= relative (designator-truth designator)))
+      (set-bearing designator bearing dice))))
+
+;;; Losing.
+
+(defun refresh-once (designator tick dice)
+  "Refresh DESIGNATOR unless another camera's track has done so in TICK."
+  (unless (= (designator-refreshed designator) tick)
+    (setf (designator-refreshed designator) tick)
+    (refresh-designator designator dice)))
+
+(defun followable-p (designator)
+  "True if DESIGNATOR denotes something in the open, not in a container or bin."
+  (let ((denotation (designator-denotation designator)))
+    (and (null (designator-location designator))
+         (or (not (thing-p denotation))
+             (null (thing-space denotation))))))
+
+(defun visible-p (designator)
+  "True if nothing hides the non-local DESIGNATOR's denotation from its robot."
+  (let ((robot (designator-robot designator)))
+    (or (null (designator-denotation designator))
+        (in-sight-p (robot-world robot) (robot-x robot) (robot-y robot)
+                    (designator-x designator) (designator-y designator)))))
+
+(defun arrived-p (designator)
+  "True if its robot is in the cell where the non-local DESIGNATOR's denotation is."
+  (in-same-cell-p (designator-robot designator)
+                  (designator-x designator) (designator-y designator)))
+
+(defun lost-by-chance-p (designator dice)
+  (and (not no-sensor-error*)
+       (quantum-chance (if (designator-denotation designator)
+                           prob-lose-track*
+                           prob-lose-false-track*)
+                       dice)))
+
+(defun trackable-p (designator)
+  "True if a camera in the open can track the non-local DESIGNATOR now, wherever it points."
+  (and (designator-valid-p designator)
+       (followable-p designator)
+       (not (arrived-p designator))
+       (visible-p designator)))
+
+(defun too-fast-p (camera designator)
+  (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))
+
+(defun keep-or-lose (camera designator dice)
+  "Point CAMERA at DESIGNATOR, unless chance makes it lose that."
+  (if (lost-by-chance-p designator dice)
+      (lose-track camera)
+      (setf (camera-angle camera) (designator-angle designator))))
+
+(defun tend-local-track (camera designator dice)
+  (cond ((designator-local-p* designator)
+         (keep-or-lose camera designator dice))
+        ((followable-p designator)
+         (setf (designator-type designator) :non-local)
+         (if (visible-p designator)
+             (keep-or-lose camera designator dice)
+             (lose-track camera)))
+        (t (drop-designator designator))))
+
+(defun tend-track (camera designator tick dice)
+  "Do what is due in TICK for the track of DESIGNATOR by CAMERA."
+  (refresh-once designator tick dice)
+  (cond ((eq (designator-type designator) :local)
+         (tend-local-track camera designator dice))
+        ((or (not (trackable-p designator)) (too-fast-p camera designator))
+         (lose-track camera))
+        (t (keep-or-lose camera designator dice))))
+
+;;; The tracks phase.
+
+(defun tend-untracked (robot)
+  "Drop the local designators of ROBOT that no camera tracks and that are out of reach."
+  (let ((designators (robot-designators robot)))
+    (loop for number from 0
+          while (< number (length designators))
+          do (let ((designator (aref designators number)))
+               (when (and designator
+                          (eq (designator-type designator) :local)
+                          (not (designator-local-p* designator))
+                          (not (tracked-p designator)))
+                 (drop-designator designator))))))
+
+(defun tell-ended-tracks (robot)
+  (loop for (track . code) in (reverse (shiftf (robot-ended-tracks robot) '()))
+        do (funcall (track-teller track) code)))
+
+(defun tend-robot (robot tick)
+  (when (plusp (length (robot-designators robot)))
+    (loop with dice = (world-dice (robot-world robot) :tracking)
+          for camera across (robot-cameras robot)
+          for designator = (camera-tracks camera)
+          when designator
+            do (tend-track camera designator tick dice))
+    (tend-untracked robot))
+  (when (robot-ended-tracks robot) (tell-ended-tracks robot)))
+
+(defun tend-tracks (simulation)
+  "Do what is due in this tick for all tracks and designators of SIMULATION."
+  (dolist (robot (world-robots (simulation-world simulation)))
+    (tend-robot robot (simulation-tick simulation))))
+
+(defun tracks-busy-p (simulation)
+  "True if SIMULATION needs ticks for a track."
+  (loop for robot in (world-robots (simulation-world simulation))
+          thereis (or (robot-ended-tracks robot)
+                      (some #'camera-tracking (robot-cameras robot)))))
+
+;;; Starting.
+
+(defun start-track (camera designator teller)
+  "Let CAMERA track DESIGNATOR from now on, and call TELLER with the code that ends the track."
+  (unless (tracked-p designator)
+    (let ((world (robot-world (camera-robot camera))))
+      (refresh-once designator (simulation-tick (world-simulation world))
+                    (world-dice world :tracking))
+      ;; It may have been seen from quite another place.
+      (setf (designator-swing designator) 0d0)))
+  (setf (camera-angle camera) (designator-angle designator)
+        (camera-tracking camera) (make-track designator teller)))
+
+;;; In the digest.
+
+(defmethod digest-part ((designator designator) digest)
+  (dolist (value (list (designator-number designator) (designator-serial designator)
+                       (designator-angle designator) (designator-distance designator)
+                       (designator-x designator) (designator-y designator)
+                       (eq (designator-type designator) :local)))
+    (digest-add digest value)))
+
+(defmethod digest-part :after ((robot robot) digest)
+  (dolist (designator (live-designators robot)) (digest-part designator digest))
+  (loop for camera across (robot-cameras robot)
+        for designator = (camera-tracks camera)
+        do (digest-add digest (and designator (designator-serial designator)))))
+
+;;; In each tick.
+
+(defvar *tracks-phase* (lambda (simulation) (tend-tracks simulation))
+  "The phase of a tick that looks after tracks.")
+(defvar *tracks-busy-test* (lambda (simulation) (tracks-busy-p simulation))
+  "The test that keeps a clock going while there are tracks.")
+
+(unless (member *tracks-phase* *tick-phases*)
+  (setf *tick-phases* (append *tick-phases* (list *tracks-phase*))))
+(pushnew *tracks-busy-test* *busy-tests*)
