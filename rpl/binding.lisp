@@ -44,18 +44,20 @@
 (defun fill-lambda (values scopes sequential)
   "Return the lambda expression that makes an environment of the forms VALUES, each in its scope."
   (if sequential
-      `(lambda (%outer)
-         (let ((%environment (make-array ,(1+ (length values)) :initial-element nil)))
-           (setf (svref %environment 0) %outer)
-           ,@(loop for value in values
-                   for scope in scopes
-                   for i from 1
-                   collect `(setf (svref %environment ,i)
-                                  ,(wrap-for-leaf (as-lisp value scope) scope)))
-           %environment))
-      (leaf-lambda `(vector %environment ,@(loop for value in values
-                                                 for scope in scopes
-                                                 collect (as-lisp value scope)))
+      (let ((inner (scope-variable (first scopes))))
+        `(lambda (outer)
+           (let ((,inner (make-array ,(1+ (length values)) :initial-element nil)))
+             (setf (svref ,inner 0) outer)
+             ,@(loop for value in values
+                     for scope in scopes
+                     for i from 1
+                     collect `(setf (svref ,inner ,i)
+                                    ,(wrap-for-leaf (as-lisp value scope) scope)))
+             ,inner)))
+      (leaf-lambda `(vector ,(scope-variable (first scopes))
+                            ,@(loop for value in values
+                                    for scope in scopes
+                                    collect (as-lisp value scope)))
                    (first scopes))))
 
 (defun binding-code (form bindings body scope sequential)

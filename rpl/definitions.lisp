@@ -36,7 +36,7 @@ plans (manual D.2)."
 
 (defmacro interp-lambda ((&rest parameters) &body body &environment environment)
   "Return a plan procedure without a name: PARAMETERS and BODY are as for DEF-INTERP-PROC. BODY sees
-none of the variables around it that plans bind, only those of Lisp."
+the variables around it, but not blocks, tags and local plans. Run it by CALL-PLAN."
   (let ((parameters (untyped-lambda-list parameters "interp-lambda"))
         (form (list* 'interp-lambda parameters body)))
     (with-own-text (form)

@@ -31,13 +31,11 @@ ON-END with each top-level task that ends; by default it reports failures."
 (defun start-plan (runner plan &rest arguments)
   "Start PLAN, a plan procedure or the name of one, with ARGUMENTS as a top-level task of RUNNER.
 Return the task, which runs at the next reaction."
-  (let* ((procedure (if (procedure-p plan) plan (find-procedure plan)))
-         (*runner* runner)
-         (task (spawn nil (procedure-body procedure)
-                      (apply (procedure-entry procedure) arguments) 0 0
-                      (make-task (procedure-name procedure) (procedure-body procedure)))))
-    (push task (runner-roots runner))
-    task))
+  (multiple-value-bind (body environment) (apply #'enter-plan plan arguments)
+    (let ((*runner* runner)
+          (name (if (procedure-p plan) (procedure-name plan) plan)))
+      (first (push (spawn nil body environment 0 0 (make-task name body))
+                   (runner-roots runner))))))
 
 ;;; Reacting.
 

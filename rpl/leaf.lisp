@@ -66,6 +66,7 @@
   "Return FORM, met in a leaf, with its plan meaning."
   (cond ((not (and (eq context :eval) (consp form) (symbolp (first form)) (own-text-p form)))
          form)
+        ((plan-in-leaf-p form) (values form t))
         (t (let ((meaning (if (local-function-p (first form) environment)
                               form
                               (plan-meaning form environment))))

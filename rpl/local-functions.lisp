@@ -9,13 +9,14 @@
 (defun entry-lambda (parameters scope outer)
   "Return the lambda expression that takes arguments for PARAMETERS, after the environment around
 them if OUTER, and returns the environment for a procedure's body."
-  (let ((make `(vector ,(if outer '%environment nil) ,@(lambda-list-variables parameters))))
+  (let ((make `(vector ,(and outer (scope-variable scope))
+                       ,@(lambda-list-variables parameters))))
     (cond ((not outer)
            (second (as-lisp `(function (lambda ,parameters ,make)) scope)))
           ((intersection parameters lambda-list-keywords)
            (leaf-lambda `(apply ,(as-lisp `(function (lambda ,parameters ,make)) scope) %arguments)
                         scope '&rest '%arguments))
-          (t `(lambda (%environment ,@parameters) ,make)))))
+          (t `(lambda (,(scope-variable scope) ,@parameters) ,make)))))
 
 (defun lambda-suspension (parameters body scope)
   (suspension (note-own-text `(function (lambda ,parameters ,@body))) scope))
@@ -108,7 +109,7 @@ them if OUTER, and returns the environment for a procedure's body."
   (let ((definitions (loop for (name parameters . body) in definitions
                            collect (list* name (untyped-lambda-list parameters) body))))
     (leaf-lambda (as-lisp `(,operator ,definitions
-                               (vector %environment
+                               (vector ,(scope-variable scope)
                                        ,@(loop for (name) in definitions
                                                collect `(function ,name))))
                             scope)

@@ -213,10 +213,9 @@ none does and TASK has ended, +PARKED+."
 
 (defun evaporate (task)
   "End TASK, because it is no longer needed, with all that it consists of, newest first. What it
-has protected by EVAP-PROTECT is done first and may take time. A task that is over, or evaporates
-already, is left alone. Call it only from plans; from elsewhere post it."
-  (cond ((or (task-over-p task) (task-doomed task)))
-        ((eq (task-state task) :created) (setf (task-state task) :evaporated))
+has protected by EVAP-PROTECT is done first and may take time. A task that has not started, is over
+or evaporates already is left alone. Call it only from plans; from elsewhere post it."
+  (cond ((or (task-over-p task) (task-doomed task) (eq (task-state task) :created)))
         (t (setf (task-doomed task) t)
            (cond ((task-cleaning task)
                   (setf (frame-data (first (last (task-cleaning task)))) :evaporate))

@@ -35,7 +35,7 @@ Fluents hold what varies, tasks wait for fluents, a runner lets them react. Know
   ;; compile-time errors
   (:export #:misplaced-suspension #:misplaced-form #:misplaced-container #:misplaced-advice)
   ;; defining plans
-  (:export #:def-interp-proc #:def-interp-macro #:interp-lambda #:make-plan
+  (:export #:def-interp-proc #:def-interp-macro #:interp-lambda #:make-plan #:call-plan
            #:procedure #:find-procedure #:procedure-name)
   ;; constructs
   (:export #:seq #:par #:pursue #:try-all #:try-in-order #:try-one #:try-each-in-order #:par-loop

@@ -114,6 +114,30 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
   "Return the values it is called with as one object."
   (if more (make-bundle (cons value more)) value))
 
+(define-node plan-call ((enter function))
+  "A call of a plan that is known when it happens: ENTER of the environment returns its body and the
+environment for that."
+  :step step-plan-call)
+
+(defun step-plan-call (node task frame value)
+  (declare (ignore task))
+  (cond ((plusp (frame-counter frame)) (values (frame-up frame) value))
+        (t (setf (frame-counter frame) 1)
+           (multiple-value-bind (body environment)
+               (funcall (plan-call-enter node) (frame-environment frame))
+             (enter (the node body) environment frame)))))
+
+(defun enter-plan (plan &rest arguments)
+  "Return the body of PLAN, a procedure or the name of one, and its environment for ARGUMENTS."
+  (let ((procedure (if (procedure-p plan) plan (find-procedure plan))))
+    (values (procedure-body procedure)
+            (apply (procedure-entry procedure) arguments))))
+
+(defmacro call-plan (plan &rest arguments)
+  "Run PLAN, a plan procedure or the name of one, with ARGUMENTS as part of a plan; return its
+value."
+  (misplaced 'call-plan (list* plan arguments)))
+
 (defun lisp-function (name)
   (if (and (fboundp name) (not (macro-function name)))
       (fdefinition name)

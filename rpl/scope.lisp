@@ -7,8 +7,11 @@
 ;;; its element. Local functions live in environments too.
 
 (defstruct (scope (:copier copy-scope))
-  "What is visible at a place in a plan. LAYERS tell, innermost first, how leaves get to see it.
-The others map names to the variables, in the code that builds the plan, that hold their nodes."
+  "What is visible at a place in a plan. VARIABLE is what leaves call their environment; it is one
+procedure's own, so that plans can be written in the leaves of others. LAYERS tell, innermost first,
+how leaves get to see what is visible. The others map names to the variables, in the code that
+builds the plan, that hold their nodes."
+  (variable (gensym "ENVIRONMENT") :type symbol)
   (environment nil)
   (level 0 :type fixnum)
   (layers '() :type list)
@@ -68,7 +71,7 @@ augmenting the macro environment."
 
 (defun element-form (scope level index)
   "Return the form, within a leaf of SCOPE, for element INDEX of the environment made at LEVEL."
-  `(svref ,(loop with form = '%environment
+  `(svref ,(loop with form = (scope-variable scope)
                  repeat (- (scope-level scope) level)
                  do (setf form `(the simple-vector (svref ,form 0)))
                  finally (return form))
@@ -108,6 +111,6 @@ augmenting the macro environment."
 
 (defun leaf-lambda (form scope &rest parameters)
   "Return the lambda expression for FORM in SCOPE: it takes the environment and PARAMETERS."
-  `(lambda (%environment ,@parameters)
-     (declare (type simple-vector %environment) (ignorable %environment))
+  `(lambda (,(scope-variable scope) ,@parameters)
+     (declare (type simple-vector ,(scope-variable scope)) (ignorable ,(scope-variable scope)))
      ,(wrap-for-leaf form scope)))

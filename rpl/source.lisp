@@ -78,6 +78,10 @@
   (let ((name (operator-name form)))
     (and name (member name names :test #'string=))))
 
+(defun plan-in-leaf-p (form)
+  "True if FORM makes a plan: its text is for itself to read."
+  (operator-in-p form '("INTERP-LAMBDA" "DEF-INTERP-PROC")))
+
 (defparameter *lifted-operators*
   '("NOT" "<" ">" "<=" ">=" "=" "+" "-" "*" "/" "EQ" "EQL" "EQUAL"))
 

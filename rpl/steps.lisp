@@ -55,6 +55,12 @@ get their chance between steps. In ordinary Lisp, PROGN (manual D.2)."
                  scope)
       (hoisted-code form scope (rest pairs))))
 
+(define-plan-form "CALL-PLAN" :must (&rest arguments) (form scope)
+  (if (some (lambda (argument) (suspends-p argument scope)) arguments)
+      (hoisted-code form scope)
+      `(make-plan-call :form ',form
+                       :enter ,(value-lambda `(enter-plan ,@arguments) scope))))
+
 (defun all-variables (scope)
   (loop for (kind nil names) in (scope-layers scope)
         when (eq kind :variables) append names))

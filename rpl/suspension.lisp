@@ -75,6 +75,7 @@ form and its scope and returns code that builds a node."
                  (dolist (form forms) (walk form environment))))
              (visit (form context environment)
                (cond ((or (not (eq context :eval)) (atom form)) form)
+                     ((plan-in-leaf-p form) (values form t))
                      ((not (symbolp (first form))) form)
                      (t (visit-call form environment))))
              (visit-call (form environment)

@@ -42,7 +42,7 @@ its index there, NIL if none does."
   (destructuring-bind (&optional level index) (cdr (assoc name (scope-task-tags scope)))
     `(make-tagged :form ',form :name ',name
                   :place ,(if level
-                              `(lambda (%environment)
+                              `(lambda (,(scope-variable scope))
                                  (values ,(environment-form scope level) ,index))
                               '(constantly nil))
                   :body ,(body-code body (single-scope scope)))))
@@ -74,8 +74,8 @@ its index there, NIL if none does."
                          collect (list name level index))))
         `(make-binding
           :form ',form
-          :fill (lambda (%environment)
-                  (vector %environment
+          :fill (lambda (environment)
+                  (vector environment
                           ,@(loop for name in names collect `(make-task ',name +nothing+))))
           :body ,(funcall coder (inner-scope inner
                                              :task-tags (append tags (scope-task-tags scope))))))
