@@ -130,4 +130,8 @@ designators silently."
     (loop for hand across (robot-hands robot)
           when (resource-event hand) do (check-grip hand))))
 
-(setf *tick-phases* (append *tick-phases* (list #'check-grips)))
+(defvar *grips-phase* (lambda (simulation) (check-grips simulation))
+  "The phase of a tick that looks after grips, when all else that moves things is done.")
+
+(unless (member *grips-phase* *tick-phases*)
+  (setf *tick-phases* (append *tick-phases* (list *grips-phase*))))

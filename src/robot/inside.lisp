@@ -138,4 +138,7 @@ what they hold too much."
 (defun settle-robots (simulation)
   (mapc #'settle-parts (simulation-robots simulation)))
 
-(push #'settle-robots *tick-phases*)
+(defvar *settling-phase* (lambda (simulation) (settle-robots simulation))
+  "The phase of a tick that settles parts, before tracks are looked after.")
+
+(pushnew *settling-phase* *tick-phases*)
