@@ -17,3 +17,17 @@ nicknames: geo:add, nisp:matchq, robot::%look.")
           do (sb-ext:add-package-local-nickname nickname package :ars-magna.tests)))
 
 (def-suite ars-magna :description "All that ARS MAGNA claims.")
+
+;;; What MAIN needs to know of FiveAM's insides.
+
+(defun suite-names ()
+  "Return a list of the names of the suites, in order of definition."
+  (loop for name being the hash-keys of (fiveam::tests (get-test 'ars-magna)) collect name))
+
+(defun test-name (result)
+  "Return the name of the test that RESULT, a check's, belongs to."
+  (fiveam::name (fiveam::test-case result)))
+
+(defun failure-reason (result)
+  "Return what RESULT, a failed check's, says."
+  (fiveam::reason result))

@@ -1,0 +1,145 @@
+;;;; arguments.lisp -- from the characters of a line to the arguments of a command.
+
+(in-package :ars-magna.cli)
+
+;;; Arguments are read by the Lisp reader and not evaluated (manual E); numbers stand for cameras,
+;;; hands, storage bins and designators. A semicolon begins a comment.
+
+(defgeneric read-argument (type datum robot)
+  (:documentation
+   "Return the argument of the type called TYPE (a keyword) that DATUM, as typed, stands for with
+ROBOT; signal BAD-LINE if it stands for none. Without a method, DATUM is the argument.")
+  (:method (type datum robot)
+    (declare (ignore type robot))
+    datum))
+
+(defgeneric argument-words (type)
+  (:documentation "Return in words what is typed for an argument of TYPE, a symbol."))
+
+;;; Parts by number.
+
+(defun numbered (index elements kind robot)
+  "Return the element INDEX of the vector ELEMENTS of ROBOT, of things of KIND."
+  (let ((count (length elements)))
+    (cond ((zerop count) (reject-line "~A has no ~A." robot kind))
+          ((not (typep index 'unsigned-byte))
+           (reject-line "~S is no ~A. Give its number." index kind))
+          ((< index count) (aref elements index))
+          (t (reject-line "There is no ~A ~D. ~A has ~D, numbered from 0." kind index robot count)))))
+
+(macrolet ((define-part-argument (type kind elements)
+             `(defmethod read-argument ((type (eql ,type)) datum robot)
+                (numbered datum (,elements robot) ,kind robot))))
+  (define-part-argument :camera "camera" robot-cameras)
+  (define-part-argument :hand "hand" robot-hands)
+  (define-part-argument :storage-bin "storage bin" robot-bins))
+
+(defun designator-numbered (datum robot)
+  (or (find-designator robot datum)
+      (reject-line "There is no designator ~S. STATUS lists the designators." datum)))
+
+(defmethod read-argument ((type (eql :designator)) datum robot)
+  (designator-numbered datum robot))
+
+(defmethod read-argument ((type (eql :destination)) datum robot)
+  (designator-numbered datum robot))
+
+(defmethod read-argument ((type (eql :designator-type)) datum robot)
+  (declare (ignore robot))
+  (if (and datum (symbolp datum)) (make-keyword (symbol-name datum)) datum))
+
+(defparameter *part-words*
+  '((:camera . "the number of a camera") (:hand . "the number of a hand")
+    (:storage-bin . "the number of a storage bin") (:designator . "the number of a designator")
+    (:destination . "the number of a designator"))
+  "What is typed for what is called by number.")
+
+(defun type-key (type) (make-keyword (symbol-name type)))
+
+(defmethod argument-words ((type symbol))
+  (or (cdr (assoc (type-key type) *part-words*))
+      (argument-type-text type)))
+
+(defmethod argument-words ((type (eql 'designator-type)))
+  "local or non-local")
+
+;;; The prompt's own types.
+
+(define-argument-type 'count (lambda (value) (typep value '(integer 0)))
+  "a whole number, 0 or more")
+(define-argument-type 'integer #'integerp "a whole number")
+
+;;; Reading.
+
+(defun blank-p (char) (member char '(#\Space #\Tab #\Return #\Page #\Newline)))
+
+(defun skip-blanks (text start)
+  "Return where, from START, TEXT goes on after blanks; its length if nothing but a comment follows."
+  (let ((position (position-if-not #'blank-p text :start start)))
+    (if (and position (char/= (char text position) #\;))
+        position
+        (length text))))
+
+(defun token-end (text start)
+  "Return where the token that begins in TEXT at START ends; one in double quotes may hold blanks."
+  (let ((quote (and (char= (char text start) #\")
+                    (position #\" text :start (1+ start)))))
+    (if quote
+        (1+ quote)
+        (or (position-if #'blank-p text :start start) (length text)))))
+
+(defun unquoted (token)
+  "Return TOKEN without the double quotes around it, if any."
+  (string-trim "\"" token))
+
+(defun read-datum (text start line)
+  "Return the Lisp datum in TEXT at START and where it ends."
+  (handler-case (read-from-string text t nil :start start :preserve-whitespace t)
+    (end-of-file ()
+      (reject-line "~A is not complete: a parenthesis or quote is missing. ~A"
+                   (subseq text start) (takes line)))
+    (error (condition)
+      (reject-line "~A cannot be read: ~A. ~A" (subseq text start)
+                   (one-line (princ-to-string condition)) (takes line)))))
+
+(defun one-line (text)
+  "Return TEXT with each run of blanks as one space."
+  (with-output-to-string (out)
+    (loop for previous = #\Space then char
+          for char across (string-trim '(#\Space #\Newline) text)
+          for blank = (blank-p char)
+          unless (and blank (blank-p previous))
+            do (write-char (if blank #\Space char) out))))
+
+(defun check-read (value slot line)
+  (unless (argument-of-type-p value (slot-type slot))
+    (reject-line "~A cannot be ~S. ~A" (slot-name slot) value (takes line))))
+
+(defun read-slot (slot text start line)
+  "Return what TEXT has at START for SLOT of LINE, and where that ends."
+  (case (slot-type slot)
+    (:rest (values (string-trim " " (subseq text start)) (length text)))
+    (:token (let ((end (token-end text start)))
+              (values (unquoted (subseq text start end)) end)))
+    (t (multiple-value-bind (datum end) (read-datum text start line)
+         (let ((value (read-argument (type-key (slot-type slot)) datum (reading-robot line))))
+           (check-read value slot line)
+           (values value end))))))
+
+(defun reading-robot (line)
+  "Return the robot whose parts the arguments of LINE name; NIL if they name none."
+  (and (some (lambda (slot) (assoc (type-key (slot-type slot)) *part-words*))
+             (line-parameters line))
+       (session-robot)))
+
+(defun read-arguments (line text)
+  "Return the arguments that TEXT, what follows the name of LINE, holds for it."
+  (let ((position (skip-blanks text 0)))
+    (flet ((over-p () (= position (length text)))
+           (advance (value end) (setf position (skip-blanks text end)) value))
+      (prog1 (loop for slot in (line-parameters line)
+                   until (and (over-p) (slot-optional-p slot))
+                   when (over-p) do (reject-line "~A is missing. ~A" (slot-name slot) (takes line))
+                   collect (multiple-value-call #'advance (read-slot slot text position line)))
+        (unless (over-p)
+          (reject-line "~A is too much. ~A" (subseq text position) (takes line)))))))

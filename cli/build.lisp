@@ -1,0 +1,121 @@
+;;;; build.lisp -- compiles the project, warnings being errors, for ./cli/ars-magna and ./tests/run.
+
+;;; Loaded into a bare SBCL by those scripts, which say in the environment where compiled files
+;;; go. A warning of any kind, undefined functions included, ends the build with status 1 and
+;;; leaves none of the project's compiled files behind, so that the next build finds it again.
+
+(require "asdf")
+
+(defpackage :ars-magna.build
+  (:documentation "Compiling, saving the prompt's core, running the tests.")
+  (:use :cl)
+  (:export #:print-missing-libraries #:load-strictly #:save-prompt #:run-tests))
+
+(in-package :ars-magna.build)
+
+(defvar *root* (uiop:pathname-parent-directory-pathname
+                (uiop:pathname-directory-pathname *load-truename*))
+  "The project's directory.")
+
+(defvar *cache* (uiop:getenvp "ARS_MAGNA_CACHE")
+  "The directory of all that is compiled, ending in a slash; NIL means ASDF's own.")
+
+(defun project-fasls ()
+  (uiop:ensure-directory-pathname (uiop:strcat *cache* "project")))
+
+(defun configure ()
+  "Let ASDF find the project here, put compiled files into the cache, and stay as it is."
+  (mapc #'asdf:register-immutable-system '("asdf" "uiop"))
+  (asdf:initialize-source-registry
+   `(:source-registry (:directory ,*root*) :inherit-configuration))
+  (when *cache*
+    (asdf:initialize-output-translations
+     `(:output-translations
+       (,(merge-pathnames "**/*.*" *root*)
+        ,(merge-pathnames "**/*.*" (project-fasls)))
+       (t (,(uiop:ensure-directory-pathname (uiop:strcat *cache* "libraries")) :implementation))
+       :ignore-inherited-configuration))))
+
+(configure)
+
+;;; Libraries.
+
+(defun missing-p (library)
+  (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream)))
+    (null (asdf:find-system library nil))))
+
+(defun print-missing-libraries ()
+  "Print which of the libraries named in the environment ASDF cannot find."
+  (format t "~{~A ~}" (remove-if-not #'missing-p (uiop:split-string (uiop:getenv "LIBRARIES")))))
+
+(defun project-system-p (name)
+  (string= (asdf:primary-system-name name) "ars-magna"))
+
+(defun libraries (system)
+  "Return the names of the libraries that SYSTEM stands on, through the project's systems."
+  (remove-duplicates
+   (loop for name in (asdf:system-depends-on (asdf:find-system system))
+         if (project-system-p name) append (libraries name) else collect name)
+   :test #'string=))
+
+;;; Compiling.
+
+(defun note-trouble (condition)
+  (format t "~&*** ~A~@[ in ~A~]: ~A~%" (type-of condition)
+          (or *compile-file-truename* *load-truename*) condition))
+
+(defun interesting-p (warning)
+  "True unless WARNING is only about compiling and loading in the same Lisp: that a macro is
+defined twice, that a package has grown since it was defined."
+  (not (typep warning `(or ,sb-ext:*muffled-warnings* sb-int:package-at-variance))))
+
+(defun count-troubles (function)
+  "Call FUNCTION. Return how many warnings it signalled; an error counts, and ends it."
+  (let ((count 0))
+    (flet ((note (condition)
+             (incf count)
+             (note-trouble condition)))
+      (block nil
+        (handler-bind ((sb-ext:compiler-note #'muffle-warning)
+                       (warning (lambda (warning)
+                                  (when (interesting-p warning) (note warning))))
+                       (error (lambda (condition)
+                                (note condition)
+                                (return))))
+          (funcall function))))
+    count))
+
+(defun give-up ()
+  (when *cache*
+    (uiop:delete-directory-tree (project-fasls) :validate t :if-does-not-exist :ignore))
+  (uiop:quit 1))
+
+(defun load-strictly (system)
+  "Compile and load SYSTEM; a warning in any file of the project is an error."
+  (mapc #'asdf:load-system (libraries system))
+  (setf uiop:*compile-file-warnings-behaviour* :error
+        uiop:*compile-file-failure-behaviour* :error)
+  (unless (zerop (count-troubles (lambda () (asdf:load-system system))))
+    (give-up)))
+
+;;; The prompt.
+
+(defun write-words (file)
+  (with-open-file (out file :direction :output :if-exists :supersede)
+    (format out "~(~{~A~%~}~)" (uiop:symbol-call :ars-magna.cli :all-line-names))))
+
+(defun save-prompt (file)
+  "Save a core that runs the prompt in FILE, and the names of its commands in FILE.words."
+  (load-strictly "ars-magna/cli")
+  (write-words (uiop:strcat file ".words"))
+  ;; What is in the core is not to be compiled again under its user.
+  (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))
+  (uiop:call-image-dump-hook)
+  (sb-ext:save-lisp-and-die file :toplevel (uiop:find-symbol* :main :ars-magna.cli)))
+
+;;; The tests.
+
+(defun run-tests (suites)
+  "Run the suites so named, or all; end this Lisp, with status 1 if a check fails."
+  (load-strictly "ars-magna/tests")
+  (uiop:quit (if (uiop:symbol-call :ars-magna.tests :run-suites suites) 0 1)))

@@ -1,0 +1,44 @@
+;;;; evaluation.lisp -- lines that are Lisp.
+
+(in-package :ars-magna.cli)
+
+;;; A line that begins with a parenthesis is Lisp, in the package ARS-USER and the syntax of the
+;;; readtable :NISP; IN-PACKAGE holds for the lines that follow. A form may go on over lines.
+
+(defun blank-from-p (text start)
+  (= (skip-blanks text start) (length text)))
+
+(defun read-more (session text)
+  "Return TEXT with the next line of SESSION after it."
+  (let ((line (read-input session "     > ")))
+    (unless line (reject-line "The form is not complete: ~A" (one-line text)))
+    (format nil "~A~%~A" text line)))
+
+(defun quiet-warning (condition)
+  "Keep the compiler from telling users at length what they will be told in a moment."
+  (when (typep condition '(or style-warning sb-ext:compiler-note))
+    (muffle-warning condition)))
+
+(defun call-quietly (function)
+  (handler-bind ((warning #'quiet-warning)
+                 (sb-ext:compiler-note #'muffle-warning))
+    (funcall function)))
+
+(defun evaluate (session form)
+  "Evaluate FORM and print its values, each on a line."
+  (let* ((*standard-output* (session-console session))
+         (values (multiple-value-list (call-quietly (lambda () (eval form))))))
+    (shiftf *** ** * (first values))
+    (when values
+      (fresh-line *standard-output*)
+      (format *standard-output* "~{~S~%~}" values))))
+
+(defun evaluate-text (session text)
+  "Evaluate the forms in TEXT, reading on in SESSION while the last of them is incomplete."
+  (loop with position = 0
+        until (blank-from-p text position)
+        do (handler-case (read-from-string text t nil :start position)
+             (end-of-file () (setf text (read-more session text)))
+             (:no-error (form end)
+               (setf position end)
+               (evaluate session form)))))

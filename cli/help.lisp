@@ -1,0 +1,93 @@
+;;;; help.lisp -- HELP and the menus, from the definitions.
+
+(in-package :ars-magna.cli)
+
+(defparameter *families*
+  '((:general . "The prompt") (:seeing . "The robot and its world") (:running . "Running")
+    (:moving . "Moving and turning"))
+  "The families of the main menu, with what it calls them.")
+
+(defun filled-lines (text width)
+  "Return the words of TEXT as a list of lines of at most WIDTH characters."
+  (loop with line = ""
+        for (word . more) on (split-words text)
+        for longer = (if (string= line "") word (format nil "~A ~A" line word))
+        if (<= (length longer) width)
+          do (setf line longer)
+        else
+          collect (shiftf line word)
+        unless more
+          collect line))
+
+(defun write-filled (text indent &optional (head ""))
+  "Write TEXT in lines of at most 79 characters from column INDENT on, HEAD before the first."
+  (loop for line in (filled-lines text (- 79 indent))
+        for start = head then ""
+        do (format t "~VA~A~%" indent start line)))
+
+(defun split-words (text)
+  (loop for start = (position-if-not #'blank-p text) then (position-if-not #'blank-p text :start end)
+        while start
+        for end = (or (position-if #'blank-p text :start start) (length text))
+        collect (subseq text start end)))
+
+(defun first-sentence (text)
+  "Return TEXT up to its first period, colon or semicolon that ends a clause."
+  (let* ((text (one-line text))
+         (end (loop for i from 0 below (length text)
+                    when (and (find (char text i) ".:;")
+                              (or (= (1+ i) (length text)) (blank-p (char text (1+ i)))))
+                      return i)))
+    (subseq text 0 end)))
+
+(defun write-menu (lines)
+  "List LINES: how each is typed, and what it does."
+  (dolist (line lines)
+    (write-filled (first-sentence (line-sentence line)) 27 (format nil "  ~24A " (usage line)))))
+
+(defun lines-of (family)
+  (remove family (all-lines) :key #'line-family :test-not #'eq))
+
+(defun write-main-menu ()
+  (loop for (family . title) in *families*
+        do (format t "~A~%" title)
+           (write-menu (lines-of family)))
+  (let ((lines (lines-of :manipulating)))
+    (when lines
+      (format t "Manipulating~%")
+      (write-menu lines)))
+  (format t "~%MENU-CAMERA, MENU-HAND and MENU-BIN list the commands of those parts, HELP name tells
+more. The beginning of a name will do. A line in parentheses is Lisp.~%"))
+
+(defun slot-help (slot)
+  "Return what HELP says of SLOT."
+  (format nil "~A: ~A~:[, ~A~;~*~]~:[~; (may be left out)~]."
+          (slot-name slot) (slot-text slot)
+          (or (keywordp (slot-type slot)) (string= (slot-text slot) (slot-words slot)))
+          (slot-words slot) (slot-optional-p slot)))
+
+(defun write-help (line)
+  (format t "~A~%" (usage line))
+  (write-filled (line-sentence line) 2)
+  (dolist (slot (line-parameters line)) (write-filled (slot-help slot) 4))
+  (dolist (detail (line-details line)) (write-filled detail 2)))
+
+(define-line "HELP" (session (cmd :token "the name of a command" :optional))
+    (:general)
+    "List the commands of the prompt and those that move the robot, or tell what CMD does."
+  (let ((alias (and cmd (assoc (string-upcase cmd) *aliases* :test #'string=))))
+    (cond (alias (format t "~{~A is an alias of ~A~}~%" alias))
+          (cmd (write-help (find-line cmd)))
+          (t (write-main-menu)))))
+
+(define-line "MENU-BIN" (session) (:general)
+    "List the commands of storage bins."
+  (write-menu (lines-of :storage-bin)))
+
+(define-line "MENU-CAMERA" (session) (:general)
+    "List the commands of cameras."
+  (write-menu (lines-of :camera)))
+
+(define-line "MENU-HAND" (session) (:general)
+    "List the commands of hands."
+  (write-menu (lines-of :hand)))

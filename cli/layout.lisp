@@ -1,0 +1,61 @@
+;;;; layout.lisp -- how the prompt writes numbers, values and descriptors.
+
+(in-package :ars-magna.cli)
+
+;;; As in the session of manual E: positions and angles with two decimals, readings with one, truth
+;;; as Yes and No, symbols capitalised, four attributes to a line.
+
+(defun amount-text (number)
+  "Return NUMBER, a size or weight that somebody specified, as he would write it."
+  (if (= number (round number))
+      (format nil "~D" (round number))
+      (string-right-trim "0" (format nil "~,4F" number))))
+
+(defun value-text (value)
+  "Return the value of an attribute as STATUS and THINGS show it."
+  (cond ((eq value t) "Yes")
+        ((null value) "No")
+        ((symbolp value) (string-capitalize value))
+        ((realp value) (format nil "~,1F" value))
+        ((consp value) (format nil "(~{~A~^ ~})" (mapcar #'value-text value)))
+        (t (princ-to-string value))))
+
+(defun write-descriptor (descriptor)
+  "Write DESCRIPTOR, a list of lists (attribute value), four attributes to a line."
+  (loop for rest = descriptor then (nthcdr 4 rest)
+        while rest
+        do (format t "  ~{~{:~A ~A~}~^ ~}~%"
+                   (loop for (key value) in rest repeat 4
+                         collect (list key (value-text value))))))
+
+(defun kind-text (designator)
+  "Return what DESIGNATOR is for, such as Local Object."
+  (format nil "~:(~A~) ~:[Place~;Object~]" (designator-type designator)
+          (consp (first (designator-data designator)))))
+
+(defun bearing-text (designator)
+  "Return the distance and the angle of DESIGNATOR."
+  (format nil "~,2F, ~,2F" (designator-distance designator) (designator-angle designator)))
+
+(defun location-text (part)
+  "Return where PART is, if inside something (manual E)."
+  (let ((location (part-location part)))
+    (cond ((null location) nil)
+          ((storage-bin-p location) "Located in storage-bin.")
+          (t (format nil "Located in ~A." (location-name location))))))
+
+(defun put-line (control &rest arguments)
+  "Write a line formatted from CONTROL and ARGUMENTS, without blanks at its end."
+  (format t "~A~%" (string-right-trim " " (apply #'format nil control arguments))))
+
+;;; A live world is looked at between two ticks.
+
+(defun call-still (function)
+  "Write what FUNCTION writes to standard output while the world stands still."
+  (let ((simulation (current-simulation)))
+    (write-string (asking (simulation)
+                    (with-output-to-string (*standard-output*) (funcall function))))))
+
+(defmacro still (&body body)
+  "Run BODY, which writes to standard output, while the world stands still."
+  `(call-still (lambda () ,@body)))

@@ -1,0 +1,109 @@
+;;;; main.lisp -- what the saved core of ./cli/ars-magna does.
+
+(in-package :ars-magna.cli)
+
+;;; Interactively, the world is live. A batch without a rate is headless: a fresh world, whose ticks
+;;; pass only as its lines need them, so that the same lines and seed give the same run.
+
+(defparameter *default-world* "WATSON" "The world of a prompt that is not told another.")
+
+(defun first-robot (options)
+  "Return the name of the robot that OPTIONS ask for."
+  (let* ((robot (option-value :robot options))
+         (world (option-value :world options (and (null robot) *default-world*)))
+         (robots (and world (world-robots-called world))))
+    (cond ((null robot) (first robots))
+          ((null world) (robot-called robot))
+          ((find robot robots :test #'same-name-p))
+          (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world robots)))))
+
+(defun load-files (session options)
+  (dolist (file (option-values :load options))
+    (call-guarded session (lambda () (load-lisp (or (existing-file file)
+                                                    (reject-line "There is no file ~A." file)))))
+    (settle session)
+    (show-messages session)))
+
+(defun run-headless (session robot-name options)
+  "Run the lines of SESSION, a batch, in a fresh world; return the robot to go on with, or NIL."
+  (setf (session-next-robot session) nil
+        *prompt-robot* robot-name)
+  (call-with-simulation (lambda ()
+                          (load-files session options)
+                          (run-session session))
+                        (robots-beside robot-name)
+                        :seed (option-value :seed options 0) :journal t)
+  (session-next-robot session))
+
+(defun run-batch (session robot-name options)
+  (loop for name = robot-name then (run-headless session name options)
+        while name))
+
+(defun greet (session)
+  (let ((simulation (current-simulation)))
+    (format (session-console session)
+            "ARS MAGNA: ~A in ~A, seed ~D, ~A.~%HELP lists the commands, QUIT leaves.~%"
+            (session-robot) (simulation-name simulation) (simulation-seed simulation)
+            (rate-text (simulation-rate simulation)))))
+
+(defun run-live (session robot-name options)
+  "Run the lines of SESSION in the live world of ROBOT-NAME."
+  (apply #'simulator robot-name :rate (option-value :rate options *default-rate*)
+         (when (option-value :seed options) (list :seed (option-value :seed options))))
+  (when (interactive-stream-p (session-input session)) (greet session))
+  (load-files session options)
+  (run-session session))
+
+(defun run-prompt (options)
+  "Do what OPTIONS say. Return the status to exit with."
+  (let ((robot-name (first-robot options))
+        (session (make-session :input (standard-stream 0 :input)
+                               :output *standard-output*
+                               :batch (option-value :batch options))))
+    (if (and (session-batch-p session) (null (option-value :rate options)))
+        (run-batch session robot-name options)
+        (run-live session robot-name options))
+    (if (and (session-batch-p session) (plusp (session-errors session))) 1 0)))
+
+(defun run-arguments (arguments)
+  "Do what ARGUMENTS, a list of strings, say. Return the status to exit with."
+  (let ((options (parse-options arguments)))
+    (cond ((option-value :probe options) 0)
+          ((option-value :list options)
+           (when (option-value :world options) (world-robots-called (option-value :world options)))
+           (write-worlds)
+           0)
+          (t (run-prompt options)))))
+
+;;; The process.
+
+(defun standard-stream (descriptor direction)
+  "Return a stream on the file DESCRIPTOR that no bytes can upset."
+  (sb-sys:make-fd-stream descriptor direction t :buffering :full
+                                    :external-format '(:utf-8 :replacement #\?)))
+
+(defun give-reason (condition status)
+  "Say on the error output what CONDITION says; return STATUS."
+  (format *error-output* "ars-magna: ~A~%" (condition-text condition))
+  status)
+
+(defun call-for-status (function)
+  "Call FUNCTION, which returns a status to exit with; return a status whatever happens."
+  (catch 'leave
+    (handler-case (funcall function)
+      (usage-error (condition) (give-reason condition 2))
+      ;; Whoever was to read the output has gone.
+      (stream-error () 1)
+      (sb-sys:interactive-interrupt () 130)
+      (error (condition) (give-reason condition 1)))))
+
+(defun command-line-arguments ()
+  (rest (member "--end-runtime-options" sb-ext:*posix-argv* :test #'string=)))
+
+(defun main ()
+  "Run ./cli/ars-magna: do what the arguments of this process say, and end it."
+  (setf *standard-output* (make-console (standard-stream 1 :output)))
+  (let ((status (call-for-status (lambda () (run-arguments (command-line-arguments))))))
+    (ignore-errors (finish-output *standard-output*))
+    (ignore-errors (finish-output *error-output*))
+    (sb-ext:exit :code status :abort t)))

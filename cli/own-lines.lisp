@@ -1,0 +1,42 @@
+;;;; own-lines.lisp -- ALIAS, EVAL, REPEAT and QUIT: lines about lines.
+
+(in-package :ars-magna.cli)
+
+(defun list-aliases ()
+  (if *aliases*
+      (format t "~:{~A = ~A~%~}" (sort (copy-list *aliases*) #'string< :key #'first))
+      (format t "No aliases. ALIAS name command defines one.~%")))
+
+(defun define-alias (name text)
+  (when (find name (all-line-names) :test #'string=)
+    (reject-line "~A is a command already; choose another name for the alias." name))
+  (setf *aliases* (cons (list name text) (remove name *aliases* :key #'first :test #'string=))))
+
+(define-line "ALIAS" (session (alias :token "a name" :optional)
+                              (cmd :rest "a command, with arguments if you like" :optional))
+    (:general)
+    "List the aliases, or let ALIAS stand for CMD."
+  (let ((name (and alias (string-upcase alias))))
+    (cond ((null name) (list-aliases))
+          (cmd (define-alias name cmd))
+          (t (let ((known (assoc name *aliases* :test #'string=)))
+               (unless known (reject-line "There is no alias ~A." name))
+               (format t "~{~A = ~A~}~%" known))))))
+
+(define-line "EVAL" (session (exp :rest "a Lisp form"))
+    (:general)
+    "Evaluate EXP as Lisp and print its values. A line that begins with a parenthesis does the same."
+  (evaluate-text session exp))
+
+(define-line "REPEAT" (session (num count "how often") (cmd :rest "a command, with its arguments"))
+    (:general)
+    "Give the command CMD, NUM times over, each time when the last has completed."
+  (let ((*waiting-p* t))
+    (loop repeat num
+          until (session-over-p session)
+          do (run-text session cmd))))
+
+(define-line "QUIT" (session)
+    (:general)
+    "Leave the prompt. From a Lisp that goes on, the simulator goes on too."
+  (setf (session-over-p session) t))

@@ -1,0 +1,128 @@
+;;;; prompt.lisp -- reading lines and doing what they say.
+
+(in-package :ars-magna.cli)
+
+;;; Whatever goes wrong in a line ends that line, with one line that says why. An interrupt (control
+;;; C) ends the line that is being read or carried out; the simulator does not notice.
+
+(defun read-input (session prompt)
+  "Return the next line of SESSION, or NIL at the end. Show PROMPT unless it is a batch."
+  (let ((console (session-console session)))
+    (unless (session-batch-p session) (show-prompt console prompt))
+    (let ((line (read-line (session-input session) nil)))
+      (cond ((session-echo-p session) (format console "~@[~A~]~%" line))
+            ((null line) (unless (session-batch-p session) (terpri console))))
+      (with-lock ((session-lock session)) (answered console))
+      line)))
+
+;;; Carrying out a line.
+
+(defun comment-p (text)
+  "True if there is nothing to do in TEXT: it is blank, or a comment after ; or #."
+  (let ((start (position-if-not #'blank-p text)))
+    (or (null start) (find (char text start) ";#"))))
+
+(defun lisp-p (text)
+  (char= #\( (char text (position-if-not #'blank-p text))))
+
+(defun split-line (text)
+  "Return the first word of TEXT and what follows it."
+  (let* ((start (position-if-not #'blank-p text))
+         (end (token-end text start)))
+    (values (subseq text start end) (subseq text end))))
+
+(defun expand-alias (text &optional known)
+  "Return TEXT with the alias that it begins with, if any, replaced; again and again, but each once."
+  (multiple-value-bind (name rest) (split-line text)
+    (let ((alias (assoc name *aliases* :test #'string-equal)))
+      (if (and alias (not (member alias known)))
+          (expand-alias (concatenate 'string (second alias) rest) (cons alias known))
+          text))))
+
+(defun run-line (session line text)
+  "Do what LINE does with the arguments in TEXT. What it prints comes out in one piece."
+  (let ((arguments (read-arguments line text))
+        (console (session-console session)))
+    (if (unhurried-p line)
+        (apply (line-action line) session arguments)
+        (write-string (with-output-to-string (*standard-output*)
+                        (apply (line-action line) session arguments))
+                      console))))
+
+(defun unhurried-p (line)
+  "True if what LINE prints is to be seen as it comes."
+  (or (line-full-name line)
+      (member (line-name line) '("EVAL" "REPEAT") :test #'string=)))
+
+(defun run-text (session text)
+  "Do what TEXT, a line as typed, says."
+  (cond ((comment-p text))
+        ((lisp-p text) (evaluate-text session text))
+        (t (let ((text (expand-alias text)))
+             (if (lisp-p text)
+                 (evaluate-text session text)
+                 (multiple-value-bind (name rest) (split-line text)
+                   (run-line session (find-line name) rest)))))))
+
+;;; Lines that go wrong.
+
+(defun condition-text (condition)
+  "Return what CONDITION says, or what it is if it cannot say that."
+  (let ((text (handler-case (princ-to-string condition) (error () ""))))
+    (if (string= text "") (string-downcase (type-of condition)) text)))
+
+(defun debug-if-wanted (condition)
+  (when (and *break-on-user-error* (not (typep condition 'ars-magna-error)))
+    (invoke-debugger condition)))
+
+(defun call-guarded (session function)
+  "Call FUNCTION; complain of what goes wrong in it."
+  (handler-case (handler-bind ((error #'debug-if-wanted)) (funcall function))
+    (sb-sys:interactive-interrupt () (interrupted session))
+    ((or error storage-condition) (condition) (complain session (condition-text condition)))))
+
+(defun interrupted (session)
+  (when (session-batch-p session) (throw 'leave 130))
+  (answered (session-console session))
+  (format (session-console session) "~&Interrupted.~%"))
+
+(defun next-line (session)
+  "Read a line of SESSION and do what it says; at the end of input, let the session be over."
+  (let ((text (read-input session "Robot> ")))
+    (cond ((null text) (setf (session-over-p session) t))
+          (t (run-text session text)
+             (settle session)))))
+
+(defun run-lines (session)
+  "Do what the lines of SESSION say until it is over, or goes on with another robot."
+  (loop until (or (session-over-p session) (session-next-robot session))
+        do (follow-simulation session)
+           (call-guarded session (lambda () (next-line session)))
+           (show-messages session))
+  (unless (interactive-stream-p (session-input session))
+    (call-guarded session (lambda () (await-all session)))
+    (show-messages session)))
+
+(defun call-with-syntax (function)
+  "Call FUNCTION with the package and syntax in which users write."
+  (let ((*package* (find-package :ars-user))
+        (*readtable* *readtable*)
+        (*read-default-float-format* 'double-float))
+    (nisp:in-readtable :nisp)
+    (funcall function)))
+
+(defun run-session (session)
+  "Read lines and do what they say until QUIT or the end of input. Return SESSION."
+  (let ((*waiting-p* (session-batch-p session)))
+    (unwind-protect (call-with-syntax (lambda () (run-lines session)))
+      (stop-listening session)))
+  session)
+
+(defun prompt (&rest options &key input output batch echo)
+  "Run the command-line interface: prompt for commands to the robot last given to SIMULATOR, until
+QUIT or the end of input. INPUT and OUTPUT are streams, by default the standard ones; with BATCH,
+no prompt is shown, and each command completes before the next is read; with ECHO, lines are
+shown as they are read. Returns nothing (manual A, E)."
+  (declare (ignore input output batch echo))
+  (run-session (apply #'make-session options))
+  (values))

@@ -1,0 +1,118 @@
+;;;; running-lines.lisp -- PAUSE, RESUME, STEP, RATE, SEED, PARAMS and journals.
+
+(in-package :ars-magna.cli)
+
+(defun live-simulation ()
+  "Return the simulation, if it is live. Signals BAD-LINE."
+  (let ((simulation (current-simulation)))
+    (unless (live-p simulation)
+      (reject-line "Here time passes only as commands need it. STEP lets more of it pass."))
+    simulation))
+
+(defun time-text (simulation)
+  (format nil "Tick ~D, ~A." (simulation-tick simulation)
+          (cond ((not (live-p simulation)) "headless")
+                ((paused-p simulation) "paused")
+                (t (rate-text (simulation-rate simulation))))))
+
+(defun rate-text (rate)
+  (if (eq rate :free)
+      "as fast as it can"
+      (format nil "~A ticks a second" (amount-text rate))))
+
+(define-line "PAUSE" (session) (:running)
+    "Let time stand still until RESUME."
+  (let ((simulation (live-simulation)))
+    (pause simulation)
+    (format t "~A~%" (time-text simulation))))
+
+(define-line "RESUME" (session) (:running)
+    "Let time go on after PAUSE."
+  (resume (live-simulation)))
+
+(define-line "STEP" (session (n integer "how many ticks; 1 if left out" :optional))
+    (:running)
+    "Let N ticks pass; a live simulator is paused after them."
+  (let* ((simulation (current-simulation))
+         (goal (+ (simulation-tick simulation) (or n 1))))
+    (step-ticks (or n 1) simulation)
+    (await (lambda () (>= (simulation-tick simulation) goal)))
+    (format t "Tick ~D.~%" (simulation-tick simulation))))
+
+(defun parse-rate (text)
+  "Return the rate that TEXT says: a positive number or :FREE. Signals BAD-LINE."
+  (if (string-equal text "free")
+      :free
+      (let ((rate (ignore-errors (let ((*read-eval* nil)) (read-from-string text)))))
+        (if (typep rate '(real (0)))
+            rate
+            (reject-line "The rate cannot be ~A. Give a number of ticks per second, or free."
+                         text)))))
+
+(define-line "RATE" (session (x :token "a number of ticks per second, or free" :optional))
+    (:running)
+    "Set the pace of a live simulator; show what it is, and how many ticks have passed."
+  (let ((simulation (current-simulation)))
+    (when x (set-rate (parse-rate x) (live-simulation)))
+    (format t "~A~%" (time-text simulation))))
+
+(define-line "SEED" (session (n integer "the seed"))
+    (:running)
+    "Make all chance depend on N from now on."
+  (set-seed n (current-simulation)))
+
+;;; Parameters.
+
+(defun parameter-text (parameter)
+  (let ((*read-default-float-format* 'double-float))
+    (format nil "~26A ~8A ~A~:[~; (default ~A)~]"
+            (parameter-name parameter)
+            (parameter-value parameter)
+            (parameter-unit parameter)
+            (not (value-equal (parameter-value parameter) (parameter-default parameter)))
+            (parameter-default parameter))))
+
+(defun list-parameters ()
+  (loop with group = nil
+        for parameter in (all-parameters)
+        do (unless (equal group (parameter-group parameter))
+             (setf group (parameter-group parameter))
+             (format t "~A~%" group))
+           (put-line "  ~A" (parameter-text parameter))))
+
+(defun read-setting (text)
+  (handler-case (let ((*read-eval* nil)) (values (read-from-string text)))
+    (error () (reject-line "~A cannot be read; give a number, T or NIL." text))))
+
+(define-line "PARAMS" (session (name :token "the name of a parameter" :optional)
+                               (value :rest "its new value" :optional))
+    (:running)
+    "List the parameters of the simulation, or one of them; or give it a new value."
+  (if (null name)
+      (list-parameters)
+      (let ((parameter (find-parameter name)))
+        (when value (setf (parameter-value parameter) (read-setting value)))
+        (put-line "~A" (parameter-text parameter))
+        (format t "~A~%" (parameter-sentence parameter)))))
+
+;;; Journals.
+
+(defun moment-text (tick digest)
+  (format nil "tick ~D, state ~16,'0X~%" tick digest))
+
+(define-line "SAVE-JOURNAL" (session (file :token "the name of a file"))
+    (:running)
+    "Write all that was asked of this run to FILE, for REPLAY."
+  (let ((simulation (current-simulation)))
+    (multiple-value-bind (path tick digest)
+        (asking (simulation)
+          (values (save-journal file simulation)
+                  (simulation-tick simulation)
+                  (state-digest simulation)))
+      (format t "~A: ~A" (uiop:native-namestring path) (moment-text tick digest)))))
+
+(define-line "REPLAY" (session (file :token "the name of a file that SAVE-JOURNAL wrote"))
+    (:running)
+    "Repeat the run in FILE in a world of its own; show the tick and the state that it comes to."
+  (multiple-value-bind (simulation digest) (replay file)
+    (format t "~A: ~A" file (moment-text (simulation-tick simulation) digest))))

@@ -1,0 +1,118 @@
+;;;; session.lisp -- one run of the prompt: where it reads and writes, and what it shows when.
+
+(in-package :ars-magna.cli)
+
+;;; Messages come as they please (manual E). A plain message continues the line of the prompt; a
+;;; warning or an error starts a fresh one; then the prompt is shown again. What a tick has to say
+;;; is shown together, when the tick is over.
+
+(define-condition bad-line (ars-magna-error)
+  ((text :initarg :text :reader bad-line-text))
+  (:report (lambda (condition stream) (write-string (bad-line-text condition) stream)))
+  (:documentation "A line typed at the prompt makes no sense."))
+
+(defun reject-line (control &rest arguments)
+  "Signal BAD-LINE with a text formatted from CONTROL and ARGUMENTS; it should name the remedy."
+  (error 'bad-line :text (apply #'format nil control arguments)))
+
+(defvar *prompt-robot* nil
+  "The name of the robot that the prompt commands: the one last given to SIMULATOR, or chosen.")
+
+(pushnew 'note-robot *simulator-hooks*)
+
+(defun note-robot (robot options)
+  (declare (ignore options))
+  (setf *prompt-robot* (robot-name robot)))
+
+(defstruct (session (:constructor %make-session) (:copier nil))
+  "A prompt at work."
+  (input *standard-input* :type stream :read-only t)
+  (console (make-console *standard-output*) :type console :read-only t)
+  ;; Each command completes before the next is read, and no prompt is shown.
+  (batch-p nil :type boolean :read-only t)
+  ;; What is read is shown, for transcripts.
+  (echo-p nil :type boolean :read-only t)
+  (lock (make-lock "session") :read-only t)
+  ;; The simulation whose messages are shown as they arrive, if it is live.
+  (simulation nil)
+  (observer nil)
+  (news-p nil)
+  (errors 0 :type fixnum)
+  ;; What has been issued and may not have ended.
+  (errands '() :type list)
+  (over-p nil)
+  ;; The robot to go on with, in batch mode, when this one's lines are over.
+  (next-robot nil))
+(setf (documentation 'session-errors 'function)
+      "Return how many errors there were so far: lines that made no sense, and error messages.")
+
+(defun make-session (&key (input *standard-input*) (output *standard-output*) batch
+                       (echo (not (or batch (interactive-stream-p input)))))
+  "Return a session that reads lines from INPUT and writes to OUTPUT. With BATCH, it shows no
+prompt and waits for each command to complete; with ECHO, it shows what it reads."
+  (%make-session :input input :console (make-console output)
+                 :batch-p (and batch t) :echo-p (and echo t)))
+
+(defun session-robot ()
+  "Return the robot that the prompt commands. Signals BAD-LINE when there is none."
+  (let ((robots (and *simulation* (simulation-robots *simulation*))))
+    (or (find *prompt-robot* robots :key #'robot-name)
+        (first robots)
+        (reject-line "There is no robot here. WORLD lists the worlds, WORLD name starts one."))))
+
+;;; Complaints and messages.
+
+(defun complain (session text)
+  "Show TEXT as an error."
+  (incf (session-errors session))
+  (format (session-console session) "~&*ERROR* -> ~A~%" (string-right-trim '(#\Newline) text)))
+
+(defun take-all-messages ()
+  (append (take-messages)
+          (when (and *simulation* (not (eq *message-queue* (simulation-messages *simulation*))))
+            (take-messages (simulation-messages *simulation*)))))
+
+(defun write-messages (messages console)
+  (unless (and (unanswered-p console) (eq (message-kind (first messages)) :message))
+    (fresh-line console))
+  (dolist (message messages) (write-message message console)))
+
+(defun show-messages (session)
+  "Show all queued messages, and the prompt again."
+  (with-lock ((session-lock session))
+    (setf (session-news-p session) nil)
+    (let ((console (session-console session))
+          (messages (take-all-messages)))
+      (incf (session-errors session) (count :error messages :key #'message-kind))
+      (when (and messages (not flush-all-errors*)) (write-messages messages console))
+      (restore-prompt console)
+      (finish-output console))))
+
+;;; Listening to a live simulation.
+
+(defun listen-to (session simulation)
+  "Let SESSION show what the live SIMULATION has to say when it says it."
+  (flet ((hear ()
+           (setf (session-news-p session) t)
+           (unless (simulation-ticking-p simulation) (show-messages session)))
+         (look (simulation)
+           (declare (ignore simulation))
+           (when (or (session-news-p session) (spoilt-p (session-console session)))
+             (show-messages session))))
+    (setf (session-simulation session) simulation
+          (session-observer session) #'look
+          (message-queue-listener (simulation-messages simulation)) #'hear)
+    (asking (simulation) (add-observer #'look simulation))))
+
+(defun stop-listening (session)
+  (let ((simulation (shiftf (session-simulation session) nil)))
+    (when simulation
+      (setf (message-queue-listener (simulation-messages simulation)) nil)
+      (asking (simulation) (remove-observer (session-observer session) simulation)))))
+
+(defun follow-simulation (session)
+  "Let SESSION listen to the simulation that is current now."
+  (let ((simulation (and *simulation* (live-p *simulation*) *simulation*)))
+    (unless (eq simulation (session-simulation session))
+      (stop-listening session)
+      (when simulation (listen-to session simulation)))))

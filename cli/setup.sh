@@ -1,0 +1,99 @@
+# setup.sh -- what ./cli/ars-magna and ./tests/run share: what is missing, what is out of date.
+#
+# To be sourced with $root set to the project's directory. Everything that is made here lies in
+# one directory per checkout, $cache: compiled files, logs, and the saved core of the prompt.
+
+say() { printf 'ars-magna: %s\n' "$*" >&2; }
+
+give_up() { say "$*"; exit 1; }
+
+# Directories.
+
+home_directory() {  # VARIABLE'S-VALUE DEFAULT: the value if it is an absolute path.
+    case $1 in
+        /*) printf '%s' "$1" ;;
+        *)  printf '%s' "${HOME:-/}/$2" ;;
+    esac
+}
+
+make_private() {  # DIRECTORY: true if it is there and ours to write.
+    mkdir -p -m 700 "$1" 2>/dev/null && [ -O "$1" ] && [ -w "$1" ]
+}
+
+choose_cache() {
+    checkout=$(printf '%s' "$root" | cksum | cut -d ' ' -f 1)
+    cache=$(home_directory "${XDG_CACHE_HOME:-}" .cache)/ars-magna/$checkout
+    make_private "$cache" || choose_temporary_cache
+    ARS_MAGNA_CACHE=$cache/
+    export ARS_MAGNA_CACHE
+}
+
+choose_temporary_cache() {
+    base=${TMPDIR:-/tmp}/ars-magna-$(id -u)
+    cache=$base/$checkout
+    make_private "$base" && make_private "$cache" ||
+        give_up "cannot write to a cache directory. Set XDG_CACHE_HOME to one."
+}
+
+# What must be installed.
+
+libraries() {  # SYSTEM: the libraries that its definition names, one a line.
+    sed -n "\\|(defsystem \"$1\"|,\\|:components| s|.*:depends-on (\(.*\)).*|\1|p" \
+        "$root/ars-magna.asd" | tr -d '"' | tr ' ' '\n' |
+        grep -v -e '^ars-magna' -e '^sb-' -e '[^a-z0-9.-]' || :
+}
+
+plain_sbcl() { sbcl --noinform --no-sysinit --no-userinit --non-interactive "$@" </dev/null; }
+
+missing_packages() {  # SYSTEM...: the Debian packages that it takes and that are not there.
+    # Words, on purpose, here and below.
+    wanted=$(echo $(for system; do libraries "$system"; done | sort -u))
+    if command -v sbcl >/dev/null; then
+        wanted=$(LIBRARIES=$wanted plain_sbcl --load "$root/cli/build.lisp" \
+                     --eval '(ars-magna.build:print-missing-libraries)') ||
+            give_up "SBCL does not run: $wanted"
+    else
+        printf 'sbcl '
+    fi
+    for library in $wanted; do printf 'cl-%s ' "$library"; done
+}
+
+apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get -y "$@" </dev/null; }
+
+install_packages() {  # PACKAGE...
+    by_hand="install by hand what is missing: sudo apt-get install $*"
+    command -v apt-get >/dev/null || give_up "$by_hand"
+    as_root=
+    if [ "$(id -u)" -ne 0 ]; then
+        sudo -n true 2>/dev/null || give_up "$by_hand"
+        as_root='sudo -n'
+    fi
+    say "installing $* (with apt-get)"
+    log=$cache/install.log
+    apt install --no-install-recommends "$@" >"$log" 2>&1 ||
+        { apt update >>"$log" 2>&1 && apt install --no-install-recommends "$@" >>"$log" 2>&1; } ||
+        { cat "$log" >&2; give_up "$by_hand"; }
+}
+
+ensure_packages() {  # SYSTEM...
+    packages=$(missing_packages "$@") || exit 1
+    [ -z "$packages" ] || install_packages $packages
+}
+
+# Compiling. Starts at the same time wait for each other, where the system has flock.
+
+with_lock() {  # COMMAND...
+    if command -v flock >/dev/null; then
+        ( flock 9; "$@" 9>&- ) 9>"$cache/lock"
+    else
+        "$@"
+    fi
+}
+
+compile() {  # LOG LISP-FORM: evaluate the form of build.lisp; show the log only if that fails.
+    plain_sbcl --load "$root/cli/build.lisp" --eval "$2" >"$1" 2>&1 && return
+    tail -n 60 "$1" >&2
+    say "that did not compile; all of it is in $1"
+    return 1
+}
+

@@ -1,0 +1,106 @@
+;;;; status-lines.lisp -- STATUS, THINGS, MAP, POS and ANGLE.
+
+(in-package :ars-magna.cli)
+
+;;; The layout of STATUS is that of the session in manual E, with a line for the estimated change
+;;; of position, which the manual lists and its session leaves out.
+
+(defun glance (camera)
+  "Return what CAMERA sees now. The run does not notice: dice and last view stay as they were."
+  (let* ((dice (world-dice (robot-world (part-robot camera)) :looking))
+         (state (dice-state dice))
+         (last-view (camera-last-view camera)))
+    (unwind-protect (take-view camera)
+      (setf (dice-state dice) state
+            (camera-last-view camera) last-view))))
+
+(defun view-text (camera)
+  (format nil "~:[~;TRACK ~]~{~,2F~^ ~}" (camera-tracks camera) (glance camera)))
+
+(defun write-views (robot)
+  (loop for camera across (robot-cameras robot)
+        for start = "View:  " then "          "
+        do (put-line "~ACamera ~D: ~A" start (camera-index camera) (view-text camera))))
+
+(defun write-designator (designator)
+  (put-line "~D ~A @ ~A" (designator-number designator)
+            (kind-text designator) (bearing-text designator))
+  (let ((data (designator-data designator)))
+    (if (consp (first data))
+        (write-descriptor data)
+        (put-line "  ~{~:(~A~)~^ ~}" data))))
+
+(defun write-designators (robot)
+  (format t "Designators:~%")
+  (mapc #'write-designator (live-designators robot)))
+
+(defun write-position (label x y)
+  (format t "~19A(~,2F,~,2F)~%" label x y))
+
+(defun write-status (robot)
+  (multiple-value-call #'write-position "Position:" (robot-position robot))
+  (multiple-value-call #'write-position "D Position:" (robot-last-move robot))
+  (multiple-value-call #'write-position "Est D Position:" (robot-last-move-estimate robot))
+  (loop for (label number) in `(("Angle:" ,(robot-angle robot))
+                                ("Speed:" ,(robot-speed robot))
+                                ("Turn Angle:" ,(robot-turn-angle robot)))
+        do (format t "~19A~,2F~%" label number))
+  (write-views robot)
+  (format t "~19A~A~%" "Place:" (robot-last-place robot))
+  (write-designators robot))
+
+(define-line "STATUS" (session)
+    (:seeing)
+    "Show the robot: position, last change of position, real and estimated, heading, speed, turning
+speed, the views of its cameras, the place it sensed last, its designators."
+  (let ((robot (session-robot)))
+    (still (write-status robot))))
+
+(defun where-text (thing)
+  (let ((location (thing-location thing)))
+    (if (eq location :floor)
+        (format nil "@ (~,2F,~,2F)" (thing-x thing) (thing-y thing))
+        (format nil "in ~A" (location-name location)))))
+
+(define-line "THINGS" (session)
+    (:seeing)
+    "List all things in the world with their locations and attributes."
+  (let ((world (robot-world (session-robot))))
+    (still
+      (do-things (thing world)
+        (put-line "~A ~A" thing (where-text thing))
+        (write-descriptor (thing-attributes thing))))))
+
+;;; The map.
+
+(defun terminal-width (session)
+  "Return how many columns the terminal of SESSION has, as far as can be found out."
+  (or (ignore-errors (parse-integer (sb-ext:posix-getenv "COLUMNS")))
+      (and (interactive-stream-p (session-input session))
+           (ignore-errors
+            (let ((size (with-output-to-string (out)
+                          (sb-ext:run-program "stty" '("size") :search t :input t :output out))))
+              (parse-integer size :start (position #\Space size)))))
+      80))
+
+(define-line "MAP" (session (radius count "how many cells around the robot to show" :optional))
+    (:seeing)
+    "Show the world as characters: all of it, or what is within RADIUS cells of the robot."
+  (let ((robot (session-robot))
+        (columns (max 20 (1- (terminal-width session)))))
+    (still (write-string (text-map robot :columns columns :radius radius)))))
+
+;;; Putting the robot somewhere.
+
+(define-line "POS" (session (x number "metres from the left") (y number "metres from the top"))
+    (:seeing)
+    "Put the robot at X, Y at once, without error and ignoring obstacles."
+  (let ((robot (session-robot)))
+    (place-robot robot x y (robot-angle robot))))
+
+(define-line "ANGLE" (session (ang angle "the new heading"))
+    (:seeing)
+    "Turn the robot to the heading ANG at once, without error."
+  (let ((robot (session-robot)))
+    (multiple-value-bind (x y) (robot-position robot)
+      (place-robot robot x y ang))))

@@ -1,0 +1,45 @@
+;;;; world-lines.lisp -- WORLD and ROBOT: which robot the prompt commands, and where.
+
+(in-package :ars-magna.cli)
+
+(defun start-robot (session robot-name)
+  "Let SESSION go on with the robot ROBOT-NAME in its world, which starts anew."
+  (cond ((null *world*) (start-live robot-name))
+        ((session-batch-p session) (setf (session-next-robot session) robot-name))
+        (t (reject-line "This prompt is in a headless simulation, which has one world."))))
+
+(defun start-live (robot-name)
+  (let ((rate (and *simulation* (simulation-rate *simulation*))))
+    (when *simulation* (stop-simulator))
+    (simulator robot-name :rate (or rate *default-rate*)))
+  (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))
+
+(define-line "WORLD" (session (name :token "a shipped world, or a Lisp file" :optional))
+    (:seeing)
+    "List the worlds, or go to the world NAME, with the first robot that it defines. There it is
+tick 0."
+  (if name
+      (start-robot session (first (world-robots-called name)))
+      (write-worlds)))
+
+(defun robot-called (name)
+  (or (find name (all-robots) :test #'same-name-p)
+      (reject-line "There is no robot ~A.~@[ Did you mean ~A?~]" (string-upcase name)
+                   (nearest-name name (all-robots)))))
+
+(defun robots-here ()
+  (and *simulation* (mapcar #'robot-name (simulation-robots *simulation*))))
+
+(defun list-robots ()
+  (dolist (robot (and *simulation* (simulation-robots *simulation*)))
+    (multiple-value-bind (x y) (robot-position robot)
+      (put-line "~16A @ (~,2F,~,2F)~:[~; commanded~]" robot x y (eq robot (session-robot))))))
+
+(define-line "ROBOT" (session (name :token "the robot to command" :optional))
+    (:seeing)
+    "List the robots of this world, or command the robot NAME from now on. If that is in another
+world, go there."
+  (let ((name (and name (robot-called name))))
+    (cond ((null name) (list-robots))
+          ((member name (robots-here)) (setf *prompt-robot* name))
+          (t (start-robot session name)))))

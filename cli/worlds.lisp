@@ -1,0 +1,63 @@
+;;;; worlds.lisp -- the worlds that the prompt can go to: maps with robots in them.
+
+(in-package :ars-magna.cli)
+
+;;; The shipped worlds, in the directory worlds/, are part of the system and called as their maps
+;;; are. Others come from files: Lisp files that define a map and at least one robot in it.
+
+(defun load-lisp (path)
+  "Load the Lisp file at PATH as users write it: in the package ARS-USER unless it says otherwise."
+  (let ((*package* (find-package :ars-user))
+        (*read-default-float-format* 'single-float))
+    (call-quietly (lambda () (load path)))))
+
+(defun robots-by-name ()
+  (loop for name in (all-robots) collect (cons name (find-robot name))))
+
+(defun load-world (path)
+  "Load the Lisp file at PATH. Return the names of the robots that it defines. Signals BAD-LINE if
+there are none."
+  (let ((before (robots-by-name)))
+    (load-lisp path)
+    (or (loop for (name . robot) in (robots-by-name)
+              unless (eq robot (cdr (assoc name before))) collect name)
+        (reject-line "~A defines no robot; a world's file has a DEFROBOT."
+                     (uiop:native-namestring path)))))
+
+(defun robot-map (robot-name)
+  (world-map (robot-world (find-robot robot-name))))
+
+(defun robots-of (map)
+  "Return the names of the robots that are defined in MAP."
+  (remove map (all-robots) :key #'robot-map :test-not #'eq))
+
+(defun all-worlds ()
+  "Return a list of all maps that have robots."
+  (remove-if-not #'robots-of (all-maps)))
+
+(defun existing-file (name)
+  "Return the path of the Lisp file NAME, with or without its type, or NIL."
+  (let ((path (uiop:parse-native-namestring name)))
+    (and (pathname-name path)
+         (or (uiop:file-exists-p path)
+             (uiop:file-exists-p (make-pathname :type "lisp" :defaults path))))))
+
+(defun world-robots-called (name)
+  "Return the names of the robots in the world NAME: a map's name, or else a Lisp file that defines
+a world. Signals BAD-LINE."
+  (let ((map (find name (all-worlds) :key #'map-name :test #'same-name-p))
+        (file (existing-file name)))
+    (cond (map (robots-of map))
+          (file (load-world file))
+          (t (reject-line "There is no world ~A, nor a file of that name. Known: ~{~(~A~)~^, ~}."
+                          name (mapcar #'map-name (all-worlds)))))))
+
+(defun robots-beside (robot-name)
+  "Return the names of all robots in the map of ROBOT-NAME, that one first."
+  (cons robot-name (remove robot-name (robots-of (robot-map robot-name)))))
+
+(defun write-worlds ()
+  "List the worlds: their maps, and their robots."
+  (dolist (map (all-worlds))
+    (format t "~(~16A~) ~3D x ~3D   ~{~A~^, ~}~%" (map-name map) (map-width map) (map-height map)
+            (robots-of map))))
