@@ -47,12 +47,12 @@
                  (:file "looking") (:file "searching") (:file "tracking")
                  (:file "turning-cameras") (:file "approaching")))
    (:module "src/display" :serial t
-    :components ((:file "package") (:file "text-map")))
-   (:module "src" :serial t
-    :components ((:file "slots") (:file "faces") (:file "ars")))
-   (:module "worlds" :serial t
-    :components ((:file "prototypes") (:file "kickers") (:file "watson") (:file "office")
-                 (:file "hall") (:file "tiny")))
+    :components ((:file "canvas-package") (:file "colors") (:file "gcontext") (:file "canvas")
+                 (:file "drawing") (:file "svg")
+                 (:file "package") (:file "text-map") (:file "history") (:file "snapshot")
+                 (:file "subjects") (:file "terrain") (:file "place-marks")
+                 (:file "world-display") (:file "details") (:file "displays")
+                 (:file "picture") (:file "animation") (:file "opening")))
    (:module "rpl" :serial t
     :components ((:file "package") (:file "ring") (:file "fluent") (:file "network")
                  (:file "propagation") (:file "operators") (:file "timer") (:file "failure")
@@ -62,7 +62,15 @@
                  (:file "leaving") (:file "branching") (:file "repeating") (:file "tags")
                  (:file "failing") (:file "waiting") (:file "trying") (:file "parallel")
                  (:file "policy") (:file "ordering") (:file "valve") (:file "local-functions")
-                 (:file "definitions") (:file "report") (:file "engine") (:file "alone"))))
+                 (:file "definitions") (:file "report") (:file "engine") (:file "alone")
+                 (:file "robot-package") (:file "robot-fluents") (:file "robot-interface")
+                 (:file "robot-accessors") (:file "robot-outcomes") (:file "robot-commands")
+                 (:file "robot-runs")))
+   (:module "src" :serial t
+    :components ((:file "slots") (:file "faces") (:file "ars")))
+   (:module "worlds" :serial t
+    :components ((:file "prototypes") (:file "kickers") (:file "watson") (:file "office")
+                 (:file "hall") (:file "tiny"))))
   :in-order-to ((test-op (test-op "ars-magna/tests"))))
 
 (defsystem "ars-magna/cli"

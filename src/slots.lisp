@@ -17,3 +17,8 @@
 (define-nisp-slot ars-magna.robot:camera field-of-view ars-magna.robot:camera-field-of-view)
 (define-nisp-slot ars-magna.robot:camera resolution ars-magna.robot:camera-resolution)
 (define-nisp-slot ars-magna.robot:camera angle ars-magna.robot:camera-angle)
+
+;;; The three documented slots of designators (manual 3.4.1).
+(define-nisp-slot ars-magna.robot:designator type ars-magna.robot:designator-type)
+(define-nisp-slot ars-magna.robot:designator angle ars-magna.robot:designator-angle)
+(define-nisp-slot ars-magna.robot:designator data ars-magna.robot:designator-data)

@@ -116,13 +116,13 @@ as an object descriptor."
 (defun notice-probability (attribute keys)
   "Return the probability that ATTRIBUTE is sensed unasked when the attributes KEYS were asked for:
 1 - (1-p)^(n+1), n of them being its supporters (manual 3.4.2)."
-  (let ((supporters (count-if (lambda (key) (member key (attribute-supporters attribute) :test #'eq))
-                              keys)))
-    (- 1d0 (expt (- 1d0 (attribute-noticed attribute)) (1+ supporters)))))
+  (let* ((supporters (attribute-supporters attribute))
+         (given (count-if (lambda (key) (member key supporters :test #'eq)) keys)))
+    (- 1d0 (expt (- 1d0 (attribute-noticed attribute)) (1+ given)))))
 
 (defun notice-attributes (keys value-of distance dice)
-  "Return readings of attributes not among KEYS that happen to be noticed. VALUE-OF, a function of an
-attribute, returns its value and true, or two times NIL if there is none."
+  "Return readings of attributes not among KEYS that happen to be noticed. VALUE-OF, a function of
+an attribute, returns its value, and secondly whether there is one."
   (loop for attribute in (all-attributes)
         for key = (attribute-name attribute)
         unless (member key keys :test #'eq)

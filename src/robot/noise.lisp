@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.robot)
 
-;;; A discrete attribute is read right with a probability that falls with distance; a wrong reading is
-;;; any value of the domain, so it may be right by luck. A reading of a numeric attribute is
+;;; A discrete attribute is read right with a probability that falls with distance; a wrong reading
+;;; is any value of the domain, so it may be right by luck. A reading of a numeric attribute is
 ;;; normally distributed; its deviation grows with distance. The manual's formula for that, which
 ;;; we follow, lets it come near its largest within a metre (its figure looks more gradual).
 ;;; Attributes that nobody defined are read as they are.

@@ -12,6 +12,10 @@
 (defvar *busy-tests* '()
   "Functions of a simulation: true while it needs ticks although no event is pending.")
 
+(defvar *simulation-variables* '()
+  "Symbols that a headless simulation binds, to the values they have, so that what is set in it
+ends with it and simulations side by side do not meet.")
+
 (defvar *simulator-hooks* '()
   "Functions of a robot and the plist of SIMULATOR's options, called when it has started.")
 
@@ -81,7 +85,8 @@ ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
             (*simulation* simulation)
             (*world* (simulation-world simulation))
             (robots (simulation-robots simulation)))
-       (progv (mapcar #'robot-name robots) robots
+       (progv (append (mapcar #'robot-name robots) *simulation-variables*)
+           (append robots (mapcar #'symbol-value *simulation-variables*))
          (funcall function))))))
 
 (defmacro with-simulation ((robots &key (seed 0) parameters clean journal) &body body)

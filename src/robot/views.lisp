@@ -4,9 +4,9 @@
 
 ;;; Each pixel is the parameter of the surface that its ray meets: of a wall, of the largest thing
 ;;; that obstructs vision in the first cell that has one, or 0 where the map ends. Things on the
-;;; way that do not obstruct vision, but have a substance, corrupt it: the pixel is the mean of them all.
-;;; What lies in the robot's own cell does not count. From inside, all there is to see is
-;;; the container.
+;;; way that do not obstruct vision, but have a substance, corrupt it: the pixel is the mean of them
+;;; all. What lies in the robot's own cell does not count. From inside, all there is to see is the
+;;; container.
 
 (defun obstructing-thing (things)
   "Return the largest of THINGS that obstructs vision, the first of equals, or NIL."

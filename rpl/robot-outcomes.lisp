@@ -1,0 +1,84 @@
+;;;; robot-outcomes.lisp -- how plan functions are made of commands (manual C).
+
+(in-package :ars-magna.rpl-robot)
+
+;;; The functions follow from the commands' definitions: what is the robot's is left out, cameras,
+;;; hands and bins are given by index, and any argument may be a fluent. What becomes of the
+;;; fluents when a command ends is said by DEFINE-OUTCOME, in the table of robot-commands.lisp.
+
+(defun fluent-of (variable part)
+  "Return the fluent in VARIABLE, which for a PART is a vector."
+  (let ((value (symbol-value variable)))
+    (if (simple-vector-p value) (svref value (part-index part)) value)))
+
+(defun convert-argument (value type operator)
+  "Return what VALUE, perhaps a fluent or an index, stands for as an argument of TYPE."
+  (let ((value (fluent-value value)))
+    (cond ((eq type 'camera) (find-part :camera value operator))
+          ((eq type 'hand) (find-part :hand value operator))
+          ((eq type 'storage-bin) (find-part :bin value operator))
+          ((and (eq type 'destination) (integerp value)) (find-part :bin value operator))
+          (t value))))
+
+(defun convert-resource (arguments type operator)
+  "Return the resource that ARGUMENTS begin with, and the rest; the robot is implied."
+  (if (eq type 'robot)
+      (values (rpl-robot) arguments)
+      (values (convert-argument (first arguments) type operator) (rest arguments))))
+
+(defun command-in-plan (operator command outcome arguments)
+  "Issue COMMAND as the plan function OPERATOR, and post what OUTCOME, a function of the resource,
+the error code and the results, makes of its end."
+  (let ((runner (rpl-runner)))
+    (multiple-value-bind (resource arguments)
+        (convert-resource arguments (spec-type (command-resource command)) operator)
+      (apply (command-name command) resource
+             (append (loop for spec in (command-parameters command)
+                           for argument in arguments
+                           collect (convert-argument argument (spec-type spec) operator))
+                     (list (lambda (err resource &rest results)
+                             (post-batch runner (apply outcome resource err results)))))))))
+
+(defun plan-function-name (command-name)
+  (intern (format nil "RPL-~A" command-name) :ars-magna.rpl-robot))
+
+(defun parameters-in-plan (command)
+  "Return the names of what the plan function for COMMAND takes."
+  (append (unless (eq 'robot (spec-type (command-resource command)))
+            (list (spec-name (command-resource command))))
+          (mapcar #'spec-name (command-parameters command))))
+
+(defun clause-form (clause)
+  "Return a form that makes a list of settings from CLAUSE of DEFINE-OUTCOME."
+  (ecase (first clause)
+    (:set (destructuring-bind (fluent value) (rest clause)
+            `(list (list :set (fluent-of ',fluent resource) ,value))))
+    (:pulse `(list (list :pulse (fluent-of ',(second clause) resource))))
+    (:when (destructuring-bind (test . clauses) (rest clause)
+             `(when ,test (append ,@(mapcar #'clause-form clauses)))))))
+
+(defun clause-fluents (clauses)
+  (loop for clause in clauses
+        append (ecase (first clause)
+                 ((:set :pulse) (list (second clause)))
+                 (:when (clause-fluents (cddr clause))))))
+
+(defmacro define-outcome (commands (&rest results) &body clauses)
+  "Define the plan functions of COMMANDS. When one ends, CLAUSES are carried out with ERR bound to
+its error code and RESULTS to its results: (:set fluent form), (:pulse fluent), (:when form
+clause...)."
+  `(progn
+     ,@(loop for command-name in commands
+             for command = (find-command command-name)
+             for name = (plan-function-name command-name)
+             for parameters = (parameters-in-plan command)
+             collect `(defun ,name ,parameters
+                        ,(format nil "~A~%Returns nothing; sets ~(~{~A~^, ~}~). Arguments may be ~
+                                      fluents. (Manual C.)"
+                                 (command-documentation command)
+                                 (remove-duplicates (clause-fluents clauses)))
+                        (command-in-plan ',name (find-command ',command-name)
+                                         (lambda (resource err &optional ,@results)
+                                           (declare (ignorable resource err ,@results))
+                                           (append ,@(mapcar #'clause-form clauses)))
+                                         (list ,@parameters))))))
