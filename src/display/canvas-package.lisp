@@ -1,0 +1,24 @@
+;;;; canvas-package.lisp -- the package that users know as XLIB.
+
+(defpackage :ars-magna.canvas
+  (:documentation "Drawing on anything: the part of CLX that the bodies of :graphics and of
+:draw-function need, its colours, and the protocol of canvases. Manual B.1.")
+  (:use :cl :ars-magna.base)
+  ;; colours
+  (:export #:color #:black* #:white* #:grey* #:red* #:green* #:blue* #:violet* #:lightred*
+           #:lightgreen* #:lightblue* #:lightviolet* #:shade #:color-called)
+  ;; gcontext
+  (:export #:gcontext #:gcontext-p #:create-gcontext #:gcontext-foreground
+           #:gcontext-background #:gcontext-line-width #:gcontext-line-style #:with-gcontext
+           #:draw-gcontext* #:graphics-scale* #:in-color* #:with-color #:with-lines)
+  ;; canvas
+  (:export #:canvas #:canvas-p #:canvas-color-p #:paint-rectangles #:paint-arc #:paint-path
+           #:paint-segments #:paint-string #:call-with-clipping #:with-clipping
+           #:call-with-origin #:with-origin #:call-with-subject #:with-subject
+           #:subject-title #:call-on-canvas #:with-canvas #:+character-width+ #:+line-height+)
+  ;; drawing
+  (:export #:draw-rectangle #:draw-rectangles #:draw-arc #:draw-arcs #:draw-line #:draw-lines
+           #:draw-segments #:draw-point #:draw-points #:draw-glyph #:draw-glyphs
+           #:draw-image-glyph #:draw-image-glyphs #:clear-area)
+  ;; svg
+  (:export #:svg-canvas #:svg-stream #:call-with-svg #:with-svg #:write-svg #:number-text))

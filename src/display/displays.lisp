@@ -1,0 +1,85 @@
+;;;; displays.lisp -- the six displays by name, and all of them in one picture (manual B).
+
+(in-package :ars-magna.display)
+
+(define-constant +displays+ '(:world :state :designators :cameras :hands :bins)
+  :test #'cl:equal
+  :documentation "The displays: bird's eye view, robot state, robot designators, cameras, hands and
+storage bins.")
+
+(define-constant +detail-width+ 340
+  :documentation "How wide every display but that of the world is drawn, in pixels.")
+
+(defun display-title (display)
+  "Return what the window of DISPLAY, one of +DISPLAYS+, is called (manual B)."
+  (ecase display
+    (:world "World")
+    (:state "Robot state")
+    (:designators "Robot designators")
+    (:cameras "Cameras")
+    (:hands "Hands")
+    (:bins "Storage bins")))
+
+(defun draw-detail (canvas display robot width)
+  "Draw one of the displays of ROBOT, WIDTH pixels wide; return its height."
+  (funcall (ecase display
+             (:state #'draw-state)
+             (:designators #'draw-designators)
+             (:cameras #'draw-cameras)
+             (:hands #'draw-hands)
+             (:bins #'draw-bins))
+           canvas robot width))
+
+(defun draw-titled (canvas display robot x y)
+  "Draw a display of ROBOT with its title and a frame, its upper left corner at X, Y; return its
+height."
+  (let ((height 0) (top (+ +line-height+ 2)))
+    (with-origin (canvas x (+ y top))
+      (setf height (draw-detail canvas display robot +detail-width+)))
+    (with-origin (canvas x y)
+      (with-color (svref grey* 56)
+        (draw-rectangle canvas draw-gcontext* 0 0 +detail-width+ top t))
+      (draw-text canvas +margin+ 13 (display-title display))
+      (with-color (svref grey* 40)
+        (draw-rectangle canvas draw-gcontext* 0 0 +detail-width+ (+ top height))))
+    (+ top height 1)))
+
+(defun draw-all (canvas snapshot robot layers)
+  "Draw the six displays side by side; return the width and height of that."
+  (let* ((map (snapshot-map snapshot))
+         (left (+ (to-pixels (map-width map)) +margin+))
+         (bottom 0))
+    (draw-world canvas snapshot :layers layers)
+    (dolist (display (rest +displays+))
+      (incf bottom (+ (draw-titled canvas display robot left bottom) +margin+)))
+    (values (+ left +detail-width+ 1)
+            (max (to-pixels (map-height map)) bottom))))
+
+(defun draw-display (canvas display snapshot robot &key (layers *picture-layers*)
+                                                     (width +detail-width+))
+  "Draw DISPLAY, one of +DISPLAYS+ or :ALL, on CANVAS from SNAPSHOT and ROBOT, the image of a robot
+in it. Return the width and height drawn, in pixels. WIDTH is that of the details, LAYERS what
+the world shows. To be called within WITH-CANVAS."
+  (case display
+    (:all (draw-all canvas snapshot robot layers))
+    (:world (draw-world canvas snapshot :layers layers)
+     (values (to-pixels (map-width (snapshot-map snapshot)))
+             (to-pixels (map-height (snapshot-map snapshot)))))
+    (t (values width (draw-detail canvas display robot width)))))
+
+(defun check-display (operator display)
+  (unless (member display (cons :all +displays+))
+    (error 'wrong-argument :operator operator :name "display" :value display
+                           :expected (format nil "one of ~{~(~S~)~^, ~}"
+                                             (append +displays+ '(:all))))))
+
+(defun check-layers (operator layers)
+  (unless (and (listp layers) (subsetp layers +picture-layers+))
+    (error 'wrong-argument :operator operator :name "layers" :value layers
+                           :expected (format nil "a list of some of ~{~(~S~)~^, ~}"
+                                             +picture-layers+))))
+
+(defun check-scale (operator scale)
+  (unless (typep scale '(real 1 256))
+    (error 'wrong-argument :operator operator :name "graphics-scale*" :value scale
+                           :expected "a number of pixels to a cell, from 1 to 256")))

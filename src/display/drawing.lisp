@@ -1,0 +1,141 @@
+;;;; drawing.lisp -- the drawing functions of CLX, on any canvas (manual 5.1.1, B.1).
+
+(in-package :ars-magna.canvas)
+
+;;; Signatures and meanings are CLX's, so that code written for it runs. Like CLX, they check
+;;; their arguments here, at the door, and return nothing of use.
+
+(defun check-drawing (operator canvas gcontext numbers)
+  (flet ((reject (name value expected)
+           (error 'wrong-argument :operator operator :name name :value value
+                                  :expected expected)))
+    (unless (canvas-p canvas) (reject "drawable" canvas "the window that the body was given"))
+    (unless (gcontext-p gcontext) (reject "gcontext" gcontext "draw-gcontext*"))
+    (unless (every #'realp numbers) (reject "coordinates" numbers "numbers of pixels"))))
+
+(defun check-sequence (operator canvas gcontext numbers multiple)
+  (check-drawing operator canvas gcontext numbers)
+  (unless (zerop (mod (length numbers) multiple))
+    (error 'wrong-argument :operator operator :name "coordinates" :value numbers
+                           :expected (format nil "~D numbers for each" multiple))))
+
+(defmacro define-drawing (name (canvas gcontext numbers . rest) documentation &body body)
+  "Define NAME, which checks NUMBERS: a list of required arguments, or (SEQUENCE MULTIPLE)."
+  (let ((many (integerp (second numbers))))
+    (multiple-value-bind (forms declarations) (parse-body body)
+      `(defun ,name (,canvas ,gcontext ,@(if many (list (first numbers)) numbers) ,@rest)
+         ,(format nil "~A As CLX has it (manual B.1). Signals WRONG-ARGUMENT." documentation)
+         ,@declarations
+         ,(if many
+              `(check-sequence ',name ,canvas ,gcontext ,@numbers)
+              `(check-drawing ',name ,canvas ,gcontext (list ,@numbers)))
+         ,@forms
+         nil))))
+
+(define-drawing draw-rectangle (drawable gcontext (x y width height) &optional fill-p)
+    "Draw a rectangle, filled if FILL-P, with its upper left corner at X, Y."
+  (paint-rectangles drawable gcontext (list x y width height) fill-p))
+
+(define-drawing draw-rectangles (drawable gcontext (rectangles 4) &optional fill-p)
+    "Draw each rectangle of the sequence RECTANGLES, x y width height ..., filled if FILL-P."
+  (paint-rectangles drawable gcontext rectangles fill-p))
+
+(define-drawing draw-arc (drawable gcontext (x y width height angle1 angle2) &optional fill-p)
+    "Draw an arc inscribed in the box with its upper left corner at X, Y, from ANGLE1 over an
+extent of ANGLE2, in radians, counterclockwise from three o'clock; a filled slice if FILL-P."
+  (paint-arc drawable gcontext x y width height angle1 angle2 fill-p))
+
+(define-drawing draw-arcs (drawable gcontext (arcs 6) &optional fill-p)
+    "Draw each arc of the sequence ARCS, x y width height angle1 angle2 ..., as DRAW-ARC does."
+  (let ((numbers (coerce arcs 'list)))
+    (loop for (x y width height angle1 angle2) on numbers by (lambda (list) (nthcdr 6 list))
+          do (paint-arc drawable gcontext x y width height angle1 angle2 fill-p))))
+
+(define-drawing draw-line (drawable gcontext (x1 y1 x2 y2) &optional relative-p)
+    "Draw a line from X1, Y1 to X2, Y2, which counts from there if RELATIVE-P."
+  (paint-segments drawable gcontext
+                  (if relative-p
+                      (list x1 y1 (+ x1 x2) (+ y1 y2))
+                      (list x1 y1 x2 y2))))
+
+(defun absolute-points (points)
+  "Return the list x y ... of the places that POINTS, each relative to the one before, reach."
+  (loop with x = 0 and y = 0
+        for (dx dy) on (coerce points 'list) by #'cddr
+        collect (incf x dx)
+        collect (incf y dy)))
+
+(define-drawing draw-lines (drawable gcontext (points 2)
+                                     &key relative-p fill-p (shape :complex))
+    "Draw lines through the sequence POINTS, x y ..., each counting from the last if RELATIVE-P;
+the polygon if FILL-P. SHAPE is a hint and changes nothing."
+  (declare (ignore shape))
+  (paint-path drawable gcontext (if relative-p (absolute-points points) points) fill-p))
+
+(define-drawing draw-segments (drawable gcontext (segments 4))
+    "Draw each line of the sequence SEGMENTS, x1 y1 x2 y2 ...."
+  (paint-segments drawable gcontext segments))
+
+(defun pixels (points)
+  "Return the sequence of rectangles that are the pixels at POINTS."
+  (loop for (x y) on (coerce points 'list) by #'cddr
+        append (list (floor x) (floor y) 1 1)))
+
+(define-drawing draw-point (drawable gcontext (x y))
+    "Draw the pixel at X, Y."
+  (paint-rectangles drawable gcontext (pixels (list x y)) t))
+
+(define-drawing draw-points (drawable gcontext (points 2) &optional relative-p)
+    "Draw the pixel at each of the sequence POINTS, x y ..., each counting from the last if
+RELATIVE-P."
+  (paint-rectangles drawable gcontext
+                    (pixels (if relative-p (absolute-points points) points)) t))
+
+;;; Text.
+
+(defun glyph-text (sequence start end)
+  "Return the string for SEQUENCE, a string or characters or their codes, from START to END."
+  (check-argument draw-glyphs sequence (typep sequence 'sequence) "a string")
+  (map 'string (lambda (glyph)
+                 (cond ((integerp glyph) (code-char glyph))
+                       ((char= glyph #\Newline) #\Space)
+                       (t glyph)))
+       (subseq sequence start end)))
+
+(define-drawing draw-glyphs (drawable gcontext (x y) sequence
+                                      &key (start 0) end translate width size)
+    "Draw the characters of SEQUENCE from START to END, their base line beginning at X, Y.
+TRANSLATE, WIDTH and SIZE change nothing: canvases have one font."
+  (declare (ignore translate width size))
+  (paint-string drawable gcontext x y (glyph-text sequence start end)))
+
+(define-drawing draw-glyph (drawable gcontext (x y) glyph &key translate width size)
+    "Draw the character GLYPH, its base line beginning at X, Y. TRANSLATE, WIDTH and SIZE change
+nothing."
+  (declare (ignore translate width size))
+  (paint-string drawable gcontext x y (glyph-text (list glyph) 0 1)))
+
+(defun paint-background (canvas gcontext x y width height)
+  (with-gcontext (gcontext :foreground (gcontext-background gcontext))
+    (paint-rectangles canvas gcontext (list x y width height) t)))
+
+(define-drawing draw-image-glyphs (drawable gcontext (x y) sequence
+                                            &key (start 0) end translate width size)
+    "Draw as DRAW-GLYPHS does, on a filled background."
+  (declare (ignore translate width size))
+  (let ((text (glyph-text sequence start end)))
+    (paint-background drawable gcontext x (- y 10) (* +character-width+ (length text)) 13)
+    (paint-string drawable gcontext x y text)))
+
+(define-drawing draw-image-glyph (drawable gcontext (x y) glyph &key translate width size)
+    "Draw as DRAW-GLYPH does, on a filled background."
+  (declare (ignore translate width size))
+  (draw-image-glyphs drawable gcontext x y (list glyph)))
+
+(defun clear-area (drawable &key (x 0) (y 0) (width 0) (height 0) exposures-p)
+  "Fill a rectangle with white. EXPOSURES-P changes nothing. As CLX has it. Signals
+WRONG-ARGUMENT."
+  (declare (ignore exposures-p))
+  (check-drawing 'clear-area drawable draw-gcontext* (list x y width height))
+  (paint-background drawable draw-gcontext* x y width height)
+  nil)

@@ -1,0 +1,77 @@
+;;;; gcontext.lisp -- with what pen: graphics contexts, WITH-COLOR and WITH-LINES (manual B.1).
+
+(in-package :ars-magna.canvas)
+
+;;; A graphics context is changed only for the extent of a body, as WITH-GCONTEXT of CLX does.
+;;; Whatever starts to draw on a canvas binds a fresh one, so threads that draw share nothing.
+
+(deftype line-style () '(member :solid :dash :double-dash))
+
+(defstruct (gcontext (:constructor create-gcontext (&key foreground background line-width
+                                                      line-style)))
+  "With what to draw."
+  (foreground #x000000 :type color)
+  (background #xFFFFFF :type color)
+  (line-width 1 :type (real 0))
+  (line-style :solid :type line-style))
+
+(setf (documentation 'create-gcontext 'function)
+      "Return a new graphics context: by default solid black lines, one pixel wide."
+      (documentation 'gcontext-p 'function) "True of a graphics context."
+      (documentation 'gcontext-foreground 'function)
+      "Return the colour that the graphics context draws with. Can be set."
+      (documentation 'gcontext-background 'function)
+      "Return the colour that CLEAR-AREA and image glyphs fill with. Can be set."
+      (documentation 'gcontext-line-width 'function)
+      "Return how wide lines are, in pixels; 0 means the thinnest. Can be set."
+      (documentation 'gcontext-line-style 'function)
+      "Return how lines look: :SOLID, :DASH or :DOUBLE-DASH. Can be set.")
+
+(defvar draw-gcontext* (create-gcontext)
+  "The graphics context that :graphics and :draw-function bodies draw with (manual B.1).")
+
+(defvar graphics-scale* 8
+  "How many pixels there are to the side of a grid cell in the display of the world. Default 8
+(manual B; the default is ours).")
+
+(defvar in-color* t
+  "True while drawing on a display that has colours, false on a monochrome one (manual B.1).")
+
+(defun check-pen (foreground line-width line-style)
+  (check-argument with-color foreground (typep foreground '(or null color))
+                  "a colour, such as (vref red* 9)")
+  (check-argument with-lines line-width (typep line-width '(or null (real 0)))
+                  "a width in pixels, 0 or more")
+  (check-argument with-lines line-style (typep line-style '(or null line-style))
+                  ":solid, :dash or :double-dash"))
+
+(defun call-with-gcontext (function gcontext &key foreground background line-width line-style)
+  "Call FUNCTION while GCONTEXT is as the other arguments say; NIL leaves it as it is."
+  (check-pen foreground line-width line-style)
+  (let ((old (copy-gcontext gcontext)))
+    (flet ((set-to (foreground background line-width line-style)
+             (when foreground (setf (gcontext-foreground gcontext) foreground))
+             (when background (setf (gcontext-background gcontext) background))
+             (when line-width (setf (gcontext-line-width gcontext) line-width))
+             (when line-style (setf (gcontext-line-style gcontext) line-style))))
+      (set-to foreground background line-width line-style)
+      (unwind-protect (funcall function)
+        (set-to (gcontext-foreground old) (gcontext-background old)
+                (gcontext-line-width old) (gcontext-line-style old))))))
+
+(defmacro with-gcontext ((gcontext &rest options) &body body)
+  "Run BODY while GCONTEXT has the :foreground, :background, :line-width and :line-style that
+OPTIONS give, as CLX does."
+  `(call-with-gcontext (lambda () ,@body) ,gcontext ,@options))
+
+(defmacro with-color (color &body body)
+  "Run BODY drawing in COLOR, one of the colours in the manual's vectors or any integer #xRRGGBB;
+in black if the display has no colours (manual B.1). Signals WRONG-ARGUMENT."
+  (with-gensyms (value)
+    `(let ((,value ,color))
+       (with-gcontext (draw-gcontext* :foreground (if in-color* ,value black*)) ,@body))))
+
+(defmacro with-lines ((&key width style) &body body)
+  "Run BODY drawing lines WIDTH pixels wide in STYLE, one of CLX's: :SOLID, :DASH or :DOUBLE-DASH
+(manual B.1). Signals WRONG-ARGUMENT."
+  `(with-gcontext (draw-gcontext* :line-width ,width :line-style ,style) ,@body))

@@ -1,0 +1,123 @@
+;;;; history.lisp -- what pictures show of the past: where robots went, what cameras last saw.
+
+(in-package :ars-magna.display)
+
+;;; A history is kept by an observer of its simulation from when somebody first asks for it. Its
+;;; lists only ever grow at the front, so a snapshot may share them.
+
+(defstruct (trail (:copier nil))
+  "Where a robot has been: POINTS is a list x y x y ..., newest first."
+  (points '() :type list)
+  (count 0 :type fixnum))
+
+(defstruct (look (:constructor make-look (view x y ends)) (:copier nil))
+  "What a camera's last view came from: rays from X, Y to ENDS, a list x y x y ...."
+  (view '() :type list :read-only t)
+  (x 0d0 :type double-float :read-only t)
+  (y 0d0 :type double-float :read-only t)
+  (ends '() :type list :read-only t))
+
+(defstruct (history (:copier nil))
+  "The past of one simulation, as far as pictures show it."
+  ;; Robots and cameras come in small numbers: association lists.
+  (trails '() :type list)
+  (looks '() :type list))
+
+(define-constant +trail-length+ 4000 :documentation "How many points of a trail are kept.")
+(define-constant +trail-step+ 0.1d0
+  :documentation "How far apart the points of a trail are at least, in metres.")
+
+(defmacro entry-of (key place new)
+  "Return what KEY has in the association list in PLACE, entering NEW if it has nothing."
+  `(or (cdr (assoc ,key ,place :test #'eq))
+       (cdr (first (push (cons ,key ,new) ,place)))))
+
+(defun note-position (trail x y)
+  (let ((points (trail-points trail)))
+    (unless (and points
+                 (< (+ (abs (- x (the double-float (first points))))
+                       (abs (- y (the double-float (second points)))))
+                    +trail-step+))
+      (setf (trail-points trail) (list* x y points))
+      (when (> (incf (trail-count trail)) (* 2 +trail-length+))
+        (setf (trail-points trail) (subseq (trail-points trail) 0 (* 2 +trail-length+))
+              (trail-count trail) +trail-length+)))))
+
+;;; Looks.
+
+(defun ray-end (world x y angle)
+  "Return, as two values, where what a camera at X, Y can see of WORLD in direction ANGLE ends."
+  (let* ((map (world-map world))
+         (dx (cos angle)) (dy (sin angle))
+         (cell-x (floor x)) (cell-y (floor y))
+         (per-x (if (zerop dx) 1d9 (abs (/ dx))))
+         (per-y (if (zerop dy) 1d9 (abs (/ dy))))
+         (at-x (* per-x (if (minusp dx) (- x cell-x) (- (1+ cell-x) x))))
+         (at-y (* per-y (if (minusp dy) (- y cell-y) (- (1+ cell-y) y)))))
+    (loop for at = (min at-x at-y)
+          do (if (< at-x at-y)
+                 (setf cell-x (+ cell-x (if (minusp dx) -1 1)) at-x (+ at-x per-x))
+                 (setf cell-y (+ cell-y (if (minusp dy) -1 1)) at-y (+ at-y per-y)))
+          until (let ((index (map-index map cell-x cell-y)))
+                  (or (null index)
+                      (logtest (logior +wall+ +obsview+) (aref (world-flags world) index))))
+          finally (return (values (+ x (* at dx)) (+ y (* at dy)))))))
+
+(defun look-of (camera)
+  "Return the look that CAMERA's last view comes from, if it was taken where CAMERA is now."
+  (let* ((robot (camera-robot camera))
+         (x (robot-x robot)) (y (robot-y robot))
+         (count (min 60 (camera-resolution camera)))
+         (width (camera-field-of-view camera))
+         (first (- (+ (robot-angle robot) (camera-angle camera))
+                   (* 0.5d0 (- width (/ width count))))))
+    (make-look (camera-last-view camera) x y
+               (loop for ray below count
+                     append (multiple-value-list
+                             (ray-end (robot-world robot) x y
+                                      (+ first (* ray (/ width count)))))))))
+
+(defun note-look (history camera)
+  (let ((entry (assoc camera (history-looks history) :test #'eq)))
+    (unless (or (eq (camera-last-view camera) (and entry (look-view (cdr entry))))
+                (null (robot-cell-index (camera-robot camera))))
+      (let ((look (look-of camera)))
+        (if entry
+            (setf (cdr entry) look)
+            (push (cons camera look) (history-looks history)))))))
+
+;;; Keeping.
+
+(defun note-moment (history simulation)
+  "Let HISTORY know of what is so in SIMULATION now."
+  (dolist (robot (simulation-robots simulation))
+    (note-position (entry-of robot (history-trails history) (make-trail))
+                   (robot-x robot) (robot-y robot))
+    (loop for camera across (robot-cameras robot) do (note-look history camera))))
+
+(defvar *histories* (make-hash-table :test #'eq :weakness :key :synchronized t)
+  "From simulations to pairs of their history and the observer that keeps it.")
+
+(defun history-of (simulation)
+  "Return the history that is kept of SIMULATION, or NIL."
+  (car (gethash simulation *histories*)))
+
+(defun keep-history (&optional (simulation (current-simulation)))
+  "From now on keep a history of SIMULATION, so that its pictures can show the trails of robots and
+the rays of the last looks. Return it."
+  (or (history-of simulation)
+      (let* ((history (make-history))
+             (observer (lambda (simulation) (note-moment history simulation))))
+        (setf (gethash simulation *histories*) (cons history observer))
+        (asking (simulation)
+          (note-moment history simulation)
+          (add-observer observer simulation))
+        history)))
+
+(defun forget-history (&optional (simulation (current-simulation)))
+  "Keep no history of SIMULATION any more. Return nothing."
+  (let ((entry (gethash simulation *histories*)))
+    (when entry
+      (remhash simulation *histories*)
+      (asking (simulation) (remove-observer (cdr entry) simulation))))
+  (values))

@@ -1,0 +1,24 @@
+;;;; package.lisp -- the display layer: what a world looks like to people.
+
+(defpackage :ars-magna.display
+  (:documentation "Pictures of a robot in its world: what is drawn, on whatever canvas. Manual B.")
+  (:use :cl :ars-magna.base :ars-magna.geometry :ars-magna.world :ars-magna.time
+        :ars-magna.robot :ars-magna.canvas)
+  (:shadowing-import-from :cl #:equal)
+  (:shadowing-import-from :ars-magna.world #:map)
+  ;; text-map
+  (:export #:text-map)
+  ;; history
+  (:export #:history #:history-of #:keep-history #:forget-history)
+  ;; snapshot
+  (:export #:snapshot #:take-snapshot #:snapshot-of #:snapshot-tick #:snapshot-map
+           #:snapshot-things #:snapshot-robots #:snapshot-robot #:thing-image #:robot-image
+           #:robot-image-name #:robot-image-x #:robot-image-y #:robot-image-designators
+           #:describe-subject)
+  ;; terrain, world-display, details
+  (:export #:draw-terrain #:draw-movers #:draw-world #:*picture-layers* #:+picture-layers+
+           #:draw-display #:display-title #:+displays+)
+  ;; picture, animation
+  (:export #:save-picture #:svg-picture #:save-animation)
+  ;; opening
+  (:export #:open-display #:*display-opener* #:announce-display))

@@ -1,0 +1,78 @@
+;;;; picture.lisp -- pictures of a world in files, without a window.
+
+(in-package :ars-magna.display)
+
+(defun write-picture (stream snapshot robot &key (display :world) (layers *picture-layers*)
+                                              (in-color t) (scale graphics-scale*))
+  "Write an SVG document of DISPLAY from SNAPSHOT to STREAM; ROBOT is the image of a robot in it."
+  (with-svg (canvas stream :color-p in-color)
+    (with-canvas (canvas :scale scale)
+      (draw-display canvas display snapshot robot :layers layers))))
+
+(defun check-picture (operator robot display layers scale)
+  (unless (robot-p robot)
+    (error 'wrong-argument :operator operator :name "robot" :value robot
+                           :expected "a robot"))
+  (check-display operator display)
+  (check-layers operator layers)
+  (check-scale operator scale))
+
+(defun svg-picture (robot &key (display :world) (layers *picture-layers*) (in-color t)
+                            (scale graphics-scale*))
+  "Return a picture of the world of ROBOT as it is now: an SVG document, as a string. DISPLAY is one
+of +DISPLAYS+ or :ALL, LAYERS a list of some of +PICTURE-LAYERS+, SCALE how many pixels there
+are to a cell. IN-COLOR is false for a picture in black and white. Signals WRONG-ARGUMENT."
+  (check-picture 'svg-picture robot display layers scale)
+  (let ((snapshot (snapshot-of robot)))
+    (with-output-to-string (stream)
+      (write-picture stream snapshot (snapshot-robot snapshot (robot-name robot))
+                     :display display :layers layers :in-color in-color :scale scale))))
+
+;;; Files.
+
+(defun save-text (text file)
+  (with-open-file (stream file :direction :output :if-exists :supersede
+                               :external-format :utf-8)
+    (write-string text stream))
+  (truename file))
+
+(defun convert-to-png (svg file)
+  "Write the SVG document SVG to FILE as PNG, by the program rsvg-convert."
+  (let ((process (handler-case
+                     (with-input-from-string (in svg)
+                       (sb-ext:run-program "rsvg-convert"
+                                           (list "--unlimited" "-f" "png" "-o"
+                                                 (sb-ext:native-namestring file))
+                                           :search t :input in :output nil :error nil
+                                           :external-format :utf-8))
+                   (error () nil))))
+    (cond ((null process)
+           (reject-use "PNG pictures need the program rsvg-convert, of Debian's package ~
+                        librsvg2-bin: apt-get install librsvg2-bin. Or save the picture as .svg."))
+          ((not (eql 0 (sb-ext:process-exit-code process)))
+           (reject-use "rsvg-convert could not write ~A." file)))
+    (truename file)))
+
+(defun picture-kind (operator file)
+  "Return :SVG or :PNG, as the name of FILE ends."
+  (check-argument save-picture file (typep file '(or string pathname)) "the name of a file")
+  (let ((type (pathname-type file)))
+    (or (find type '(:svg :png) :test #'string-equal)
+        (error 'wrong-argument :operator operator :name "file" :value file
+                               :expected "a name that ends in .svg or .png"))))
+
+(defun save-svg (svg file kind)
+  "Write the SVG document SVG to FILE, as SVG or PNG by KIND. Return the truename."
+  (ecase kind
+    (:svg (save-text svg file))
+    (:png (convert-to-png svg (merge-pathnames file)))))
+
+(defun save-picture (robot file &key (display :world) (layers *picture-layers*) (in-color t)
+                                  (scale graphics-scale*))
+  "Save a picture of the world of ROBOT as it is now in FILE, replacing it: SVG or, where the program
+rsvg-convert is installed, PNG, as its name ends. The other arguments are those of SVG-PICTURE.
+Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE if PNG is not to be had."
+  (let ((kind (picture-kind 'save-picture file)))
+    (check-picture 'save-picture robot display layers scale)
+    (save-svg (svg-picture robot :display display :layers layers :in-color in-color :scale scale)
+              file kind)))

@@ -1,0 +1,40 @@
+;;;; place-marks.lisp -- how the built-in place types are marked (manual B).
+
+(in-package :ars-magna.display)
+
+;;; Each is a :graphics function as a user would write it. On a display without colours a circle
+;;; denotes a convex corner, a dot a concave one or a beak, a square a doorway.
+
+(defun fill-cell (canvas x y color)
+  (with-color color
+    (draw-rectangle canvas draw-gcontext* x y graphics-scale* graphics-scale* t)))
+
+(defun draw-dot (canvas x y)
+  (let* ((size (max 2 (floor graphics-scale* 3)))
+         (margin (/ (- graphics-scale* size) 2)))
+    (draw-arc canvas draw-gcontext* (+ x margin) (+ y margin) size size 0 2pi t)))
+
+(defun draw-convex (canvas x y)
+  (if in-color*
+      (fill-cell canvas x y (svref lightred* 9))
+      (draw-arc canvas draw-gcontext* x y graphics-scale* graphics-scale* 0 2pi nil)))
+
+(defun draw-concave (canvas x y)
+  (if in-color*
+      (fill-cell canvas x y (svref lightred* 11))
+      (draw-dot canvas x y)))
+
+(defun draw-beak (canvas x y)
+  (if in-color*
+      (fill-cell canvas x y (svref violet* 11))
+      (draw-dot canvas x y)))
+
+(defun draw-doorway (canvas x y)
+  (if in-color*
+      (fill-cell canvas x y (svref lightblue* 9))
+      (draw-rectangle canvas draw-gcontext* (1+ x) (1+ y)
+                      (- graphics-scale* 2) (- graphics-scale* 2) nil)))
+
+(loop for (name function) in '((convex draw-convex) (concave draw-concave)
+                               (beak draw-beak) (doorway draw-doorway))
+      do (setf (place-type-graphics (find-place-type name)) (symbol-function function)))

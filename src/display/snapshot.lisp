@@ -1,0 +1,178 @@
+;;;; snapshot.lisp -- what a world looks like at one moment, for those who draw it.
+
+(in-package :ars-magna.display)
+
+;;; A snapshot is made where the world stands still, and never changes; whoever draws, in whatever
+;;; thread, draws from one. An image is what it knows of a thing, a robot or a part. The image of a
+;;; thing that has not changed since the snapshot before is the same object.
+
+(defmacro define-image (name documentation &rest slots)
+  "Define NAME as a structure with SLOTS, (name default), that are never changed."
+  `(defstruct (,name (:copier nil))
+     ,documentation
+     ,@(loop for (slot default) in slots collect `(,slot ,default :read-only t))))
+
+(define-image snapshot "What a world looks like at one moment."
+  (tick 0) (map nil) (things #()) (robots '()))
+
+(define-image thing-image "What a snapshot knows of a thing; COLOR is that of the display."
+  (thing nil) (x 0d0) (y 0d0) (location nil) (attributes '()) (color 0) (size 0d0)
+  (obsmove-p nil) (obsview-p nil) (draw-function nil))
+
+(define-image robot-image "What a snapshot knows of a robot."
+  (name nil) (x 0d0) (y 0d0) (angle 0d0) (speed 0d0) (place nil) (cameras '()) (hands '()) (bins '())
+  (designators '()) (odometer nil) (trail '()))
+
+(define-image camera-image "What a snapshot knows of a camera; ANGLE is relative to the robot."
+  (index 0) (angle 0d0) (field-of-view 1d0) (view '()) (track nil) (location nil) (look nil))
+
+(define-image hand-image "What a snapshot knows of a hand."
+  (index 0) (strength 0d0) (contents nil) (location nil))
+
+(define-image bin-image "What a snapshot knows of a storage bin."
+  (index 0) (capacity 0d0) (closed-p nil) (contents '()))
+
+(define-image designator-image "What a snapshot knows of a designator. DENOTATION is the image of a
+thing, the name of a place type, or NIL if the designator is false."
+  (number 0) (type nil) (angle 0d0) (distance 0d0) (denotation nil))
+
+(define-image odometer-image "What a snapshot knows of an odometer: how uncertain it is."
+  (name nil) (width 0d0) (height 0d0) (axis 0d0) (spread 0d0))
+
+(setf (documentation 'snapshot-tick 'function) "Return the tick at which the snapshot was taken."
+      (documentation 'snapshot-map 'function) "Return the map of the world in the snapshot."
+      (documentation 'snapshot-things 'function)
+      "Return a vector of the images of the things on the floor, by serial number."
+      (documentation 'snapshot-robots 'function) "Return a list of the images of the robots."
+      (documentation 'robot-image-name 'function) "Return the symbol that the robot is called."
+      (documentation 'robot-image-x 'function) "Return the robot's x coordinate, in metres."
+      (documentation 'robot-image-y 'function) "Return the robot's y coordinate, in metres."
+      (documentation 'robot-image-designators 'function)
+      "Return a list of the images of the robot's designators, by number.")
+
+;;; Things.
+
+(defun image-of-thing (thing &optional old)
+  "Return the image of THING: OLD, an image of it, if that is still right."
+  (let ((attributes (thing-attributes thing)))
+    (if (and old
+             (eq attributes (thing-image-attributes old))
+             (= (thing-x thing) (thing-image-x old))
+             (= (thing-y thing) (thing-image-y old)))
+        old
+        (make-thing-image
+         :thing thing :x (thing-x thing) :y (thing-y thing) :attributes attributes
+         :color (shade (get-attribute thing :color)) :size (thing-size thing)
+         :obsmove-p (thing-obsmove-p thing) :obsview-p (thing-obsview-p thing)
+         :draw-function (get-attribute thing :draw-function)))))
+
+(defun image-serial (image) (thing-serial (thing-image-thing image)))
+
+(defun images-on-floor (world old)
+  "Return a vector of the images of the things on the floor of WORLD by serial number. OLD is such
+a vector of an earlier moment; both are in order, so one pass finds what it holds of each."
+  (declare (type simple-vector old))
+  (let ((images '()) (position 0) (count 0))
+    (declare (type fixnum position count))
+    (do-things (thing world)
+      (when (eq (thing-location thing) :floor)
+        (loop while (and (< position (length old))
+                         (< (the fixnum (image-serial (svref old position)))
+                            (thing-serial thing)))
+              do (incf position))
+        (let ((known (and (< position (length old)) (svref old position))))
+          (incf count)
+          (push (image-of-thing thing (and known (eq thing (thing-image-thing known)) known))
+                images))))
+    (nreverse (coerce images 'simple-vector))))
+
+;;; Robots.
+
+(defun image-of-location (location)
+  "Return how to show that a part is inside LOCATION: NIL, an image, or a string."
+  (cond ((null location) nil)
+        ((thing-p location) (image-of-thing location))
+        (t (location-name location))))
+
+(defun image-of-denotation (denotation)
+  (cond ((thing-p denotation) (image-of-thing denotation))
+        ((place-p denotation) (princ-to-string (place-type-name (place-type denotation))))))
+
+(defun image-of-designator (designator)
+  (make-designator-image
+   :number (designator-number designator) :type (designator-type designator)
+   :angle (designator-angle designator) :distance (designator-distance designator)
+   :denotation (image-of-denotation (designator-denotation designator))))
+
+(defun image-of-camera (camera history)
+  (let ((designator (camera-tracks camera)))
+    (make-camera-image
+     :index (camera-index camera) :angle (camera-angle camera)
+     :field-of-view (camera-field-of-view camera) :view (camera-last-view camera)
+     :track (and designator (image-of-designator designator))
+     :location (image-of-location (camera-location camera))
+     :look (and history (cdr (assoc camera (history-looks history) :test #'eq))))))
+
+(defun image-of-hand (hand)
+  (let ((thing (hand-holding hand)))
+    (make-hand-image :index (hand-index hand) :strength (hand-strength hand)
+                     :contents (and thing (image-of-thing thing))
+                     :location (image-of-location (hand-location hand)))))
+
+(defun image-of-bin (bin)
+  (make-bin-image :index (storage-bin-index bin) :capacity (storage-bin-capacity bin)
+                  :closed-p (storage-bin-closed-p bin)
+                  :contents (mapcar #'image-of-thing (storage-bin-contents bin))))
+
+(defun image-of-odometer (robot)
+  "Return the image of the main odometer of ROBOT. Its x axis is the heading when it was reset,
+about: the middle of what it says of the heading now."
+  (let* ((odometer (robot-main-odometer robot))
+         (position (get-odometer-pos odometer))
+         (angle (get-odometer-ang odometer)))
+    (flet ((width (interval) (- (interval-max interval) (interval-min interval))))
+      (make-odometer-image
+       :name (odometer-name odometer)
+       :width (width (pt-interval-x position)) :height (width (pt-interval-y position))
+       :axis (- (robot-angle robot)
+                (* 0.5d0 (+ (interval-min angle) (interval-max angle))))
+       :spread (width angle)))))
+
+(defun image-of-robot (robot history)
+  (let ((trail (and history (cdr (assoc robot (history-trails history) :test #'eq)))))
+    (flet ((images (function parts) (cl:map 'list function parts)))
+      (make-robot-image
+       :name (robot-name robot) :x (robot-x robot) :y (robot-y robot) :angle (robot-angle robot)
+       :speed (robot-speed robot) :place (robot-last-place robot)
+       :cameras (images (lambda (camera) (image-of-camera camera history))
+                        (robot-cameras robot))
+       :hands (images #'image-of-hand (robot-hands robot))
+       :bins (images #'image-of-bin (robot-bins robot))
+       :designators (images #'image-of-designator (live-designators robot))
+       :odometer (and (robot-main-odometer robot) (image-of-odometer robot))
+       :trail (and trail (trail-points trail))))))
+
+;;; The whole.
+
+(defun take-snapshot (world &optional previous)
+  "Return a snapshot of WORLD as it is now; to be called where it stands still. PREVIOUS, an earlier
+snapshot of WORLD, makes it cheaper."
+  (let* ((simulation (world-simulation world))
+         (history (and simulation (history-of simulation))))
+    (make-snapshot :tick (if simulation (simulation-tick simulation) 0)
+                   :map (world-map world)
+                   :things (images-on-floor world (if previous (snapshot-things previous) #()))
+                   :robots (loop for robot in (world-robots world)
+                                 collect (image-of-robot robot history)))))
+
+(defun snapshot-of (robot)
+  "Return a snapshot of the world of ROBOT, from whatever thread."
+  (let ((simulation (robot-simulation robot)))
+    (if simulation
+        (asking (simulation) (take-snapshot (robot-world robot)))
+        (take-snapshot (robot-world robot)))))
+
+(defun snapshot-robot (snapshot name)
+  "Return the image of the robot called NAME in SNAPSHOT; of its first robot if none is so called."
+  (or (find name (snapshot-robots snapshot) :key #'robot-image-name :test #'same-name-p)
+      (first (snapshot-robots snapshot))))

@@ -1,0 +1,244 @@
+;;;; svg.lisp -- a canvas that is a picture file.
+
+(in-package :ars-magna.canvas)
+
+;;; Elements are written as they are drawn; numbers with at most two decimals. What is drawn with
+;;; clipping is gathered first, and wrapped in a clipping element only if it reaches beyond
+;;; its box, which it seldom does.
+
+(defclass svg-canvas (canvas)
+  ((stream :initarg :stream :accessor svg-stream)
+   ;; The box drawn in so far with clipping, as left, top, right, bottom; NIL: nobody asks.
+   (reach :initform nil :accessor svg-reach))
+  (:documentation "A canvas that writes Scalable Vector Graphics to a stream."))
+
+;;; Numbers and attributes.
+
+(defvar *numerals* (coerce (loop for n below 4096 collect (princ-to-string n)) 'simple-vector)
+  "The integers that coordinates mostly are, as strings.")
+
+(defun write-natural (integer stream)
+  (if (< integer 4096)
+      (write-string (the simple-string (svref *numerals* integer)) stream)
+      (let ((*print-base* 10) (*print-radix* nil)) (princ integer stream))))
+
+(defun write-hundredths (hundredths stream)
+  "Write HUNDREDTHS / 100 with as few decimals as are needed."
+  (when (minusp hundredths) (write-char #\- stream))
+  (multiple-value-bind (whole rest) (truncate (abs hundredths) 100)
+    (write-natural whole stream)
+    (unless (zerop rest)
+      (multiple-value-bind (tenths hundredths) (truncate rest 10)
+        (write-char #\. stream)
+        (write-natural tenths stream)
+        (unless (zerop hundredths) (write-natural hundredths stream))))))
+
+(defun write-number (number stream)
+  "Write NUMBER in decimals, to a hundredth, no further than 10^9 from 0."
+  (if (typep number '(integer 0 4095))
+      (write-natural number stream)
+      (write-hundredths (round (* 100 (clamp number -1000000000 1000000000))) stream)))
+
+(defun number-text (number)
+  "Return NUMBER in decimals, to a hundredth, as a string."
+  (with-output-to-string (stream) (write-number number stream)))
+
+(defun write-color (color stream)
+  (write-char #\# stream)
+  (loop for position from 20 downto 0 by 4
+        do (write-char (char "0123456789abcdef" (ldb (byte 4 position) color)) stream)))
+
+(defun write-svg (canvas &rest parts)
+  "Write PARTS, strings and numbers, to the stream of CANVAS."
+  (declare (dynamic-extent parts))
+  (let ((stream (svg-stream canvas)))
+    (dolist (part parts)
+      (if (stringp part) (write-string part stream) (write-number part stream)))))
+
+(defun write-fill (canvas gcontext)
+  (write-svg canvas " fill=\"")
+  (write-color (gcontext-foreground gcontext) (svg-stream canvas))
+  (write-svg canvas "\"/>
+"))
+
+(defun write-stroke (canvas gcontext)
+  (write-svg canvas " fill=\"none\" stroke=\"")
+  (write-color (gcontext-foreground gcontext) (svg-stream canvas))
+  (write-svg canvas "\"")
+  (let ((width (gcontext-line-width gcontext)))
+    (unless (<= width 1) (write-svg canvas " stroke-width=\"" width "\"")))
+  (unless (eq (gcontext-line-style gcontext) :solid)
+    (write-svg canvas " stroke-dasharray=\"4\""))
+  (write-svg canvas "/>
+"))
+
+(defun write-paint (canvas gcontext fill-p)
+  "Finish an element that is filled, or outlined."
+  (if fill-p (write-fill canvas gcontext) (write-stroke canvas gcontext)))
+
+(defun write-text (text stream)
+  "Write TEXT with the characters that mean something in SVG replaced."
+  (loop for char across (string text)
+        do (case char
+             (#\< (write-string "&lt;" stream))
+             (#\> (write-string "&gt;" stream))
+             (#\& (write-string "&amp;" stream))
+             (#\" (write-string "&quot;" stream))
+             (t (write-char (if (graphic-char-p char) char #\Space) stream)))))
+
+;;; Painting.
+
+(defun note-reach (canvas left top right bottom)
+  (let ((reach (svg-reach canvas)))
+    (when reach
+      (setf (svg-reach canvas)
+            (list (min left (first reach)) (min top (second reach))
+                  (max right (third reach)) (max bottom (fourth reach)))))))
+
+(defun pen-reach (gcontext)
+  "Return how far beyond its path a line reaches."
+  (/ (max 1 (gcontext-line-width gcontext)) 2))
+
+(defmethod paint-rectangles ((canvas svg-canvas) gcontext rectangles fill-p)
+  (let* ((numbers (coerce rectangles 'list))
+         (shift (if fill-p 0 1/2))
+         (pen (if fill-p 0 (pen-reach gcontext))))
+    (flet ((reach (x y width height)
+             (note-reach canvas (- x pen) (- y pen) (+ x width pen) (+ y height pen))))
+      (if (= (length numbers) 4)
+          (destructuring-bind (x y width height) numbers
+            (let ((x (+ x shift)) (y (+ y shift)))
+              (reach x y width height)
+              (write-svg canvas "<rect x=\"" x "\" y=\"" y "\" width=\"" width
+                         "\" height=\"" height "\"")))
+          (loop initially (write-svg canvas "<path d=\"")
+                for (x y width height) on numbers by #'cddddr
+                do (let ((x (+ x shift)) (y (+ y shift)))
+                     (reach x y width height)
+                     (write-svg canvas "M" x " " y "h" width "v" height "h" (- width) "z"))
+                finally (write-svg canvas "\"")))))
+  (write-paint canvas gcontext fill-p))
+
+(defun write-slice (canvas x y width height start extent fill-p)
+  "Begin a path along an arc that is less than a full turn."
+  (let* ((across (/ width 2)) (down (/ height 2))
+         (center-x (+ x across)) (center-y (+ y down)))
+    (flet ((spot (angle)
+             (write-svg canvas (+ center-x (* across (cos angle))) " "
+                        (- center-y (* down (sin angle))))))
+      (write-svg canvas "<path d=\"M")
+      (when fill-p (write-svg canvas center-x " " center-y "L"))
+      (spot start)
+      (write-svg canvas "A" across " " down " 0 "
+                 (if (> (abs extent) pi) 1 0) " " (if (minusp extent) 1 0) " ")
+      (spot (+ start extent))
+      (write-svg canvas (if fill-p "z\"" "\"")))))
+
+(defmethod paint-arc ((canvas svg-canvas) gcontext x y width height start extent fill-p)
+  (let ((pen (if fill-p 0 (pen-reach gcontext))))
+    (note-reach canvas (- x pen) (- y pen) (+ x width pen) (+ y height pen)))
+  (if (>= (abs extent) (- (* 2 pi) 1d-9))
+      (write-svg canvas "<ellipse cx=\"" (+ x (/ width 2)) "\" cy=\"" (+ y (/ height 2))
+                 "\" rx=\"" (/ width 2) "\" ry=\"" (/ height 2) "\"")
+      (write-slice canvas x y width height start extent fill-p))
+  (write-paint canvas gcontext fill-p))
+
+(defun write-points (canvas gcontext numbers shift)
+  "Write x y x y ... as x,y x,y ..., moved by SHIFT."
+  (loop with pen = (pen-reach gcontext)
+        for (x y) on numbers by #'cddr
+        do (let ((x (+ x shift)) (y (+ y shift)))
+             (note-reach canvas (- x pen) (- y pen) (+ x pen) (+ y pen))
+             (write-svg canvas x "," y " "))))
+
+(defmethod paint-path ((canvas svg-canvas) gcontext points fill-p)
+  (write-svg canvas (if fill-p "<polygon points=\"" "<polyline points=\""))
+  (write-points canvas gcontext (coerce points 'list) (if fill-p 0 1/2))
+  (write-svg canvas "\"")
+  (write-paint canvas gcontext fill-p))
+
+(defmethod paint-segments ((canvas svg-canvas) gcontext segments)
+  (write-svg canvas "<path d=\"")
+  (loop for (x1 y1 x2 y2) on (coerce segments 'list) by #'cddddr
+        do (write-svg canvas "M")
+           (write-points canvas gcontext (list x1 y1) 1/2)
+           (write-svg canvas "L")
+           (write-points canvas gcontext (list x2 y2) 1/2))
+  (write-svg canvas "\"")
+  (write-stroke canvas gcontext))
+
+(defmethod paint-string ((canvas svg-canvas) gcontext x y string)
+  (note-reach canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
+  (write-svg canvas "<text x=\"" x "\" y=\"" y "\" fill=\"")
+  (write-color (gcontext-foreground gcontext) (svg-stream canvas))
+  (write-svg canvas "\">")
+  (write-text string (svg-stream canvas))
+  (write-svg canvas "</text>
+"))
+
+;;; Where.
+
+(defun gather (canvas function)
+  "Call FUNCTION; return what it wrote, and the reach of that, as two values."
+  (let ((stream (svg-stream canvas)) (reach (svg-reach canvas)))
+    (setf (svg-reach canvas) (list 1d9 1d9 -1d9 -1d9))
+    (unwind-protect
+         (values (with-output-to-string (scratch)
+                   (setf (svg-stream canvas) scratch)
+                   (funcall function))
+                 (svg-reach canvas))
+      (setf (svg-stream canvas) stream (svg-reach canvas) reach))))
+
+(defmethod call-with-clipping (function (canvas svg-canvas) x y width height)
+  (multiple-value-bind (text reach) (gather canvas function)
+    (destructuring-bind (left top right bottom) reach
+      (note-reach canvas (max x left) (max y top)
+                  (min (+ x width) right) (min (+ y height) bottom))
+      (if (or (string= text "")
+              (and (<= x left) (<= y top) (<= right (+ x width)) (<= bottom (+ y height))))
+          (write-svg canvas text)
+          (write-svg canvas "<svg x=\"" x "\" y=\"" y "\" width=\"" width "\" height=\"" height
+                     "\" viewBox=\"" x " " y " " width " " height "\" overflow=\"hidden\">
+" text "</svg>
+")))))
+
+(defmethod call-with-origin (function (canvas svg-canvas) x y)
+  (multiple-value-bind (text reach) (gather canvas function)
+    (destructuring-bind (left top right bottom) reach
+      (note-reach canvas (+ x left) (+ y top) (+ x right) (+ y bottom)))
+    (write-svg canvas "<g transform=\"translate(" x "," y ")\">
+" text "</g>
+")))
+
+(defmethod call-with-subject (function (canvas svg-canvas) subject)
+  (write-svg canvas "<g><title>")
+  (write-text (subject-title subject) (svg-stream canvas))
+  (write-svg canvas "</title>
+")
+  (multiple-value-prog1 (funcall function)
+    (write-svg canvas "</g>
+")))
+
+(defun write-document (body width height stream)
+  (let ((canvas (make-instance 'svg-canvas :stream stream)))
+    (write-svg canvas "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" width "\" height=\"" height
+               "\" viewBox=\"0 0 " width " " height
+               "\" font-family=\"DejaVu Sans Mono, monospace\" font-size=\"11.6\" xml:space=\"preserve\">
+<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>
+" body "</svg>
+")))
+
+(defun call-with-svg (function stream &key (color-p t))
+  "Call FUNCTION with a canvas, then write what it has drawn to STREAM as an SVG document, white
+where nothing was drawn. FUNCTION returns its width and height in pixels, as two values."
+  (let* ((width 0) (height 0)
+         (body (with-output-to-string (scratch)
+                 (setf (values width height)
+                       (funcall function (make-instance 'svg-canvas :stream scratch
+                                                                    :color-p color-p))))))
+    (write-document body width height stream)))
+
+(defmacro with-svg ((canvas stream &rest options) &body body)
+  "Run BODY, which draws on CANVAS and returns its width and height in pixels, as two values, then
+write what it has drawn to STREAM as an SVG document. OPTIONS: :color-p."
+  `(call-with-svg (lambda (,canvas) ,@body) ,stream ,@options))
