@@ -182,21 +182,41 @@ exactly once."
 
 ;;; What holds for every command.
 
-(test commands.interrupt-each-other-on-a-resource
-  (dolist (command (remove :moving (command:all-commands)
-                           :key #'command:command-family :test-not #'eq))
-    (with-rover ()
-      (let* ((name (command:command-name command))
-             (calls '())
-             (arguments (loop for spec in (command:command-parameters command)
-                              collect (if (eq 'robot:camera (command:spec-type spec))
-                                          (robot:robot-camera rover 0)
-                                          2)))
-             (results (length (command:command-results command))))
-        (apply name rover (append arguments (list (lambda (&rest r) (push r calls)))))
-        (command:robot-turn rover 1)
-        (time:run-ticks 100)
-        (is (equal (list (list* :interrupt rover (make-list results))) calls) "~A" name)))))
+(defun moving-commands ()
+  (remove :moving (command:all-commands) :key #'command:command-family :test-not #'eq))
+
+(defun answers-when (command &rest then)
+  "Issue COMMAND, then call THEN; return what the continuation got, and what :INTERRUPT gives."
+  (with-rover ()
+    (let ((calls '())
+          (arguments (loop for spec in (command:command-parameters command)
+                           collect (if (base:same-name-p 'camera (command:spec-type spec))
+                                       (robot:robot-camera rover 0)
+                                       2))))
+      (apply (command:command-name command) rover
+             (append arguments (list (lambda (&rest results) (push results calls)))))
+      (apply (first then) rover (rest then))
+      (time:run-ticks 100)
+      (values calls (list (list* :interrupt rover
+                                 (make-list (length (command:command-results command)))))))))
+
+(test commands.are-interrupted-on-their-resource
+  "By a grab all of them, by another command those that take time."
+  (dolist (command (moving-commands))
+    (multiple-value-bind (calls interrupt) (answers-when command #'time:grab-resource)
+      (is (equal interrupt calls) "~A, grabbed" command))
+    (multiple-value-bind (calls interrupt) (answers-when command #'command:robot-turn 1)
+      (if (command::command-instant-p command)
+          (is (and (= 1 (length calls)) (not (eq :interrupt (first (first calls)))))
+              "~A takes no time" command)
+          (is (equal interrupt calls) "~A, followed" command)))))
+
+(test set-speed.holds-for-the-command-that-follows
+  (with-rover (:clean t)
+    (command:robot-set-speed rover 0.5d0)
+    (command:robot-go-forward rover 4)
+    (time:run-ticks 20)
+    (is (< (abs (- (robot:robot-x rover) 7.5)) 1d-9))))
 
 (test commands.check-their-arguments-at-once
   (with-rover ()

@@ -33,6 +33,8 @@ function of the operation that returns one."
   (results '() :type list :read-only t)
   (errors '() :type list :read-only t)
   (delay nil :type function :read-only t)
+  ;; True if it is done in the tick after it was issued, whatever is issued with it.
+  (instant-p nil :type boolean :read-only t)
   (report nil :type (or null function) :read-only t)
   (body nil :type function :read-only t))
 

@@ -53,7 +53,8 @@ storage-bin- (manual E; the rule is inferred)."
 OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each of PARAMETERS
 (variable type text) with a type of DEFINE-ARGUMENT-TYPE, each of RESULTS (name text). OPTIONS:
   (:family keyword) (:section string)  where it belongs
-  (:delay form)                        ticks until BODY runs, evaluated when the command begins
+  (:delay form)                        ticks until BODY runs, evaluated when the command begins;
+                                       without it the command is done in the next tick
   (:errors (keyword text)...)          its error codes; TEXT, a form, gives a string or a
                                        function of the operation, for the error message
   (:report lambda-list form)           what the message of success says, from the results
@@ -79,6 +80,7 @@ BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now o
          :errors (list ,@(loop for (keyword text) in errors
                                collect `(make-error-code ,keyword ,text)))
          :delay (lambda () ,(first (option :delay options '(1))))
+         :instant-p ,(null (assoc :delay options))
          :report ,(when report
                     `(lambda (,operation ,@(first report))
                        (declare (ignorable ,operation ,@(first report)))

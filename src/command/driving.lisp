@@ -54,7 +54,7 @@ operation goes on until STEP ends it. Fails with :NOT-MOVING when the speed is 0
 
 (define-command robot-stop (operation (robot robot))
     ()
-    ((:family :moving) (:section "3.5")
+    ((:family :moving) (:section "3.5") (:delay 1)
      (:report () "Robot stopped"))
     "Stop ROBOT: if it is driving, let it coast for BRAKING* ticks first."
   (let ((left braking*)

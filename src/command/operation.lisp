@@ -114,14 +114,22 @@ the resource and RESULTS. The second end of an operation changes nothing."
   (apply (command-body (operation-command operation))
          operation (operation-resource operation) (operation-arguments operation)))
 
+(defun make-way (agenda rival)
+  "Free the resource of RIVAL, the event pending on it: a command that takes no time and has only
+just been issued is carried out first, anything else is interrupted. So (robot-set-speed ...)
+followed by (robot-go-forward ...) sets the speed."
+  (cond ((and (operation-p rival) (command-instant-p (operation-command rival)))
+         (cancel-event agenda rival)
+         (start-body rival))
+        (t (interrupt-event agenda rival))))
+
 (defun begin (operation)
   "Take over the resource of OPERATION and let it wait for its command's delay."
   (let* ((simulation (operation-simulation operation))
          (agenda (simulation-agenda simulation))
-         (command (operation-command operation))
          (rival (pending-event agenda (operation-resource operation)))
-         (delay (funcall (command-delay command))))
-    (when rival (interrupt-event agenda rival))
+         (delay (funcall (command-delay (operation-command operation)))))
+    (when rival (make-way agenda rival))
     (setf (operation-step operation) #'start-body
           (operation-interrupt operation) (lambda () (finish operation :interrupt)))
     (queue-again agenda operation delay)))
