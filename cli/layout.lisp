@@ -11,22 +11,27 @@
       (format nil "~D" (round number))
       (string-right-trim "0" (format nil "~,4F" number))))
 
-(defun value-text (value)
-  "Return the value of an attribute as STATUS and THINGS show it."
+(defun reading-text (number)
+  (format nil "~,1F" number))
+
+(defun value-text (value number-text)
+  "Return the VALUE of an attribute as STATUS and THINGS show it, numbers by the function NUMBER-TEXT."
   (cond ((eq value t) "Yes")
         ((null value) "No")
         ((symbolp value) (string-capitalize value))
-        ((realp value) (format nil "~,1F" value))
-        ((consp value) (format nil "(~{~A~^ ~})" (mapcar #'value-text value)))
+        ((realp value) (funcall number-text value))
+        ((consp value) (format nil "(~{~A~^ ~})"
+                               (loop for element in value
+                                     collect (value-text element number-text))))
         (t (princ-to-string value))))
 
-(defun write-descriptor (descriptor)
+(defun write-descriptor (descriptor &optional (number-text #'reading-text))
   "Write DESCRIPTOR, a list of lists (attribute value), four attributes to a line."
   (loop for rest = descriptor then (nthcdr 4 rest)
         while rest
         do (format t "  ~{~{:~A ~A~}~^ ~}~%"
                    (loop for (key value) in rest repeat 4
-                         collect (list key (value-text value))))))
+                         collect (list key (value-text value number-text))))))
 
 (defun kind-text (designator)
   "Return what DESIGNATOR is for, such as Local Object."

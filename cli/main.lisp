@@ -97,13 +97,10 @@
       (sb-sys:interactive-interrupt () 130)
       (error (condition) (give-reason condition 1)))))
 
-(defun command-line-arguments ()
-  (rest (member "--end-runtime-options" sb-ext:*posix-argv* :test #'string=)))
-
 (defun main ()
   "Run ./cli/ars-magna: do what the arguments of this process say, and end it."
   (setf *standard-output* (make-console (standard-stream 1 :output)))
-  (let ((status (call-for-status (lambda () (run-arguments (command-line-arguments))))))
+  (let ((status (call-for-status (lambda () (run-arguments (rest sb-ext:*posix-argv*))))))
     (ignore-errors (finish-output *standard-output*))
     (ignore-errors (finish-output *error-output*))
     (sb-ext:exit :code status :abort t)))

@@ -63,18 +63,31 @@
 
 ;;; Parameters.
 
-(defun parameter-text (parameter)
-  (let ((*read-default-float-format* 'double-float))
-    (format nil "~26A ~8A ~A~:[~; (default ~A)~]"
-            (parameter-name parameter)
-            (parameter-value parameter)
-            (parameter-unit parameter)
-            (not (value-equal (parameter-value parameter) (parameter-default parameter)))
-            (parameter-default parameter))))
+(defun setting-text (value)
+  "Return VALUE, a parameter's, in few characters."
+  (if (and (realp value) (or (zerop value) (<= 1d-3 (abs value) 1d6)))
+      (amount-text value)
+      (princ-to-string value)))
 
-(defun list-parameters ()
+(defun parameter-text (parameter)
+  (let ((value (parameter-value parameter))
+        (default (parameter-default parameter)))
+    (format nil "~26A ~8A ~A~:[ (default ~A)~;~]" (parameter-name parameter)
+            (setting-text value) (parameter-unit parameter)
+            (value-equal value default) (setting-text default))))
+
+(defun parameters-like (name)
+  "Return the parameters called NAME, with or without the star, or else those that begin so."
+  (flet ((called (test)
+           (loop for parameter in (all-parameters)
+                 when (funcall test (string-downcase name) (parameter-name parameter))
+                   collect parameter)))
+    (or (called (lambda (name own) (string= own (format nil "~A*" (string-right-trim "*" name)))))
+        (called #'starts-with-subseq))))
+
+(defun list-parameters (parameters)
   (loop with group = nil
-        for parameter in (all-parameters)
+        for parameter in parameters
         do (unless (equal group (parameter-group parameter))
              (setf group (parameter-group parameter))
              (format t "~A~%" group))
@@ -87,13 +100,15 @@
 (define-line "PARAMS" (session (name :token "the name of a parameter" :optional)
                                (value :rest "its new value" :optional))
     (:running)
-    "List the parameters of the simulation, or one of them; or give it a new value."
-  (if (null name)
-      (list-parameters)
-      (let ((parameter (find-parameter name)))
-        (when value (setf (parameter-value parameter) (read-setting value)))
-        (put-line "~A" (parameter-text parameter))
-        (format t "~A~%" (parameter-sentence parameter)))))
+    "List the parameters of the simulation, or those whose names begin with NAME; give one a new VALUE."
+  (let ((parameters (parameters-like (or name ""))))
+    (cond ((rest parameters)
+           (when value (reject-line "~A is the beginning of several names." name))
+           (list-parameters parameters))
+          (t (let ((parameter (or (first parameters) (find-parameter name))))
+               (when value (setf (parameter-value parameter) (read-setting value)))
+               (put-line "~A" (parameter-text parameter))
+               (format t "~A~%" (parameter-sentence parameter)))))))
 
 ;;; Journals.
 

@@ -33,9 +33,10 @@
   ;; What is read is shown, for transcripts.
   (echo-p nil :type boolean :read-only t)
   (lock (make-lock "session") :read-only t)
-  ;; The simulation whose messages are shown as they arrive, if it is live.
+  ;; The simulation whose messages are shown as they arrive, and its observer if it is live.
   (simulation nil)
   (observer nil)
+  ;; True if there are messages that somebody will show soon.
   (news-p nil)
   (errors 0 :type fixnum)
   ;; What has been issued and may not have ended.
@@ -88,31 +89,52 @@ prompt and waits for each command to complete; with ECHO, it shows what it reads
       (restore-prompt console)
       (finish-output console))))
 
-;;; Listening to a live simulation.
+;;; Listening to a simulation.
+
+(defun show-after-changes (session simulation)
+  "Show messages when all changes of this tick are made, before programs are told of them."
+  (unless (session-news-p session)
+    (setf (session-news-p session) t)
+    (notify-later simulation (lambda () (show-messages session)))))
+
+(defun hear (session simulation)
+  "Show the messages of SIMULATION, of which one is new."
+  (cond ((not (simulation-ticking-p simulation)) (show-messages session))
+        ((in-simulation-p simulation) (show-after-changes session simulation))
+        (t (setf (session-news-p session) t))))
+
+(defun in-simulation-p (simulation)
+  (or (not (live-p simulation))
+      (eq (simulation-thread simulation) (current-thread))))
+
+(defun look (session)
+  "Show what has not been shown at the end of a tick."
+  (when (or (session-news-p session) (spoilt-p (session-console session)))
+    (show-messages session)))
 
 (defun listen-to (session simulation)
-  "Let SESSION show what the live SIMULATION has to say when it says it."
-  (flet ((hear ()
-           (setf (session-news-p session) t)
-           (unless (simulation-ticking-p simulation) (show-messages session)))
-         (look (simulation)
+  "Let SESSION show what SIMULATION has to say when it says it."
+  (flet ((look (simulation)
            (declare (ignore simulation))
-           (when (or (session-news-p session) (spoilt-p (session-console session)))
-             (show-messages session))))
+           (look session)))
     (setf (session-simulation session) simulation
-          (session-observer session) #'look
-          (message-queue-listener (simulation-messages simulation)) #'hear)
-    (asking (simulation) (add-observer #'look simulation))))
+          (message-queue-listener (simulation-messages simulation))
+          (lambda () (hear session simulation)))
+    (when (live-p simulation)
+      (setf (session-observer session) #'look)
+      (asking (simulation) (add-observer #'look simulation)))))
 
 (defun stop-listening (session)
-  (let ((simulation (shiftf (session-simulation session) nil)))
+  (let ((simulation (shiftf (session-simulation session) nil))
+        (observer (shiftf (session-observer session) nil)))
     (when simulation
-      (setf (message-queue-listener (simulation-messages simulation)) nil)
-      (asking (simulation) (remove-observer (session-observer session) simulation)))))
+      (setf (message-queue-listener (simulation-messages simulation)) nil))
+    (when observer
+      (asking (simulation) (remove-observer observer simulation)))))
 
 (defun follow-simulation (session)
   "Let SESSION listen to the simulation that is current now."
-  (let ((simulation (and *simulation* (live-p *simulation*) *simulation*)))
-    (unless (eq simulation (session-simulation session))
-      (stop-listening session)
-      (when simulation (listen-to session simulation)))))
+  (unless (and (eq *simulation* (session-simulation session))
+               (eq (and *simulation* (live-p *simulation*)) (and (session-observer session) t)))
+    (stop-listening session)
+    (when *simulation* (listen-to session *simulation*))))

@@ -69,7 +69,7 @@ speed, the views of its cameras, the place it sensed last, its designators."
     (still
       (do-things (thing world)
         (put-line "~A ~A" thing (where-text thing))
-        (write-descriptor (thing-attributes thing))))))
+        (write-descriptor (thing-attributes thing) #'amount-text)))))
 
 ;;; The map.
 

@@ -35,11 +35,17 @@
   "Return the arrow that points most nearly in the direction ANGLE, in radians."
   (char ">v<^" (mod (round angle (/ pi 2)) 4)))
 
-(defun robot-glyph (view robots)
+(defun names-text (things)
+  "Return what THINGS are called, each name once."
+  (format nil "~{~A~^, ~}" (remove-duplicates (mapcar #'thing-name things) :from-end t)))
+
+(defun robot-glyph (view robots things)
+  "Return the glyph of the first of ROBOTS, which stands on THINGS."
   (let ((robot (first robots)))
     (multiple-value-bind (x y) (robot-position robot)
       (explain view (arrow-glyph (robot-angle robot))
-               (format nil "~A (~,2F,~,2F)" robot x y)))))
+               (format nil "~A (~,2F,~,2F)~:[ with ~A~;~]" robot x y (null things)
+                       (names-text things))))))
 
 (defun things-glyph (view things)
   "Return the initial of what the THINGS of a block are called, or * if they differ in name."
@@ -61,7 +67,7 @@
          (things (loop for index in indices
                        append (svref (world-cells (view-world view)) index)))
          (place (find-if #'plusp (mapcar (lambda (index) (aref (map-places map) index)) indices))))
-    (cond (robots (robot-glyph view robots))
+    (cond (robots (robot-glyph view robots things))
           (things (things-glyph view things))
           ((some (lambda (index) (logtest +wall+ (aref (map-flags map) index))) indices) #\#)
           (place (place-glyph view (svref (map-place-types map) place)))
@@ -94,20 +100,26 @@
 
 (defun write-ruler (view stream)
   "Write the x coordinate of every tenth column."
-  (format stream "~5T")
-  (loop for column from 0 below (view-columns view) by 10
-        do (format stream "~10A" (+ (view-left view) (* column (view-scale view)))))
-  (terpri stream))
+  (let ((marks (loop for column from 0 below (view-columns view) by 10
+                     collect (+ (view-left view) (* column (view-scale view))))))
+    (format stream "     ~A~%" (string-right-trim " " (format nil "~{~10A~}" marks)))))
 
-(defun write-legend (view stream)
+(defun write-legend (view columns stream)
+  "Explain the glyphs of VIEW in lines of at most COLUMNS characters."
   (when (> (view-scale view) 1)
     (format stream "Each character is ~D x ~:*~D cells.~%" (view-scale view)))
-  (format stream "# wall~{   ~{~A ~A~}~}~%" (view-legend view)))
+  (let ((line "# wall"))
+    (loop for (glyph text) in (view-legend view)
+          for longer = (format nil "~A   ~C ~A" line glyph text)
+          do (if (<= (length longer) columns)
+                 (setf line longer)
+                 (format stream "~A~%" (shiftf line (format nil "~C ~A" glyph text)))))
+    (format stream "~A~%" line)))
 
-(defun draw (view stream)
+(defun draw (view columns stream)
   (write-ruler view stream)
   (dotimes (row (view-rows view)) (write-row view row stream))
-  (write-legend view stream))
+  (write-legend view columns stream))
 
 (defun whole-view (world columns)
   "Return a view of all of WORLD that is at most COLUMNS characters wide."
@@ -136,9 +148,8 @@ Signals WRONG-ARGUMENT."
   (check-argument text-map robot (robot-p robot) "a robot")
   (check-argument text-map columns (typep columns '(integer 10)) "an integer from 10")
   (check-argument text-map radius (typep radius '(or null (integer 0))) "a number of cells")
-  (let ((columns (- columns 5)))
-    (with-output-to-string (stream)
-      (draw (if radius
-                (near-view robot radius columns)
-                (whole-view (robot-world robot) columns))
-            stream))))
+  (with-output-to-string (stream)
+    (draw (if radius
+              (near-view robot radius (- columns 5))
+              (whole-view (robot-world robot) (- columns 5)))
+          columns stream)))
