@@ -2,7 +2,8 @@
 
 (defpackage :ars-magna.faces
   (:documentation "Gathers the layers' symbols into the three packages that the manual knows.")
-  (:use :cl :ars-magna.base))
+  (:use :cl :ars-magna.base)
+  (:export #:cli))
 
 (in-package :ars-magna.faces)
 
@@ -21,3 +22,13 @@
      (defpackage ,face (:use) (:documentation ,documentation))
      ,@(loop for (layer . names) in layers
              collect `(export-from ,face ,layer ',names))))
+
+;;; The prompt is a system of its own, which nothing here depends on.
+
+(defun cli (&rest options)
+  "Run the command-line interface Robot> on the current simulation until QUIT or the end of input;
+the simulator keeps running. OPTIONS are those of ARS-MAGNA.CLI:PROMPT. Loads the system
+ars-magna/cli the first time. Returns nothing (manual A, E)."
+  (unless (find-package :ars-magna.cli)
+    (asdf:load-system "ars-magna/cli"))
+  (apply (uiop:find-symbol* :prompt :ars-magna.cli) options))
