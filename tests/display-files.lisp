@@ -1,0 +1,143 @@
+;;;; display-files.lisp -- snapshots, pictures in files, animations, and robots without a display.
+
+(in-package :ars-magna.tests)
+
+(in-suite display)
+
+(test snapshot.does-not-change-with-the-world
+  (in-studio (robot)
+    (let* ((world (robot:robot-world robot))
+           (before (display:take-snapshot world)))
+      (robot:place-robot robot 2.5 2.5 1)
+      (world:move-thing (world:find-thing 'box) 12 4)
+      (world:destroy-thing (world:find-thing 'pen))
+      (is (= 2 (length (display:snapshot-things before))))
+      (is (= 3.5d0 (display::thing-image-x (aref (display:snapshot-things before) 0))))
+      (is (= 6.5d0 (display:robot-image-x (first (display:snapshot-robots before))))))))
+
+(test snapshot.shares-what-has-not-changed-with-the-one-before
+  (in-studio (robot)
+    (let* ((world (robot:robot-world robot))
+           (before (display:take-snapshot world))
+           (box (world:find-thing 'box)))
+      (world:set-attribute (world:find-thing 'pen) :color 'blue)
+      (world:make-new-thing 'cup (list world 8 8) '())
+      (let* ((after (display:take-snapshot world before))
+             (old (display:snapshot-things before))
+             (new (display:snapshot-things after)))
+        (is (= 3 (length new)))
+        (is (eq (aref old 0) (aref new 0)))
+        (is (not (eq (aref old 1) (aref new 1))))
+        (world:destroy-thing box)
+        (is (equal '(pen cup)
+                   (cl:map 'list (lambda (image)
+                                   (intern (string (world:thing-name (display::thing-image-thing image)))
+                                           :ars-magna.tests))
+                           (display:snapshot-things (display:take-snapshot world after)))))))))
+
+(test snapshot.changes-nothing-in-the-run
+  (in-studio (robot)
+    (let ((digest (robot:state-digest)))
+      (display:svg-picture robot :display :all :layers display:+picture-layers+)
+      (is (= digest (robot:state-digest))))))
+
+;;; Files.
+
+(defmacro with-scratch-file ((file type) &body body)
+  "Run BODY with FILE bound to the name of a file of TYPE that is deleted afterwards."
+  `(uiop:with-temporary-file (:pathname ,file :type ,type) ,@body))
+
+(test picture.svg-files-hold-the-picture
+  (in-studio (robot)
+    (with-scratch-file (file "svg")
+      (is (equal (truename file) (display:save-picture robot file)))
+      (is (string= (display:svg-picture robot) (uiop:read-file-string file))))))
+
+(test picture.other-kinds-of-files-are-refused
+  (in-studio (robot)
+    (signals base:wrong-argument (display:save-picture robot "world.gif"))
+    (signals base:wrong-argument (display:save-picture robot "world"))
+    (signals base:wrong-argument (display:save-picture :nobody "world.svg"))
+    (signals base:wrong-argument (display:save-picture robot "world.svg" :display :kitchen))))
+
+(defun png-p (file)
+  (with-open-file (stream file :element-type '(unsigned-byte 8))
+    (= #x89504E47 (loop with sum = 0 repeat 4
+                        do (setf sum (+ (* 256 sum) (read-byte stream)))
+                        finally (return sum)))))
+
+(test picture.png-files-need-a-program-that-the-error-names
+  (in-studio (robot)
+    (with-scratch-file (file "png")
+      (handler-case (progn (display:save-picture robot file)
+                           (is (png-p file)))
+        (base:misuse (condition)
+          (is (mentions-p (princ-to-string condition) "librsvg2-bin")))))))
+
+(test picture.user-graphics-of-a-live-robot-see-a-world-that-stands-still
+  (in-studio (robot)
+    (let ((simulation (time:current-simulation)))
+      (time:start-clock simulation :rate :free)
+      (unwind-protect
+           (dotimes (count 5)
+             (is (mentions-p (display:svg-picture robot) "STUDIO-ROBOT")))
+        (time:stop-clock simulation)))))
+
+;;; Animations.
+
+(defun journal-of-a-drive (robot)
+  "Return the journal of a run in which ROBOT jumps about for 20 ticks."
+  (dotimes (jump 4)
+    (robot:place-robot robot (+ 2 jump) 6.5 0)
+    (time:run-ticks 5))
+  (robot::end-of-journal (time:current-simulation)))
+
+(test animation.shows-each-frame-in-its-turn
+  (in-studio (robot)
+    (with-scratch-file (file "svg")
+      (display:save-animation (journal-of-a-drive robot) file :every 5 :layers '(:trail))
+      (let ((text (uiop:read-file-string file)))
+        (dolist (part '("tick 5<" "tick 10<" "tick 15<" "tick 20<"
+                        "values=\"visible;hidden\" keyTimes=\"0;0.250000\""
+                        "values=\"hidden;visible;hidden\" keyTimes=\"0;0.250000;0.500000\""
+                        "values=\"hidden;visible\" keyTimes=\"0;0.750000\""
+                        "dur=\"0.4s\""
+                        "<ellipse cx=\"40\" cy=\"52\" rx=\"6\""))
+          (is (mentions-p text part)))
+        (is (not (mentions-p text "tick 25<")))))))
+
+(test animation.can-be-a-series-of-pictures
+  (in-studio (robot)
+    (let ((journal (journal-of-a-drive robot)))
+      (with-scratch-file (file "svg")
+        (let ((files (display:save-animation journal file :every 10 :series t :until 15
+                                                          :display :state)))
+          (is (= 2 (length files)))
+          (is (mentions-p (uiop:read-file-string (first files)) "Position: 3.00, 6.50"))
+          (is (mentions-p (uiop:read-file-string (second files)) "Position: 4.00, 6.50"))
+          (is (mentions-p (pathname-name (second files)) "-0002"))
+          (mapc #'delete-file files)))
+      (signals base:wrong-argument (display:save-animation journal "run.png"))
+      (signals base:wrong-argument (display:save-animation journal "run.svg" :every 0)))))
+
+;;; Without a window.
+
+(test display.a-robot-without-a-window-says-so-in-one-line
+  (in-studio (robot)
+    (let* ((display:*display-opener* nil)
+           (said (with-output-to-string (*standard-output*)
+                   (display:announce-display robot '()))))
+      (is (mentions-p said "STUDIO-ROBOT runs without a display"))
+      (is (mentions-p said "ars-magna/clim"))
+      (is (= 1 (count #\Newline said)))
+      (is (string= "" (with-output-to-string (*standard-output*)
+                        (display:announce-display robot '(:display nil)))))
+      (signals base:misuse (display:open-display robot)))))
+
+(test display.an-opener-opens-instead
+  (in-studio (robot)
+    (let* ((opened '())
+           (display:*display-opener* (lambda (robot) (push robot opened))))
+      (is (string= "" (with-output-to-string (*standard-output*)
+                        (display:announce-display robot '()))))
+      (is (equal (list robot) opened)))))
