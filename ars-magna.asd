@@ -93,7 +93,8 @@
   ((:module "tests" :serial t
     :components ((:file "package") (:file "geometry") (:file "nisp") (:file "world")
                  (:file "world-places") (:file "world-things") (:file "base") (:file "time")
-                 (:file "main"))))
+                 (:file "handling") (:file "handling-inside") (:file "handling-chance")
+                 (:file "manipulations") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
              (symbol-call :ars-magna.tests :run-all)))

@@ -30,10 +30,14 @@
 
 ;;; Designators.
 
-(defun own-designator-p (part designator)
-  "True if DESIGNATOR is valid and its robot is that of PART."
+(defun resource-robot (resource)
+  "Return RESOURCE if it is a robot, else the robot that it is a part of."
+  (if (robot-p resource) resource (part-robot resource)))
+
+(defun own-designator-p (resource designator)
+  "True if DESIGNATOR is valid and of the robot that RESOURCE, perhaps as a part, belongs to."
   (and (designator-valid-p designator)
-       (eq (designator-robot designator) (part-robot part))))
+       (eq (designator-robot designator) (resource-robot resource))))
 
 (defun designator-thing (designator)
   "Return the thing that DESIGNATOR denotes, or NIL if it is false or on a place."

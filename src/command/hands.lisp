@@ -110,7 +110,7 @@ designators silently."
 
 (define-command hand-track (operation (hand hand))
     ()
-    ((:family :handling) (:section "3.6")
+    ((:family :handling) (:section "3.6") (:delay 1)
      (:errors (:grasp-lost (part-text "~A lost its grip"))
               (:not-grasping (part-text "~A is not holding anything"))))
     "Watch the grip of HAND until that is lost, or any other command to HAND interrupts."
