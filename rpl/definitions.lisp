@@ -6,7 +6,7 @@
   "Return the scope of a procedure's body, and the lambda expression for its entry."
   (let ((scope (make-scope :environment environment))
         (variables (lambda-list-variables parameters)))
-    (check-parameters parameters scope)
+    (check-lambda-list parameters scope)
     (values (variable-scope scope variables)
             (entry-lambda parameters scope nil))))
 
@@ -56,13 +56,16 @@ code is interpreted, which costs little now and more when it runs, or compiled i
   "Return PATTERN as a macro lambda list: ?x stands for the variable x, ?() for anything; and a list
 of the variable and the word for each word that must be there literally."
   (let ((literals '()))
-    (labels ((parameters (pattern)
-               (cond ((null pattern) '())
-                     ((variable-of pattern))
-                     ((consp pattern) (cons (parameters (car pattern)) (parameters (cdr pattern))))
+    (labels ((parameter (pattern)
+               (cond ((variable-of pattern))
+                     ((consp pattern) (parameters pattern))
                      (t (let ((variable (gensym "LITERAL")))
                           (push (list variable pattern) literals)
-                          variable)))))
+                          variable))))
+             (parameters (pattern)
+               (cond ((null pattern) '())
+                     ((consp pattern) (cons (parameter (car pattern)) (parameters (cdr pattern))))
+                     (t (list '&rest (parameter pattern))))))
       (values (parameters pattern) (nreverse literals)))))
 
 (defun variable-of (pattern)

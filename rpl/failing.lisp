@@ -45,7 +45,7 @@
   (let* ((calls (sb-debug:list-backtrace :count 100))
          (signalled (member 'sb-kernel::%signal calls :key #'first)))
     (with-output-to-string (stream)
-      (loop for call in (rest signalled)
+      (loop for call in (if signalled (rest signalled) calls)
             for number from 0
             until (engine-call-p call)
             do (format stream "    ~D: ~A~%" number (form-text call 100))))))

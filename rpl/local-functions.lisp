@@ -21,7 +21,7 @@ them if OUTER, and returns the environment for a procedure's body."
 (defun lambda-suspension (parameters body scope)
   (suspension (note-own-text `(function (lambda ,parameters ,@body))) scope))
 
-(defun check-parameters (parameters scope)
+(defun check-lambda-list (parameters scope)
   "Signal MISPLACED-SUSPENSION if a default in PARAMETERS would wait."
   (multiple-value-bind (suspends reason) (lambda-suspension parameters '() scope)
     (when (eq suspends :must)
@@ -74,7 +74,7 @@ them if OUTER, and returns the environment for a procedure's body."
   "Return code that completes the procedure in VARIABLE; SCOPE is that of DEFINITION."
   (destructuring-bind (name parameters . body) definition
     (let ((parameters (untyped-lambda-list parameters (string-downcase name))))
-      (check-parameters parameters scope)
+      (check-lambda-list parameters scope)
       `(setf (procedure-lambda-list ,variable) ',parameters
              (procedure-entry ,variable) ,(entry-lambda parameters scope t)
              (procedure-body ,variable)
