@@ -69,7 +69,8 @@
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "ars")))
    (:module "worlds" :serial t
-    :components ((:file "prototypes") (:file "kickers") (:file "watson") (:file "office")
+    :components ((:file "prototypes") (:file "kickers") (:file "manipulations")
+                 (:file "watson") (:file "office")
                  (:file "hall") (:file "tiny"))))
   :in-order-to ((test-op (test-op "ars-magna/tests"))))
 
@@ -93,8 +94,9 @@
   ((:module "tests" :serial t
     :components ((:file "package") (:file "geometry") (:file "nisp") (:file "world")
                  (:file "world-places") (:file "world-things") (:file "base") (:file "time")
-                 (:file "handling") (:file "handling-inside") (:file "handling-chance")
-                 (:file "manipulations") (:file "main"))))
+                 (:file "handling") (:file "handling-inside") (:file "handling-bins")
+                 (:file "handling-chance") (:file "manipulations")
+                 (:file "shipped-manipulations") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
              (symbol-call :ars-magna.tests :run-all)))

@@ -1,0 +1,89 @@
+;;;; manipulations.lisp -- what robots can do to the things of the shipped worlds.
+
+;;; Good for any world with containers, keys (:type :key) and lamps (:type :lamp): write
+;;; (manipulate open box-designator (robot-hand robbie 0) continuation). A lock and its keys
+;;; have the same :lock-id. Besides :FAILED, the codes say what was in the way; the value
+;;; returned is the hand. Manual 5.5.
+
+(in-package :ars-user)
+(in-readtable :nisp)
+
+(defattribute :locked (#t #f)
+  :success .9)
+
+(defattribute :lit (#t #f)
+  :success .95 :noticed .6)
+
+(set-attribute lamp* :type :lamp)
+
+;;; What is in the way.
+
+(defun beside-hand-p (thing hand)
+  "True if THING is where HAND is: in the same container, or both in none."
+  (in-location thing (or (part-location hand) :floor)))
+
+(defun lid-trouble (container hand)
+  "Return the error code that keeps HAND from moving the lid of CONTAINER, or #F."
+  (cond ((not (beside-hand-p container hand)) :out-of-reach)
+        ((get-attribute container :locked) :locked)))
+
+(defun key-trouble (container key hand)
+  "Return the error code that keeps HAND from turning KEY in the lock of CONTAINER, or #F."
+  (cond ((not (in-location key hand)) :key-not-in-hand)
+        ((not (beside-hand-p container hand)) :out-of-reach)
+        ((not (get-attribute container :closed)) :lid-open)))
+
+;;; Lids.
+
+(defmanipulation open (container - ((:capacity (.01 100000)) (:closed #t)) :by hand - HAND)
+    (:success .98 :delay 2)
+  (let ((trouble (cond ((hand-holding hand) :hand-full)
+                       (t (lid-trouble container hand)))))
+    (unless trouble (set-attribute container :closed #f))
+    (values trouble hand)))
+
+(defmanipulation open (container - ((:capacity (.01 100000))) :by hand - HAND) ()
+  (values :already-open hand))
+
+(defmanipulation close (container - ((:capacity (.01 100000)) (:closed #f)) :by hand - HAND)
+    (:success .98 :delay 2)
+  ;; With its elbow, if it carries something.
+  (let ((trouble (lid-trouble container hand)))
+    (unless trouble (set-attribute container :closed #t))
+    (values trouble hand)))
+
+(defmanipulation close (container - ((:capacity (.01 100000))) :by hand - HAND) ()
+  (values :already-closed hand))
+
+;;; Locks.
+
+(defmanipulation lock (container - ((:capacity (.01 100000)) (:lock-id ?id))
+                       key - ((:type :key) (:lock-id ?id))
+                       :by hand - HAND)
+    (:success .95 :delay 3)
+  (let ((trouble (key-trouble container key hand)))
+    (unless trouble (set-attribute container :locked #t))
+    (values trouble hand)))
+
+(defmanipulation unlock (container - ((:capacity (.01 100000)) (:lock-id ?id))
+                         key - ((:type :key) (:lock-id ?id))
+                         :by hand - HAND)
+    (:success .95 :delay 3)
+  (let ((trouble (key-trouble container key hand)))
+    (unless trouble (set-attribute container :locked #f))
+    (values trouble hand)))
+
+;;; Lamps.
+
+(defun switch-lamp (lamp lit hand)
+  "Let LAMP be lit if LIT is true, as HAND does it; what a manipulation returns."
+  (cond ((beside-hand-p lamp hand)
+         (set-attribute lamp :lit lit)
+         (values nil hand))
+        (t (values :out-of-reach hand))))
+
+(defmanipulation switch-on (lamp - ((:type :lamp)) :by hand - HAND) (:delay 1)
+  (switch-lamp lamp #t hand))
+
+(defmanipulation switch-off (lamp - ((:type :lamp)) :by hand - HAND) (:delay 1)
+  (switch-lamp lamp #f hand))
