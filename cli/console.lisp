@@ -5,19 +5,32 @@
 ;;; What the simulator and the user's programs print comes from other threads, at any time. The
 ;;; console keeps what each of them writes in one piece, and knows when a prompt has been written
 ;;; over and must be shown again. A terminal moves the cursor when the user presses return; nobody
-;;; but ANSWERED can know.
+;;; but ANSWERED can know. When nobody reads the stream any more, what is written is lost.
 
 (defclass console (sb-gray:fundamental-character-output-stream)
   ((stream :initarg :stream :reader console-stream)
    (lock :initform (make-lock "console") :reader console-lock)
    (column :initform 0 :accessor console-column)
    (prompt :initform nil :accessor console-prompt)
-   (overwritten-p :initform nil :accessor console-overwritten-p))
+   (overwritten-p :initform nil :accessor console-overwritten-p)
+   (closed-p :initform nil :accessor console-closed-p))
   (:documentation "An output stream on top of another. PROMPT is what stands there for the user to
-answer, or NIL; OVERWRITTEN-P is true if something was written after it."))
+answer, or NIL; OVERWRITTEN-P is true if something was written after it; CLOSED-P, if what was
+written could not be delivered."))
 
 (defun make-console (stream)
   (if (typep stream 'console) stream (make-instance 'console :stream stream)))
+
+(defun call-with-console (function console)
+  "Call FUNCTION with the stream below CONSOLE, unless it has failed before."
+  (with-lock ((console-lock console))
+    (unless (console-closed-p console)
+      (handler-case (funcall function (console-stream console))
+        (stream-error () (setf (console-closed-p console) t))))))
+
+(defmacro with-console ((stream console) &body body)
+  "Run BODY with STREAM bound to the stream below CONSOLE, nobody else writing to it."
+  `(call-with-console (lambda (,stream) ,@body) ,console))
 
 (defmethod sb-gray:stream-line-column ((console console))
   (console-column console))
@@ -25,8 +38,8 @@ answer, or NIL; OVERWRITTEN-P is true if something was written after it."))
 (defmethod sb-gray:stream-write-string ((console console) string &optional (start 0) end)
   (let* ((end (or end (length string)))
          (newline (position #\Newline string :start start :end end :from-end t)))
-    (with-lock ((console-lock console))
-      (write-string string (console-stream console) :start start :end end)
+    (with-console (stream console)
+      (write-string string stream :start start :end end)
       (setf (console-overwritten-p console) t
             (console-column console) (if newline
                                          (- end newline 1)
@@ -38,10 +51,10 @@ answer, or NIL; OVERWRITTEN-P is true if something was written after it."))
   char)
 
 (defmethod sb-gray:stream-force-output ((console console))
-  (with-lock ((console-lock console)) (force-output (console-stream console))))
+  (with-console (stream console) (force-output stream)))
 
 (defmethod sb-gray:stream-finish-output ((console console))
-  (with-lock ((console-lock console)) (finish-output (console-stream console))))
+  (with-console (stream console) (finish-output stream)))
 
 ;;; Prompts.
 

@@ -24,10 +24,25 @@
                  (sb-ext:compiler-note #'muffle-warning))
     (funcall function)))
 
+(defun write-but-diagnostics (text stream)
+  "Write the lines of TEXT to STREAM, but not those that begin with a semicolon: the compiler's."
+  (with-input-from-string (in text)
+    (loop for line = (read-line in nil)
+          while line
+          unless (or (string= line "") (char= #\; (char line 0)))
+            do (format stream "~&~A~%" line))))
+
+(defun eval-quietly (form)
+  "Evaluate FORM. What it writes to the error output comes when it is done."
+  (let ((diagnostics (make-string-output-stream)))
+    (unwind-protect (let ((*error-output* diagnostics))
+                      (call-quietly (lambda () (eval form))))
+      (write-but-diagnostics (get-output-stream-string diagnostics) *standard-output*))))
+
 (defun evaluate (session form)
   "Evaluate FORM and print its values, each on a line."
   (let* ((*standard-output* (session-console session))
-         (values (multiple-value-list (call-quietly (lambda () (eval form))))))
+         (values (multiple-value-list (eval-quietly form))))
     (shiftf *** ** * (first values))
     (when values
       (fresh-line *standard-output*)

@@ -17,27 +17,31 @@
           ((find robot robots :test #'same-name-p))
           (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world robots)))))
 
-(defun load-files (session options)
-  (dolist (file (option-values :load options))
+(defun load-files (session files)
+  (dolist (file files)
     (call-guarded session (lambda () (load-lisp (or (existing-file file)
                                                     (reject-line "There is no file ~A." file)))))
     (settle session)
     (show-messages session)))
 
-(defun run-headless (session robot-name options)
-  "Run the lines of SESSION, a batch, in a fresh world; return the robot to go on with, or NIL."
+(defun run-headless (session robot-name seed files)
+  "Run the lines of SESSION, a batch, in a fresh world, after loading FILES. Return the robot to go
+on with, or NIL."
   (setf (session-next-robot session) nil
         *prompt-robot* robot-name)
   (call-with-simulation (lambda ()
-                          (load-files session options)
+                          (load-files session files)
                           (run-session session))
                         (robots-beside robot-name)
-                        :seed (option-value :seed options 0) :journal t)
+                        :seed seed :journal t)
   (session-next-robot session))
 
 (defun run-batch (session robot-name options)
-  (loop for name = robot-name then (run-headless session name options)
-        while name))
+  "Run the lines of SESSION, beginning with ROBOT-NAME."
+  (loop for files = (option-values :load options) then '()
+        for name = robot-name then next
+        for next = (run-headless session name (option-value :seed options 0) files)
+        while next))
 
 (defun greet (session)
   (let ((simulation (current-simulation)))
@@ -49,9 +53,10 @@
 (defun run-live (session robot-name options)
   "Run the lines of SESSION in the live world of ROBOT-NAME."
   (apply #'simulator robot-name :rate (option-value :rate options *default-rate*)
+                                :display (terminal-p session)
          (when (option-value :seed options) (list :seed (option-value :seed options))))
-  (when (interactive-stream-p (session-input session)) (greet session))
-  (load-files session options)
+  (when (terminal-p session) (greet session))
+  (load-files session (option-values :load options))
   (run-session session))
 
 (defun run-prompt (options)
@@ -68,8 +73,7 @@
 (defun run-arguments (arguments)
   "Do what ARGUMENTS, a list of strings, say. Return the status to exit with."
   (let ((options (parse-options arguments)))
-    (cond ((option-value :probe options) 0)
-          ((option-value :list options)
+    (cond ((option-value :list options)
            (when (option-value :world options) (world-robots-called (option-value :world options)))
            (write-worlds)
            0)
@@ -92,13 +96,13 @@
   (catch 'leave
     (handler-case (funcall function)
       (usage-error (condition) (give-reason condition 2))
-      ;; Whoever was to read the output has gone.
-      (stream-error () 1)
       (sb-sys:interactive-interrupt () 130)
       (error (condition) (give-reason condition 1)))))
 
 (defun main ()
-  "Run ./cli/ars-magna: do what the arguments of this process say, and end it."
+  "Run ./cli/ars-magna: do what the arguments of this process say, and end it. The argument --probe
+only asks whether the core starts."
+  (when (equal (rest sb-ext:*posix-argv*) '("--probe")) (sb-ext:exit :code 0 :abort t))
   (setf *standard-output* (make-console (standard-stream 1 :output)))
   (let ((status (call-for-status (lambda () (run-arguments (rest sb-ext:*posix-argv*))))))
     (ignore-errors (finish-output *standard-output*))

@@ -9,9 +9,10 @@
   "Return the next line of SESSION, or NIL at the end. Show PROMPT unless it is a batch."
   (let ((console (session-console session)))
     (unless (session-batch-p session) (show-prompt console prompt))
-    (let ((line (read-line (session-input session) nil)))
-      (cond ((session-echo-p session) (format console "~@[~A~]~%" line))
-            ((null line) (unless (session-batch-p session) (terpri console))))
+    (let ((line (and (not (console-closed-p console)) (read-line (session-input session) nil))))
+      (cond ((session-batch-p session))
+            ((null line) (terpri console))
+            ((session-echo-p session) (format console "~A~%" line)))
       (with-lock ((session-lock session)) (answered console))
       line)))
 
@@ -99,7 +100,7 @@
         do (follow-simulation session)
            (call-guarded session (lambda () (next-line session)))
            (show-messages session))
-  (unless (interactive-stream-p (session-input session))
+  (unless (terminal-p session)
     (call-guarded session (lambda () (await-all session)))
     (show-messages session)))
 

@@ -61,6 +61,10 @@ prompt and waits for each command to complete; with ECHO, it shows what it reads
         (first robots)
         (reject-line "There is no robot here. WORLD lists the worlds, WORLD name starts one."))))
 
+(defun terminal-p (session)
+  "True if somebody sits at SESSION."
+  (interactive-stream-p (session-input session)))
+
 ;;; Complaints and messages.
 
 (defun complain (session text)
@@ -78,16 +82,21 @@ prompt and waits for each command to complete; with ECHO, it shows what it reads
     (fresh-line console))
   (dolist (message messages) (write-message message console)))
 
+(defvar *showing-p* nil
+  "True while this thread shows messages; what the showing itself reports is left for later.")
+
 (defun show-messages (session)
   "Show all queued messages, and the prompt again."
-  (with-lock ((session-lock session))
-    (setf (session-news-p session) nil)
-    (let ((console (session-console session))
-          (messages (take-all-messages)))
-      (incf (session-errors session) (count :error messages :key #'message-kind))
-      (when (and messages (not flush-all-errors*)) (write-messages messages console))
-      (restore-prompt console)
-      (finish-output console))))
+  (unless *showing-p*
+    (with-lock ((session-lock session))
+      (setf (session-news-p session) nil)
+      (let ((*showing-p* t)
+            (console (session-console session))
+            (messages (take-all-messages)))
+        (incf (session-errors session) (count :error messages :key #'message-kind))
+        (when (and messages (not flush-all-errors*)) (write-messages messages console))
+        (restore-prompt console)
+        (finish-output console)))))
 
 ;;; Listening to a simulation.
 

@@ -76,7 +76,7 @@ speed, the views of its cameras, the place it sensed last, its designators."
 (defun terminal-width (session)
   "Return how many columns the terminal of SESSION has, as far as can be found out."
   (or (ignore-errors (parse-integer (sb-ext:posix-getenv "COLUMNS")))
-      (and (interactive-stream-p (session-input session))
+      (and (terminal-p session)
            (ignore-errors
             (let ((size (with-output-to-string (out)
                           (sb-ext:run-program "stty" '("size") :search t :input t :output out))))

@@ -4,14 +4,14 @@
 
 (defun start-robot (session robot-name)
   "Let SESSION go on with the robot ROBOT-NAME in its world, which starts anew."
-  (cond ((null *world*) (start-live robot-name))
+  (cond ((null *world*) (start-live session robot-name))
         ((session-batch-p session) (setf (session-next-robot session) robot-name))
         (t (reject-line "This prompt is in a headless simulation, which has one world."))))
 
-(defun start-live (robot-name)
+(defun start-live (session robot-name)
   (let ((rate (and *simulation* (simulation-rate *simulation*))))
     (when *simulation* (stop-simulator))
-    (simulator robot-name :rate (or rate *default-rate*)))
+    (simulator robot-name :rate (or rate *default-rate*) :display (terminal-p session)))
   (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))
 
 (define-line "WORLD" (session (name :token "a shipped world, or a Lisp file" :optional))
