@@ -84,7 +84,10 @@
                  (:file "arguments") (:file "layout") (:file "errands") (:file "robot-lines")
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
                  (:file "status-lines") (:file "running-lines") (:file "worlds")
-                 (:file "world-lines") (:file "prompt") (:file "options") (:file "main")))))
+                 (:file "world-lines") (:file "prompt") (:file "options") (:file "looking")
+                 (:file "looking-views") (:file "looking-tracks") (:file "looking-cameras")
+                 (:file "looking-approach") (:file "statistics")
+                 (:file "main")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."

@@ -10,8 +10,8 @@
   ":local or :non-local")
 
 (define-argument-type 'specification #'specification-p
-  "a descriptor specification, as ((:color (red blue)) (:size 4 .5)): a list of attributes with a ~
-   value that they can have, or several, or a range")
+  "a descriptor specification: a list such as ((:color (red blue)) (:size 4 .5)), with values that
+the attributes can have")
 
 (define-argument-type 'place-type
   (lambda (value) (and value (typep value '(or symbol string place-type))))
@@ -100,11 +100,11 @@
                operation camera
                (look-for-things camera type specification :all all))))
 
-(define-command camera-get-object-designator (operation (camera camera)
-                                              (type designator-type
-                                               ":local for what is next to the robot, else :non-local")
-                                              (specification specification
-                                               "what the object is like, a descriptor specification"))
+(define-command camera-get-object-designator
+    (operation (camera camera)
+               (type designator-type ":local for what is next to the robot, else :non-local")
+               (specification specification
+                "what the object is like, a descriptor specification"))
     ((designator "a designator of such an object"))
     ((:family :looking) (:section "3.4.3") (:prompt "OBJ-DESIG") (:prefix "get-designator")
      (:delay camera-desig-delay*)
@@ -114,11 +114,11 @@
     "Look with CAMERA for an object that fits a description; of several, find any one."
   (search-for-things operation camera type specification nil))
 
-(define-command camera-get-all-object-designators (operation (camera camera)
-                                                   (type designator-type
-                                                    ":local for what is next to the robot, else :non-local")
-                                                   (specification specification
-                                                    "what the objects are like, a descriptor specification"))
+(define-command camera-get-all-object-designators
+    (operation (camera camera)
+               (type designator-type ":local for what is next to the robot, else :non-local")
+               (specification specification
+                "what the objects are like, a descriptor specification"))
     ((designators "a list of designators of such objects"))
     ((:family :looking) (:section "3.4.3") (:prompt "ALL-OBJ-DESIGS")
      (:prefix "get-all-designators") (:delay camera-desig-delay*)

@@ -47,7 +47,7 @@ place type (manual 3.4.1)."
    designator-valid-p "True until the designator is dropped."
    designator-x "Return the x coordinate where the denotation was last seen, in metres."
    designator-y "Return the y coordinate where the denotation was last seen, in metres."
-   designator-location "Return the container or storage bin where the denotation was seen, or NIL."))
+   designator-location "Return the container or bin where the denotation was seen, or NIL."))
 
 (defmethod print-object ((designator designator) stream)
   (print-named designator stream (format nil "Designator ~D" (designator-number designator))))

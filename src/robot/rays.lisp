@@ -3,8 +3,8 @@
 (in-package :ars-magna.robot)
 
 ;;; A ray passes from cell to cell (a digital differential analyser over the flags), a fan is a
-;;; number of evenly spaced rays, turned into each other by one rotation instead of a sine and cosine
-;;; each. Nothing is allocated but a list of the cells that were found. Each is found once: while
+;;; number of evenly spaced rays, turned into each other by one rotation instead of a sine and a
+;;; cosine each. Nothing is allocated but a list of the cells that were found. Each is found once: while
 ;;; a scan lasts, the flags of the cells found carry the mark +SEEN+, so that cost depends on
 ;;; what is seen, neither on the size of the map nor on what exists in it.
 

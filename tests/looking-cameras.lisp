@@ -1,0 +1,134 @@
+;;;; looking-cameras.lisp -- how long designators last; cameras that turn; journals (manual 3.4).
+
+(in-package :ars-magna.tests)
+
+(in-suite looking)
+
+;;; Designators that nobody tracks.
+
+(test designator.untracked-lasts-until-its-thing-moves
+  (with-watcher (:clean t)
+    (multiple-value-bind (ball far) (ball-at 9.5 10.5)
+      (robot:set-robot-pose watcher 3.5 5.5)
+      (time:run-ticks 100)
+      (is (robot:designator-valid-p far))
+      (base:take-messages)
+      (world:move-thing ball '(9.6 10.5))
+      (is (equal '("Removing Designator 0") (queued-texts)))
+      (is (equal '() (robot:live-designators watcher))))))
+
+(test designator.local-lasts-within-reach
+  (with-watcher (:clean t)
+    (multiple-value-bind (ball here) (ball-at 5.9 10.5 :size 1)
+      (world:move-thing ball '(5.8 10.5))
+      (is (robot:designator-valid-p here))
+      (robot:take-up (robot:robot-hand watcher 0) ball)
+      (is (robot:designator-local-p* here))
+      (robot:set-down (robot:robot-hand watcher 0) ball)
+      (time:run-ticks 1)
+      (is (robot:designator-valid-p here))
+      (robot:set-robot-pose watcher 3.5 10.5)
+      (is (not (robot:designator-local-p* here)))
+      (time:run-ticks 1)
+      (is (not (robot:designator-valid-p here))))))
+
+(test designator.of-a-place-stays
+  (with-watcher (:clean t)
+    (let ((door (third (call-once 'command:camera-get-place-designator (eye) 'world:doorway))))
+      (robot:set-robot-pose watcher 20.5 10.5)
+      (time:run-ticks 5)
+      (is (robot:designator-valid-p door))
+      (is (not (robot:designator-local-p* door))))))
+
+(test designators.past-the-limit-push-out-the-oldest-untracked
+  (with-watcher (:clean t)
+    (let ((robot:*designator-limit* 5))
+      (put 'ball '(9.5 10.5))
+      (let ((first (find-object '())))
+        (robot:start-track (eye 0) first #'identity)
+        (dotimes (index 6) (find-object '() :camera (eye 1)))
+        (is (= 5 (length (robot:live-designators watcher))))
+        (is (robot:designator-valid-p first))))))
+
+;;; Turning cameras.
+
+(test camera-turn.is-exact-and-clean
+  (with-watcher (:clean t)
+    (destructuring-bind ((tick code camera angle)) (call-times 5 'command:camera-turn (eye) 7)
+      (is (= 1 tick))
+      (is (null code))
+      (is (eq camera (eye)))
+      (is (= 7 angle (robot:camera-angle (eye)))))
+    (destructuring-bind (code camera angle) (call-once 'command:camera-align-robot (eye))
+      (declare (ignore camera))
+      (is (null code))
+      (is (near (- (* 2 pi) 7) angle))
+      (is (near (* 2 pi) (robot:camera-angle (eye)))))
+    (is (equal '("camera-turn: Camera 0 turned 7.00" "camera-align-robot: Camera 0 turned -0.72")
+               (queued-texts)))))
+
+(test camera-align-place.points-along-the-place
+  (with-watcher (:clean t)
+    (is (equal (list :no-place-type (eye) nil nil)
+               (call-once 'command:camera-align-place (eye))))
+    (robot:set-robot-pose watcher 20.5 10.5 0.4)
+    (call-once 'command:camera-turn (eye) 1)
+    (destructuring-bind (code camera angle type) (call-once 'command:camera-align-place (eye))
+      (declare (ignore camera))
+      (is (null code))
+      (is (near -1.4 angle 1d-6))
+      (is (eq 'world:doorway type))
+      (is (near -0.4 (robot:camera-angle (eye)) 1d-6)))
+    (is (string= "camera-align-place: Camera 0 turned -1.40, at a DOORWAY"
+                 (first (last (queued-texts)))))))
+
+(test camera.turns-inside-a-container
+  (with-watcher (:clean t)
+    (robot:move-part (eye) (robot:robot-storage-bin watcher 0))
+    (is (null (end-code 'command:camera-turn (eye) 1)))
+    (is (= 1 (robot:camera-angle (eye))))))
+
+;;; Journals.
+
+(world:defmap mouse-hole (30 21)
+  (rect (0 0) (29 20) bricks 10)
+  (wall (20 1) (20 9) slate 30)
+  (wall (20 11) (20 19) slate 30)
+  (obj mouse (9.5 10.5) ((:color red))))
+
+(robot:defrobot cat (mouse-hole (5.5 10.5) 0) :cameras (((/ pi 2) 5) ((/ pi 4) 3)))
+
+(defun cats-run ()
+  "Do what makes, tracks and loses designators; return a digest of every tenth tick."
+  (let ((mouse (world:find-thing 'mouse)) (found '())
+        (eyes (robot:robot-cameras cat)))
+    (flet ((note (err camera &rest more)
+             (declare (ignore err camera))
+             (when (robot:designator-p (first more)) (push (first more) found))))
+      (loop for round from 0 below 12
+            do (command:camera-get-object-designator (svref eyes 0) :non-local
+                                                     '((:color (red violet))) #'note)
+               (command:camera-get-all-place-designators (svref eyes 1) 'world:doorway #'note)
+               (time:run-ticks 6)
+               (dolist (designator found) (command:camera-track (svref eyes 0) designator #'note))
+               (command:robot-turn cat (* .1 (- round 5)))
+               (time:run-ticks 4)
+               (world:move-thing mouse (list (+ 9.5 (* .1 round)) 10.5))
+               (command:camera-untrack (svref eyes 0))
+            collect (robot:state-digest)))))
+
+(test journal.repeats-designators-and-tracks
+  (multiple-value-bind (journal digest)
+      (robot:with-simulation (cat :seed 9 :journal t)
+        (is (< 2 (length (remove-duplicates (cats-run)))))
+        (let ((file (format nil "/tmp/~A" (gensym "looking-journal"))))
+          (unwind-protect (progn (robot:save-journal file)
+                                 (values (robot:load-journal file) (robot:state-digest)))
+            (when (probe-file file) (delete-file file)))))
+    (is (find "camera-track" (time:journal-entries journal) :key #'third :test #'equal))
+    (is (= digest (nth-value 1 (robot:replay journal))))))
+
+(test seed.decides-what-is-seen
+  (flet ((digests (seed) (robot:with-simulation (cat :seed seed) (cats-run))))
+    (is (equal (digests 1) (digests 1)))
+    (is (not (equal (digests 1) (digests 2))))))
