@@ -84,10 +84,7 @@
                  (:file "arguments") (:file "layout") (:file "errands") (:file "robot-lines")
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
                  (:file "status-lines") (:file "running-lines") (:file "worlds")
-                 (:file "world-lines") (:file "prompt") (:file "options") (:file "looking")
-                 (:file "looking-views") (:file "looking-tracks") (:file "looking-cameras")
-                 (:file "looking-approach") (:file "statistics")
-                 (:file "main")))))
+                 (:file "world-lines") (:file "prompt") (:file "options") (:file "main")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
@@ -99,7 +96,10 @@
                  (:file "world-places") (:file "world-things") (:file "base") (:file "time")
                  (:file "handling") (:file "handling-inside") (:file "handling-bins")
                  (:file "handling-chance") (:file "manipulations")
-                 (:file "shipped-manipulations") (:file "main"))))
+                 (:file "shipped-manipulations") (:file "looking")
+                 (:file "looking-views") (:file "looking-tracks") (:file "looking-cameras")
+                 (:file "looking-approach") (:file "statistics")
+                 (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
              (symbol-call :ars-magna.tests :run-all)))
