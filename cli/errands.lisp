@@ -2,15 +2,13 @@
 
 (in-package :ars-magna.cli)
 
-;;; At a live prompt a command is issued and the prompt is back at once. A headless simulation, a
-;;; batch and REPEAT wait until the command's continuation is called. Tracking a grasp goes on until
-;;; the grasp is lost, so nobody waits for that.
+;;; A command is issued and the prompt is back at once. A patient session, and each in a headless
+;;; simulation, reads on when what was issued has completed, that is, when its continuation is
+;;; called. REPEAT waits in the same way. Tracking a grasp goes on until the grasp is lost, so
+;;; nobody waits for that.
 
 (defparameter *patience* 100000
   "How many ticks a headless prompt waits for one command to complete.")
-
-(defvar *waiting-p* nil
-  "True while each command is to complete before the next is issued.")
 
 (defparameter *endless-commands* '("HAND-TRACK")
   "Commands that are not expected to complete.")
@@ -56,18 +54,13 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
     (reject-line "The command has not completed within ~D ticks; it goes on." *patience*)))
 
 (defun send (session command resource arguments)
-  "Issue COMMAND on RESOURCE with ARGUMENTS, and wait for it if SESSION waits for commands."
+  "Issue COMMAND on RESOURCE with ARGUMENTS."
   (let ((errand (issue-errand command resource arguments)))
-    (cond ((endless-p command) (unless (live-p *simulation*) (run-ticks 1)))
-          ((or *waiting-p* (not (live-p *simulation*))) (await-errand errand))
-          (t (setf (session-errands session)
-                   (cons errand (remove-if #'errand-done-p (session-errands session))))))))
+    (unless (endless-p command) (push errand (session-errands session)))))
 
-(defun await-all (session)
-  "Wait until all that SESSION has issued is done, unless time stands still."
-  (let ((errands (shiftf (session-errands session) '())))
-    (when (and errands (live-p *simulation*) (not (paused-p *simulation*)))
-      (mapc #'await-errand (reverse errands)))))
+(defun await-errands (session)
+  "Wait until all that SESSION has issued is done."
+  (mapc #'await-errand (reverse (shiftf (session-errands session) '()))))
 
 ;;; Lisp may have issued commands too.
 
@@ -87,8 +80,20 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
   (and (null (simulation-inbox *simulation*))
        (notany #'robot-at-work-p (simulation-robots *simulation*))))
 
-(defun settle (session)
-  "If SESSION is a batch, let time pass until no robot carries out a command, within patience."
-  (when (and (session-batch-p session) *simulation*)
-    (let ((simulation *simulation*))
-      (await (lambda () (let ((*simulation* simulation)) (settled-p)))))))
+(defun settle ()
+  "Let time pass until no robot carries out a command, within patience."
+  (let ((simulation *simulation*))
+    (await (lambda () (let ((*simulation* simulation)) (settled-p))))))
+
+(defun waits-p (session)
+  "True if SESSION reads on when what was issued has completed."
+  (and *simulation*
+       (or (not (live-p *simulation*))
+           (and (session-patient-p session) (not (paused-p *simulation*))))))
+
+(defun catch-up (session)
+  "Wait for what SESSION has issued, itself or by Lisp, if it is one that waits."
+  (if (waits-p session)
+      (progn (await-errands session)
+             (when (shiftf (session-lisp-p session) nil) (settle)))
+      (setf (session-errands session) (remove-if #'errand-done-p (session-errands session)))))

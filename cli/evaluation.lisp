@@ -41,6 +41,7 @@
 
 (defun evaluate (session form)
   "Evaluate FORM and print its values, each on a line."
+  (setf (session-lisp-p session) t)
   (let* ((*standard-output* (session-console session))
          (values (multiple-value-list (eval-quietly form))))
     (shiftf *** ** * (first values))

@@ -21,8 +21,7 @@
   (dolist (file files)
     (call-guarded session (lambda () (load-lisp (or (existing-file file)
                                                     (reject-line "There is no file ~A." file)))))
-    (settle session)
-    (show-messages session)))
+    (setf (session-lisp-p session) t)))
 
 (defun run-headless (session robot-name seed files)
   "Run the lines of SESSION, a batch, in a fresh world, after loading FILES. Return the robot to go
@@ -59,12 +58,18 @@ on with, or NIL."
   (load-files session (option-values :load options))
   (run-session session))
 
+(defun standard-session (batch)
+  "Return a session on the standard streams. If nobody sits there, it shows what it reads and waits
+for each command, for a transcript like those of manual E."
+  (let* ((input (standard-stream 0 :input))
+         (piped (not (interactive-stream-p input))))
+    (make-session :input input :output *standard-output* :batch batch
+                  :patient (or batch piped) :echo (and piped (not batch)))))
+
 (defun run-prompt (options)
   "Do what OPTIONS say. Return the status to exit with."
   (let ((robot-name (first-robot options))
-        (session (make-session :input (standard-stream 0 :input)
-                               :output *standard-output*
-                               :batch (option-value :batch options))))
+        (session (standard-session (option-value :batch options))))
     (if (and (session-batch-p session) (null (option-value :rate options)))
         (run-batch session robot-name options)
         (run-live session robot-name options))

@@ -31,10 +31,10 @@
 (define-line "REPEAT" (session (num count "how often") (cmd :rest "a command, with its arguments"))
     (:general)
     "Give the command CMD, NUM times over, each time when the last has completed."
-  (let ((*waiting-p* t))
-    (loop repeat num
-          until (session-over-p session)
-          do (run-text session cmd))))
+  (loop repeat num
+        until (session-over-p session)
+        do (run-text session cmd)
+           (await-errands session)))
 
 (define-line "QUIT" (session)
     (:general)

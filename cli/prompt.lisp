@@ -6,9 +6,11 @@
 ;;; C) ends the line that is being read or carried out; the simulator does not notice.
 
 (defun read-input (session prompt)
-  "Return the next line of SESSION, or NIL at the end. Show PROMPT unless it is a batch."
+  "Return the next line of SESSION, or NIL at the end. Show PROMPT unless it is a batch, and what
+comes of earlier lines if the session waits for that."
   (let ((console (session-console session)))
     (unless (session-batch-p session) (show-prompt console prompt))
+    (catch-up session)
     (let ((line (and (not (console-closed-p console)) (read-line (session-input session) nil))))
       (cond ((session-batch-p session))
             ((null line) (terpri console))
@@ -91,18 +93,14 @@
   "Read a line of SESSION and do what it says; at the end of input, let the session be over."
   (let ((text (read-input session "Robot> ")))
     (cond ((null text) (setf (session-over-p session) t))
-          (t (run-text session text)
-             (settle session)))))
+          (t (run-text session text)))))
 
 (defun run-lines (session)
   "Do what the lines of SESSION say until it is over, or goes on with another robot."
   (loop until (or (session-over-p session) (session-next-robot session))
         do (follow-simulation session)
            (call-guarded session (lambda () (next-line session)))
-           (show-messages session))
-  (unless (terminal-p session)
-    (call-guarded session (lambda () (await-all session)))
-    (show-messages session)))
+           (show-messages session)))
 
 (defun call-with-syntax (function)
   "Call FUNCTION with the package and syntax in which users write."
@@ -114,16 +112,15 @@
 
 (defun run-session (session)
   "Read lines and do what they say until QUIT or the end of input. Return SESSION."
-  (let ((*waiting-p* (session-batch-p session)))
-    (unwind-protect (call-with-syntax (lambda () (run-lines session)))
-      (stop-listening session)))
+  (unwind-protect (call-with-syntax (lambda () (run-lines session)))
+    (stop-listening session))
   session)
 
-(defun prompt (&rest options &key input output batch echo)
+(defun prompt (&rest options &key input output batch patient echo)
   "Run the command-line interface: prompt for commands to the robot last given to SIMULATOR, until
-QUIT or the end of input. INPUT and OUTPUT are streams, by default the standard ones; with BATCH,
-no prompt is shown, and each command completes before the next is read; with ECHO, lines are
-shown as they are read. Returns nothing (manual A, E)."
-  (declare (ignore input output batch echo))
+QUIT or the end of input. INPUT and OUTPUT are streams, by default the standard ones. If PATIENT,
+or headless, each command completes before the next is read; BATCH is that without a prompt; with
+ECHO, lines are shown as they are read. Returns nothing (manual A, E)."
+  (declare (ignore input output batch patient echo))
   (run-session (apply #'make-session options))
   (values))

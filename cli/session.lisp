@@ -28,8 +28,10 @@
   "A prompt at work."
   (input *standard-input* :type stream :read-only t)
   (console (make-console *standard-output*) :type console :read-only t)
-  ;; Each command completes before the next is read, and no prompt is shown.
+  ;; No prompt is shown.
   (batch-p nil :type boolean :read-only t)
+  ;; Each command completes before the next is read.
+  (patient-p nil :type boolean :read-only t)
   ;; What is read is shown, for transcripts.
   (echo-p nil :type boolean :read-only t)
   (lock (make-lock "session") :read-only t)
@@ -39,8 +41,9 @@
   ;; True if there are messages that somebody will show soon.
   (news-p nil)
   (errors 0 :type fixnum)
-  ;; What has been issued and may not have ended.
+  ;; What has been issued and may not have ended, and whether Lisp may have issued more.
   (errands '() :type list)
+  (lisp-p nil)
   (over-p nil)
   ;; The robot to go on with, in batch mode, when this one's lines are over.
   (next-robot nil))
@@ -48,11 +51,12 @@
       "Return how many errors there were so far: lines that made no sense, and error messages.")
 
 (defun make-session (&key (input *standard-input*) (output *standard-output*) batch
-                       (echo (not (or batch (interactive-stream-p input)))))
+                       (patient batch) echo)
   "Return a session that reads lines from INPUT and writes to OUTPUT. With BATCH, it shows no
-prompt and waits for each command to complete; with ECHO, it shows what it reads."
-  (%make-session :input input :console (make-console output)
-                 :batch-p (and batch t) :echo-p (and echo t)))
+prompt; if PATIENT, as a batch is, each command completes before the next is read; with ECHO, it
+shows what it reads."
+  (%make-session :input input :console (make-console output) :batch-p (and batch t)
+                 :patient-p (and patient t) :echo-p (and echo t)))
 
 (defun session-robot ()
   "Return the robot that the prompt commands. Signals BAD-LINE when there is none."
