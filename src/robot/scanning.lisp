@@ -25,7 +25,7 @@
   "Return a list of the cells of WORLD with things on their floor that a fan of COUNT rays from
 (X,Y) meets, of WIDTH radians around ANGLE, within REACH columns and rows."
   (declare #.*hot* (type world world) (type double-float x y angle width)
-           (type (unsigned-byte 15) count reach))
+           (type (unsigned-byte 15) reach) (type (unsigned-byte 30) count))
   (let* ((flags (world-flags world)) (map (world-map world))
          (columns (map-width map)) (rows (map-height map)) (found '()))
     (flet ((visit (index flag)
@@ -45,7 +45,7 @@
   "Return a list of the cells of WORLD that a fan of rays as in OCCUPIED-CELLS meets and whose
 place type has NUMBER in the map."
   (declare #.*hot* (type world world) (type double-float x y angle width)
-           (type (unsigned-byte 15) count) (type (unsigned-byte 8) number))
+           (type (unsigned-byte 30) count) (type (unsigned-byte 8) number))
   (let* ((flags (world-flags world)) (map (world-map world)) (places (map-places map))
          (columns (map-width map)) (rows (map-height map)) (found '()))
     (declare (type flag-vector places))
