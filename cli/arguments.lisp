@@ -68,10 +68,9 @@ ROBOT; signal BAD-LINE if it stands for none. Without a method, DATUM is the arg
 (define-argument-type 'count (lambda (value) (typep value '(integer 0)))
   "a whole number, 0 or more")
 (define-argument-type 'integer #'integerp "a whole number")
+(define-argument-type 'angle #'realp "an angle in radians")
 
 ;;; Reading.
-
-(defun blank-p (char) (member char '(#\Space #\Tab #\Return #\Page #\Newline)))
 
 (defun skip-blanks (text start)
   "Return where, from START, TEXT goes on after blanks; its length if nothing but a comment follows."
@@ -101,15 +100,6 @@ ROBOT; signal BAD-LINE if it stands for none. Without a method, DATUM is the arg
     (error (condition)
       (reject-line "~A cannot be read: ~A. ~A" (subseq text start)
                    (one-line (princ-to-string condition)) (takes line)))))
-
-(defun one-line (text)
-  "Return TEXT with each run of blanks as one space."
-  (with-output-to-string (out)
-    (loop for previous = #\Space then char
-          for char across (string-trim '(#\Space #\Newline) text)
-          for blank = (blank-p char)
-          unless (and blank (blank-p previous))
-            do (write-char (if blank #\Space char) out))))
 
 (defun check-read (value slot line)
   (unless (argument-of-type-p value (slot-type slot))

@@ -42,12 +42,9 @@
 (defun evaluate (session form)
   "Evaluate FORM and print its values, each on a line."
   (setf (session-lisp-p session) t)
-  (let* ((*standard-output* (session-console session))
-         (values (multiple-value-list (eval-quietly form))))
+  (let ((values (multiple-value-list (eval-quietly form))))
     (shiftf *** ** * (first values))
-    (when values
-      (fresh-line *standard-output*)
-      (format *standard-output* "~{~S~%~}" values))))
+    (when values (format t "~&~{~S~%~}" values))))
 
 (defun evaluate-text (session text)
   "Evaluate the forms in TEXT, reading on in SESSION while the last of them is incomplete."

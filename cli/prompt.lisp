@@ -44,13 +44,11 @@ comes of earlier lines if the session waits for that."
 
 (defun run-line (session line text)
   "Do what LINE does with the arguments in TEXT. What it prints comes out in one piece."
-  (let ((arguments (read-arguments line text))
-        (console (session-console session)))
+  (let ((arguments (read-arguments line text)))
     (if (unhurried-p line)
         (apply (line-action line) session arguments)
         (write-string (with-output-to-string (*standard-output*)
-                        (apply (line-action line) session arguments))
-                      console))))
+                        (apply (line-action line) session arguments))))))
 
 (defun unhurried-p (line)
   "True if what LINE prints is to be seen as it comes."
@@ -112,8 +110,9 @@ comes of earlier lines if the session waits for that."
 
 (defun run-session (session)
   "Read lines and do what they say until QUIT or the end of input. Return SESSION."
-  (unwind-protect (call-with-syntax (lambda () (run-lines session)))
-    (stop-listening session))
+  (let ((*standard-output* (session-console session)))
+    (unwind-protect (call-with-syntax (lambda () (run-lines session)))
+      (stop-listening session)))
   session)
 
 (defun prompt (&rest options &key input output batch patient echo)

@@ -46,8 +46,14 @@
         (send session command (session-robot) arguments)
         (send session command (first arguments) (rest arguments)))))
 
+(defun line-name-of (command)
+  "Return what the line command for COMMAND is called: manual E says -DESIG for designators."
+  (let* ((name (string-upcase (command-prompt-name command)))
+         (start (search "-DESIG" name :from-end t)))
+    (if start (subseq name 0 (+ start 6)) name)))
+
 (defun robot-line (command)
-  (make-line :name (string-upcase (command-prompt-name command))
+  (make-line :name (line-name-of command)
              :full-name (string-upcase (command-name command))
              :family (part-family command)
              :parameters (command-slots command)

@@ -74,7 +74,19 @@ shows what it reads."
 (defun complain (session text)
   "Show TEXT as an error."
   (incf (session-errors session))
-  (format (session-console session) "~&*ERROR* -> ~A~%" (string-right-trim '(#\Newline) text)))
+  (format (session-console session) "~&*ERROR* -> ~A~%" (one-line text)))
+
+(defun blank-p (char)
+  (member char '(#\Space #\Tab #\Return #\Page #\Newline)))
+
+(defun one-line (text)
+  "Return TEXT with each run of blanks as one space."
+  (string-trim " " (with-output-to-string (out)
+                     (loop for previous = #\Space then char
+                           for char across text
+                           for blank = (blank-p char)
+                           unless (and blank (blank-p previous))
+                             do (write-char (if blank #\Space char) out)))))
 
 (defun take-all-messages ()
   (append (take-messages)

@@ -1,0 +1,156 @@
+;;;; architecture.lisp -- what holds of the sources: exports documented, one door per library.
+
+(in-package :ars-magna.tests)
+
+(def-suite* architecture :in ars-magna)
+
+;;; The sources.
+
+(defun project-file (name)
+  (asdf:system-relative-pathname "ars-magna" name))
+
+(defun lisp-files (&rest directories)
+  "Return a list of the Lisp files under DIRECTORIES, of the project."
+  (loop for directory in directories
+        append (directory (merge-pathnames "**/*.lisp" (project-file directory)))))
+
+(defun file-lines (path)
+  (with-open-file (in path :external-format :utf-8)
+    (loop for line = (read-line in nil) while line collect line)))
+
+(defun skip-string (text start)
+  "Return where the string or |symbol| that begins in TEXT at START ends."
+  (loop with quote = (char text start)
+        for i from (1+ start) below (length text)
+        for char = (char text i)
+        when (char= char #\\) do (incf i)
+        when (char= char quote) return (1+ i)
+        finally (return (length text))))
+
+(defun skip-comment (text start)
+  "Return where the comment that begins in TEXT at START ends."
+  (or (if (char= #\; (char text start))
+          (position #\Newline text :start start)
+          (let ((end (search "|#" text :start2 start))) (and end (+ end 2))))
+      (length text)))
+
+(defun bare-code (text)
+  "Return the Lisp code in TEXT, in lower case, without comments, strings and characters."
+  (with-output-to-string (out)
+    (loop with i = 0
+          while (< i (length text))
+          do (let ((char (char text i))
+                   (next (if (< (1+ i) (length text)) (char text (1+ i)) #\Space)))
+               (cond ((char= char #\;) (setf i (skip-comment text i)))
+                     ((and (char= char #\#) (char= next #\|)) (setf i (skip-comment text i)))
+                     ((and (char= char #\#) (char= next #\\)) (incf i 3))
+                     ((find char "\"|") (setf i (skip-string text i)))
+                     ((char= char #\\) (incf i 2))
+                     (t (write-char (char-downcase char) out)
+                        (incf i)))))))
+
+(defun code-in (path)
+  (bare-code (base:read-file-into-string path)))
+
+(defun files-mentioning (words directories)
+  "Return the names of the files under DIRECTORIES whose code has one of the strings WORDS."
+  (loop for path in (apply #'lisp-files directories)
+        for code = (code-in path)
+        when (some (lambda (word) (search word code)) words)
+          collect (enough-namestring path (project-file ""))))
+
+(test code.is-what-is-left-of-a-file
+  (is (string= "(a   b)" (bare-code "(A \"x::y\" #\\\" |z::| B); c::d")))
+  (is (string= "a  b" (bare-code "a #| :: |# b"))))
+
+;;; Files.
+
+(test files.begin-with-what-they-are-for
+  (dolist (path (lisp-files "src/" "rpl/" "cli/" "worlds/" "tests/"))
+    (let ((start (format nil ";;;; ~A.lisp -- " (pathname-name path)))
+          (line (first (file-lines path))))
+      (is (eql 0 (search start line)) "~A begins ~S" path line)
+      (is (char= #\. (char line (1- (length line)))) "~A begins ~S" path line))))
+
+(test files.are-of-a-size-to-be-read
+  (dolist (path (lisp-files "src/" "rpl/" "cli/" "tests/"))
+    (let ((lines (file-lines path)))
+      (is (<= (length lines) 400) "~A has ~D lines" path (length lines))
+      (is (notany (lambda (line) (> (length line) 100)) lines) "~A has long lines" path)
+      (is (notany (lambda (line) (find #\Tab line)) lines) "~A has tabs" path))))
+
+(test files.are-all-in-a-system
+  (let ((systems (base:read-file-into-string (project-file "ars-magna.asd"))))
+    (dolist (path (set-difference (lisp-files "src/" "rpl/" "cli/" "worlds/" "tests/")
+                                  (lisp-files "tests/benchmarks/")
+                                  :test #'equal))
+      (unless (equal (project-file "cli/build.lisp") path)
+        (is (search (format nil "(:file \"~A\")" (pathname-name path)) systems)
+            "~A is in no system" path)))))
+
+;;; Code.
+
+(test code.uses-what-others-export
+  (is (null (files-mentioning '("::") '("src/" "rpl/" "cli/" "worlds/")))))
+
+(test libraries.have-one-door-each
+  (loop for (library . words) in '((alexandria "alexandria")
+                                   (bordeaux-threads "bordeaux-threads" "bt:")
+                                   (named-readtables "named-readtables")
+                                   (lparallel "lparallel"))
+        for files = (files-mentioning words '("src/" "rpl/" "cli/" "worlds/"))
+        do (is (<= (length files) 1) "~A is named in ~S" library files))
+  (is (subsetp (files-mentioning '("fiveam") '("src/" "rpl/" "cli/" "worlds/" "tests/"))
+               '("tests/package.lisp") :test #'string=)))
+
+(test chance-and-clock.come-from-where-they-should
+  (is (null (files-mentioning '("(random " "*random-state*" "(sleep ")
+                              '("src/" "rpl/" "cli/" "worlds/"))))
+  (is (subsetp (files-mentioning '("get-internal-real-time" "get-universal-time"
+                                   "get-time-of-day" "get-internal-run-time")
+                                 '("src/" "rpl/" "worlds/"))
+               '("src/time/clock.lisp") :test #'string=)))
+
+(test cli.alone-ends-the-process
+  (is (null (files-mentioning '("sb-ext:exit" "sb-ext:quit" "uiop:quit")
+                              '("src/" "rpl/" "worlds/")))))
+
+;;; Packages.
+
+(defun project-packages ()
+  "Return the layers' packages and the faces that there are."
+  (remove-if-not (lambda (package)
+                   (let ((name (package-name package)))
+                     (or (member name '("ARS" "NISP") :test #'string=)
+                         (and (eql 0 (search "ARS-MAGNA." name))
+                              (string/= name "ARS-MAGNA.TESTS")
+                              (string/= name "ARS-MAGNA.BUILD")))))
+                 (list-all-packages)))
+
+(defun external-symbols (package)
+  (sort (loop for symbol being the external-symbols of package collect symbol)
+        #'string<))
+
+(defun ours-p (symbol)
+  (let ((package (symbol-package symbol)))
+    (and package (member package (project-packages)))))
+
+(defun undocumented-as (symbol)
+  "Return as what SYMBOL is bound but not documented, a list."
+  (loop for (kind bound-p) in `((function ,(fboundp symbol))
+                                (variable ,(and (boundp symbol) (not (keywordp symbol))))
+                                (type ,(or (find-class symbol nil)
+                                           (sb-ext:valid-type-specifier-p symbol))))
+        when (and bound-p (null (documentation symbol kind)))
+          collect kind))
+
+(test exports.are-documented
+  (dolist (package (project-packages))
+    (dolist (symbol (remove-if-not #'ours-p (external-symbols package)))
+      (let ((kinds (undocumented-as symbol)))
+        (is (null kinds) "~A:~A has no documentation as ~{~(~A~)~^, ~}"
+            (package-name package) symbol kinds)))))
+
+(test packages.say-what-they-are
+  (dolist (package (project-packages))
+    (is (plusp (length (documentation package t))) "~A" (package-name package))))
