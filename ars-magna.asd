@@ -50,7 +50,7 @@
     :components ((:file "canvas-package") (:file "colors") (:file "gcontext") (:file "canvas")
                  (:file "drawing") (:file "svg")
                  (:file "package") (:file "text-map") (:file "history") (:file "snapshot")
-                 (:file "subjects") (:file "terrain") (:file "place-marks")
+                 (:file "subjects") (:file "contents") (:file "terrain") (:file "place-marks")
                  (:file "world-display") (:file "details") (:file "displays")
                  (:file "picture") (:file "animation") (:file "opening")))
    (:module "rpl" :serial t
@@ -71,7 +71,9 @@
    (:module "worlds" :serial t
     :components ((:file "prototypes") (:file "kickers") (:file "manipulations")
                  (:file "watson") (:file "office")
-                 (:file "hall") (:file "tiny"))))
+                 (:file "hall") (:file "tiny") (:file "wayfinding")
+                 (:file "plans-reckoning") (:file "plans-moving")
+                 (:file "plans-looking") (:file "plans-handling") (:file "plans-errands"))))
   :in-order-to ((test-op (test-op "ars-magna/tests"))))
 
 (defsystem "ars-magna/cli"
@@ -86,20 +88,34 @@
                  (:file "status-lines") (:file "running-lines") (:file "worlds")
                  (:file "world-lines") (:file "prompt") (:file "options") (:file "main")))))
 
+(defsystem "ars-magna/clim"
+  :description "The displays in a window."
+  :depends-on ("ars-magna" "ars-magna/cli" "mcclim")
+  :serial t
+  :components
+  ((:module "src/clim" :serial t
+    :components ((:file "package") (:file "watcher") (:file "canvas") (:file "panes")
+                 (:file "world-pane") (:file "transcript") (:file "prompt") (:file "window")
+                 (:file "commands") (:file "opening")))))
+
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
   :depends-on ("ars-magna" "ars-magna/cli" "fiveam")
   :serial t
   :components
   ((:module "tests" :serial t
-    :components ((:file "package") (:file "geometry") (:file "nisp") (:file "world")
-                 (:file "world-places") (:file "world-things") (:file "base") (:file "time")
+    :components ((:file "package") (:file "base") (:file "geometry") (:file "nisp")
+                 (:file "world") (:file "world-places") (:file "world-things")
+                 (:file "world-kickers") (:file "time") (:file "robot") (:file "moving")
+                 (:file "random-driver") (:file "determinism") (:file "worlds")
+                 (:file "worlds-moving") (:file "looking") (:file "looking-views")
+                 (:file "looking-tracks") (:file "looking-cameras") (:file "looking-approach")
                  (:file "handling") (:file "handling-inside") (:file "handling-bins")
                  (:file "handling-chance") (:file "manipulations")
-                 (:file "shipped-manipulations") (:file "looking")
-                 (:file "looking-views") (:file "looking-tracks") (:file "looking-cameras")
-                 (:file "looking-approach") (:file "statistics")
-                 (:file "main"))))
+                 (:file "shipped-manipulations") (:file "statistics") (:file "rpl-fluents")
+                 (:file "rpl-compiler") (:file "rpl-plans") (:file "rpl-failures")
+                 (:file "rpl-engine") (:file "display") (:file "display-files") (:file "cli")
+                 (:file "architecture") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
              (symbol-call :ars-magna.tests :run-all)))

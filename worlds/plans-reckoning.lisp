@@ -1,0 +1,151 @@
+;;;; plans-reckoning.lisp -- where a robot believes to be, and how it corrects that.
+
+;;; Good for plans that find their way on a map. A RECKONING starts where the robot is told that it
+;;; starts and goes on by an odometer. Walls met and doorways sensed correct it. The true position
+;;; is read nowhere but by HERE, for a plan's start.
+
+(in-package :ars-user)
+(in-readtable :nisp)
+
+(defstruct (reckoning (:constructor make-reckoning (chart odometer x y heading)) (:copier nil))
+  "Where a robot believes to be on its map, and which cells it found barred."
+  (chart nil :type chart :read-only t)
+  (odometer nil :read-only t)
+  (x 0d0 :type real)
+  (y 0d0 :type real)
+  (heading 0d0 :type real)
+  ;; A list of (cell cost until): what the cell costs more until that tick.
+  (barred '() :type list)
+  (trouble 0 :type fixnum))
+
+(defun here (robot)
+  "Return where ROBOT is and its heading, a list (x y heading). Plans are given it as their start."
+  (append (multiple-value-list (robot-position robot)) (list (robot-angle robot))))
+
+(defun begin-reckoning (start)
+  "Return a reckoning of the plans' robot, which is at START, a list (x y heading)."
+  (destructuring-bind (x y heading) start
+    (make-reckoning (make-chart (ars-magna.world:world-map (robot-world (rpl-robot))))
+                    (rpl-new-odometer 'reckoning)
+                    x y heading)))
+
+(defun reckon (me)
+  "Bring the reckoning ME up to date, when the robot stands. Return where it is, a point."
+  (let* ((odometer (reckoning-odometer me))
+         (moved (nominal (get-odometer-pos odometer)))
+         (turned (nominal (get-odometer-ang odometer)))
+         (cos (cos (reckoning-heading me))) (sin (sin (reckoning-heading me))))
+    (reset-odometer odometer)
+    (incf (reckoning-x me) (- (* cos (pt-x moved)) (* sin (pt-y moved))))
+    (incf (reckoning-y me) (+ (* sin (pt-x moved)) (* cos (pt-y moved))))
+    (incf (reckoning-heading me) turned)
+    (list (reckoning-x me) (reckoning-y me))))
+
+(defun distance-left (me point)
+  "Return how far the robot of ME believes to be from POINT, in metres."
+  (apply #'length-of (mapcar #'- point (reckon me))))
+
+(defun angle-towards (me point)
+  "Return by how much the robot of ME has to turn, in radians, to face POINT."
+  (destructuring-bind (dx dy) (mapcar #'- point (reckon me))
+    (angle-difference (atan2 dy dx) (reckoning-heading me))))
+
+(defun point-ahead (me distance)
+  "Return the point DISTANCE metres ahead of the robot of ME."
+  (destructuring-bind (x y) (reckon me)
+    (list (+ x (* distance (cos (reckoning-heading me))))
+          (+ y (* distance (sin (reckoning-heading me)))))))
+
+;;; What is in the way.
+
+(defun bar-cells (me point cost until)
+  "Let the cell at POINT cost COST more, and those around it a little, until the tick UNTIL."
+  (loop for dx from -1 to 1
+        do (loop for dy from -1 to 1
+                 do (push (list (mapcar #'+ (cell-of point) (list dx dy))
+                                (if (= 0 dx dy) cost (floor cost 8))
+                                until)
+                          (reckoning-barred me)))))
+
+(defun bar-ahead (me)
+  "Remember for a while that something stands right before the robot of ME."
+  (bar-cells me (point-ahead me .6) 40 (+ 200 (plan-time))))
+
+(defun barred-now (me)
+  "Return a list of (cell cost) for what the robot of ME remembers to be barred."
+  (setf (reckoning-barred me)
+        (remove-if (lambda (entry) (< (third entry) (plan-time))) (reckoning-barred me)))
+  (let ((sums '()))
+    (loop for (cell cost) in (reckoning-barred me)
+          for sum = (assoc cell sums :test #'equal)
+          do (if sum
+                 (setf (second sum) (min 90 (+ cost (second sum))))
+                 (push (list cell cost) sums)))
+    sums))
+
+(defun next-step-of (me goal)
+  "Return the next step, as NEXT-STEP, of the robot of ME on its way to GOAL."
+  (next-step (reckoning-chart me) (barred-now me) (reckon me) goal))
+
+;;; Corrections.
+
+(defun wall-crossed (map from to)
+  "Return the axis, 0 or 1, and the coordinate of the face of the wall that lies between the near
+points FROM and TO; NIL if none does."
+  (when (and (apply #'free-p map from) (not (apply #'free-p map to)))
+    (loop for axis in '(0 1)
+          for a = (floor (nth axis from)) and b = (floor (nth axis to))
+          when (/= a b) do (return (values axis (max a b))))))
+
+(defun correct-by-wall (me)
+  "Let the robot of ME, which has met a wall ahead, be right before the nearest there is on its map;
+nothing changes if that is more than two metres off."
+  (flet ((crossing (distance)
+           (multiple-value-list
+            (wall-crossed (chart-map (reckoning-chart me))
+                          (point-ahead me distance) (point-ahead me (+ distance .05))))))
+    (loop for distance from 0 to 2 by .05
+          do (loop for (axis face) in (list (crossing distance) (crossing (- distance)))
+                   when axis
+                     do (if (zerop axis)
+                            (setf (reckoning-x me) face)
+                            (setf (reckoning-y me) face))
+                        ;; On the free side of the face, where the heading comes from.
+                        (step-back me 1d-3)
+                        (return-from correct-by-wall t)))))
+
+(defun step-back (me distance)
+  (setf (values (reckoning-x me) (reckoning-y me))
+        (values-list (point-ahead me (- distance)))))
+
+(defun doorway-nearby (me)
+  "Return the cell of the doorway nearest to where the robot of ME believes to be, within two metres
+and a half, or NIL."
+  (destructuring-bind (x y) (reckon me)
+    (let ((best nil) (least 2.5))
+      (loop for dx from -3 to 3
+            do (loop for dy from -3 to 3
+                     for cell = (cell-of (list (+ x dx) (+ y dy)))
+                     for distance = (apply #'length-of (mapcar #'- (middle-of cell) (list x y)))
+                     when (and (< distance least)
+                               (doorway-at (chart-map (reckoning-chart me))
+                                           (first cell) (second cell)))
+                       do (setf best cell least distance)))
+      best)))
+
+(defun correct-by-cell (me cell)
+  "Let the robot of ME be in CELL, as near as can be to where it believed to be."
+  (reckon me)
+  (flet ((within (value low) (max (+ low .05) (min value (+ low .95)))))
+    (setf (reckoning-x me) (within (reckoning-x me) (first cell))
+          (reckoning-y me) (within (reckoning-y me) (second cell)))))
+
+(defun correct-by-direction (me cell)
+  "Let the robot of ME head in the one of the directions of the place CELL that is nearest."
+  (reckon me)
+  (let ((place (doorway-at (chart-map (reckoning-chart me)) (first cell) (second cell))))
+    (when place
+      (setf (reckoning-heading me)
+            (ars-magna.robot:nearest-direction
+             (multiple-value-list (ars-magna.world:place-directions place))
+             (reckoning-heading me))))))
