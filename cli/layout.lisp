@@ -36,7 +36,7 @@
 (defun kind-text (designator)
   "Return what DESIGNATOR is for, such as Local Object."
   (format nil "~:(~A~) ~:[Place~;Object~]" (designator-type designator)
-          (consp (first (designator-data designator)))))
+          (listp (first (designator-data designator)))))
 
 (defun bearing-text (designator)
   "Return the distance and the angle of DESIGNATOR."

@@ -31,6 +31,41 @@
       (time:write-journal journal file)
       (is (= digest (nth-value 1 (robot:replay file))) "from a file"))))
 
+(world:defkicker jitter (thing) (:prob 0.2)
+  (world:kick-thing thing 0.3 (base:roll-within 1 (world:world-dice (world:thing-world thing) :user))
+                    t))
+
+(test journal.repeats-what-is-made-and-unmade
+  "Things made, moved, changed, destroyed and given kickers by hand, in memory and on file."
+  (let (digests journals)
+    (dolist (with-functions '(nil t))
+      (with-rover (:seed 25 :journal t)
+        (wander rover (base:make-dice 6))
+        (time:run-ticks 50)
+        (let ((ball (world:make-new-thing 'ball (list arena 3 3) '((:size 1))))
+              (pin (world:make-new-thing 'pin (world:find-thing 'crate) '((:size 0.1)))))
+          (world:set-kicker ball 'jitter)
+          (time:run-ticks 50)
+          (world:move-thing pin ball)
+          (world:change-attribute ball '((:color red) (:obsmove t)))
+          (world:kick-thing ball 2 2 t)
+          (when with-functions
+            (world:put-kicker shake (thing (world:find-thing 'pillar)) (:prob 0.5)
+              (world:kick-thing thing 0.1 0.1 t)))
+          (time:run-ticks 50)
+          (world:destroy-thing ball))
+        (time:run-ticks 50)
+        (push (robot:state-digest) digests)
+        (push (end-journal time:*simulation*) journals)))
+    (is (equal digests (loop for journal in journals
+                             collect (nth-value 1 (robot:replay journal)))))
+    (with-temporary-file (file)
+      (time:write-journal (second journals) file)
+      (is (= (second digests) (nth-value 1 (robot:replay file))))
+      (handler-case (progn (time:write-journal (first journals) file)
+                           (fail "a function was written to a file"))
+        (base:misuse (trouble) (is (search "call-put-kicker" (princ-to-string trouble))))))))
+
 (test journal.rewinds-and-forks
   (let (digests journal)
     (with-rover (:seed 22 :journal t)

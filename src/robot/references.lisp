@@ -11,6 +11,8 @@
 (defmethod externalize ((bin storage-bin)) (part-reference :bin bin))
 (defmethod externalize ((thing thing))
   (if (thing-world thing) (make-reference :thing (list (thing-serial thing))) thing))
+(defmethod externalize ((kicker kicker)) (kicker-name kicker))
+(defmethod externalize ((world world)) (externalize (world-map world)))
 (defmethod externalize ((map map)) (make-reference :map (list (string (map-name map)))))
 
 (defun part-reference (kind part)

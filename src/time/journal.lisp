@@ -82,20 +82,25 @@ internalized.")
                      (damaged-journal-file condition) (damaged-journal-reason condition))))
   (:documentation "A file that should hold a journal cannot be used."))
 
-(defun functions-in (datum)
-  (cond ((functionp datum) t)
-        ((consp datum) (or (functions-in (car datum)) (functions-in (cdr datum))))))
+(defun unprintable-in (datum)
+  "Return something in DATUM that could not be read back, or NIL."
+  (typecase datum
+    (cons (or (unprintable-in (car datum)) (unprintable-in (cdr datum))))
+    ((or symbol number string character) nil)
+    (t datum)))
 
 (defun check-printable (journal)
   (dolist (entry (journal-entries journal))
-    (when (functions-in entry)
-      (reject-use "The journal cannot be written to a file: at tick ~D, ~(~A~) was given a ~
-                   function, which has no printed form. Replay it in memory instead."
-                  (first entry) (second entry)))))
+    (let ((object (unprintable-in entry)))
+      (when object
+        (reject-use "The journal cannot be written to a file: at tick ~D, ~(~A~) was given ~A, ~
+                     which has no printed form that can be read again. Replay it in memory instead."
+                    (first entry) (if (eq :world (second entry)) (third entry) (second entry))
+                    object)))))
 
 (defun write-journal (journal file)
   "Write JOURNAL to FILE, replacing it when all is written. Return the file's truename. Signals
-MISUSE if an entry holds a function."
+MISUSE if an entry holds a function, or another object without a readable form."
   (check-printable journal)
   (with-open-file (out file :direction :output :if-exists :supersede :external-format :utf-8)
     (with-standard-io-syntax

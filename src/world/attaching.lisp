@@ -38,7 +38,8 @@ Signals WRONG-ARGUMENT and UNKNOWN-NAME. Return it as attached, what SELF is whe
   (check-argument put-kicker thing (thing-p thing) "a thing")
   (let ((kicker (and body (fill-kicker (make-kicker name) (format nil "put-kicker ~(~A~)" name)
                                        prob test body))))
-    (with-world-access ((thing-world thing) put-kicker thing name)
+    (with-world-access ((thing-world thing) call-put-kicker thing name
+                        :prob prob :test test :body body)
       (if kicker
           (attach-kicker thing kicker)
           (detach-kicker thing name)))))

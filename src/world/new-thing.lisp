@@ -37,11 +37,12 @@ and contents are copied first. CONTENTS, ours, is a list of recipes made by THIN
 ours, a list of kickers or their names. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (let ((recipe (write-recipe 'new-thing name descriptor :prototype prototype
                                                          :contents contents :kickers kickers)))
-    (multiple-value-bind (world location x y) (resolve-location location)
-      (with-world-access (world new-thing name location descriptor)
+    (multiple-value-bind (world place x y) (resolve-location location)
+      (with-world-access (world make-new-thing name location descriptor
+                                :prototype prototype :contents contents :kickers kickers)
         (let ((thing (follow-recipe recipe world)))
-          (cond (world (relocate thing location x y))
-                (location (place-thing thing location x y)))
+          (cond (world (relocate thing place x y))
+                (place (place-thing thing place x y)))
           thing)))))
 
 (defun position-form-p (form)
