@@ -29,8 +29,7 @@
                     :branches (vector ,(body-code then scope) ,(body-code else scope)))))
 
 (define-plan-form "IF" nil (test then &rest else) (form scope)
-  (progn (check-if form)
-         (choice-code form test (list then) else scope)))
+  (choice-code form test (list then) else scope))
 
 (define-plan-form "WHEN" nil (test &rest body) (form scope)
   (choice-code form test body '() scope))

@@ -45,18 +45,23 @@ arguments bound by LAMBDA-LIST. SUSPENDS says whether it makes a task wait: see 
 
 ;;; An expression of which a part that Lisp is to use makes the task wait.
 
-(defun hoisted-code (form scope &optional (parts (rest form)))
-  "Return code for FORM; those of its PARTS that suspend are bound before, and those left of them."
-  (let* ((last (position-if (lambda (part) (suspends-p part scope)) parts :from-end t))
-         (moved (remove-if #'constantp (subseq parts 0 (1+ last))))
-         (names (loop for part in moved collect (cons part (gensym "PART")))))
-    (flet ((moved (part)
-             (let ((entry (assoc part names :test #'eq)))
-               (if entry (cdr entry) part))))
-      (plan-code (note-own-text
-                  `(let ,(loop for (part . name) in names collect (list name part))
-                     (,(first form) ,@(mapcar #'moved (rest form)))))
-                 scope))))
+(defun hoisted-code (form scope &optional (fixed 1))
+  "Return code for FORM; those of its elements after the first FIXED that suspend are bound before it,
+and those to the left of them too, to keep the order."
+  (let* ((parts (nthcdr fixed form))
+         (count (1+ (position-if (lambda (part) (suspends-p part scope)) parts :from-end t)))
+         (names (loop for part in (subseq parts 0 count)
+                      collect (if (constantp part) nil (gensym "PART")))))
+    (plan-code (note-own-text
+                `(let ,(loop for name in names
+                             for part in parts
+                             when name collect (list name part))
+                   (,@(subseq form 0 fixed)
+                    ,@(loop for name in names
+                            for part in parts
+                            collect (or name part))
+                    ,@(nthcdr count parts))))
+               scope)))
 
 (defun call-code (form scope)
   "Return code for FORM, a call of a procedure or an unknown function; its arguments do not wait."

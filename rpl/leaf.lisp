@@ -29,18 +29,12 @@
           ((own-operation-p form environment '("NOT")) `(not ,@(conditions (rest form))))
           (t (operand-form form environment)))))
 
-(defun check-if (form)
-  (unless (typep form '(cons t (cons t (cons t (or null (cons t null))))))
-    (reject-clause "plan" form "(if test then [else]): put several forms into (seq ...)")))
-
 (defun plan-meaning (form environment)
   "Return what FORM, a call in the plan's own text, means; FORM itself if just what it says."
   (let ((name (or (operator-name form) "")))
     (flet ((condition (form) (condition-form form environment))
            (is (&rest names) (member name names :test #'string=)))
-      (cond ((is "IF")
-             (check-if form)
-             `(if ,(condition (second form)) ,@(cddr form)))
+      (cond ((is "IF") `(if ,(condition (second form)) ,@(cddr form)))
             ((is "WHEN") `(when ,(condition (second form)) ,@(cddr form)))
             ((is "UNLESS") `(unless ,(condition (second form)) ,@(cddr form)))
             ((is "COND") `(cond ,@(loop for (test . body) in (rest form)

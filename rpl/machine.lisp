@@ -260,12 +260,15 @@ or evaporates already is left alone. Call it only from plans; from elsewhere pos
            +parked+)))
 
 (defun interrupt (task frame value)
-  "Give way to a higher level, or evaporate as asked. FRAME and VALUE are what the last step
-returned; return what it should have."
+  "Evaporate as asked, or give way to a higher level or because the reaction has taken its steps.
+FRAME and VALUE are what the last step returned; return what it should have."
   (let ((runner (task-runner task)))
     (setf (runner-mask runner) (logandc2 (runner-mask runner) +interrupt+))
     (cond ((task-signal task) (evaporate-self task frame))
-          ((or (null frame) (eq frame +parked+) (< (runner-mask runner) (ash 2 (task-level task))))
+          ((or (null frame)
+               (eq frame +parked+)
+               (and (< (runner-mask runner) (ash 2 (task-level task)))
+                    (< (runner-steps runner) (runner-pause runner))))
            (values frame value))
           (t (setf (task-frame task) frame
                    (task-value task) value)
@@ -280,7 +283,8 @@ returned; return what it should have."
          (higher (ash 2 (task-level task))))
     (declare (type plan-runner runner))
     (loop
-      (when (>= (runner-mask runner) higher)
+      (when (or (>= (runner-mask runner) higher)
+                (>= (runner-steps runner) (runner-pause runner)))
         (multiple-value-setq (frame value) (interrupt task frame value)))
       (cond ((null frame) (return (finish task :succeeded (single-value value))))
             ((eq frame +parked+) (return)))

@@ -107,7 +107,8 @@ augmenting the macro environment."
 (defun wrap-for-leaf (form scope)
   "Return FORM with everything that is visible in SCOPE around it."
   (dolist (layer (scope-layers scope) form)
-    (setf form `(,@(layer-wrapping layer scope) ,form))))
+    (unless (equal (cddr layer) '(()))  ; no variables
+      (setf form `(,@(layer-wrapping layer scope) ,form)))))
 
 (defun leaf-lambda (form scope &rest parameters)
   "Return the lambda expression for FORM in SCOPE: it takes the environment and PARAMETERS."

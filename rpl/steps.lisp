@@ -53,7 +53,7 @@ get their chance between steps. In ordinary Lisp, PROGN (manual D.2)."
       (body-code (loop for (variable value) on pairs by #'cddr
                        collect (note-own-text `(setq ,variable ,value)))
                  scope)
-      (hoisted-code form scope (rest pairs))))
+      (hoisted-code form scope 2)))
 
 (define-plan-form "CALL-PLAN" :must (&rest arguments) (form scope)
   (if (some (lambda (argument) (suspends-p argument scope)) arguments)

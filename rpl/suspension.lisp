@@ -46,6 +46,12 @@ form and its scope and returns code that builds a node."
              (assoc name (scope-tags scope))
              (assoc name (scope-blocks scope))))))
 
+(defun check-own-form (form)
+  "Signal MALFORMED-DEFINITION if FORM is an IF of the plan's text that is none of a plan's."
+  (when (and (own-text-p form) (operator-in-p form '("IF")))
+    (unless (typep form '(cons t (cons t (cons t (or null (cons t null))))))
+      (reject-clause "plan" form "(if test then [else]): put several forms into (seq ...)"))))
+
 (defun call-suspends (form scope environment)
   "Return :MUST, :MAY or NIL for FORM, a call or special form, its parts left aside."
   (let ((name (first form)))
@@ -53,6 +59,8 @@ form and its scope and returns code that builds a node."
            (and (assoc name (scope-procedures scope)) :must))
           ((member name '(return-from go))
            (and (exit-suspends-p form scope) :must))
+          ((eq name 'function)
+           (and (symbolp (second form)) (assoc (second form) (scope-procedures scope)) :must))
           ((operator-in-p form *stirring-functions*) :may)
           ((procedure-name-p name) :must)
           ((or (macro-function name environment)
@@ -77,7 +85,8 @@ form and its scope and returns code that builds a node."
                (cond ((or (not (eq context :eval)) (atom form)) form)
                      ((plan-in-leaf-p form) (values form t))
                      ((not (symbolp (first form))) form)
-                     (t (visit-call form environment))))
+                     (t (check-own-form form)
+                        (visit-call form environment))))
              (visit-call (form environment)
                (let* ((plan-form (find-plan-form form environment))
                       (kind (if (and plan-form (plan-form-suspends plan-form))
