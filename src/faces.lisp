@@ -16,10 +16,16 @@
       (shadowing-import (list symbol) face)
       (export (list symbol) face))))
 
+(defun ensure-face (face documentation)
+  "Return the package FACE, with DOCUMENTATION; it uses no other."
+  (let ((package (or (find-package face) (make-package face :use '()))))
+    (setf (documentation package t) documentation)
+    package))
+
 (defmacro define-face (face documentation &body layers)
   "Define the package FACE, which exports what each of LAYERS, a list (layer name...), lists."
   `(eval-when (:compile-toplevel :load-toplevel :execute)
-     (defpackage ,face (:use) (:documentation ,documentation))
+     (ensure-face ,face ,documentation)
      ,@(loop for (layer . names) in layers
              collect `(export-from ,face ,layer ',names))))
 
