@@ -73,7 +73,8 @@
                  (:file "watson") (:file "office")
                  (:file "hall") (:file "tiny") (:file "wayfinding")
                  (:file "plans-reckoning") (:file "plans-moving")
-                 (:file "plans-looking") (:file "plans-handling") (:file "plans-errands"))))
+                 (:file "plans-looking") (:file "plans-handling") (:file "plans-errands")
+                 (:file "errand"))))
   :in-order-to ((test-op (test-op "ars-magna/tests"))))
 
 (defsystem "ars-magna/cli"

@@ -17,7 +17,8 @@ for a thing that fits DESCRIPTION, and stow the first it finds in BIN. Fails wit
   (let ((taken nil))
     (n-times rounds UNTIL taken
       (dolist (place places)
-        (handle-failure (((or :cannot-get-there :not-found :will-not-do) () (return nil)))
+        (handle-failure (((or :cannot-get-there :not-found :lost-grip :will-not-do) ()
+                          (return nil)))
           (travel-to me place)
           (let ((designator (visit-things me camera description)))
             (if designator
@@ -28,15 +29,22 @@ for a thing that fits DESCRIPTION, and stow the first it finds in BIN. Fails wit
         (fail :class :not-found :description description :places places))
     taken))
 
-(def-interp-proc fetch-thing (description places &key (start (here (rpl-robot))) (camera (widest-camera))
-                                                      (hand 0) (bin 0))
+(def-interp-proc bring-thing (me places description home camera hand bin)
+  "Fetch a thing as FETCH-THING does, once. Fails with :NOTHING-INSIDE if it got lost on the way."
+  (find-and-take me places description :camera camera :hand hand :bin bin)
+  (travel-to me home :tolerance .7 :patience 100)
+  (put-thing-down hand camera bin))
+
+(def-interp-proc fetch-thing (description places
+                              &key (start (here (rpl-robot))) (camera (widest-camera)) (hand 0) (bin 0))
   "Let the robot, which is at START, a list (x y heading), look at PLACES, points of its map, for a
 thing that fits DESCRIPTION, stow it in BIN, come back and put it on the floor. Return the point where
 it believes to be then. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
-  (let ((me (begin-reckoning start)))
-    (find-and-take me places description :camera camera :hand hand :bin bin)
-    (travel-to me (list (first start) (second start)) :tolerance .7 :patience 100)
-    (put-thing-down hand camera bin)
+  (let ((me (begin-reckoning start))
+        (home (list (first start) (second start))))
+    (with-retry-counters ((losses 2))
+      (handle-failure ((:nothing-inside () (do-retry losses (retry))))
+        (bring-thing me places description home camera hand bin)))
     (reckon me)))
 
 ;;; Tidying.

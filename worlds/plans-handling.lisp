@@ -91,9 +91,11 @@ to the robot or in a bin. Fails with :NOT-FOUND, :TOO-HEAVY or :WILL-NOT-DO."
 
 (def-interp-proc stow-thing (hand bin)
   "Let HAND put what it holds into the storage BIN, which is closed then. Fails with :BIN-FULL, the
-hand still holding it."
+hand still holding it, or with :LOST-GRIP if it does not: what is kicked about can get free."
   (open-bin bin)
   (reach-into-bin hand bin)
+  (if (not (holding-p hand))
+      (fail :class :lost-grip :hand hand))
   (let-go hand)
   (draw-back hand)
   (close-bin bin))
@@ -101,7 +103,8 @@ hand still holding it."
 (def-interp-proc take-thing (hand camera bin description &key designator)
   "Grasp DESIGNATOR, which fits DESCRIPTION, with HAND, and stow it in BIN."
   (grasp-thing hand camera description :designator designator)
-  (handle-failure ((:bin-full () (let-go hand)))
+  (handle-failure ((:bin-full () (let-go hand))
+                   (:lost-grip () (draw-back hand)))
     (stow-thing hand bin)))
 
 ;;; Putting down.
@@ -121,12 +124,13 @@ hand still holding it."
 
 (def-interp-proc put-thing-down (hand camera bin &key (description '()))
   "Take a thing that fits DESCRIPTION out of the storage BIN with HAND, and put it on the floor. Fails
-with :NOT-FOUND if CAMERA sees none in there. The bin is closed then."
+with :NOTHING-INSIDE if CAMERA sees none in there. The bin is closed then."
   (open-bin bin)
   (evap-protect
       (seq (look-into-bin camera bin)
            (reach-into-bin hand bin)
-           (grasp-thing hand camera description))
+           (handle-failure ((:not-found () (fail :class :nothing-inside :bin bin)))
+             (grasp-thing hand camera description)))
     (seq (draw-back hand)
          (withdraw-camera camera)))
   (let-go hand)

@@ -1,0 +1,183 @@
+;;;; errand.lisp -- a robot program in the other style: continuations instead of plans.
+
+;;; Good for seeing what both styles cost. RUN-ERRAND finds a thing, goes to it, grasps it and stows it,
+;;; as the manual's figures D.1, D.3 and D.5 do for a robot that nothing goes wrong for; here every
+;;; error leads somewhere. Each step is a function that issues a command and returns at once; its
+;;; continuation takes the next step. What the steps share is in an ERRAND.
+;;;
+;;;   (with-simulation (dot :seed 1)
+;;;     (run-errand dot '((:color red)) #'report)
+;;;     (run-ticks 500))
+
+(in-package :ars-user)
+(in-readtable :nisp)
+
+(defstruct (errand (:copier nil))
+  "What an errand is about, and how many more setbacks it puts up with."
+  (robot nil :type robot :read-only t)
+  (camera nil :read-only t)
+  (hand nil :read-only t)
+  (bin nil :read-only t)
+  (description '() :type list :read-only t)
+  (continuation nil :read-only t)
+  (patience 100 :type fixnum)
+  (looks 0 :type fixnum)
+  (too-heavy 0 :type fixnum)
+  (over #f))
+
+(defun run-errand (robot description continuation &key (camera 0) (hand 0) (bin 0))
+  "Let ROBOT find something that fits DESCRIPTION, go to it, grasp it with HAND and stow it in BIN; the
+parts are given by index. Returns at once. CONTINUATION gets, in the end, an error code or NIL, and
+ROBOT. The codes: :GAVE-UP after too many setbacks, :INSUFFICIENT-STRENGTH, :INSUFFICIENT-CAPACITY
+(the hand then still holds the thing), and :INTERRUPT if another command took a part over."
+  (find-target (make-errand :robot robot :description description :continuation continuation
+                            :camera (robot-camera robot camera)
+                            :hand (robot-hand robot hand)
+                            :bin (robot-storage-bin robot bin)))
+  (values))
+
+;;; Endings and setbacks.
+
+(defun end-errand (errand err)
+  "End ERRAND, once, with the error code ERR, or NIL for success."
+  (unless (errand-over errand)
+    (setf (errand-over errand) #t)
+    (funcall (errand-continuation errand) err (errand-robot errand))))
+
+(defun set-back (errand err step)
+  "Take STEP, a function of ERRAND, after the setback ERR, as long as there is patience left."
+  (cond ((errand-over errand) nil)
+        ((eq err :interrupt) (end-errand errand err))
+        ((zerop (decf (errand-patience errand))) (end-errand errand :gave-up))
+        (t (funcall step errand))))
+
+(defun go-on (errand err next otherwise &rest harmless)
+  "Take the step NEXT of ERRAND if ERR is NIL or one of HARMLESS, else the step OTHERWISE."
+  (if (member err (cons nil harmless))
+      (funcall next errand)
+      (set-back errand err otherwise)))
+
+;;; Finding.
+
+(defun find-target (errand)
+  "Look where the camera points, and go to what is found; else look elsewhere."
+  (camera-get-object-designator (errand-camera errand) :non-local (errand-description errand)
+    (continuation (err camera designator)
+      (cond (designator (track-target errand designator))
+            ((eq err :already-tracking) (free-camera errand #'find-target))
+            (t (set-back errand err #'look-elsewhere))))))
+
+(defun look-elsewhere (errand)
+  "Turn the camera to what is next to its view; after each full turn look beside the robot too."
+  (let ((camera (errand-camera errand)))
+    (camera-turn camera (camera-field-of-view camera)
+      (continuation (err camera angle)
+        (go-on errand err
+               (if (zerop (mod (incf (errand-looks errand)) 8)) #'check-target #'find-target)
+               #'find-target)))))
+
+(defun free-camera (errand next)
+  "End what the camera tracks; go on with the step NEXT."
+  (camera-untrack (errand-camera errand)
+    (continuation (err camera) (go-on errand err next next :not-tracking))))
+
+;;; Going there.
+
+(defun track-then (errand designator next otherwise)
+  "Track DESIGNATOR and take the step NEXT once that is so, or OTHERWISE if it cannot be."
+  (let ((begun #f))
+    (camera-track (errand-camera errand) designator
+      (continuation (err camera designator)
+        ;; It is called again when the track ends; what that keeps from succeeding then says so.
+        (cond (begun nil)
+              (t (setf begun #t)
+                 (go-on errand err next otherwise)))))))
+
+(defun track-target (errand designator)
+  (track-then errand designator #'go-to-target #'find-target))
+
+(defun go-to-target (errand)
+  "Drive to what the camera tracks. When something is in the way, that may be near enough."
+  (robot-goto-designator (errand-robot errand) (errand-camera errand)
+    (continuation (err robot camera designator)
+      (free-camera errand
+                   (lambda (errand)
+                     (go-on errand err #'check-target #'find-target
+                            :goto-local :robot-blocked))))))
+
+(defun go-round (errand)
+  "Leave what is here: turn aside and drive on for a bit, then look round again."
+  (robot-turn (errand-robot errand) (if (evenp (errand-patience errand)) 1.3 -1.3)
+    (continuation (err robot angle)
+      (robot-go-forward robot 2
+        (continuation (err robot)
+          (go-on errand err #'find-target #'find-target :robot-blocked))))))
+
+;;; Making sure. Colours are often misread: only what looks right three times is taken.
+
+(defun check-target (errand)
+  (look-closely-at errand 12 3 #'grasp-target #'go-round))
+
+(defun look-closely-at (errand looks wanted next otherwise)
+  "Look, LOOKS times at most, for what is next to the robot or in the bin, until it has fitted WANTED
+times; take the step NEXT with the last designator then, or else OTHERWISE."
+  (camera-get-object-designator (errand-camera errand) :local (errand-description errand)
+    (continuation (err camera designator)
+      (let ((wanted (if designator (- wanted 1) wanted)))
+        (cond ((zerop wanted) (funcall next errand designator))
+              ((zerop looks) (set-back errand err otherwise))
+              (t (look-closely-at errand (- looks 1) wanted next otherwise)))))))
+
+;;; Grasping and stowing.
+
+(defun grasp-target (errand designator)
+  (track-then errand designator
+              (lambda (errand) (grasp-tracked errand designator))
+              #'check-target))
+
+(defun grasp-tracked (errand designator)
+  "Grasp DESIGNATOR, which the camera tracks. What is too heavy was perhaps not what is wanted."
+  (hand-grasp-desig (errand-hand errand) (errand-camera errand) designator
+    (continuation (err hand designator)
+      (free-camera errand
+                   (lambda (errand)
+                     (if (eq err :insufficient-strength)
+                         (leave-heavy errand)
+                         (go-on errand err #'open-for-target #'check-target :hand-grasping)))))))
+
+(defun leave-heavy (errand)
+  "Look for something lighter, but not for ever."
+  (if (= 3 (incf (errand-too-heavy errand)))
+      (end-errand errand :insufficient-strength)
+      (set-back errand :insufficient-strength #'go-round)))
+
+(defun open-for-target (errand)
+  (storage-bin-open (errand-bin errand)
+    (continuation (err bin)
+      (go-on errand err #'insert-target #'open-for-target :bin-open))))
+
+(defun insert-target (errand)
+  "Put the hand into the bin. It may bump; without room there is nothing to be done."
+  (hand-insert-bin (errand-hand errand) (errand-bin errand)
+    (continuation (err hand bin)
+      (if (eq err :insufficient-capacity)
+          (end-errand errand err)
+          (go-on errand err #'drop-target #'open-for-target)))))
+
+(defun drop-target (errand)
+  "Let go inside the bin. If the hand is empty, the thing got free on the way: begin anew."
+  (hand-ungrasp (errand-hand errand)
+    (continuation (err hand)
+      (let ((lost (eq err :not-grasping)))
+        (hand-remove hand
+          (continuation (err hand)
+            (if lost
+                (set-back errand :not-grasping #'find-target)
+                (go-on errand err #'close-on-target #'close-on-target))))))))
+
+(defun close-on-target (errand)
+  "Close the bin; it may jam."
+  (storage-bin-close (errand-bin errand)
+    (continuation (err bin part)
+      (go-on errand err (lambda (errand) (end-errand errand nil)) #'close-on-target
+             :bin-closed))))
