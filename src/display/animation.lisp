@@ -71,12 +71,6 @@ ticks and at the end."
   (merge-pathnames (make-pathname :name (format nil "~A-~4,'0D" (pathname-name file) number))
                    (merge-pathnames file)))
 
-(defun save-frame (snapshot robot file kind display layers in-color scale)
-  (save-svg (with-output-to-string (stream)
-              (write-picture stream snapshot (snapshot-robot snapshot robot)
-                             :display display :layers layers :in-color in-color :scale scale))
-            file kind))
-
 (defun save-animation (journal file &key every until (rate 10) series (display :world)
                                       (layers *picture-layers*) (in-color t)
                                       (scale graphics-scale*))
@@ -90,8 +84,8 @@ WRONG-ARGUMENT, MISUSE, and what REPLAY does."
         (journal (if (journal-p journal) journal (read-journal journal))))
     (check-animation kind series every rate display layers scale)
     (if series
-        (save-series journal file kind :every every :until until :display display
-                                       :layers layers :in-color in-color :scale scale)
+        (save-series journal file :every every :until until :display display
+                                  :layers layers :in-color in-color :scale scale)
         (let ((snapshots '()))
           (call-with-frames (lambda (snapshot) (push snapshot snapshots))
                             journal (frame-step journal every until) until)
@@ -114,12 +108,13 @@ WRONG-ARGUMENT, MISUSE, and what REPLAY does."
     (check-layers 'save-animation layers)
     (check-scale 'save-animation scale)))
 
-(defun save-series (journal file kind &key every until display layers in-color scale)
+(defun save-series (journal file &key every until display layers in-color scale)
   (let ((robot (first (getf (journal-header journal) :robots))) (files '()))
     (call-with-frames (lambda (snapshot)
-                        (push (save-frame snapshot robot
-                                          (numbered-file file (1+ (length files)))
-                                          kind display layers in-color scale)
+                        (push (save-snapshot snapshot (snapshot-robot snapshot robot)
+                                             (numbered-file file (1+ (length files)))
+                                             :display display :layers layers
+                                             :in-color in-color :scale scale)
                               files))
                       journal (frame-step journal every until) until)
     (reverse files)))

@@ -13,12 +13,13 @@
   ;; snapshot
   (:export #:snapshot #:take-snapshot #:snapshot-of #:snapshot-tick #:snapshot-map
            #:snapshot-things #:snapshot-robots #:snapshot-robot #:thing-image #:robot-image
-           #:robot-image-name #:robot-image-x #:robot-image-y #:robot-image-designators
-           #:describe-subject)
+           #:robot-image-name #:robot-image-x #:robot-image-y #:robot-image-designators)
+  ;; subjects, contents
+  (:export #:describe-subject #:snapshot-content #:display-content)
   ;; terrain, world-display, details
   (:export #:draw-terrain #:draw-movers #:draw-world #:*picture-layers* #:+picture-layers+
            #:draw-display #:display-title #:+displays+)
   ;; picture, animation
-  (:export #:save-picture #:svg-picture #:save-animation)
+  (:export #:save-picture #:save-snapshot #:svg-picture #:save-animation)
   ;; opening
   (:export #:open-display #:*display-opener* #:announce-display))

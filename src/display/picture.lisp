@@ -55,7 +55,7 @@ are to a cell. IN-COLOR is false for a picture in black and white. Signals WRONG
 
 (defun picture-kind (operator file)
   "Return :SVG or :PNG, as the name of FILE ends."
-  (check-argument save-picture file (typep file '(or string pathname)) "the name of a file")
+  (check-argument picture file (typep file '(or string pathname)) "the name of a file")
   (let ((type (pathname-type file)))
     (or (find type '(:svg :png) :test #'string-equal)
         (error 'wrong-argument :operator operator :name "file" :value file
@@ -67,12 +67,21 @@ are to a cell. IN-COLOR is false for a picture in black and white. Signals WRONG
     (:svg (save-text svg file))
     (:png (convert-to-png svg (merge-pathnames file)))))
 
+(defun save-snapshot (snapshot robot file &key (display :all) (layers *picture-layers*)
+                                            (in-color t) (scale graphics-scale*))
+  "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does; ROBOT is the image of a robot in it."
+  (save-svg (with-output-to-string (stream)
+              (write-picture stream snapshot robot
+                             :display display :layers layers :in-color in-color :scale scale))
+            file (picture-kind 'save-snapshot file)))
+
 (defun save-picture (robot file &key (display :world) (layers *picture-layers*) (in-color t)
                                   (scale graphics-scale*))
   "Save a picture of the world of ROBOT as it is now in FILE, replacing it: SVG or, where the program
 rsvg-convert is installed, PNG, as its name ends. The other arguments are those of SVG-PICTURE.
 Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE if PNG is not to be had."
-  (let ((kind (picture-kind 'save-picture file)))
-    (check-picture 'save-picture robot display layers scale)
-    (save-svg (svg-picture robot :display display :layers layers :in-color in-color :scale scale)
-              file kind)))
+  (picture-kind 'save-picture file)
+  (check-picture 'save-picture robot display layers scale)
+  (let ((snapshot (snapshot-of robot)))
+    (save-snapshot snapshot (snapshot-robot snapshot (robot-name robot)) file
+                   :display display :layers layers :in-color in-color :scale scale)))

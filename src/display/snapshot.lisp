@@ -70,21 +70,26 @@ thing, the name of a place type, or NIL if the designator is false."
 
 (defun images-on-floor (world old)
   "Return a vector of the images of the things on the floor of WORLD by serial number. OLD is such
-a vector of an earlier moment; both are in order, so one pass finds what it holds of each."
+a vector of an earlier moment, returned if nothing has changed; both are in order, so one pass finds
+what it holds of each."
   (declare (type simple-vector old))
-  (let ((images '()) (position 0) (count 0))
-    (declare (type fixnum position count))
+  (let ((images '()) (position 0) (count 0) (kept 0))
+    (declare (type fixnum position count kept))
     (do-things (thing world)
       (when (eq (thing-location thing) :floor)
         (loop while (and (< position (length old))
                          (< (the fixnum (image-serial (svref old position)))
                             (thing-serial thing)))
               do (incf position))
-        (let ((known (and (< position (length old)) (svref old position))))
+        (let* ((known (and (< position (length old)) (svref old position)))
+               (image (image-of-thing thing (and known (eq thing (thing-image-thing known))
+                                                 known))))
           (incf count)
-          (push (image-of-thing thing (and known (eq thing (thing-image-thing known)) known))
-                images))))
-    (nreverse (coerce images 'simple-vector))))
+          (when (eq image known) (incf kept))
+          (push image images))))
+    (if (= kept count (length old))
+        old
+        (nreverse (coerce images 'simple-vector)))))
 
 ;;; Robots.
 

@@ -27,34 +27,48 @@ the same parameter are dark."
   (left 0 :type fixnum) (right 0 :type fixnum) (top 0 :type fixnum) (bottom 0 :type fixnum)
   (shade 0 :type fixnum))
 
-(defun row-runs (map y in-color)
-  "Return the runs of walls in the row Y of MAP, from left to right."
+(defstruct (window (:constructor make-window (left top right bottom)) (:copier nil))
+  "The cells of a map that are to be drawn; RIGHT and BOTTOM are outside."
+  (left 0 :type fixnum :read-only t) (top 0 :type fixnum :read-only t)
+  (right 0 :type fixnum :read-only t) (bottom 0 :type fixnum :read-only t))
+
+(defun clip-window (map left top right bottom)
+  "Return the window of the cells of MAP between the given ones; NIL means to the edge."
+  (flet ((within (value limit) (max 0 (min value limit))))
+    (let ((width (map-width map)) (height (map-height map)))
+      (make-window (within (or left 0) width) (within (or top 0) height)
+                   (within (or right width) width) (within (or bottom height) height)))))
+
+(defun row-runs (map window y in-color)
+  "Return the runs of walls in the row Y of MAP within WINDOW, from left to right."
   (declare (type map map) (type fixnum y))
   (let ((flags (map-flags map)) (width (map-width map)) (runs '()) (run nil))
-    (dotimes (x width (nreverse runs))
-      (let* ((index (+ x (* y width)))
-             (shade (and (logtest +wall+ (aref flags index))
-                         (if in-color (wall-shade map index) 0))))
-        (cond ((null shade) (setf run nil))
-              ((and run (= shade (wall-run-shade run))) (setf (wall-run-right run) (1+ x)))
-              (t (push (setf run (make-wall-run x (1+ x) y (1+ y) shade)) runs)))))))
+    (loop for x from (window-left window) below (window-right window)
+          do (let* ((index (+ x (* y width)))
+                    (shade (and (logtest +wall+ (aref flags index))
+                                (if in-color (wall-shade map index) 0))))
+               (cond ((null shade) (setf run nil))
+                     ((and run (= shade (wall-run-shade run))) (setf (wall-run-right run) (1+ x)))
+                     (t (push (setf run (make-wall-run x (1+ x) y (1+ y) shade)) runs)))))
+    (nreverse runs)))
 
-(defun wall-runs (map in-color)
-  "Return rectangles that together are all walls of MAP."
+(defun wall-runs (map window in-color)
+  "Return rectangles that together are all walls of MAP within WINDOW."
   (let ((above (make-array (map-width map) :initial-element nil)) (runs '()))
-    (dotimes (y (map-height map) runs)
-      (dolist (run (row-runs map y in-color))
-        (let ((old (svref above (wall-run-left run))))
-          (cond ((and old (= (wall-run-bottom old) y)
-                      (= (wall-run-right old) (wall-run-right run))
-                      (= (wall-run-shade old) (wall-run-shade run)))
-                 (setf (wall-run-bottom old) (1+ y)))
-                (t (push run runs)
-                   (setf (svref above (wall-run-left run)) run))))))))
+    (loop for y from (window-top window) below (window-bottom window)
+          do (dolist (run (row-runs map window y in-color))
+               (let ((old (svref above (wall-run-left run))))
+                 (cond ((and old (= (wall-run-bottom old) y)
+                             (= (wall-run-right old) (wall-run-right run))
+                             (= (wall-run-shade old) (wall-run-shade run)))
+                        (setf (wall-run-bottom old) (1+ y)))
+                       (t (push run runs)
+                          (setf (svref above (wall-run-left run)) run))))))
+    runs))
 
-(defun draw-walls (canvas map)
+(defun draw-walls (canvas map window)
   (let ((by-shade (make-array 64 :initial-element '())))
-    (dolist (run (wall-runs map in-color*))
+    (dolist (run (wall-runs map window in-color*))
       (setf (svref by-shade (wall-run-shade run))
             (list* (* graphics-scale* (wall-run-left run))
                    (* graphics-scale* (wall-run-top run))
@@ -104,21 +118,23 @@ of items, says whose it is."
                   (list "the :graphics of place type " (place-type-name type))
                   x y graphics-scale* graphics-scale* x y)))
 
-(defun draw-places (canvas map)
-  "Mark the cells of MAP that are places of visible types which have graphics (manual B)."
-  (let ((types (map-place-types map)) (places (map-places map)) (width (map-width map)))
-    (flet ((drawn-p (type)
-             (and type (place-type-graphics type) (not (place-type-invisible-p type)))))
-      (loop for number across places
-            for index of-type fixnum from 0
-            unless (zerop number)
-              do (let ((type (svref types number)))
-                   (when (drawn-p type)
-                     (multiple-value-bind (row column) (floor index width)
-                       (draw-place canvas type column row))))))))
+(defun drawn-place-type-p (type)
+  (and type (place-type-graphics type) (not (place-type-invisible-p type))))
 
-(defun draw-terrain (canvas map)
+(defun draw-places (canvas map window)
+  "Mark the cells of MAP in WINDOW that are places of visible types which have graphics (manual B)."
+  (let ((types (map-place-types map)) (places (map-places map)) (width (map-width map)))
+    (loop for y from (window-top window) below (window-bottom window)
+          do (loop for x from (window-left window) below (window-right window)
+                   for number = (aref places (+ x (* y width)))
+                   unless (zerop number)
+                     do (let ((type (svref types number)))
+                          (when (drawn-place-type-p type) (draw-place canvas type x y)))))))
+
+(defun draw-terrain (canvas map &key left top right bottom)
   "Draw the walls of MAP in black, or in greys by their substance parameters, and the marks of its
-places, on CANVAS, GRAPHICS-SCALE* pixels to a cell (manual B)."
-  (draw-walls canvas map)
-  (draw-places canvas map))
+places, on CANVAS, GRAPHICS-SCALE* pixels to a cell (manual B). LEFT, TOP, RIGHT and BOTTOM, columns
+and rows of cells, say which part of MAP is wanted; by default all of it is."
+  (let ((window (clip-window map left top right bottom)))
+    (draw-walls canvas map window)
+    (draw-places canvas map window)))

@@ -1,0 +1,148 @@
+;;;; canvas.lisp -- a canvas that is a sheet, or a pixmap, of CLIM.
+
+(in-package :ars-magna.clim)
+
+;;; It remembers in which boxes the subjects were drawn, so that a click finds them. Arcs that are
+;;; not whole are drawn as lines, because CLIM counts angles in its own way.
+
+(defclass clim-canvas (canvas)
+  ((medium :initarg :medium :reader canvas-medium)
+   (subjects :initform '() :accessor canvas-subjects
+             :documentation "What was drawn where: a list (subject left top right bottom).")
+   ;; The box drawn in so far, or NIL outside of subjects.
+   (reach :initform nil :accessor canvas-reach)
+   (dx :initform 0 :accessor canvas-dx)
+   (dy :initform 0 :accessor canvas-dy))
+  (:documentation "A canvas that paints on a medium of CLIM."))
+
+(defvar *inks* (make-hash-table :synchronized t) "From colours to CLIM's, as far as used.")
+
+(defun ink (color)
+  "Return CLIM's colour for COLOR."
+  (or (gethash color *inks*)
+      (setf (gethash color *inks*)
+            (flet ((part (position) (/ (ldb (byte 8 position) color) 255)))
+              (clim:make-rgb-color (part 16) (part 8) (part 0))))))
+
+(defun dashes (gcontext) (not (eq (gcontext-line-style gcontext) :solid)))
+
+(defun extend-reach (canvas left top right bottom)
+  (let ((reach (canvas-reach canvas)))
+    (when reach
+      (setf (canvas-reach canvas)
+            (list (min (first reach) left) (min (second reach) top)
+                  (max (third reach) right) (max (fourth reach) bottom))))))
+
+(defun extend-over (canvas points)
+  (when (canvas-reach canvas)
+    (loop for (x y) on points by #'cddr
+          do (extend-reach canvas x y x y))))
+
+;;; Painting.
+
+(defun corners (rectangles)
+  "Return x y width height ... as left top right bottom ...."
+  (loop for (x y width height) on (coerce rectangles 'list) by #'cddddr
+        append (list x y (+ x width) (+ y height))))
+
+(defmethod paint-rectangles ((canvas clim-canvas) gcontext rectangles fill-p)
+  (let ((corners (corners rectangles)))
+    (extend-over canvas corners)
+    (clim:draw-rectangles* (canvas-medium canvas) corners
+                           :filled (and fill-p t)
+                           :ink (ink (gcontext-foreground gcontext))
+                           :line-thickness (max 1 (gcontext-line-width gcontext))
+                           :line-dashes (dashes gcontext))))
+
+(defun arc-points (x y width height start extent)
+  "Return points along the arc, near enough for their lines to look round."
+  (let* ((across (/ width 2)) (down (/ height 2))
+         (count (max 4 (ceiling (* (abs extent) (sqrt (max 1 across down)))))))
+    (loop for index from 0 to count
+          for angle = (+ start (* extent (/ index count)))
+          collect (+ x across (* across (cos angle)))
+          collect (- (+ y down) (* down (sin angle))))))
+
+(defun paint-ellipse (canvas gcontext x y width height fill-p)
+  (clim:draw-ellipse* (canvas-medium canvas) (+ x (/ width 2)) (+ y (/ height 2))
+                      (/ width 2) 0 0 (/ height 2)
+                      :filled (and fill-p t) :ink (ink (gcontext-foreground gcontext))
+                      :line-thickness (max 1 (gcontext-line-width gcontext))))
+
+(defmethod paint-arc ((canvas clim-canvas) gcontext x y width height start extent fill-p)
+  (extend-reach canvas x y (+ x width) (+ y height))
+  (if (>= (abs extent) (- (* 2 pi) 1d-9))
+      (paint-ellipse canvas gcontext x y width height fill-p)
+      (let ((points (arc-points x y width height start extent)))
+        (paint-path canvas gcontext
+                    (if fill-p (list* (+ x (/ width 2)) (+ y (/ height 2)) points) points)
+                    fill-p))))
+
+(defmethod paint-path ((canvas clim-canvas) gcontext points fill-p)
+  (let ((points (coerce points 'list)))
+    (extend-over canvas points)
+    (clim:draw-polygon* (canvas-medium canvas) points
+                        :filled (and fill-p t) :closed (and fill-p t)
+                        :ink (ink (gcontext-foreground gcontext))
+                        :line-thickness (max 1 (gcontext-line-width gcontext))
+                        :line-dashes (dashes gcontext))))
+
+(defmethod paint-segments ((canvas clim-canvas) gcontext segments)
+  (let ((points (coerce segments 'list)))
+    (extend-over canvas points)
+    (clim:draw-lines* (canvas-medium canvas) points
+                      :ink (ink (gcontext-foreground gcontext))
+                      :line-thickness (max 1 (gcontext-line-width gcontext))
+                      :line-dashes (dashes gcontext))))
+
+(defparameter *text-style* (clim:make-text-style :fix :roman 12)
+  "How text is written on CLIM's canvases.")
+
+(defmethod paint-string ((canvas clim-canvas) gcontext x y string)
+  (extend-reach canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
+  (clim:draw-text* (canvas-medium canvas) string x y
+                   :text-style *text-style* :ink (ink (gcontext-foreground gcontext))))
+
+;;; Where.
+
+(defmethod call-with-clipping (function (canvas clim-canvas) x y width height)
+  (clim:with-drawing-options ((canvas-medium canvas)
+                              :clipping-region (clim:make-rectangle* x y (+ x width)
+                                                                     (+ y height)))
+    (funcall function)))
+
+(defmethod call-with-origin (function (canvas clim-canvas) x y)
+  (incf (canvas-dx canvas) x)
+  (incf (canvas-dy canvas) y)
+  (unwind-protect
+       (clim:with-translation ((canvas-medium canvas) x y)
+         (funcall function))
+    (decf (canvas-dx canvas) x)
+    (decf (canvas-dy canvas) y)))
+
+;;; What is where.
+
+(defmethod call-with-subject (function (canvas clim-canvas) subject)
+  (let ((outer (canvas-reach canvas)))
+    (setf (canvas-reach canvas) (list 1d9 1d9 -1d9 -1d9))
+    (multiple-value-prog1 (funcall function)
+      (destructuring-bind (left top right bottom) (canvas-reach canvas)
+        (setf (canvas-reach canvas) outer)
+        (extend-reach canvas left top right bottom)
+        (let ((dx (canvas-dx canvas)) (dy (canvas-dy canvas)))
+          (push (list subject (+ dx left) (+ dy top) (+ dx right) (+ dy bottom))
+                (canvas-subjects canvas)))))))
+
+(define-constant +aim+ 3 :documentation "By how many pixels a click may miss a subject.")
+
+(defun subject-at (subjects x y)
+  "Return the subject that was drawn at X, Y, or near it; the smallest if there are several. SUBJECTS
+are those of a canvas."
+  (let ((best nil) (least nil))
+    (loop for (subject left top right bottom) in subjects
+          for area = (* (- right left) (- bottom top))
+          when (and (<= (- left +aim+) x (+ right +aim+))
+                    (<= (- top +aim+) y (+ bottom +aim+))
+                    (or (null least) (< area least)))
+            do (setf best subject least area))
+    best))

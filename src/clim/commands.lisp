@@ -1,0 +1,216 @@
+;;;; commands.lisp -- the menus of the window.
+
+(in-package :ars-magna.clim)
+
+;;; The commands of the menu Robot are those of the prompt: one without arguments is given at once,
+;;; another is put where the user can type its arguments.
+
+(defmacro define-window-command ((name title) (window) documentation &body body)
+  "Define a command without arguments that the menus call TITLE. Trouble in BODY is reported."
+  `(progn
+     (clim:define-command (,name :command-table robot-window :name ,title) ()
+       ,documentation
+       (let ((,window clim:*application-frame*))
+         (declare (ignorable ,window))
+         (with-guarded-command (,window ,title) ,@body)))
+     (setf (documentation ',name 'function) ,documentation)))
+
+(defun call-guarded-command (window title function)
+  (handler-case (funcall function)
+    (error (condition)
+      (say (window-transcript window)
+           (format nil "~&*ERROR* -> ~A: ~A~%" title
+                   (substitute #\Space #\Newline (princ-to-string condition)))))))
+
+(defmacro with-guarded-command ((window title) &body body)
+  "Run BODY, the work of the command TITLE; what goes wrong is said in WINDOW."
+  `(call-guarded-command ,window ,title (lambda () ,@body)))
+
+;;; Running.
+
+(define-window-command (com-pause "Pause") (window)
+    "Let time stand still."
+  (pause (window-simulation window)))
+
+(define-window-command (com-resume "Resume") (window)
+    "Let time go on."
+  (resume (window-simulation window)))
+
+(define-window-command (com-step "Step") (window)
+    "Pass one tick and pause."
+  (step-ticks 1 (window-simulation window)))
+
+(defun change-rate (window factor)
+  (let* ((simulation (window-simulation window)) (rate (simulation-rate simulation)))
+    (when (realp rate)
+      (set-rate (clamp (* rate factor) 1/8 100000) simulation)
+      (say (window-transcript window)
+           (format nil "~A ticks a second.~%" (number-text (simulation-rate simulation)))))))
+
+(define-window-command (com-faster "Twice as fast") (window)
+    "Double the rate of ticks."
+  (change-rate window 2))
+
+(define-window-command (com-slower "Half as fast") (window)
+    "Halve the rate of ticks."
+  (change-rate window 1/2))
+
+(define-window-command (com-default-rate "Default rate") (window)
+    "Set the rate of ticks to the default."
+  (set-rate *default-rate* (window-simulation window)))
+
+(define-window-command (com-free "As fast as possible") (window)
+    "Let ticks pass as fast as they can."
+  (set-rate :free (window-simulation window)))
+
+(define-window-command (com-close "Close window") (window)
+    "Close the window. The simulator goes on."
+  (clim:frame-exit window))
+
+;;; The view.
+
+(define-window-command (com-zoom-in "Zoom in") (window)
+    "Show the world twice as large."
+  (zoom-window window 2))
+
+(define-window-command (com-zoom-out "Zoom out") (window)
+    "Show the world half as large."
+  (zoom-window window 1/2))
+
+(defun zoom-window (window factor)
+  (let ((pane (pane-named window 'world)))
+    (multiple-value-bind (width height) (pane-size pane)
+      (zoom pane factor (floor width 2) (floor height 2)))))
+
+(define-window-command (com-fit "Whole map") (window)
+    "Zoom so that the whole map is in view."
+  (fit (pane-named window 'world)))
+
+(define-window-command (com-find "Go to the robot") (window)
+    "Bring the robot into the middle of the view."
+  (show-robot (pane-named window 'world)))
+
+(define-window-command (com-color "Colours on or off") (window)
+    "Switch between colours and black and white."
+  (setf (window-color-p window) (not (window-color-p window)))
+  (mapc #'repaint (display-panes window)))
+
+(defun switch-layer (window layer)
+  (let ((layers (window-layers window)))
+    (setf (window-layers window)
+          (if (member layer layers) (remove layer layers) (cons layer layers)))
+    (repaint-if-changed (pane-named window 'world))))
+
+(macrolet ((define-switches (&rest switches)
+             `(progn
+                ,@(loop for (name title layer) in switches
+                        collect `(define-window-command (,name ,title) (window)
+                                     ,(format nil "Switch ~(~A~) on or off." title)
+                                   (switch-layer window ,layer))))))
+  (define-switches
+    (com-wedges "Camera wedges" :wedges)
+    (com-rays "Rays of the last look" :rays)
+    (com-tracks "Tracks" :tracks)
+    (com-odometer "Odometer's uncertainty" :odometer)
+    (com-trail "Trail" :trail)))
+
+;;; Pictures.
+
+(defun picture-file (window type)
+  (format nil "~(~A~)-~6,'0D.~A" (watcher-robot (window-watcher window))
+          (snapshot-tick (window-snapshot window)) type))
+
+(defun save-window (window type)
+  "Save a picture of all displays as they are in WINDOW in a file of TYPE, in the current directory."
+  (let ((file (save-snapshot (window-snapshot window) (window-robot window)
+                             (picture-file window type)
+                             :layers (window-layers window)
+                             :in-color (window-color-p window)
+                             :scale (pane-scale (pane-named window 'world)))))
+    (say (window-transcript window) (format nil "Saved ~A~%" (sb-ext:native-namestring file)))))
+
+(define-window-command (com-save-svg "Save as SVG") (window)
+    "Save a picture of the displays as SVG."
+  (save-window window "svg"))
+
+(define-window-command (com-save-png "Save as PNG") (window)
+    "Save a picture of the displays as PNG."
+  (save-window window "png"))
+
+;;; The prompt's commands.
+
+(defun choose-line (window name)
+  "Give the prompt the line command called NAME, or let the user add its arguments."
+  (let ((gadget (pane-named window 'interactor)))
+    (cond ((ars-magna.cli:line-parameters (ars-magna.cli:find-line name))
+           (setf (clim:gadget-value gadget) (format nil "~A " name))
+           (type-into gadget))
+          (t (give-line (window-conversation window) name)))))
+
+(defun type-into (gadget)
+  "Let what is typed go to GADGET."
+  (clim:stream-set-input-focus gadget))
+
+(clim:define-command (com-line :command-table robot-window) ((name 'string))
+  (let ((window clim:*application-frame*))
+    (with-guarded-command (window name) (choose-line window name))))
+
+(defun line-group (name)
+  "Return the menu that holds the line command called NAME, by how it begins."
+  (or (loop for (start group) in '(("CAM" "Cameras") ("HAND" "Hands") ("BIN" "Storage bins")
+                                   ("DESIG" "Designators"))
+            when (starts-with-subseq start name) return group)
+      (if (find name (ars-magna.command:all-commands)
+                :key #'ars-magna.command:command-prompt-name :test #'string-equal)
+          "Moving"
+          "Prompt")))
+
+(defun line-menu (group)
+  "Return the items of the menu GROUP, for a command table."
+  (loop for name in (sort (mapcar #'ars-magna.cli:line-name (ars-magna.cli:all-lines)) #'string<)
+        when (string= group (line-group name))
+          collect (list name :command (list 'com-line name))))
+
+;;; The menu bar.
+
+(defun item (command title) (list title :command (list command)))
+
+(defun make-menu (name &rest items)
+  "Make a command table called NAME with ITEMS as its menu. Return NAME."
+  (clim:make-command-table name :inherit-from '(robot-window) :menu items :errorp nil)
+  name)
+
+(defparameter *line-groups* '("Moving" "Cameras" "Hands" "Storage bins" "Designators" "Prompt"))
+
+(defun make-robot-menu ()
+  (apply #'make-menu 'robot-menu
+         (loop for group in *line-groups*
+               for items = (line-menu group)
+               when items
+                 collect (list group :menu
+                               (apply #'make-menu (symbolicate (string-upcase group) "-MENU")
+                                      items)))))
+
+(defun make-menu-bar ()
+  "Make the menu bar, with the line commands that there are now."
+  (make-menu 'run-menu
+             (item 'com-pause "Pause") (item 'com-resume "Resume") (item 'com-step "Step")
+             '(nil :divider nil)
+             (item 'com-slower "Half as fast") (item 'com-faster "Twice as fast")
+             (item 'com-default-rate "Default rate") (item 'com-free "As fast as possible"))
+  (make-menu 'view-menu
+             (item 'com-zoom-in "Zoom in") (item 'com-zoom-out "Zoom out")
+             (item 'com-fit "Whole map") (item 'com-find "Go to the robot")
+             '(nil :divider nil)
+             (item 'com-wedges "Camera wedges") (item 'com-rays "Rays of the last look")
+             (item 'com-tracks "Tracks") (item 'com-odometer "Odometer's uncertainty")
+             (item 'com-trail "Trail") (item 'com-color "Colours on or off"))
+  (make-menu 'picture-menu
+             (item 'com-save-svg "Save as SVG") (item 'com-save-png "Save as PNG")
+             '(nil :divider nil)
+             (item 'com-close "Close window"))
+  (make-menu 'menu-bar
+             '("Run" :menu run-menu) '("View" :menu view-menu)
+             (list "Robot" :menu (make-robot-menu)) '("Window" :menu picture-menu)))
+
+(make-menu-bar)

@@ -1,0 +1,116 @@
+;;;; opening.lisp -- windows come and go; the simulator does not notice.
+
+(in-package :ars-magna.clim)
+
+;;; Each window has a thread of its own. Whatever goes wrong in it, the loss of the X server
+;;; included, closes the window with a warning, and nothing else.
+
+(defvar *windows* '() "The windows that are open.")
+(defvar *windows-lock* (make-lock "windows"))
+
+(defun find-window (name)
+  "Return the open window of the robot called NAME, or NIL."
+  (with-lock (*windows-lock*)
+    (find name *windows* :key (lambda (window) (watcher-robot (window-watcher window)))
+                         :test #'same-name-p)))
+
+(defun close-window (window)
+  "Close WINDOW, from whatever thread. The simulator goes on. Return nothing."
+  (let ((sheet (clim:frame-top-level-sheet window)))
+    (when sheet
+      (clim:queue-event sheet (make-instance 'close-event :sheet sheet))))
+  (values))
+
+(defclass close-event (clim:window-manager-event) ()
+  (:documentation "The window is to be closed."))
+
+(defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event close-event))
+  (clim:frame-exit (clim:pane-frame sheet)))
+
+;;; A window's life.
+
+(defun warn-of-closing (window condition)
+  (warning-set (format nil "The display of ~A has closed: ~A"
+                       (watcher-robot (window-watcher window))
+                       (substitute #\Space #\Newline
+                                   (handler-case (princ-to-string condition)
+                                     (error () (string (type-of condition))))))))
+
+(defun run-window (window)
+  "Show WINDOW until it is closed, or something goes wrong."
+  (let* ((simulation (window-simulation window))
+         (*message-queue* (simulation-messages simulation)))
+    (unwind-protect
+         (handler-case (clim:run-frame-top-level window)
+           (error (condition) (warn-of-closing window condition)))
+      (with-lock (*windows-lock*) (setf *windows* (remove window *windows*)))
+      (end-conversation (window-conversation window))
+      (stop-watching (window-watcher window)))))
+
+(defmethod clim:run-frame-top-level :before ((window robot-window) &key &allow-other-keys)
+  (painted (window-watcher window)))
+
+;;; The X server may go. CLIM's thread that reads events from it must not take Lisp along.
+
+(defun windows-on (port)
+  (with-lock (*windows-lock*)
+    (remove port *windows* :key #'clim:port :test-not #'eq)))
+
+(defun lose-port (port condition)
+  "Close the windows on PORT, whose X server has gone; end the thread that reads its events."
+  (let ((windows (windows-on port)))
+    (when windows
+      (dolist (window windows)
+        (warn-of-closing window condition)
+        (close-window window))
+      (ignore-errors (clim:destroy-port port))
+      (abort))))
+
+(defmethod clim:process-next-event :around ((port clim:basic-port) &key &allow-other-keys)
+  (handler-bind ((error (lambda (condition) (lose-port port condition))))
+    (call-next-method)))
+
+;;; Opening.
+
+(defun x-server-named-p ()
+  (or clim:*default-server-path*
+      (let ((display (sb-ext:posix-getenv "DISPLAY")))
+        (and display (string/= display "")))))
+
+(defun window-port ()
+  "Return CLIM's port to the X server. Signals MISUSE if there is none."
+  (unless (x-server-named-p)
+    (reject-use "No display: there is no X server; set the environment variable DISPLAY."))
+  (handler-case (clim:find-port)
+    (error (condition)
+      (reject-use "No display: the X server ~A does not answer (~A)."
+                  (sb-ext:posix-getenv "DISPLAY")
+                  (substitute #\Space #\Newline (princ-to-string condition))))))
+
+(defun simulation-to-watch (robot)
+  (or (robot-simulation robot)
+      (resident-simulation (world-map (robot-world robot)))))
+
+(defun open-new-window (robot)
+  (let* ((port (window-port))
+         (simulation (simulation-to-watch robot))
+         (window nil)
+         (watcher (make-watcher (robot-name robot)
+                                (lambda () (when window (request-refresh window))))))
+    (make-menu-bar)
+    (start-watching watcher simulation)
+    (setf window (make-robot-window watcher :frame-manager (clim:find-frame-manager :port port)))
+    (with-lock (*windows-lock*) (push window *windows*))
+    (start-thread (lambda () (run-window window))
+                  (format nil "display of ~A" (robot-name robot)))
+    window))
+
+(defun open-window (robot)
+  "Show ROBOT in a window: in the one that it has, or else a new one. Return the window. Signals
+MISUSE where there is no X server."
+  (let ((window (find-window (robot-name robot))))
+    (cond (window (watch-simulation (window-watcher window) (simulation-to-watch robot))
+                  window)
+          (t (open-new-window robot)))))
+
+(setf *display-opener* #'open-window)

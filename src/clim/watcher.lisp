@@ -1,0 +1,121 @@
+;;;; watcher.lisp -- keeps a snapshot of a running simulation fresh, at no cost to its ticks.
+
+(in-package :ars-magna.clim)
+
+;;; Three threads meet here. The one that runs the ticks calls the observer, which makes a snapshot
+;;; if one is wanted and else only notes that the last one is stale. The one that paints is told
+;;; of each snapshot, and says when it has PAINTED. The pacer, in between, wants the next snapshot
+;;; a while after that: so a picture is painted at most 30 times a second, however fast the ticks
+;;; pass, and never when nothing happens. What is changed between ticks (a robot put somewhere, a
+;;; thing moved at the prompt) calls no observer; the pacer looks for it twice a second.
+
+(define-constant +pause+ 0.028
+  :documentation "How long to wait after painting before wanting the next picture, in seconds.")
+(define-constant +patience+ 0.5
+  :documentation "How often to look for changes between ticks, in seconds.")
+
+(defstruct (watcher (:constructor make-watcher (robot news)) (:copier nil))
+  "ROBOT is the name of the robot that is watched. NEWS is called, with no arguments and in some
+thread, for each new snapshot; it must be quick."
+  (robot nil :type symbol :read-only t)
+  (news nil :type function :read-only t)
+  (simulation nil)
+  (observer nil)
+  (snapshot nil)
+  (wanted-p t)
+  (stale-p nil)
+  (painted (make-semaphore "painted") :read-only t)
+  (over (make-semaphore "over") :read-only t)
+  (over-p nil)
+  (pacer nil))
+(setf (documentation 'watcher-robot 'function) "Return the name of the robot that is watched."
+      (documentation 'watcher-snapshot 'function) "Return the last snapshot, or NIL."
+      (documentation 'make-watcher 'function)
+      "Return a watcher of the robot called ROBOT that calls NEWS, a function of no arguments, for
+each new snapshot.")
+
+(defun publish (watcher simulation)
+  "Make a snapshot of SIMULATION, which stands still, and tell of it."
+  (setf (watcher-wanted-p watcher) nil
+        (watcher-stale-p watcher) nil
+        (watcher-snapshot watcher)
+        (let ((old (watcher-snapshot watcher)))
+          (take-snapshot (simulation-world simulation)
+                         (and old
+                              (eq (snapshot-map old) (world-map (simulation-world simulation)))
+                              old))))
+  (funcall (watcher-news watcher)))
+
+(defun observer-of (watcher)
+  (lambda (simulation)
+    (if (watcher-wanted-p watcher)
+        (publish watcher simulation)
+        (setf (watcher-stale-p watcher) t))))
+
+(defun painted (watcher)
+  "Say that the last snapshot of WATCHER has been painted: the next may come."
+  (signal-semaphore (watcher-painted watcher)))
+
+(defun fetch (watcher)
+  "Make a snapshot between ticks, unless a program passes the ticks itself; then it will come with
+the next tick."
+  (let ((simulation (watcher-simulation watcher)))
+    (when (and simulation (live-p simulation))
+      (asking (simulation) (publish watcher simulation)))))
+
+;;; The pacer.
+
+(defun traces-of-change (watcher)
+  "Return a number that changes whenever a program changes the simulation between ticks."
+  (let* ((simulation (watcher-simulation watcher))
+         (journal (and simulation (simulation-journal simulation))))
+    (if journal (journal-length journal) 0)))
+
+(defun pace (watcher)
+  (loop with known = (traces-of-change watcher)
+        until (watcher-over-p watcher)
+        do (cond ((wait-on-semaphore (watcher-painted watcher) +patience+)
+                  (wait-on-semaphore (watcher-over watcher) +pause+)
+                  (setf (watcher-wanted-p watcher) t)
+                  (when (watcher-stale-p watcher) (fetch watcher)))
+                 (t (let ((now (traces-of-change watcher)))
+                      (unless (= now known)
+                        (setf known now)
+                        (fetch watcher)))))))
+
+;;; Beginning and ending.
+
+(defun leave-simulation (watcher)
+  (let ((simulation (shiftf (watcher-simulation watcher) nil)))
+    (when simulation
+      (asking (simulation) (remove-observer (watcher-observer watcher) simulation)))))
+
+(defun watch-simulation (watcher simulation)
+  "Let WATCHER watch SIMULATION, from now on and instead of what it watches. Return WATCHER."
+  (unless (eq simulation (watcher-simulation watcher))
+    (leave-simulation watcher)
+    (keep-history simulation)
+    (setf (watcher-simulation watcher) simulation
+          (watcher-observer watcher) (observer-of watcher))
+    (asking (simulation)
+      (add-observer (watcher-observer watcher) simulation)
+      (publish watcher simulation)))
+  watcher)
+
+(defun start-watching (watcher simulation)
+  "Let WATCHER begin its work, on SIMULATION. Return WATCHER."
+  (watch-simulation watcher simulation)
+  (setf (watcher-pacer watcher)
+        (start-thread (lambda () (pace watcher))
+                      (format nil "pacer of ~A" (watcher-robot watcher))))
+  watcher)
+
+(defun stop-watching (watcher)
+  "Let WATCHER end its work. Return nothing."
+  (setf (watcher-over-p watcher) t)
+  (signal-semaphore (watcher-over watcher))
+  (signal-semaphore (watcher-painted watcher))
+  (leave-simulation watcher)
+  (let ((pacer (watcher-pacer watcher)))
+    (when (and pacer (not (eq pacer (current-thread)))) (join-thread pacer)))
+  (values))
