@@ -105,7 +105,7 @@ ROBOT. The codes: :GAVE-UP after too many setbacks, :INSUFFICIENT-STRENGTH, :INS
                      (go-on errand err #'check-target #'find-target
                             :goto-local :robot-blocked))))))
 
-(defun go-round (errand)
+(defun turn-aside (errand)
   "Leave what is here: turn aside and drive on for a bit, then look round again."
   (robot-turn (errand-robot errand) (if (evenp (errand-patience errand)) 1.3 -1.3)
     (continuation (err robot angle)
@@ -116,7 +116,7 @@ ROBOT. The codes: :GAVE-UP after too many setbacks, :INSUFFICIENT-STRENGTH, :INS
 ;;; Making sure. Colours are often misread: only what looks right three times is taken.
 
 (defun check-target (errand)
-  (look-closely-at errand 12 3 #'grasp-target #'go-round))
+  (look-closely-at errand 12 3 #'grasp-target #'turn-aside))
 
 (defun look-closely-at (errand looks wanted next otherwise)
   "Look, LOOKS times at most, for what is next to the robot or in the bin, until it has fitted WANTED
@@ -149,7 +149,7 @@ times; take the step NEXT with the last designator then, or else OTHERWISE."
   "Look for something lighter, but not for ever."
   (if (= 3 (incf (errand-too-heavy errand)))
       (end-errand errand :insufficient-strength)
-      (set-back errand :insufficient-strength #'go-round)))
+      (set-back errand :insufficient-strength #'turn-aside)))
 
 (defun open-for-target (errand)
   (storage-bin-open (errand-bin errand)
