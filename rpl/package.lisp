@@ -47,7 +47,7 @@ Fluents hold what varies, tasks wait for fluents, a runner lets them react. Know
            #:trace-entry-task #:trace-entry-form #:trace-entry-detail
            #:print-tasks #:report-deadlock #:report-failure)
   ;; the engine
-  (:export #:plan-runner #:make-plan-runner #:*runner* #:current-task #:plan-time
+  (:export #:plan-runner #:make-plan-runner #:*runner* #:*runaway-limit* #:current-task #:plan-time
            #:plan-runner-tick #:plan-runner-tasks #:plan-runner-steps
            #:start-plan #:react #:post-batch #:post-call #:apply-next-batch #:advance-timers
            #:next-wake-time #:idle-p #:plan-deadlocked-p #:stop-plan #:run-plan-alone))

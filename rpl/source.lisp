@@ -118,7 +118,9 @@
   (gethash form *own-conses*))
 
 (defmacro with-own-text ((form) &body body)
-  "Run BODY while FORM, and what is noted besides, is known to be a plan's text."
-  `(let ((*own-conses* (make-hash-table :test 'eq)))
+  "Run BODY while FORM, and what is noted besides, is known to be a plan's text. What is made of it
+has the same names every time, so that traces can be compared."
+  `(let ((*own-conses* (make-hash-table :test 'eq))
+         (*gensym-counter* 0))
      (note-own-text ,form)
      ,@body))

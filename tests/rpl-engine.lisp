@@ -178,7 +178,7 @@
       (is (<= 10 ticks 40)))))
 
 (test react.a-plan-that-never-waits-is-reported-once-and-time-passes
-  (let ((rpl::*runaway-limit* 1000))
+  (let ((rpl:*runaway-limit* 1000))
     (let ((texts (reported
                    (is (eq :limit
                            (nth-value 1 (rpl:run-plan-alone (rpl:interp-lambda () (loop (itself 3)))
