@@ -52,7 +52,7 @@ it believes to be then. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-
 (def-interp-proc tidy-once (me places description camera hand bin)
   "Stow one thing that fits DESCRIPTION and is near one of PLACES in BIN. Return true if there was any."
   (handle-failure ((:not-found () (return nil)))
-    (find-and-take me places description :camera camera :hand hand :bin bin :rounds 1)))
+    (find-and-take me places description :camera camera :hand hand :bin bin :rounds 5)))
 
 (def-interp-proc tidy-room (descriptions places &key (start (here (rpl-robot))) (camera (widest-camera))
                                                      (hand 0) (limit 20))
