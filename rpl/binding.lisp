@@ -41,6 +41,12 @@
 (defun binding-variable (binding) (if (consp binding) (first binding) binding))
 (defun binding-value (binding) (if (consp binding) (second binding) nil))
 
+(defun binds-special-p (variables body scope)
+  "True if a form that binds VARIABLES around BODY binds one of them as a special variable."
+  (or (declared-special variables body)
+      (some (lambda (variable) (special-variable-p variable (scope-environment scope)))
+            variables)))
+
 (defun fill-lambda (values scopes sequential)
   "Return the lambda expression that makes an environment of the forms VALUES, each in its scope."
   (if sequential
@@ -71,9 +77,7 @@
                                    (variable-scope single (subseq variables 0 i))
                                    single))))
     (cond ((null bindings) (binding-body-code body scope))
-          ((or (declared-special variables body)
-               (some (lambda (variable) (special-variable-p variable scope)) variables))
-           (refuse-code form scope))
+          ((binds-special-p variables body scope) (refuse-code form scope))
           (t (let ((body-code (binding-body-code body (variable-scope scope variables))))
                (if (some #'suspends-p values scopes)
                    `(make-filling :form ',form
@@ -107,8 +111,7 @@
              (enter-last (value-binding-body node) inner frame)))))
 
 (define-plan-form "MULTIPLE-VALUE-BIND" nil (variables source &rest body) (form scope)
-  (if (or (declared-special variables body)
-          (some (lambda (variable) (special-variable-p variable scope)) variables))
+  (if (binds-special-p variables body scope)
       (refuse-code form scope)
       `(make-value-binding :form ',form
                            :count ,(length variables)

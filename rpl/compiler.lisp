@@ -46,8 +46,8 @@ arguments bound by LAMBDA-LIST. SUSPENDS says whether it makes a task wait: see 
 ;;; An expression of which a part that Lisp is to use makes the task wait.
 
 (defun hoisted-code (form scope &optional (fixed 1))
-  "Return code for FORM; those of its elements after the first FIXED that suspend are bound before it,
-and those to the left of them too, to keep the order."
+  "Return code for FORM; those of its elements after the first FIXED that suspend are bound before
+it, and those to the left of them too, to keep the order."
   (let* ((parts (nthcdr fixed form))
          (count (1+ (position-if (lambda (part) (suspends-p part scope)) parts :from-end t)))
          (names (loop for part in (subseq parts 0 count)

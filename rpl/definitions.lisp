@@ -83,8 +83,8 @@ of the variable and the word for each word that must be there literally."
 
 (defmacro def-interp-macro ((name &rest pattern) &body template)
   "Define NAME as a macro for plans. ?x in PATTERN stands for any form, to which the variable x is
-bound while TEMPLATE is evaluated; a pattern may end in a dot and ?x for all forms that are left. The
-value of TEMPLATE is the plan text to use. A documentation string may come before TEMPLATE
+bound while TEMPLATE is evaluated; a pattern may end in a dot and ?x for all forms that are left.
+The value of TEMPLATE is the plan text to use. A documentation string may come before TEMPLATE
 (manual D.8)."
   (multiple-value-bind (parameters literals) (pattern-parameters pattern)
     (multiple-value-bind (body documentation) (split-documentation template)

@@ -40,7 +40,7 @@ Return the task, which runs at the next reaction."
 ;;; Reacting.
 
 (defun run-ready (runner)
-  "Run the ready tasks of RUNNER. Return :idle when none is ready, :budget when the budget is spent."
+  "Run the ready tasks of RUNNER. Return :idle when none is ready, :budget when that is spent."
   (loop
     (when (>= (runner-steps runner) (runner-pause runner)) (return :budget))
     (let ((task (take-ready runner)))

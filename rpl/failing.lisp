@@ -41,7 +41,7 @@
   (member (first call) '(run-steps step-leaf call-catching-trouble)))
 
 (defun lisp-backtrace ()
-  "Return the Lisp calls under way in the plan's code that has just signalled an error, as a string."
+  "Return as a string the Lisp calls under way in a plan's code that has just signalled an error."
   (let* ((calls (sb-debug:list-backtrace :count 100))
          (signalled (member 'sb-kernel::%signal calls :key #'first)))
     (with-output-to-string (stream)
@@ -100,10 +100,10 @@ when that comes to its end."
                      nil))))))
 
 (defmacro with-failure-handling (clauses &body body)
-  "Run BODY in a plan; a failure is handled by the first of CLAUSES, (type (variable) form...), whose
-type it matches: T, a class given to FAIL, a condition type of failures or of Lisp's, or (or ...).
-The handler may wait. (return value) ends the whole with VALUE and (retry) runs BODY anew; at the
-handler's end the failure goes on."
+  "Run BODY in a plan; a failure is handled by the first of CLAUSES, (type (variable) form...),
+whose type it matches: T, a class given to FAIL, a condition type of failures or of Lisp's, or
+(or ...). The handler may wait. (return value) ends the whole with VALUE and (retry) runs BODY anew;
+at the handler's end the failure goes on."
   (misplaced 'with-failure-handling (list* clauses body)))
 
 (defmacro handle-failure (clauses &body body)

@@ -40,11 +40,18 @@
             ((is "COND") `(cond ,@(loop for (test . body) in (rest form)
                                         collect `(,(condition test) ,@body))))
             ((is "CASE") `(case (fluent-value ,(second form)) ,@(cddr form)))
+            ((is "LET" "LET*") (let-meaning form))
             ((is "AND") `(lifting-and ,@(rest form)))
             ((is "OR") `(lifting-or ,@(rest form)))
             ((is "LOOP") (if (plan-loop-p form) (loop-meaning (rest form) environment) form))
             ((operator-in-p form *lifted-operators*) `(lifting ,@form))
             (t form)))))
+
+(defun let-meaning (form)
+  "Return FORM, a LET, without types; FORM itself if there are none."
+  (if (and (listp (second form)) (find '- (second form)))
+      `(,(first form) ,(untyped-bindings (second form)) ,@(cddr form))
+      form))
 
 (defun loop-meaning (forms environment)
   (cond ((keyword-test forms "UNTIL")
@@ -53,13 +60,9 @@
          `(loop (unless ,(condition-form (second forms) environment) (return)) ,@(cddr forms)))
         (t `(loop ,@forms))))
 
-(defun lisps-macro-p (name)
-  (eq (symbol-package name) #.(find-package :cl)))
-
-(defun leaf-meaning (form context environment)
+(defun leaf-meaning (form environment)
   "Return FORM, met in a leaf, with its plan meaning."
-  (cond ((not (and (eq context :eval) (consp form) (symbolp (first form)) (own-text-p form)))
-         form)
+  (cond ((not (and (consp form) (symbolp (first form)) (own-text-p form))) form)
         ((plan-in-leaf-p form) (values form t))
         (t (let ((meaning (if (local-function-p (first form) environment)
                               form
@@ -74,7 +77,7 @@
   "Return FORM, a leaf's, as Lisp is to compile it."
   (if (atom form)
       form
-      (sb-walker:walk-form form (scope-environment scope) #'leaf-meaning)))
+      (walk form (scope-environment scope) #'leaf-meaning)))
 
 (defun test-lambda (form scope)
   "Return the lambda expression, of the environment, for FORM as a condition."

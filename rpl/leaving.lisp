@@ -39,8 +39,8 @@
         finally (return (eq symbol tail))))
 
 (defun block-code (name form scope coder)
-  "Return the code that CODER returns for a scope in which a block called NAME, whose source is FORM,
-can be left. There is a node for it only if it is."
+  "Return the code that CODER returns for a scope in which a block called NAME, whose source is
+FORM, can be left. There is a node for it only if it is."
   (with-gensyms (target)
     (let ((code (funcall coder (inner-scope scope :blocks (acons name target
                                                                  (scope-blocks scope))))))

@@ -60,7 +60,8 @@ them if OUTER, and returns the environment for a procedure's body."
                                              collect (list name (gensym (string name))
                                                            (scope-level scope)))
                                        (scope-procedures scope))
-                   :environment (list :function (mapcar #'first definitions)))
+                   :environment (extended-environment (scope-environment scope)
+                                                      :function (mapcar #'first definitions)))
       scope))
 
 (defun procedure-body-code (name form body scope)
@@ -124,16 +125,14 @@ them if OUTER, and returns the environment for a procedure's body."
 ;;; Local macros.
 
 (define-plan-form "MACROLET" nil (definitions &rest body) (form scope)
-  (let* ((environment (scope-environment scope))
-         (expanders (loop for (name parameters . macro-body) in definitions
-                          collect (list name
-                                        (sb-cltl2:enclose
-                                         (sb-cltl2:parse-macro name parameters macro-body
-                                                               environment)
-                                         environment)))))
-    (binding-body-code body (wrapped-scope scope `(macrolet ,definitions)
-                                           (list :macro expanders)))))
+  (binding-body-code
+   body
+   (wrapped-scope scope `(macrolet ,definitions)
+                  :macro (loop with environment = (scope-environment scope)
+                               for definition in definitions
+                               collect (list (first definition)
+                                             (macro-expander definition environment))))))
 
 (define-plan-form "SYMBOL-MACROLET" nil (definitions &rest body) (form scope)
   (binding-body-code body (wrapped-scope scope `(symbol-macrolet ,definitions)
-                                         (list :symbol-macro definitions))))
+                                         :symbol-macro definitions)))

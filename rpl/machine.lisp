@@ -29,8 +29,8 @@
 ;;; Defining nodes.
 
 (defmacro define-node (name (&rest slots) documentation &key step unwind child-ended)
-  "Define the node type NAME, or (NAME PARENT), with SLOTS, each (slot type), and the functions named
-for it."
+  "Define the node type NAME, or (NAME PARENT), with SLOTS, each (slot type), and the functions
+named for it."
   (destructuring-bind (name &optional (parent 'node)) (ensure-list name)
     `(defstruct (,name (:include ,parent
                         (step #',step)
@@ -236,8 +236,8 @@ or evaporates already is left alone. Call it only from plans; from elsewhere pos
          (form (current-form (frame-node frame) frame)))
     (unless (member form (runner-warned runner) :test #'eq)
       (push form (runner-warned runner))
-      (warning-set "A plan's Lisp code ran for " (/ (round seconds 0.001) 1000.0) " s without a pause: "
-                   (form-text form) " in " (task-label task)))))
+      (warning-set "A plan's Lisp code ran for " (/ (round seconds 0.001) 1000.0)
+                   " s without a pause: " (form-text form) " in " (task-label task)))))
 
 (defun timed-step (clock node task frame value)
   "Do the step of NODE; warn if it took long by CLOCK."

@@ -85,8 +85,8 @@
                                      :before ,before)))))
 
 (defmacro partial-order (steps &body constraints)
-  "Run STEPS in a plan side by side, as PAR, under CONSTRAINTS: by (:order a b) the step tagged b does
-not start before the one tagged a is over. Steps are tagged by (:tag name form)."
+  "Run STEPS in a plan side by side, as PAR, under CONSTRAINTS: by (:order a b) the step tagged b
+does not start before the one tagged a is over. Steps are tagged by (:tag name form)."
   (misplaced 'partial-order (list* steps constraints)))
 
 (defmacro plan (steps &rest constraints)

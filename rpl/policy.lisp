@@ -26,8 +26,8 @@
       (complete task (and (eq how :succeeded) result)))))
 
 (defmacro with-policy (policy &body body)
-  "Run BODY in a plan under POLICY, a form that runs beside it, starts before it and takes precedence
-over it. The end of BODY ends POLICY; if one of them fails, all fails. Return BODY's value
+  "Run BODY in a plan under POLICY, a form that runs beside it, starts before it and takes
+precedence over it. The end of BODY ends POLICY; if one of them fails, all fails. Return BODY's value
 (manual D.4)."
   (misplaced 'with-policy (list* policy body)))
 

@@ -44,7 +44,8 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
 
 (defmethod print-object ((procedure procedure) stream)
   (print-unreadable-object (procedure stream :type t)
-    (format stream "~:[~;~:*~A ~]~:A" (procedure-name procedure) (procedure-lambda-list procedure))))
+    (format stream "~:[~;~:*~A ~]~:A" (procedure-name procedure)
+            (procedure-lambda-list procedure))))
 
 ;;; Which names are plans' is also known while the file that defines them is compiled.
 

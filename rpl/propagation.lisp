@@ -111,7 +111,7 @@
     (error 'wrong-argument :operator operator :name 'fluent :value fluent
                            :expected "a fluent made by create-fluent or state"))
   (when *spreading*
-    (reject-use "A function lifted over fluents set ~A. Set fluents in plans; networks only compute."
+    (reject-use "A function lifted over fluents set ~A. Networks only compute: set it in a plan."
                 fluent)))
 
 (defun set-value (fluent value)

@@ -22,17 +22,20 @@ builds the plan, that hold their nodes."
   (task-tags '() :type list)
   (several nil :type boolean))
 
-(defun inner-scope (scope &rest changes &key environment &allow-other-keys)
-  "Return a copy of SCOPE with CHANGES, slots and values; ENVIRONMENT is a list of arguments for
-augmenting the macro environment."
-  (let ((inner (copy-scope scope)))
-    (loop for (slot value) on changes by #'cddr
-          unless (eq slot :environment)
-            do (setf (slot-value inner (find-symbol (symbol-name slot) :ars-magna.rpl)) value))
-    (when environment
-      (setf (scope-environment inner)
-            (apply #'sb-cltl2:augment-environment (scope-environment scope) environment)))
-    inner))
+(defmacro inner-scope (scope &rest changes)
+  "Return a copy of SCOPE in which the slots named in CHANGES, a property list, have new values."
+  (with-gensyms (inner)
+    `(let ((,inner (copy-scope ,scope)))
+       (setf ,@(loop for (slot value) on changes by #'cddr
+                     append `((,(symbolicate 'scope- slot) ,inner) ,value)))
+       ,inner)))
+
+(defun layered-scope (scope layer level &rest additions)
+  "Return SCOPE with LAYER, at LEVEL, as its innermost; macros get to see ADDITIONS."
+  (inner-scope scope
+               :level level
+               :layers (cons layer (scope-layers scope))
+               :environment (apply #'extended-environment (scope-environment scope) additions)))
 
 (defun single-scope (scope)
   "Return SCOPE for an expression of which only one value matters."
@@ -44,28 +47,24 @@ augmenting the macro environment."
 
 (defun variable-scope (scope variables)
   "Return SCOPE with VARIABLES bound in an environment of their own."
-  (inner-scope scope
-               :level (1+ (scope-level scope))
-               :layers (cons (list :variables (1+ (scope-level scope)) variables)
-                             (scope-layers scope))
-               :environment (list :variable (remove-duplicates variables))))
+  (let ((level (1+ (scope-level scope))))
+    (layered-scope scope (list :variables level variables) level
+                   :variable (remove-duplicates variables))))
 
 (defun function-scope (scope names)
   "Return SCOPE with the local functions NAMES held in an environment of their own."
-  (inner-scope scope
-               :level (1+ (scope-level scope))
-               :layers (cons (list :functions (1+ (scope-level scope)) names)
-                             (scope-layers scope))
-               :environment (list :function names)))
+  (let ((level (1+ (scope-level scope))))
+    (layered-scope scope (list :functions level names) level :function names)))
 
-(defun wrapped-scope (scope wrapping environment)
-  "Return SCOPE with WRAPPING, a form to be completed by a body, around leaves."
-  (inner-scope scope
-               :layers (cons (list :wrapping wrapping) (scope-layers scope))
-               :environment environment))
+(defun wrapped-scope (scope wrapping &rest additions)
+  "Return SCOPE with WRAPPING, a form to be completed by a body, around leaves; macros get to see
+ADDITIONS."
+  (apply #'layered-scope scope (list :wrapping wrapping) (scope-level scope) additions))
 
-(defun special-variable-p (variable scope)
-  (eq :special (sb-cltl2:variable-information variable (scope-environment scope))))
+(defun scope-variables (scope)
+  "Return the variables of the plan that are visible in SCOPE."
+  (loop for (kind nil names) in (scope-layers scope)
+        when (eq kind :variables) append names))
 
 ;;; How a leaf sees its scope.
 

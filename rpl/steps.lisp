@@ -41,12 +41,13 @@ get their chance between steps. In ordinary Lisp, PROGN (manual D.2)."
   (body-code steps scope))
 
 (define-plan-form "LOCALLY" nil (&rest steps) (form scope)
-  (if (declared-special (all-variables scope) steps)
+  (if (declared-special (scope-variables scope) steps)
       (refuse-code form scope)
       (binding-body-code steps scope)))
 
 (define-plan-form "THE" nil (type part) (form scope)
-  (progn type (plan-code part scope)))
+  (declare (ignore type))
+  (plan-code part scope))
 
 (define-plan-form "SETQ" nil (&rest pairs) (form scope)
   (if (cddr pairs)
@@ -60,7 +61,3 @@ get their chance between steps. In ordinary Lisp, PROGN (manual D.2)."
       (hoisted-code form scope)
       `(make-plan-call :form ',form
                        :enter ,(value-lambda `(enter-plan ,@arguments) scope))))
-
-(defun all-variables (scope)
-  (loop for (kind nil names) in (scope-layers scope)
-        when (eq kind :variables) append names))

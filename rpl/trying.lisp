@@ -52,8 +52,8 @@
     (values t frame nil)))
 
 (defmacro try-in-order (&body attempts)
-  "Run ATTEMPTS in a plan one after the other until one succeeds; return its value. If all fail, fail
-with a composite failure."
+  "Run ATTEMPTS in a plan one after the other until one succeeds; return its value. If all fail,
+fail with a composite failure."
   (misplaced 'try-in-order attempts))
 
 (defmacro try-one (&body attempts)
@@ -94,8 +94,8 @@ otherwise as written."
                     frame)))))
 
 (defmacro try-each-in-order ((variable sequence) &body body)
-  "Run BODY in a plan with VARIABLE bound to each element of SEQUENCE in turn until it succeeds; return
-its value. If it never does, fail with a composite failure."
+  "Run BODY in a plan with VARIABLE bound to each element of SEQUENCE in turn until it succeeds;
+return its value. If it never does, fail with a composite failure."
   (misplaced 'try-each-in-order (list* (list variable sequence) body)))
 
 (define-plan-form "TRY-EACH-IN-ORDER" :must ((variable sequence) &rest body) (form scope)

@@ -18,7 +18,8 @@
 (test compiler.typed-bindings-are-nisps
   (is (equal '(1 nil) (plan-value (let ((a 1) - INTEGER (b nil) - (~ LIST))
                                     (rpl:wait-time 1)
-                                    (list a b))))))
+                                    (list a b)))))
+  (is (equal '(1 nil) (plan-value (let ((a 1) - INTEGER (b nil) - (~ LIST)) (list a b))))))
 
 (test compiler.arguments-may-wait-and-keep-their-order
   (is (equal '(1 :x 2 (3)) (plan-value
@@ -69,7 +70,8 @@
   (is (= 6 (plan-value (do ((i 0 (1+ i)) (sum 0 (+ sum i))) ((= i 4) sum) (rpl:wait-time 1)))))
   (is (equal '(1 (2)) (plan-value (destructuring-bind (a &rest b) '(1 2)
                                     (rpl:wait-time 1)
-                                    (list a b))))))
+                                    (list a b)))))
+  (is (equal '(1 nil) (plan-value (let ((a 1) - INTEGER (b nil) - (~ LIST)) (list a b))))))
 
 (test compiler.local-functions-and-macros
   (is (equal '(2 4) (plan-value (flet ((twice (x) (* 2 x)))
@@ -83,7 +85,9 @@
                                    (oddly (n) (rpl:wait-time 1) (if (= n 0) :odd (evenly (- n 1)))))
                             (list (evenly 4) (rpl:plan-time))))))
   (is (equal '(3 7) (plan-value (let ((base 3))
-                                  (flet ((wait-and (x &optional (y base)) (rpl:wait-time 1) (+ x y)))
+                                  (flet ((wait-and (x &optional (y base))
+                                           (rpl:wait-time 1)
+                                           (+ x y)))
                                     (list (wait-and 0) (wait-and 3 4)))))))
   (is (= 3 (plan-value (macrolet ((pause (n) `(rpl:wait-time ,n)))
                          (pause 3)

@@ -109,7 +109,9 @@
 
 (test post-batch.from-many-threads-loses-nothing
   (with-runner (runner)
-    (let* ((posts 500) (fluents (loop repeat 4 collect (fluent))) (heard (make-list 4 :initial-element 0))
+    (let* ((posts 500)
+           (fluents (loop repeat 4 collect (fluent)))
+           (heard (make-list 4 :initial-element 0))
            (posted (base:make-semaphore "posted"))
            (threads (loop for f in fluents
                           collect (let ((f f))

@@ -1,12 +1,12 @@
-;;;; rpl-stress.lisp -- random plans: against a model of when they end, and for what they leave behind.
+;;;; rpl-stress.lisp -- random plans: when they end, by a model, and what they leave behind.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)
 
 ;;; The model. A plan here is a list: (wait span), (fail span), (leave span), (seq plan...), (par
 ;;; plan...), (pursue plan...), (try-all plan...), (try plan...), (protect plan span), (handle plan
-;;; span), (police policy plan) or (around plan), which (leave span) leaves. OUTCOME is :ok, :fail or
-;;; :leave. Spans are so chosen that no two things happen at one instant.
+;;; span), (police policy plan) or (around plan), which (leave span) leaves. OUTCOME is :ok, :fail
+;;; or :leave. Spans are so chosen that no two things happen at one instant.
 
 (defun child-ends (plans start)
   (loop for plan in plans collect (multiple-value-list (ending plan start))))
