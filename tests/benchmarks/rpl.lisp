@@ -1,4 +1,4 @@
-;;;; rpl.lisp -- what plans cost: tasks that wait, parallel constructs, networks. Is nothing lost?
+;;;; rpl.lisp -- what plans cost, and whether anything is ever lost.
 
 (defpackage :ars-magna.benchmarks.rpl
   (:documentation "Benchmarks of the plan language.")
