@@ -5,8 +5,8 @@
 ;;; A hand or camera is in the open with its robot (location NIL), inside a thing, or inside one of
 ;;; the robot's storage bins. What a hand holds is where the hand is. Invariants: nothing is inside
 ;;; itself by way of a hand; after each tick, what a part is inside of is within the robot's
-;;; reach, and a hand holds one thing at most. Parts take up no room: what they reach into has as
-;;; much capacity left as before.
+;;; reach and in no bin that is closed or another robot's; and a hand holds one thing at most. Parts
+;;; take up no room: what they reach into has as much capacity left as before.
 
 (defun in-location (thing location)
   "True if THING is directly in LOCATION: a hand, a storage bin, another thing, or :FLOOR (manual
@@ -96,12 +96,22 @@ it holds moves along, what it tracks is lost; warnings say so."
   (warning-set (format nil "~A was pulled out of ~A" part (location-name (part-location part))))
   (move-part part nil))
 
+(defun bin-around (part)
+  "Return the storage bin, of whichever robot, that PART is in, directly or not, or NIL."
+  (loop for outer = (part-location part) then (outer-location outer)
+        while outer
+        when (storage-bin-p outer) return outer))
+
 (defun astray-p (part)
-  "True if PART is inside a thing that is not within its robot's reach any more."
+  "True if PART is inside a thing that is not within its robot's reach any more, or that has got
+into a closed bin or that of another robot."
   (let ((location (part-location part)))
     (and (thing-p location)
-         (multiple-value-bind (x y) (thing-position location)
-           (not (and x (within-reach-p (part-robot part) x y)))))))
+         (or (multiple-value-bind (x y) (thing-position location)
+               (not (and x (within-reach-p (part-robot part) x y))))
+             (let ((bin (bin-around part)))
+               (and bin (or (storage-bin-closed-p bin)
+                            (not (eq (part-robot part) (storage-bin-robot bin))))))))))
 
 (declaim (inline settle-part))
 (defun settle-part (part)

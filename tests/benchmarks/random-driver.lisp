@@ -1,0 +1,25 @@
+;;;; random-driver.lisp -- the random driver of the tests, for a million commands.
+
+;;; Prints how many commands a second it issues, with the world watched after each tick, and what
+;;; it found wrong, which should be nothing. The tests drive a twentieth of this.
+
+(in-package :ars-magna.benchmarks)
+
+(handler-bind ((warning #'muffle-warning))
+  (asdf:load-system "ars-magna/tests"))
+
+(defparameter *rides* 50)
+(defparameter *commands* 20000)
+
+(defun troubles-of-ride (seed)
+  (uiop:symbol-call :ars-magna.tests :troubles-of-ride *commands* seed))
+
+(let* ((troubles '())
+       (seconds (seconds-for (lambda ()
+                               (loop for seed from 100 repeat *rides*
+                                     do (dolist (trouble (troubles-of-ride seed))
+                                          (push (cons seed trouble) troubles)))))))
+  (say "random driver, every tick watched" (/ (* *rides* *commands*) seconds) "commands/s")
+  (say "  contradictions, lost or doubled answers" (length troubles) "")
+  (loop for (seed . trouble) in (reverse troubles) repeat 10
+        do (format t "seed ~D: ~A~%" seed trouble)))
