@@ -47,7 +47,12 @@ builds the plan, that hold their nodes."
 
 (defun variable-scope (scope variables)
   "Return SCOPE with VARIABLES bound in an environment of their own."
-  (let ((level (1+ (scope-level scope))))
+  (let ((level (1+ (scope-level scope)))
+        (special (find-if (lambda (variable)
+                            (special-variable-p variable (scope-environment scope)))
+                          variables)))
+    (when special
+      (reject-clause "plan" special "the name of a lexical variable; this one is special"))
     (layered-scope scope (list :variables level variables) level
                    :variable (remove-duplicates variables))))
 

@@ -279,7 +279,9 @@
   (refuses base:malformed-definition (rpl:handle-failure (lost) (rpl:wait-time 1)))
   (refuses base:malformed-definition
     (rpl:partial-order ((:tag a 1) (:tag b 2)) (:order a b) (:order b a)))
-  (refuses base:malformed-definition (rpl:partial-order ((:tag a 1)) (:order a c))))
+  (refuses base:malformed-definition (rpl:partial-order ((:tag a 1)) (:order a c)))
+  (refuses base:malformed-definition (dolist (*print-base* list) (rpl:wait-time 1)))
+  (refuses base:malformed-definition (rpl:with-tags (:tag *print-base* (rpl:wait-time 1)))))
 
 (test compiler.a-construct-outside-of-plans-is-refused
   (signals base:misuse (macroexpand-1 '(rpl:par 1 2)))
