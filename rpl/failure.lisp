@@ -49,9 +49,14 @@ innermost first.")
     (format stream "Plan failure~@[ ~S~]~{ ~S~}" (failure-class failure) (failure-data failure)))
   (:method ((failure composite-failure) stream)
     (format stream "All ~D attempts failed: ~{~A~^; ~}" (length (composite-failures failure))
-            (composite-failures failure)))
+            (mapcar #'failure-text (composite-failures failure))))
   (:method ((failure lisp-failure) stream)
-    (format stream "Lisp error in a plan: ~A" (lisp-failure-condition failure))))
+    (format stream "Lisp error in a plan: ~A" (failure-text (lisp-failure-condition failure)))))
+
+(defun failure-text (failure)
+  "Return what FAILURE, or another condition, reports; its type if that signals an error."
+  (handler-case (princ-to-string failure)
+    (error () (format nil "~S, whose report fails" (type-of failure)))))
 
 (defun failure-type-p (object)
   (and (symbolp object)

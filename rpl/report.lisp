@@ -36,14 +36,14 @@ state, expression, and what each waits for."
 
 (defun write-failure-report (failure stream)
   (format stream "~A~%  at tick ~A in ~A~%  task: ~{~A~^ > ~}~%"
-          failure (failure-tick failure) (form-text (failure-form failure))
+          (failure-text failure) (failure-tick failure) (form-text (failure-form failure))
           (failure-task-path failure))
   (format stream "  plan:~%~{    ~A~%~}"
           (mapcar #'form-text (failure-plan-backtrace failure)))
   (when (failure-cause failure)
-    (format stream "  while handling: ~A~%" (failure-cause failure)))
+    (format stream "  while handling: ~A~%" (failure-text (failure-cause failure))))
   (dolist (suppressed (failure-suppressed failure))
-    (format stream "  and in a cleanup: ~A~%" suppressed))
+    (format stream "  and in a cleanup: ~A~%" (failure-text suppressed)))
   (when (and (typep failure 'lisp-failure) (string/= "" (lisp-failure-backtrace failure)))
     (format stream "  Lisp:~%~A" (lisp-failure-backtrace failure))))
 

@@ -143,7 +143,7 @@ return its value. If it never does, fail with a composite failure."
   "Record that FAILURE happened while TASK was cleaning up because of FIRST."
   (if (typep first 'plan-failure)
       (push failure (failure-suppressed first))
-      (warning-set "A cleanup failed in " (task-label task) ": " (princ-to-string failure))))
+      (warning-set "A cleanup failed in " (task-label task) ": " (failure-text failure))))
 
 (defmacro evap-protect (form cleanup &key limit)
   "Run FORM in a plan, and CLEANUP however FORM ends: well, by failure, by evaporation or by being
