@@ -40,10 +40,13 @@
 (defun engine-call-p (call)
   (member (first call) '(run-steps step-leaf call-catching-trouble)))
 
+(defun signalling-call-p (call)
+  (and (symbolp (first call)) (string= "%SIGNAL" (first call))))
+
 (defun lisp-backtrace ()
   "Return as a string the Lisp calls under way in a plan's code that has just signalled an error."
   (let* ((calls (sb-debug:list-backtrace :count 100))
-         (signalled (member 'sb-kernel::%signal calls :key #'first)))
+         (signalled (member-if #'signalling-call-p calls)))
     (with-output-to-string (stream)
       (loop for call in (if signalled (rest signalled) calls)
             for number from 0

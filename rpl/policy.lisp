@@ -27,8 +27,8 @@
 
 (defmacro with-policy (policy &body body)
   "Run BODY in a plan under POLICY, a form that runs beside it, starts before it and takes
-precedence over it. The end of BODY ends POLICY; if one of them fails, all fails. Return BODY's value
-(manual D.4)."
+precedence over it. The end of BODY ends POLICY; if one of them fails, all fails. Return BODY's
+value (manual D.4)."
   (misplaced 'with-policy (list* policy body)))
 
 (define-plan-form "WITH-POLICY" :must (policy &rest body) (form scope)

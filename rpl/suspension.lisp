@@ -1,4 +1,4 @@
-;;;; suspension.lisp -- does an expression make its task wait?
+;;;; suspension.lisp -- whether an expression can make its task wait.
 
 (in-package :ars-magna.rpl)
 
