@@ -126,9 +126,10 @@ designators silently."
 
 (defun check-grips (simulation)
   "Let the watches of grips in SIMULATION see whether they still hold."
-  (dolist (robot (simulation-robots simulation))
+  (declare #.*hot*)                     ; in each tick
+  (dolist (robot (world-robots (simulation-world simulation)))
     (loop for hand across (robot-hands robot)
-          when (resource-event hand) do (check-grip hand))))
+          do (when (resource-event (the hand hand)) (check-grip hand)))))
 
 (defvar *grips-phase* (lambda (simulation) (check-grips simulation))
   "The phase of a tick that looks after grips, when all else that moves things is done.")

@@ -113,9 +113,8 @@ into a closed bin or that of another robot."
                (and bin (or (storage-bin-closed-p bin)
                             (not (eq (part-robot part) (storage-bin-robot bin))))))))))
 
-(declaim (inline settle-part))
 (defun settle-part (part)
-  (when (and (part-location part) (astray-p part)) (pull-out part)))
+  (when (astray-p part) (pull-out part)))
 
 (defun settle-hand (hand)
   (settle-part hand)
@@ -125,9 +124,11 @@ into a closed bin or that of another robot."
 (defun settle-parts (robot)
   "Pull out the parts of ROBOT that are inside things out of its reach, and let its hands drop
 what they hold too much."
-  (declare (type robot robot))
-  (loop for hand across (robot-hands robot) do (settle-hand hand))
-  (loop for camera across (robot-cameras robot) do (settle-part camera)))
+  (declare #.*hot* (type robot robot))  ; in each tick
+  (loop for hand across (robot-hands robot)
+        do (when (or (hand-location hand) (rest (hand-contents hand))) (settle-hand hand)))
+  (loop for camera across (robot-cameras robot)
+        do (when (camera-location camera) (settle-part camera))))
 
 (defun break-circle (thing location)
   "If THING, now in LOCATION, is so inside itself, pull out the hand by way of which it is."
@@ -146,7 +147,8 @@ what they hold too much."
     (mapc #'settle-parts (world-robots (thing-world thing)))))
 
 (defun settle-robots (simulation)
-  (mapc #'settle-parts (simulation-robots simulation)))
+  (dolist (robot (world-robots (simulation-world simulation)))
+    (settle-parts robot)))
 
 (defvar *settling-phase* (lambda (simulation) (settle-robots simulation))
   "The phase of a tick that settles parts, before tracks are looked after.")
