@@ -25,7 +25,8 @@ ROBOT; signal BAD-LINE if it stands for none. Without a method, DATUM is the arg
           ((not (typep index 'unsigned-byte))
            (reject-line "~S is no ~A. Give its number." index kind))
           ((< index count) (aref elements index))
-          (t (reject-line "There is no ~A ~D. ~A has ~D, numbered from 0." kind index robot count)))))
+          (t (reject-line "There is no ~A ~D. ~A has ~D, numbered from 0."
+                          kind index robot count)))))
 
 (macrolet ((define-part-argument (type kind elements)
              `(defmethod read-argument ((type (eql ,type)) datum robot)
@@ -73,7 +74,7 @@ ROBOT; signal BAD-LINE if it stands for none. Without a method, DATUM is the arg
 ;;; Reading.
 
 (defun skip-blanks (text start)
-  "Return where, from START, TEXT goes on after blanks; its length if nothing but a comment follows."
+  "Return where, from START, TEXT goes on after blanks; its length if no more than a comment does."
   (let ((position (position-if-not #'blank-p text :start start)))
     (if (and position (char/= (char text position) #\;))
         position

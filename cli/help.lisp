@@ -20,13 +20,17 @@
           collect line))
 
 (defun write-filled (text indent &optional (head ""))
-  "Write TEXT in lines of at most 79 characters from column INDENT on, HEAD before the first."
+  "Write TEXT in lines of at most 79 characters from column INDENT on, after HEAD, which has a line
+of its own if it is too long."
+  (when (>= (length head) indent)
+    (format t "~A~%" (shiftf head "")))
   (loop for line in (filled-lines text (- 79 indent))
         for start = head then ""
         do (format t "~VA~A~%" indent start line)))
 
 (defun split-words (text)
-  (loop for start = (position-if-not #'blank-p text) then (position-if-not #'blank-p text :start end)
+  (loop for start = (position-if-not #'blank-p text)
+          then (position-if-not #'blank-p text :start end)
         while start
         for end = (or (position-if #'blank-p text :start start) (length text))
         collect (subseq text start end)))
@@ -43,7 +47,7 @@
 (defun write-menu (lines)
   "List LINES: how each is typed, and what it does."
   (dolist (line lines)
-    (write-filled (first-sentence (line-sentence line)) 27 (format nil "  ~24A " (usage line)))))
+    (write-filled (first-sentence (line-sentence line)) 27 (format nil "  ~A" (usage line)))))
 
 (defun lines-of (family)
   (remove family (all-lines) :key #'line-family :test-not #'eq))
@@ -61,10 +65,10 @@ more. The beginning of a name will do. A line in parentheses is Lisp.~%"))
 
 (defun slot-help (slot)
   "Return what HELP says of SLOT."
-  (format nil "~A: ~A~:[, ~A~;~*~]~:[~; (may be left out)~]."
-          (slot-name slot) (slot-text slot)
-          (or (keywordp (slot-type slot)) (string= (slot-text slot) (slot-words slot)))
-          (slot-words slot) (slot-optional-p slot)))
+  (format nil "~A: ~{~A~^; ~}~:[~; (may be left out)~]." (slot-name slot)
+          (remove "" (remove-duplicates (list (slot-text slot) (slot-words slot)) :test #'string=)
+                  :test #'string=)
+          (slot-optional-p slot)))
 
 (defun write-help (line)
   (format t "~A~%" (usage line))

@@ -15,7 +15,7 @@
   (format nil "~,1F" number))
 
 (defun value-text (value number-text)
-  "Return the VALUE of an attribute as STATUS and THINGS show it, numbers by the function NUMBER-TEXT."
+  "Return the VALUE of an attribute as STATUS and THINGS show it, numbers by NUMBER-TEXT."
   (cond ((eq value t) "Yes")
         ((null value) "No")
         ((symbolp value) (string-capitalize value))

@@ -6,8 +6,8 @@
 ;;; DEFINE-LINE; the robot's come from the command layer (see robot-lines.lisp). HELP, the menus and
 ;;; what is said of wrong arguments come from these definitions. Manual E.
 
-(defstruct (parameter-of-line (:conc-name slot-) (:constructor make-slot (name type text optional-p))
-                              (:copier nil))
+(defstruct (parameter-of-line (:conc-name slot-) (:copier nil)
+                              (:constructor make-slot (name type text optional-p)))
   "An argument of a line command. TYPE is an argument type of the command layer, or :TOKEN, for
 the characters up to the next blank, or :REST, for all that is left of the line."
   (name "" :type string :read-only t)
@@ -47,7 +47,7 @@ the characters up to the next blank, or :REST, for all that is left of the line.
     (line-name line)))
 
 (defun slot-form (parameter)
-  "Return a form that makes the slot for PARAMETER of DEFINE-LINE: (variable type text [:optional])."
+  "Return a form that makes the slot for PARAMETER of DEFINE-LINE."
   (destructuring-bind (variable type text &optional optional) parameter
     `(make-slot ,(string-downcase variable) ',type ,text ,(eq optional :optional))))
 

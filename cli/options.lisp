@@ -18,7 +18,8 @@
 
 (defun parse-pace (text)
   (handler-case (parse-rate text)
-    (bad-line () (reject-usage "--rate takes a number of ticks per second, or free, not ~A." text))))
+    (bad-line ()
+      (reject-usage "--rate takes a number of ticks per second, or free, not ~A." text))))
 
 (defparameter *options*
   '(("--world" :world identity) ("--robot" :robot identity) ("--seed" :seed parse-seed)

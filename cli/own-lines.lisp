@@ -25,7 +25,7 @@
 
 (define-line "EVAL" (session (exp :rest "a Lisp form"))
     (:general)
-    "Evaluate EXP as Lisp and print its values. A line that begins with a parenthesis does the same."
+    "Evaluate EXP as Lisp and print its values; so does a line that begins with a parenthesis."
   (evaluate-text session exp))
 
 (define-line "REPEAT" (session (num count "how often") (cmd :rest "a command, with its arguments"))

@@ -35,7 +35,7 @@ comes of earlier lines if the session waits for that."
     (values (subseq text start end) (subseq text end))))
 
 (defun expand-alias (text &optional known)
-  "Return TEXT with the alias that it begins with, if any, replaced; again and again, but each once."
+  "Return TEXT with the alias that it begins with, if any, replaced; again, but each only once."
   (multiple-value-bind (name rest) (split-line text)
     (let ((alias (assoc name *aliases* :test #'string-equal)))
       (if (and alias (not (member alias known)))

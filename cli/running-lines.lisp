@@ -100,7 +100,8 @@
 (define-line "PARAMS" (session (name :token "the name of a parameter" :optional)
                                (value :rest "its new value" :optional))
     (:running)
-    "List the parameters of the simulation, or those whose names begin with NAME; give one a new VALUE."
+    "List the parameters of the simulation, or those whose names begin with NAME; give one a new
+VALUE."
   (let ((parameters (parameters-like (or name ""))))
     (cond ((rest parameters)
            (when value (reject-line "~A is the beginning of several names." name))

@@ -90,9 +90,9 @@ with_lock() {  # COMMAND...
     fi
 }
 
-compile() {  # LOG LISP-FORM: evaluate the form of build.lisp; show the log only if that fails.
+compile() {  # LOG LISP-FORM: evaluate the form of build.lisp; show its troubles if that fails.
     plain_sbcl --load "$root/cli/build.lisp" --eval "$2" >"$1" 2>&1 && return
-    tail -n 60 "$1" >&2
+    grep -v -e '^; compil' -e '^; wrote' -e '^$' "$1" | tail -n 60 >&2
     say "that did not compile; all of it is in $1"
     return 1
 }
