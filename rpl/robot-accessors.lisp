@@ -11,10 +11,11 @@
     (:bin (storage-bin-p value))))
 
 (defun find-part (kind index operator)
-  "Return the part of KIND with INDEX (an integer, a part or a fluent) of the plans' robot."
+  "Return the part of KIND with INDEX (an integer, one of the parts, or a fluent) of the plans'
+robot."
   (let* ((index (fluent-value index))
          (parts (parts (rpl-robot) kind)))
-    (cond ((part-of-kind-p kind index) index)
+    (cond ((and (part-of-kind-p kind index) (find index parts)) index)
           ((and (integerp index) (< -1 index (length parts))) (svref parts index))
           (t (error 'wrong-argument
                     :operator operator :name (string-downcase kind) :value index

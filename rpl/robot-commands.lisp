@@ -57,18 +57,38 @@
   (:set camera-tracking-error* err)
   (:when (null err) (:pulse camera-tracking*)))
 
+;; What it ended tells of that first, with :INTERRUPT.
 (define-outcome (camera-untrack) ()
-  (:when err (:set camera-tracking-error* err)))
+  (:set camera-tracking-error* err))
 
-;;; Hands.
+;;; Hands. One inside a box inside a bin is, when it comes out of the box, inside the bin.
+
+(defvar *insides* (make-hash-table :test 'eq :weakness :key :synchronized t)
+  "For each hand that is inside of something, what it was told to go into, innermost first.")
+
+(defun depth-inside (hand)
+  "Return inside of how many things, one in the other, HAND is."
+  (loop for outer = (part-location hand) then (outer-location outer)
+        while outer count t))
+
+(defun went-into (hand destination)
+  "Note that HAND went into DESTINATION; return that."
+  (setf (gethash hand *insides*)
+        (cons destination (last (gethash hand *insides*) (1- (depth-inside hand)))))
+  destination)
+
+(defun came-out (hand)
+  "Return what HAND, which came out of something, was told to go into before that; NIL for nothing."
+  (first (setf (gethash hand *insides*)
+               (last (gethash hand *insides*) (depth-inside hand)))))
 
 (define-outcome (hand-insert hand-insert-bin) (destination)
-  (:when (null err) (:set hand-inside* destination))
+  (:when (null err) (:set hand-inside* (went-into resource destination)))
   (:set hand-error* err)
   (:pulse hand-moved*))
 
 (define-outcome (hand-remove) ()
-  (:when (null err) (:set hand-inside* nil))
+  (:when (null err) (:set hand-inside* (came-out resource)))
   (:set hand-error* err)
   (:pulse hand-moved*))
 

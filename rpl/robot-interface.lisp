@@ -4,7 +4,7 @@
 
 ;;; Headless, plans react at the end of each tick until all wait, so that they see every tick. Live,
 ;;; they run in a thread of their own, which exists while there are plans; the simulator only
-;;; posts to it. Whoever lets plans react holds the interface's lock.
+;;; posts to it and never waits for it. Whoever lets plans react holds the interface's lock.
 
 (defparameter *trace-plans* nil
   "When true, RPL-INIT-ROBOT makes the plans' runner keep a trace; see PLAN-TRACE.")
@@ -16,8 +16,13 @@
   (runner nil :type (or null plan-runner))
   (observer nil :type (or null function))
   (lock (make-lock "plans") :read-only t)
+  ;; The thread that holds the lock, so that plans may start and end others.
+  (holder nil)
   (wake-up (make-semaphore "plans") :read-only t)
-  (thread nil))
+  (thread nil :type t)
+  (closed-p nil)
+  ;; How many commands of plans are under way.
+  (under-way 0 :type sb-ext:word))
 
 (defvar *interface* nil
   "The interface in use; see RPL-INIT-ROBOT.")
@@ -26,8 +31,26 @@
 
 ;;; Reacting.
 
+(defun holding-p (interface)
+  "True if this thread is letting the plans of INTERFACE react, or looks at them."
+  (eq (interface-holder interface) (current-thread)))
+
+(defun call-with-plans (function interface)
+  "Call FUNCTION while nobody else touches the plans of INTERFACE."
+  (if (holding-p interface)
+      (funcall function)
+      (with-lock ((interface-lock interface))
+        (setf (interface-holder interface) (current-thread))
+        (unwind-protect (funcall function)
+          (setf (interface-holder interface) nil)))))
+
+(defmacro with-plans ((interface) &body body)
+  "Run BODY while nobody else touches the plans of INTERFACE."
+  `(call-with-plans (lambda () ,@body) ,interface))
+
 (defun react-fully (interface)
-  "Let the plans react to time and to all that was posted, until all of them wait."
+  "Let the plans react to time and to all that was posted, until all of them wait. The caller holds
+the plans; a plan that is reacting changes nothing."
   (let ((runner (interface-runner interface))
         (simulation (interface-simulation interface)))
     (advance-timers runner (simulation-tick simulation))
@@ -42,46 +65,69 @@
     (and tick (>= (simulation-tick (interface-simulation interface)) tick))))
 
 (defun after-tick (interface)
-  "Called by the simulation's owner after each tick."
+  "Called by the simulation's owner after each tick. In a live one only the plans' thread reacts: a
+plan may be waiting for the owner to answer it."
   (cond ((interface-thread interface)
          (when (time-to-wake-p interface) (wake interface)))
-        (t (with-lock ((interface-lock interface))
-             (unless (interface-thread interface) (react-fully interface))))))
+        ((live-p (interface-simulation interface))
+         (when (plan-runner-tasks (interface-runner interface)) (ensure-thread interface)))
+        (t (with-plans (interface) (react-fully interface)))))
 
 (defun run-thread (interface)
   "Let the plans react to what is posted for as long as there are any."
   (loop
-    (with-lock ((interface-lock interface))
-      (react-fully interface)
-      (unless (plan-runner-tasks (interface-runner interface))
+    (with-plans (interface)
+      (call-user-code #'react-fully "running plans" interface)
+      (unless (and (plan-runner-tasks (interface-runner interface))
+                   (not (interface-closed-p interface)))
         (setf (interface-thread interface) nil)
         (return)))
     (wait-on-semaphore (interface-wake-up interface))))
 
 (defun ensure-thread (interface)
-  "Have a thread for the plans of a live simulation. The caller holds the lock."
+  "Have a thread for the plans of a live simulation."
   (let ((simulation (interface-simulation interface)))
-    (when (and (live-p simulation) (null (interface-thread interface)))
-      (setf (interface-thread interface)
-            (start-thread (lambda ()
-                            (call-as-owner simulation (lambda () (run-thread interface))))
-                          (format nil "plans of ~A" (interface-robot interface)))))))
+    (when (and (live-p simulation)
+               (null (sb-ext:compare-and-swap (interface-thread interface) nil :starting)))
+      (start-thread (lambda ()
+                      (setf (interface-thread interface) (current-thread))
+                      (call-as-owner simulation (lambda () (run-thread interface))))
+                    (format nil "plans of ~A" (interface-robot interface))))))
 
 ;;; Setting up.
+
+(defun busy-p (interface)
+  "True if a command of a plan is under way, or something else that is sure to happen. Kickers do not
+count: they tell plans nothing."
+  (let ((simulation (interface-simulation interface)))
+    (or (plusp (interface-under-way interface))
+        (plusp (agenda-pending (simulation-agenda simulation)))
+        (simulation-inbox simulation))))
+
+(defun seconds-when-live (simulation)
+  "Return the time in seconds, by which plans that hog their thread are noticed; headless 0."
+  (if (live-p simulation)
+      (/ (get-internal-real-time) (float internal-time-units-per-second 1d0))
+      0d0))
 
 (defun make-runner (interface)
   (let ((simulation (interface-simulation interface)))
     (make-plan-runner :trace *trace-plans*
-                      :dice (make-dice (ars-magna.time:simulation-seed simulation) :plans)
+                      :dice (make-dice (simulation-seed simulation) :plans)
                       :tick (simulation-tick simulation)
-                      :busy-p (lambda () (not (ars-magna.time:idle-p simulation)))
+                      :busy-p (lambda () (busy-p interface))
+                      :clock (lambda () (seconds-when-live simulation))
+                      :slow *hog-seconds*
                       :on-post (lambda () (wake interface)))))
 
-(defun detach (interface)
+(defun close-interface (interface)
   "Let INTERFACE hear no more of its simulation, and its plans end."
   (let ((simulation (interface-simulation interface)))
     (stop-plan (interface-runner interface))
     (asking (simulation) (remove-observer (interface-observer interface) simulation))
+    (unless (or (interface-thread interface) (holding-p interface))
+      (with-plans (interface) (react-fully interface)))
+    (setf (interface-closed-p interface) t)
     (wake interface)))
 
 (defun attach (interface)
@@ -98,27 +144,45 @@ that ROBOT has. Plans under way end. Return ROBOT. To be called before anything 
 interface (manual C); RUN-PLAN does it for the robot of a simulation that has only one."
   (let* ((robot (if (robot-p robot) robot (find-robot robot)))
          (simulation (robot-simulation* robot)))
-    (when (and *interface* (eq simulation (interface-simulation *interface*)))
-      (detach *interface*))
+    (when (and *interface* (ended-by-p *interface* simulation))
+      (close-interface *interface*))
     (make-fluents robot)
     (setf *interface* (make-interface robot simulation))
     (attach *interface*)
     robot))
 
+(defun ended-by-p (interface simulation)
+  "True if plans of INTERFACE must end when others are to run in SIMULATION. One that a headless
+simulation inside of a live one has only inherited is left alone."
+  (or (eq simulation (interface-simulation interface))
+      (not (interface-valid-p interface))
+      (and (live-p simulation) (live-p (interface-simulation interface)))))
+
 (defun robot-simulation* (robot)
   (or (robot-simulation robot)
-      (resident-simulation (ars-magna.world:world-map (robot-world robot)))))
+      (resident-simulation (world-map (robot-world robot)))))
+
+(defun interface-valid-p (interface)
+  "True if the robot of INTERFACE still is in its world, and that in the same simulation."
+  (let ((robot (interface-robot interface))
+        (simulation (interface-simulation interface)))
+    (and (not (interface-closed-p interface))
+         (eq simulation (robot-simulation* robot))
+         (member robot (simulation-robots simulation))
+         t)))
 
 (defun usable-p (interface)
-  "True if the simulation of INTERFACE is still the one of its robot's world."
+  "True if there is an INTERFACE, valid and for the world that we are in, if any."
   (and interface
-       (eq (interface-simulation interface) (robot-simulation (interface-robot interface)))))
+       (interface-valid-p interface)
+       (or (null *world*)
+           (eq *world* (robot-world (interface-robot interface))))))
 
 (defun the-interface ()
   (if (usable-p *interface*)
       *interface*
       (reject-use "No robot to drive. Call (rpl-init-robot ROBOT) first; after a simulator has been ~
-                   started anew, call it again.")))
+                   started anew, or the robot defined anew, call it again.")))
 
 (defun rpl-robot ()
   "Return the robot that plans drive. Signals MISUSE without one."
@@ -127,3 +191,15 @@ interface (manual C); RUN-PLAN does it for the robot of a simulation that has on
 (defun rpl-runner ()
   "Return the plan runner of the robot that plans drive; see PLAN-TRACE, PRINT-TASKS."
   (interface-runner (the-interface)))
+
+;;; When a simulator starts.
+
+(defun forget-interface (robot options)
+  "End the plans of a simulation that is gone, now that the simulator of ROBOT has started."
+  (declare (ignore options))
+  (when (and *interface*
+             (not (eq (interface-simulation *interface*) (robot-simulation robot))))
+    (unless (interface-valid-p *interface*) (close-interface *interface*))
+    (setf *interface* nil)))
+
+(pushnew 'forget-interface *simulator-hooks*)

@@ -28,18 +28,38 @@
       (values (rpl-robot) arguments)
       (values (convert-argument (first arguments) type operator) (rest arguments))))
 
+(defun ends-p (command err)
+  "True if an answer of COMMAND with the error code ERR is its last: a track that begins will end."
+  (or err (not (eq 'camera-track (command-name command)))))
+
+(defun answering (interface command outcome)
+  "Return a continuation for COMMAND: it posts what OUTCOME makes of the answer."
+  (sb-ext:atomic-incf (interface-under-way interface))
+  (lambda (err resource &rest results)
+    (post-batch (interface-runner interface) (apply outcome resource err results))
+    (when (ends-p command err)
+      (sb-ext:atomic-decf (interface-under-way interface)))))
+
 (defun command-in-plan (operator command outcome arguments)
   "Issue COMMAND as the plan function OPERATOR, and post what OUTCOME, a function of the resource,
 the error code and the results, makes of its end."
-  (let ((runner (rpl-runner)))
+  (let ((interface (the-interface)))
     (multiple-value-bind (resource arguments)
         (convert-resource arguments (spec-type (command-resource command)) operator)
-      (apply (command-name command) resource
-             (append (loop for spec in (command-parameters command)
-                           for argument in arguments
-                           collect (convert-argument argument (spec-type spec) operator))
-                     (list (lambda (err resource &rest results)
-                             (post-batch runner (apply outcome resource err results)))))))))
+      (let ((arguments (loop for spec in (command-parameters command)
+                             for argument in arguments
+                             collect (convert-argument argument (spec-type spec) operator))))
+        (check-in-plan operator command arguments)
+        (apply (command-name command) resource
+               (append arguments (list (answering interface command outcome))))))))
+
+(defun check-in-plan (operator command arguments)
+  "Signal WRONG-ARGUMENT in the name of OPERATOR if COMMAND does not take ARGUMENTS."
+  (loop for spec in (command-parameters command)
+        for argument in arguments
+        unless (argument-of-type-p argument (spec-type spec))
+          do (error 'wrong-argument :operator operator :name (spec-name spec) :value argument
+                                    :expected (argument-type-text (spec-type spec)))))
 
 (defun plan-function-name (command-name)
   (intern (format nil "RPL-~A" command-name) :ars-magna.rpl-robot))

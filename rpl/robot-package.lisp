@@ -3,10 +3,12 @@
 (defpackage :ars-magna.rpl-robot
   (:documentation "The rpl- commands, accessors and fluents, and running plans on a simulation.")
   (:use :cl :ars-magna.base :ars-magna.robot :ars-magna.command)
-  (:import-from :ars-magna.world #:world-dice #:remaining-capacity)
+  (:import-from :ars-magna.world #:world-map #:*world* #:remaining-capacity)
   (:import-from :ars-magna.time
                 #:*simulation* #:current-simulation #:simulation-tick #:asking #:add-observer
-                #:remove-observer #:live-p #:run-ticks #:call-as-owner #:grab-resource)
+                #:remove-observer #:live-p #:run-ticks #:call-as-owner #:grab-resource
+                #:simulation-seed #:simulation-agenda #:simulation-inbox #:simulation-thread
+                #:agenda-pending #:*hog-seconds*)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:fluent-value #:post-batch #:react
                 #:apply-next-batch #:advance-timers #:next-wake-time #:make-plan-runner
