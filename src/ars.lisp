@@ -51,7 +51,8 @@
    "JOURNAL-END" "*DEFAULT-RATE*" "*HOG-SECONDS*")
   ;; 3.2.2, 3.4, 3.6, 5.2, A
   (:ars-magna.robot
-   "ROBOT" "CAMERA" "HAND" "STORAGE-BIN" "ODOMETER" "DESIGNATOR" "DEFROBOT" "DEFINE-ROBOT" "FIND-ROBOT"
+   "ROBOT" "CAMERA" "HAND" "STORAGE-BIN" "ODOMETER" "DESIGNATOR" "DEFROBOT" "DEFINE-ROBOT"
+   "FIND-ROBOT"
    "ALL-ROBOTS" "ROBOT-NAME" "ROBOT-POSITION" "ROBOT-ANGLE" "ROBOT-SPEED" "ROBOT-TURN-ANGLE"
    "ROBOT-CAMERAS" "ROBOT-HANDS" "ROBOT-BINS" "ROBOT-CAMERA" "ROBOT-HAND" "ROBOT-STORAGE-BIN"
    "ROBOT-WORLD" "ROBOT-SIMULATION" "CAMERA-FIELD-OF-VIEW" "CAMERA-RESOLUTION" "CAMERA-ANGLE"
@@ -128,7 +129,7 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defpackage :ars-user
-    (:documentation "The package to work in: Common Lisp, ARS and NISP together; XLIB is our canvas.")
+    (:documentation "The package to work in: Common Lisp, ARS and NISP; XLIB is our canvas.")
     (:use :cl :ars :nisp)
     (:shadowing-import-from :nisp "LET" "LOOP" "IF")
     (:shadowing-import-from :ars "EQUAL" "MAP")

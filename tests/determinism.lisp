@@ -32,8 +32,8 @@
       (is (= digest (nth-value 1 (robot:replay file))) "from a file"))))
 
 (world:defkicker jitter (thing) (:prob 0.2)
-  (world:kick-thing thing 0.3 (base:roll-within 1 (world:world-dice (world:thing-world thing) :user))
-                    t))
+  (let ((dice (world:world-dice (world:thing-world thing) :user)))
+    (world:kick-thing thing 0.3 (base:roll-within 1 dice) t)))
 
 (test journal.repeats-what-is-made-and-unmade
   "Things made, moved, changed, destroyed and given kickers by hand, in memory and on file."

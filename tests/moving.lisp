@@ -227,6 +227,23 @@ exactly once."
     (finishes (command:robot-turn rover 1 nil))
     (finishes (command:robot-turn rover 1))))
 
+(test commands.refuse-senseless-numbers
+  (with-rover ()
+    (dolist (value (list 1d30 (- (expt 10 400)) sb-ext:double-float-positive-infinity))
+      (signals base:wrong-argument (command:robot-turn rover value))
+      (signals base:wrong-argument (command:robot-go-forward rover value))
+      (signals base:wrong-argument (robot:place-robot rover 3 3 value)))))
+
+(test commands.put-bad-parameters-back
+  "A delay set to nonsense is put back, with a message, before a command reads it."
+  (with-rover ()
+    (setf base:robot-turn-delay* -3)
+    (is (null (code (outcome () command:robot-turn 0.1))))
+    (is (= 2 base:robot-turn-delay*))
+    (is (search "robot-turn-delay*" (displayed)))
+    (setf base:robot-turn-delay* 1.5)
+    (is (null (code (outcome () command:robot-turn 0.1))))))
+
 (test commands.take-continuations-from-continuations
   (with-rover (:clean t)
     (is (equal '(:turned :driven :stopped)

@@ -57,8 +57,9 @@
                (recording (record)
                  (loop for (name priority) in '((:first 0) (:low -1) (:second 0) (:high 3))
                        do (let ((name name))
-                            (time:queue-event agenda 4
-                                              (lambda (event) (declare (ignore event)) (record name))
+                            (time:queue-event agenda 4 (lambda (event)
+                                                         (declare (ignore event))
+                                                         (record name))
                                               :priority priority)))
                  (loop repeat 4 do (time:advance-agenda agenda)))))))
 

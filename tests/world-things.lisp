@@ -304,8 +304,9 @@
       (eval `(world:put-kicker hop (th ,box) (:prob 1/2) (world:kick-thing th 1 1 t)))
       (eval `(world:put-kicker hop (th ,box) ()))
       (world:destroy-thing box)
-      (is (equal '(world:new-thing world:set-attribute world:change-attribute world:kick-thing
-                   world:move-thing world:put-kicker world:put-kicker world:destroy-thing)
+      (is (equal '(world:make-new-thing world:set-attribute world:change-attribute world:kick-thing
+                   world:move-thing world::call-put-kicker world::call-put-kicker
+                   world:destroy-thing)
                  (reverse (mapcar #'first seen))))
       (is (equal (list box :size 3) (rest (nth 6 seen)))))))
 

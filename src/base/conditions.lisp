@@ -52,7 +52,8 @@
    (nearest :initarg :nearest :initform nil :reader unknown-name-nearest)
    (known   :initarg :known   :initform '() :reader unknown-name-known))
   (:report (lambda (condition stream)
-             (format stream "There is no ~A called ~S.~@[ Did you mean ~A?~]~@[ Known: ~{~A~^, ~}.~]"
+             (format stream "There is no ~A called ~S.~@[ Did you mean ~A?~]~
+                             ~@[ Known: ~{~A~^, ~}.~]"
                      (unknown-name-kind condition)
                      (unknown-name-name condition)
                      (unknown-name-nearest condition)

@@ -5,7 +5,8 @@
 (defstruct (digest (:constructor make-digest ()) (:copier nil))
   "A sum over data, in order, that differs if any of them differs (FNV-1a, 64 bits)."
   (value #xCBF29CE484222325 :type word))
-(setf (documentation 'digest-value 'function) "Return the digest's sum so far, 64 bits.")
+(setf (documentation 'make-digest 'function) "Return a digest to which nothing has been added."
+      (documentation 'digest-value 'function) "Return the digest's sum so far, 64 bits.")
 
 (declaim (inline digest-word))
 (defun digest-word (digest word)

@@ -25,6 +25,12 @@ that reports) after each message is queued."
   (forgotten 0 :type fixnum)
   (listener nil :type (or null function)))
 
+(setf (documentation 'message-kind 'function) "Return :ERROR, :WARNING or :MESSAGE."
+      (documentation 'message-items 'function) "Return the items that the message is made of."
+      (documentation 'make-message-queue 'function) "Return a new, empty queue of messages."
+      (documentation 'message-queue-listener 'function)
+      "Return the function that is called after each message is queued, or NIL. Can be set.")
+
 (defvar *message-queue* (make-message-queue)
   "The queue that messages go to. A headless simulation binds its own.")
 

@@ -17,6 +17,12 @@
   (group "" :type string :read-only t)
   (sentence "" :type string :read-only t))
 
+(setf (documentation 'parameter-default 'function) "Return the value that the manual gives."
+      (documentation 'parameter-unit 'function) "Return the unit of the values, a string."
+      (documentation 'parameter-kind 'function) "Return :NOISE, :DELAY, :LIMIT or :SETTING."
+      (documentation 'parameter-group 'function) "Return the heading that chapter 4 lists it under."
+      (documentation 'parameter-sentence 'function) "Return what the parameter means.")
+
 (defun parameter-name (parameter)
   "Return what PARAMETER is called, a lower-case string such as \"max-speed*\"."
   (string-downcase (parameter-symbol parameter)))

@@ -29,12 +29,22 @@
 
 ;;; A window's life.
 
+(defun forget-window (window)
+  "Count WINDOW as closed; true if it was open."
+  (with-lock (*windows-lock*)
+    (when (member window *windows*)
+      (setf *windows* (remove window *windows*))
+      t)))
+
 (defun warn-of-closing (window condition)
-  (warning-set (format nil "The display of ~A has closed: ~A"
-                       (watcher-robot (window-watcher window))
-                       (substitute #\Space #\Newline
-                                   (handler-case (princ-to-string condition)
-                                     (error () (string (type-of condition))))))))
+  "Say, once, that CONDITION has closed WINDOW."
+  (when (forget-window window)
+    (let ((*message-queue* (simulation-messages (window-simulation window))))
+      (warning-set (format nil "The display of ~A has closed: ~A"
+                           (watcher-robot (window-watcher window))
+                           (substitute #\Space #\Newline
+                                       (handler-case (princ-to-string condition)
+                                         (error () (string (type-of condition))))))))))
 
 (defun run-window (window)
   "Show WINDOW until it is closed, or something goes wrong."
@@ -43,7 +53,7 @@
     (unwind-protect
          (handler-case (clim:run-frame-top-level window)
            (error (condition) (warn-of-closing window condition)))
-      (with-lock (*windows-lock*) (setf *windows* (remove window *windows*)))
+      (forget-window window)
       (end-conversation (window-conversation window))
       (stop-watching (window-watcher window)))))
 

@@ -70,7 +70,8 @@
   (let ((output (conversation-output conversation)))
     (let ((*standard-output* output))
       (ars-magna.cli:run-session
-       (ars-magna.cli:make-session :input (conversation-input conversation) :output output)))
+       (ars-magna.cli:make-session :input (conversation-input conversation) :output output
+                                   :echo t)))
     (funcall (conversation-over conversation))))
 
 (defun give-line (conversation line)

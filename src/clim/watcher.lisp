@@ -57,11 +57,12 @@ each new snapshot.")
   (signal-semaphore (watcher-painted watcher)))
 
 (defun fetch (watcher)
-  "Make a snapshot between ticks, unless a program passes the ticks itself; then it will come with
-the next tick."
+  "Make a snapshot between ticks if one is still wanted then; not if a program passes the ticks
+itself: it will come with the next tick."
   (let ((simulation (watcher-simulation watcher)))
     (when (and simulation (live-p simulation))
-      (asking (simulation) (publish watcher simulation)))))
+      (asking (simulation)
+        (when (watcher-wanted-p watcher) (publish watcher simulation))))))
 
 ;;; The pacer.
 
@@ -80,7 +81,8 @@ the next tick."
                   (when (watcher-stale-p watcher) (fetch watcher)))
                  (t (let ((now (traces-of-change watcher)))
                       (unless (= now known)
-                        (setf known now)
+                        (setf known now
+                              (watcher-wanted-p watcher) t)
                         (fetch watcher)))))))
 
 ;;; Beginning and ending.

@@ -9,12 +9,15 @@
 (defparameter *help-line*
   "Type a command here and press return, or choose one from a menu. HELP lists all commands.")
 
-(defun make-detail-pane (class display height)
-  (clim:make-pane class :name display :display display :width 340 :min-width 120
+(defun make-detail-pane (class name display height)
+  (clim:make-pane class :name name :display display :width 340 :min-width 120
                         :height height :min-height 30 :max-height clim:+fill+))
 
 (defmacro titled (title pane)
-  `(clim:labelling (:label ,title :align-x :left) ,pane))
+  "Return PANE with TITLE above it."
+  `(clim:vertically (:y-spacing 0)
+     (clim:make-pane 'clim:label-pane :label ,title :align-x :left :max-height 20)
+     (:fill (clim:outlining (:thickness 1) ,pane))))
 
 (clim:define-application-frame robot-window ()
   ((watcher :initarg :watcher :accessor window-watcher
@@ -32,11 +35,11 @@
   (:panes
    (world (clim:make-pane 'world-pane :name 'world :display :world
                                       :width 680 :height 520 :min-width 100 :min-height 100))
-   (state (make-detail-pane 'detail-pane :state 76))
-   (designators (make-detail-pane 'designators-pane :designators 110))
-   (cameras (make-detail-pane 'detail-pane :cameras 140))
-   (hands (make-detail-pane 'detail-pane :hands 84))
-   (bins (make-detail-pane 'detail-pane :bins 84))
+   (state (make-detail-pane 'detail-pane 'state :state 76))
+   (designators (make-detail-pane 'designators-pane 'designators :designators 110))
+   (cameras (make-detail-pane 'detail-pane 'cameras :cameras 140))
+   (hands (make-detail-pane 'detail-pane 'hands :hands 84))
+   (bins (make-detail-pane 'detail-pane 'bins :bins 84))
    (transcript (clim:make-pane 'transcript-pane :name 'transcript :display :transcript
                                                 :width 680 :height 120 :min-height 40
                                                 :max-height 400))
@@ -44,15 +47,18 @@
   (:layouts
    (default
     (clim:vertically ()
-      (:fill (clim:horizontally ()
+      (:fill (clim:horizontally (:x-spacing 4)
                (:fill (titled "World" world))
-               (clim:vertically ()
+               (clim:vertically (:y-spacing 2)
                  (titled "Robot state" state)
                  (:fill (titled "Robot designators" designators))
                  (titled "Cameras" cameras)
                  (titled "Hands" hands)
                  (titled "Storage bins" bins))))
-      (titled "Commands" (clim:vertically () transcript interactor)))))
+      (titled "Commands" transcript)
+      (clim:horizontally ()
+        (clim:make-pane 'clim:label-pane :label " Robot> " :max-width 64)
+        (:fill (clim:outlining (:thickness 1) interactor))))))
   (:documentation "The displays of a robot in a window."))
 
 (setf (documentation 'window-layers 'function)
@@ -91,7 +97,7 @@
 (defun display-panes (window)
   "Return a list of the panes of WINDOW that show something."
   (remove nil (mapcar (lambda (name) (pane-named window name))
-                      '(world :state :designators :cameras :hands :bins transcript))))
+                      '(world state designators cameras hands bins transcript))))
 
 ;;; Keeping up to date.
 
@@ -125,8 +131,9 @@
 (defun take-line (gadget)
   "Let the prompt have the line in the text field GADGET."
   (let ((window (clim:pane-frame gadget)) (line (clim:gadget-value gadget)))
-    (setf (clim:gadget-value gadget) "")
-    (give-line (window-conversation window) line)))
+    (unless (string= line "")
+      (setf (clim:gadget-value gadget) "")
+      (give-line (window-conversation window) line))))
 
 (defun describe-to (window subject)
   "Say in WINDOW what SUBJECT is, if it is anything."

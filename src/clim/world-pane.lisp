@@ -157,8 +157,5 @@
   (let ((drag (pane-drag pane))
         (x (clim:pointer-event-x event)) (y (clim:pointer-event-y event)))
     (when drag
-      (if (zerop (clim:pointer-button-state (clim:pointer-event-pointer event)))
-          (setf (pane-drag pane) nil)
-          (progn
-            (setf (pane-drag pane) (list x y))
-            (move-view pane (- (first drag) (round x)) (- (second drag) (round y))))))))
+      (setf (pane-drag pane) (list x y))
+      (move-view pane (round (- (first drag) x)) (round (- (second drag) y))))))

@@ -36,8 +36,12 @@
 (define-argument-type 'hand #'hand-p "a hand, as (robot-hand ROBOT 0) returns")
 (define-argument-type 'storage-bin #'storage-bin-p
   "a storage bin, as (robot-storage-bin ROBOT 0) returns")
-(define-argument-type 'number #'realp "a number")
-(define-argument-type 'angle #'realp "an angle in radians")
-(define-argument-type 'ticks #'realp "a number of ticks")
+(defun within-reason-p (value)
+  "True of real numbers small enough that arithmetic on positions and angles keeps its meaning."
+  (and (realp value) (< -1d9 value 1d9)))
+
+(define-argument-type 'number #'within-reason-p "a number between -1e9 and 1e9")
+(define-argument-type 'angle #'within-reason-p "an angle in radians, between -1e9 and 1e9")
+(define-argument-type 'ticks #'within-reason-p "a number of ticks, between -1e9 and 1e9")
 (define-argument-type 'continuation #'continuation-p
   "a continuation: a function of an error code and the command's results, or NIL for none")

@@ -54,8 +54,8 @@ function of the operation that returns one."
    command-section "Return the section of the manual that describes the command."
    command-documentation "Return the sentence that says what the command does."
    command-resource "Return the specification of the command's first argument, its resource."
-   command-parameters "Return the specifications of the arguments between resource and continuation."
-   command-results "Return the specifications of what the continuation gets after error and resource."
+   command-parameters "Return the specifications of its arguments but resource and continuation."
+   command-results "Return the specifications of what its continuation gets besides."
    command-errors "Return the command's own error codes; any can also end with :INTERRUPT."))
 
 (defmethod print-object ((command command) stream)

@@ -27,6 +27,7 @@
    operation-command "Return the command that the operation carries out."
    operation-resource "Return the robot or part that the operation occupies."
    operation-arguments "Return the arguments after the resource."
+   operation-simulation "Return the simulation that the operation takes place in."
    operation-finished-p "True once the operation has ended."))
 
 ;;; Ending.

@@ -16,6 +16,10 @@
   (hands '() :type list :read-only t)
   (bins '() :type list :read-only t))
 
+(setf (documentation 'body-p 'function) "True of what DEFROBOT said of a robot."
+      (documentation 'body-name 'function) "Return the name of the robot."
+      (documentation 'body-map 'function) "Return the name of the map that the robot starts in.")
+
 (defvar *bodies* '() "The bodies of all robots, in order of definition.")
 
 (defun all-robots ()
@@ -166,7 +170,7 @@ CAMERAS a list of lists (fov resolution). Return the robot."
     (loop for (key value . more) on options by #'cddr
           do (unless (member key '(:cameras :hands :bins))
                (reject (list key value)
-                       ":cameras ((fov resolution) ...), :hands (strength ...) or :bins (capacity ...)"))
+                       ":cameras ((fov res) ...), :hands (strength ...) or :bins (capacity ...)"))
              (unless (listp value) (reject (list key value) "a list after the keyword")))
     (when (oddp (length options)) (reject options "pairs of a keyword and a list"))))
 

@@ -17,7 +17,8 @@
   (angle-min 0d0 :type double-float) (angle-max 0d0 :type double-float)
   (cos-min 1d0 :type double-float) (cos-max 1d0 :type double-float)
   (sin-min 0d0 :type double-float) (sin-max 0d0 :type double-float))
-(setf (documentation 'odometer-name 'function) "Return the symbol that names the odometer.")
+(setf (documentation 'odometer-p 'function) "True of odometers."
+      (documentation 'odometer-name 'function) "Return the symbol that names the odometer.")
 
 (defmethod print-object ((odometer odometer) stream)
   (print-named odometer stream (format nil "Odometer ~A" (odometer-name odometer))))

@@ -51,10 +51,11 @@ of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
   ;; places
   (:export #:robot-place-here #:sense-place-type #:canonical-directions #:nearest-direction)
   ;; body
-  (:export #:defrobot #:define-robot #:find-robot #:all-robots #:robot-body-p
+  (:export #:defrobot #:define-robot #:find-robot #:all-robots
            #:body-name #:body-map)
   ;; references, simulation, replay, state
   (:export #:with-simulation #:call-with-simulation #:simulator #:stop-simulator #:set-seed
            #:resident-simulation #:fresh-simulation #:simulation-robots #:replay
            #:state-digest #:save-journal #:load-journal #:*simulator-hooks*
-           #:*tick-phases* #:*busy-tests* #:*simulation-variables* #:place-robot #:with-replay #:call-with-replay))
+           #:*tick-phases* #:*busy-tests* #:*simulation-variables* #:place-robot
+           #:with-replay #:call-with-replay))

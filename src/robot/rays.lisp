@@ -4,9 +4,9 @@
 
 ;;; A ray passes from cell to cell (a digital differential analyser over the flags), a fan is a
 ;;; number of evenly spaced rays, turned into each other by one rotation instead of a sine and a
-;;; cosine each. Nothing is allocated but a list of the cells that were found. Each is found once: while
-;;; a scan lasts, the flags of the cells found carry the mark +SEEN+, so that cost depends on
-;;; what is seen, neither on the size of the map nor on what exists in it.
+;;; cosine each. Nothing is allocated but a list of the cells that were found. Each is found once:
+;;; while a scan lasts, the flags of the cells found carry the mark +SEEN+, so that cost depends
+;;; on what is seen, neither on the size of the map nor on what exists in it.
 
 (define-constant +seen+ 128
   :documentation "The flag of a cell that the scan under way has found; clear between scans.")

@@ -60,11 +60,12 @@
 outside, as the prompt's POS and ANGLE make. Signals WRONG-ARGUMENT (manual E)."
   (check-argument place-robot x (realp x) "a number of metres")
   (check-argument place-robot y (realp y) "a number of metres")
-  (check-argument place-robot angle (realp angle) "an angle in radians")
+  (check-argument place-robot angle (and (realp angle) (< -1d9 angle 1d9))
+                  "an angle in radians, between -1e9 and 1e9")
   (let ((map (world-map (robot-world robot))))
     (unless (map-index map x y)
       (error 'wrong-argument :operator "pos" :name "position" :value (list x y)
-                             :expected (format nil "a point of the map: x from 0 to ~D, y from 0 to ~D"
+                             :expected (format nil "a point of the map: 0 <= x < ~D, 0 <= y < ~D"
                                                (map-width map) (map-height map)))))
   (change-from-outside (robot-simulation robot)
                        (lambda () (set-robot-pose robot x y angle))

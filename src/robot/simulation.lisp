@@ -67,7 +67,8 @@ ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
   (let* ((bodies (mapcar #'robot-named robots))
          (maps (remove-duplicates (mapcar #'body-map bodies))))
     (unless (= (length maps) 1)
-      (reject-use "One simulation has one map, and these robots are defined in ~:[none~;~:*~{~A~^, ~}~]."
+      (reject-use "One simulation has one map, and these robots are defined in ~
+                   ~:[none~;~:*~{~A~^, ~}~]."
                   maps))
     (let ((world (make-world (find-map (first maps)) :seed seed)))
       (dolist (body bodies) (make-robot body world))

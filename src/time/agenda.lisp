@@ -48,7 +48,8 @@
   (unequal 0 :type fixnum)
   ;; The pending event of each resource that is not a RESOURCE structure.
   (claims (make-hash-table :test 'eql) :type hash-table :read-only t))
-(setf (documentation 'agenda-tick 'function) "Return the tick that the agenda has reached."
+(setf (documentation 'make-agenda 'function) "Return an agenda without events, at tick 0."
+      (documentation 'agenda-tick 'function) "Return the tick that the agenda has reached."
       (documentation 'agenda-pending 'function) "Return how many events are pending.")
 
 (declaim (inline append-event))

@@ -15,7 +15,9 @@
   (newest-first '() :type list)
   (length 0 :type fixnum)
   (end 0 :type tick-count))
-(setf (documentation 'journal-header 'function)
+(setf (documentation 'make-journal 'function) "Return an empty journal that begins with HEADER."
+      (documentation 'journal-p 'function) "True of journals."
+      (documentation 'journal-header 'function)
       "Return the plist with which the run began: world, robots, seed, parameters."
       (documentation 'journal-length 'function) "Return how many entries the journal has."
       (documentation 'journal-end 'function) "Return the tick at which the journal ends.")
@@ -78,7 +80,8 @@ internalized.")
   ((file   :initarg :file   :reader damaged-journal-file)
    (reason :initarg :reason :reader damaged-journal-reason))
   (:report (lambda (condition stream)
-             (format stream "~A is no usable journal: ~A. Save one with SAVE-JOURNAL; nothing was changed."
+             (format stream "~A is no usable journal: ~A. Save one with SAVE-JOURNAL; ~
+                             nothing was changed."
                      (damaged-journal-file condition) (damaged-journal-reason condition))))
   (:documentation "A file that should hold a journal cannot be used."))
 

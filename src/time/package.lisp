@@ -7,8 +7,7 @@ thread; the journal; the live clock. Knows nothing of worlds and robots.")
   ;; resource, agenda
   (:export #:resource #:resource-event #:event #:event-pending-p #:event-resource
            #:agenda #:make-agenda #:agenda-tick #:agenda-pending #:queue-event #:queue-again
-           #:cancel-event #:interrupt-event #:pending-event #:next-due-tick #:advance-agenda
-           #:%make-event)
+           #:cancel-event #:interrupt-event #:pending-event #:next-due-tick #:advance-agenda)
   ;; simulation
   (:export #:simulation #:make-simulation #:simulation-p #:simulation-name #:simulation-world
            #:simulation-tick #:simulation-seed #:simulation-agenda #:simulation-phases
@@ -17,13 +16,14 @@ thread; the journal; the live clock. Knows nothing of worlds and robots.")
            #:*simulation* #:current-simulation #:tick #:run-ticks #:run-until #:idle-p
            #:notify-later #:add-observer #:remove-observer)
   ;; inbox
-  (:export #:post #:ask #:asking #:change-from-outside #:simulation-inbox)
+  (:export #:post #:ask #:asking #:change-from-outside)
   ;; schedule
   (:export #:schedule #:call-scheduled #:grab-resource #:release-resource)
   ;; journal
   (:export #:journal #:make-journal #:journal-p #:journal-header #:journal-entries
-           #:journal-end #:journal-length #:note #:externalize #:internalize #:make-reference #:internalize-reference
-                      #:write-journal #:read-journal #:apply-entry #:damaged-journal #:truncated-journal)
+           #:journal-end #:journal-length #:note #:externalize #:internalize #:make-reference
+           #:internalize-reference #:write-journal #:read-journal #:apply-entry
+           #:damaged-journal #:truncated-journal)
   ;; clock
   (:export #:start-clock #:stop-clock #:live-p #:pause #:resume #:step-ticks #:set-rate
            #:paused-p #:*default-rate* #:*hog-seconds* #:await-idle #:call-watched #:call-as-owner))

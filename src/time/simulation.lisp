@@ -36,6 +36,7 @@
              `(setf ,@(loop for (reader text) on pairs by #'cddr
                             append `((documentation ',reader 'function) ,text)))))
   (describe-readers
+   simulation-p "True of simulations."
    simulation-name "Return what the simulation is called."
    simulation-world "Return the world that the simulation changes."
    simulation-seed "Return the integer from which all chance of the run comes."
@@ -56,7 +57,8 @@ given to SIMULATOR.")
 (defun current-simulation ()
   "Return *SIMULATION*. Signals MISUSE when there is none."
   (or *simulation*
-      (reject-use "There is no simulation here. Use (simulator ROBOT) or (with-simulation (ROBOT) ...).")))
+      (reject-use "There is no simulation here. Use (simulator ROBOT) or ~
+                   (with-simulation (ROBOT) ...).")))
 
 (defun make-simulation (&rest arguments
                         &key name world seed phases busy-tests journal messages)

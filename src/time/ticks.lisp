@@ -43,7 +43,10 @@
   (setf (simulation-ticking-p simulation) t)
   (unwind-protect
        (progn
-         (when (or (simulation-journal simulation) (simulation-thread simulation))
+         ;; Commands read parameters, so they are looked after at least when there are any.
+         (when (or (simulation-journal simulation)
+                   (simulation-thread simulation)
+                   (simulation-inbox simulation))
            (note-parameters simulation))
          (when (simulation-inbox simulation) (open-inbox simulation))
          (advance-agenda (simulation-agenda simulation))
