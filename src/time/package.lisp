@@ -16,7 +16,7 @@ thread; the journal; the live clock. Knows nothing of worlds and robots.")
            #:*simulation* #:current-simulation #:tick #:run-ticks #:run-until #:idle-p
            #:notify-later #:add-observer #:remove-observer)
   ;; inbox
-  (:export #:post #:ask #:asking #:change-from-outside)
+  (:export #:post #:ask #:asking #:change-from-outside #:simulation-inbox)
   ;; schedule
   (:export #:schedule #:call-scheduled #:grab-resource #:release-resource)
   ;; journal

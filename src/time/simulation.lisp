@@ -36,6 +36,7 @@
              `(setf ,@(loop for (reader text) on pairs by #'cddr
                             append `((documentation ',reader 'function) ,text)))))
   (describe-readers
+   simulation-inbox "Return what has been posted and waits for the next tick."
    simulation-p "True of simulations."
    simulation-name "Return what the simulation is called."
    simulation-world "Return the world that the simulation changes."
