@@ -30,10 +30,10 @@
         (is (not (eq (aref old 1) (aref new 1))))
         (world:destroy-thing box)
         (is (equal '(pen cup)
-                   (cl:map 'list (lambda (image)
-                                   (intern (string (world:thing-name (display::thing-image-thing image)))
-                                           :ars-magna.tests))
-                           (display:snapshot-things (display:take-snapshot world after)))))))))
+                   (loop for image across (display:snapshot-things
+                                           (display:take-snapshot world after))
+                         for thing = (display::thing-image-thing image)
+                         collect (intern (string (world:thing-name thing)) :ars-magna.tests))))))))
 
 (test snapshot.changes-nothing-in-the-run
   (in-studio (robot)

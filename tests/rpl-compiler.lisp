@@ -207,8 +207,8 @@
 
 (test make-plan.from-a-form-made-by-a-program
   (dolist (compile '(nil t))
-    (let ((plan (rpl:make-plan `(let ((x 1))
-                                  ,@(loop repeat 3 collect '(rpl:wait-time x))
+    (let ((plan (rpl:make-plan `(let ((ticks 1))
+                                  ,@(loop repeat 3 collect '(rpl:wait-time ticks))
                                   (rpl:plan-time))
                                :compile compile)))
       (is (= 3 (rpl:run-plan-alone plan)))

@@ -6,7 +6,9 @@
 ;;; manual names the vectors; their values are ours, chosen so that shade 9 of each is the plain
 ;;; colour, told apart from the others on white.
 
-(deftype color () '(unsigned-byte 24))
+(deftype color ()
+  "A colour as #xRRGGBB."
+  '(unsigned-byte 24))
 
 (defun mix (dark light fraction)
   "Return the colour that is FRACTION, 0 to 1, of the way from DARK to LIGHT."
@@ -32,8 +34,8 @@
   `(progn
      ,@(loop for (variable dark light hue) in definitions
              collect `(defvar ,variable (shades 12 ,dark ,light)
-                        ,(format nil "A vector of 12 shades of ~A, from dark to light. (Manual B.1.)"
-                                 hue)))))
+                        ,(format nil "A vector of 12 shades of ~A, from dark to light. ~
+                                      (Manual B.1.)" hue)))))
 
 (define-shades
   (red* #x500000 #xFF3C30 "red")

@@ -77,9 +77,9 @@ are to a cell. IN-COLOR is false for a picture in black and white. Signals WRONG
 
 (defun save-picture (robot file &key (display :world) (layers *picture-layers*) (in-color t)
                                   (scale graphics-scale*))
-  "Save a picture of the world of ROBOT as it is now in FILE, replacing it: SVG or, where the program
-rsvg-convert is installed, PNG, as its name ends. The other arguments are those of SVG-PICTURE.
-Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE if PNG is not to be had."
+  "Save a picture of the world of ROBOT as it is now in FILE, replacing it: SVG or, where the
+program rsvg-convert is installed, PNG, as its name ends. The other arguments are those of
+SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE if PNG is not to be had."
   (picture-kind 'save-picture file)
   (check-picture 'save-picture robot display layers scale)
   (let ((snapshot (snapshot-of robot)))

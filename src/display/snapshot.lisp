@@ -20,7 +20,8 @@
   (obsmove-p nil) (obsview-p nil) (draw-function nil))
 
 (define-image robot-image "What a snapshot knows of a robot."
-  (name nil) (x 0d0) (y 0d0) (angle 0d0) (speed 0d0) (place nil) (cameras '()) (hands '()) (bins '())
+  (name nil) (x 0d0) (y 0d0) (angle 0d0) (speed 0d0) (place nil)
+  (cameras '()) (hands '()) (bins '())
   (designators '()) (odometer nil) (trail '()))
 
 (define-image camera-image "What a snapshot knows of a camera; ANGLE is relative to the robot."

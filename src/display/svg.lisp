@@ -11,6 +11,7 @@
    ;; The box drawn in so far with clipping, as left, top, right, bottom; NIL: nobody asks.
    (reach :initform nil :accessor svg-reach))
   (:documentation "A canvas that writes Scalable Vector Graphics to a stream."))
+(setf (documentation 'svg-stream 'function) "Return the stream that the canvas writes to.")
 
 ;;; Numbers and attributes.
 
@@ -221,9 +222,10 @@
 
 (defun write-document (body width height stream)
   (let ((canvas (make-instance 'svg-canvas :stream stream)))
-    (write-svg canvas "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" width "\" height=\"" height
-               "\" viewBox=\"0 0 " width " " height
-               "\" font-family=\"DejaVu Sans Mono, monospace\" font-size=\"11.6\" xml:space=\"preserve\">
+    (write-svg canvas "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" width
+               "\" height=\"" height "\" viewBox=\"0 0 " width " " height
+               "\" font-family=\"DejaVu Sans Mono, monospace\" font-size=\"11.6\""
+               " xml:space=\"preserve\">
 <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>
 " body "</svg>
 ")))
