@@ -7,13 +7,15 @@
 
 (defclass clim-canvas (canvas)
   ((medium :initarg :medium :reader canvas-medium)
-   (subjects :initform '() :accessor canvas-subjects
-             :documentation "What was drawn where: a list (subject left top right bottom).")
+   (subjects :initform '() :accessor canvas-subjects)
    ;; The box drawn in so far, or NIL outside of subjects.
    (reach :initform nil :accessor canvas-reach)
    (dx :initform 0 :accessor canvas-dx)
    (dy :initform 0 :accessor canvas-dy))
   (:documentation "A canvas that paints on a medium of CLIM."))
+
+(setf (documentation 'canvas-subjects 'function)
+      "Return what was drawn where: a list (subject left top right bottom).")
 
 (defvar *inks* (make-hash-table :synchronized t) "From colours to CLIM's, as far as used.")
 
@@ -136,8 +138,8 @@
 (define-constant +aim+ 3 :documentation "By how many pixels a click may miss a subject.")
 
 (defun subject-at (subjects x y)
-  "Return the subject that was drawn at X, Y, or near it; the smallest if there are several. SUBJECTS
-are those of a canvas."
+  "Return the subject that was drawn at X, Y, or near it; the smallest if there are several.
+SUBJECTS are those of a canvas."
   (let ((best nil) (least nil))
     (loop for (subject left top right bottom) in subjects
           for area = (* (- right left) (- bottom top))

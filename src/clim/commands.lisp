@@ -121,7 +121,7 @@
           (snapshot-tick (window-snapshot window)) type))
 
 (defun save-window (window type)
-  "Save a picture of all displays as they are in WINDOW in a file of TYPE, in the current directory."
+  "Save a picture of the displays as they are in WINDOW in a file of TYPE in the current directory."
   (let ((file (save-snapshot (window-snapshot window) (window-robot window)
                              (picture-file window type)
                              :layers (window-layers window)

@@ -111,8 +111,9 @@
     (start-watching watcher simulation)
     (setf window (make-robot-window watcher :frame-manager (clim:find-frame-manager :port port)))
     (with-lock (*windows-lock*) (push window *windows*))
-    (start-thread (lambda () (run-window window))
-                  (format nil "display of ~A" (robot-name robot)))
+    (setf (window-thread window)
+          (start-thread (lambda () (run-window window))
+                        (format nil "display of ~A" (robot-name robot))))
     window))
 
 (defun open-window (robot)

@@ -24,6 +24,8 @@ thread, for each new snapshot; it must be quick."
   (snapshot nil)
   (wanted-p t)
   (stale-p nil)
+  ;; What TRACES-OF-CHANGE was when the snapshot was made.
+  (traces 0 :type fixnum)
   (painted (make-semaphore "painted") :read-only t)
   (over (make-semaphore "over") :read-only t)
   (over-p nil)
@@ -34,10 +36,16 @@ thread, for each new snapshot; it must be quick."
       "Return a watcher of the robot called ROBOT that calls NEWS, a function of no arguments, for
 each new snapshot.")
 
+(defun traces-of-change (simulation)
+  "Return a number that changes whenever a program changes SIMULATION between ticks."
+  (let ((journal (simulation-journal simulation)))
+    (if journal (journal-length journal) 0)))
+
 (defun publish (watcher simulation)
   "Make a snapshot of SIMULATION, which stands still, and tell of it."
   (setf (watcher-wanted-p watcher) nil
         (watcher-stale-p watcher) nil
+        (watcher-traces watcher) (traces-of-change simulation)
         (watcher-snapshot watcher)
         (let ((old (watcher-snapshot watcher)))
           (take-snapshot (simulation-world simulation)
@@ -66,24 +74,19 @@ itself: it will come with the next tick."
 
 ;;; The pacer.
 
-(defun traces-of-change (watcher)
-  "Return a number that changes whenever a program changes the simulation between ticks."
-  (let* ((simulation (watcher-simulation watcher))
-         (journal (and simulation (simulation-journal simulation))))
-    (if journal (journal-length journal) 0)))
+(defun fetch-if-changed (watcher)
+  (let ((simulation (watcher-simulation watcher)))
+    (when (and simulation (/= (watcher-traces watcher) (traces-of-change simulation)))
+      (setf (watcher-wanted-p watcher) t)
+      (fetch watcher))))
 
 (defun pace (watcher)
-  (loop with known = (traces-of-change watcher)
-        until (watcher-over-p watcher)
+  (loop until (watcher-over-p watcher)
         do (cond ((wait-on-semaphore (watcher-painted watcher) +patience+)
                   (wait-on-semaphore (watcher-over watcher) +pause+)
                   (setf (watcher-wanted-p watcher) t)
                   (when (watcher-stale-p watcher) (fetch watcher)))
-                 (t (let ((now (traces-of-change watcher)))
-                      (unless (= now known)
-                        (setf known now
-                              (watcher-wanted-p watcher) t)
-                        (fetch watcher)))))))
+                 (t (fetch-if-changed watcher)))))
 
 ;;; Beginning and ending.
 

@@ -11,7 +11,7 @@
 
 (defun make-detail-pane (class name display height)
   (clim:make-pane class :name name :display display :width 340 :min-width 120
-                        :height height :min-height 30 :max-height clim:+fill+))
+                        :height height :min-height (min height 50) :max-height clim:+fill+))
 
 (defmacro titled (title pane)
   "Return PANE with TITLE above it."
@@ -29,7 +29,8 @@
    (conversation :initform nil :accessor window-conversation)
    ;; Its car is true while an event is queued.
    (queued :initform (list nil) :reader window-queued)
-   (painted :initform nil :accessor window-painted))
+   (painted :initform nil :accessor window-painted)
+   (thread :initform nil :accessor window-thread))
   (:menu-bar menu-bar)
   (:command-table (robot-window))
   (:panes

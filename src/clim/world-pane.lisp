@@ -56,7 +56,7 @@
     (flet ((cell (pixels) (floor pixels scale)))
       (clim:draw-rectangle* medium 0 0 width height :ink clim:+gray92+)
       (call-in-view (lambda (canvas)
-                      (with-color white*
+                      (with-gcontext (draw-gcontext* :foreground white*)
                         (draw-rectangle canvas draw-gcontext* 0 0 (* scale (map-width map))
                                         (* scale (map-height map)) t))
                       (draw-terrain canvas map
@@ -94,12 +94,15 @@
 
 ;;; Moving about and zooming.
 
+(define-constant +in-view+ 40
+  :documentation "How many pixels of the map stay in view, however it is moved.")
+
 (defun move-view (pane dx dy)
   "Move the view of PANE by DX, DY pixels, but not off the map."
   (multiple-value-bind (width height) (pane-size pane)
     (let ((map (window-map (window-of pane))) (scale (pane-scale pane)))
       (flet ((within (value cells size)
-               (clamp value (- (floor size 2)) (max 0 (- (* cells scale) (floor size 2))))))
+               (clamp value (- +in-view+ size) (- (floor (* cells scale)) +in-view+))))
         (setf (pane-left pane) (within (+ (pane-left pane) dx) (map-width map) width)
               (pane-top pane) (within (+ (pane-top pane) dy) (map-height map) height))))
     (repaint-if-changed pane)))

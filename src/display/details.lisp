@@ -114,7 +114,7 @@ view, with a tick in the direction in which it believes what it tracks to be."
          (track (camera-image-track camera)))
     (with-color (svref lightblue* 10)
       (draw-arc canvas draw-gcontext* (- x +dial+) (- y +dial+) (* 2 +dial+) (* 2 +dial+)
-                (- (+ angle half)) (* 2 half) t))
+                (- (+ angle half)) (* 2 half) in-color*))
     (draw-lines canvas draw-gcontext*
                 (append (around x y (- angle half) +dial+) (list x y)
                         (around x y (+ angle half) +dial+)))

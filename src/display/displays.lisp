@@ -38,7 +38,7 @@ height."
       (setf height (draw-detail canvas display robot +detail-width+)))
     (with-origin (canvas x y)
       (with-color (svref grey* 56)
-        (draw-rectangle canvas draw-gcontext* 0 0 +detail-width+ top t))
+        (draw-rectangle canvas draw-gcontext* 0 0 +detail-width+ top in-color*))
       (draw-text canvas +margin+ 13 (display-title display))
       (with-color (svref grey* 40)
         (draw-rectangle canvas draw-gcontext* 0 0 +detail-width+ (+ top height))))

@@ -3,13 +3,14 @@
 (in-package :ars-magna.display)
 
 (defvar *display-opener* nil
-  "A function of a robot that opens its display in a window, or NIL if no system that can is loaded.")
+  "A function of a robot that opens its display in a window, or NIL if nothing that can is loaded.")
 
 (defun no-display-text ()
   "Return what to do to get a display, or why there can be none."
   (if *display-opener*
       "open one with (open-display ROBOT), where an X server is to be had"
-      "for a window load the system ars-magna/clim, which needs McCLIM; or use (save-picture ROBOT \"world.svg\")"))
+      (concatenate 'string "for a window load the system ars-magna/clim, which needs McCLIM; "
+                   "or use (save-picture ROBOT \"world.svg\")")))
 
 (defun open-display (robot)
   "Show ROBOT and its world in a window that follows what happens there (manual B). Return ROBOT.

@@ -79,7 +79,7 @@ are to a cell. IN-COLOR is false for a picture in black and white. Signals WRONG
                                   (scale graphics-scale*))
   "Save a picture of the world of ROBOT as it is now in FILE, replacing it: SVG or, where the
 program rsvg-convert is installed, PNG, as its name ends. The other arguments are those of
-SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE if PNG is not to be had."
+SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE without that program."
   (picture-kind 'save-picture file)
   (check-picture 'save-picture robot display layers scale)
   (let ((snapshot (snapshot-of robot)))

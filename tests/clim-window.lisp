@@ -1,0 +1,249 @@
+;;;; clim-window.lisp -- the window, on CLIM's null port: no X server is needed. See clim.lisp.
+
+(in-package :ars-magna.tests)
+
+(in-suite clim)
+
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (sb-ext:add-package-local-nickname :window :ars-magna.clim :ars-magna.tests))
+
+(defun call-with-window (function robot)
+  "Call FUNCTION with a window of ROBOT, adopted by the null port but not running."
+  (let* ((watcher (window:make-watcher (robot:robot-name robot) (constantly nil)))
+         (port (clim:find-port :server-path '(:null)))
+         (manager (clim:find-frame-manager :port port)))
+    (window:watch-simulation watcher (robot:robot-simulation robot))
+    (let ((window (window:make-robot-window watcher :frame-manager manager)))
+      (clim:adopt-frame manager window)
+      (unwind-protect
+           (let ((clim:*application-frame* window)) (funcall function window))
+        (window:stop-watching watcher)
+        (clim:disown-frame manager window)))))
+
+(defmacro in-window ((window robot) &body body)
+  `(in-studio (,robot)
+     (call-with-window (lambda (,window) (declare (ignorable ,window)) ,@body) ,robot)))
+
+(defun pane (window name) (clim:find-pane-named window name))
+
+(defun said (window)
+  (format nil "~{~A~%~}" (window::latest-lines (window::window-transcript window) 100)))
+
+(test window.has-a-pane-for-each-display-and-for-commands
+  (in-window (window robot)
+    (dolist (name '(window::world window::state window::designators window::cameras window::hands
+                    window::bins window::transcript))
+      (is (typep (pane window name) 'window::display-pane)))
+    (is (typep (pane window 'window::interactor) 'clim:text-field))))
+
+;;; Painting and pointing.
+
+(defun painted-world (window)
+  (let ((pane (pane window 'window::world)))
+    (window::repaint pane)
+    pane))
+
+(test window.remembers-where-it-painted-what
+  (in-window (window robot)
+    (let ((subjects (window::pane-subjects (painted-world window))))
+      (flet ((title-at (x y)
+               (let ((subject (window:subject-at subjects x y)))
+                 (and subject (canvas:subject-title subject)))))
+        (is (equal "BOX#1" (title-at 28 36)))
+        (is (equal "PEN#2" (title-at 44 36)))
+        (is (equal "STUDIO-ROBOT" (title-at 52 52)))
+        (is (null (title-at 120 20)))))))
+
+(test window.a-click-describes-what-it-hits
+  (in-window (window robot)
+    (let ((pane (painted-world window)))
+      (window::click pane :left 28 36)
+      (window::click pane :left 84 36)
+      (window::click pane :left 84 12)
+      (dolist (part '("BOX#1 at 3.50, 4.50" ":color red" "Cell 10, 4: doorway"
+                      "Cell 10, 1: a wall of wood, parameter 50.0"))
+        (is (mentions-p (said window) part))))))
+
+(defun press (pane button)
+  (clim:handle-event pane (make-instance 'clim:pointer-button-press-event
+                                         :sheet pane :button button :x 5 :y 5
+                                         :modifier-state 0)))
+
+(test window.designators-scroll-down-by-the-left-and-up-by-the-right-button
+  "Manual B."
+  (in-window (window robot)
+    (dotimes (count 40) (robot:add-designator robot :x 2 :y 2))
+    (let ((pane (pane window 'window::designators)))
+      (window::publish (window:window-watcher window) (time:current-simulation))
+      (window:refresh window)
+      (is (= 0 (window::pane-offset pane)))
+      (press pane clim:+pointer-left-button+)
+      (press pane clim:+pointer-left-button+)
+      (is (= 96 (window::pane-offset pane)))
+      (press pane clim:+pointer-right-button+)
+      (is (= 48 (window::pane-offset pane)))
+      (loop repeat 5 do (press pane clim:+pointer-right-button+))
+      (is (= 0 (window::pane-offset pane)))
+      (loop repeat 50 do (press pane clim:+pointer-left-button+))
+      (is (< 300 (window::pane-offset pane) 700)))))
+
+(test window.zooming-keeps-what-is-under-the-mouse
+  (in-window (window robot)
+    (let ((pane (painted-world window)))
+      (flet ((cell () (let ((cell (window::cell-at pane 84 36)))
+                        (list (world:cell-x cell) (world:cell-y cell)))))
+        (is (= 8 (window::pane-scale pane)))
+        (is (equal '(10 4) (cell)))
+        (window::wheel pane -1 84 36)
+        (is (= 16 (window::pane-scale pane)))
+        (is (equal '(10 4) (cell)))
+        (window::wheel pane 1 84 36)
+        (window::wheel pane 1 84 36)
+        (is (= 4 (window::pane-scale pane)))
+        (window::fit pane)
+        (is (integerp (window::pane-scale pane)))))))
+
+(test window.paints-only-what-has-changed
+  (in-window (window robot)
+    (window:refresh window)
+    (let ((before (mapcar #'window::pane-painted (window::display-panes window))))
+      (window::publish (window:window-watcher window) (time:current-simulation))
+      (window:refresh window)
+      (is (every #'eq before (mapcar #'window::pane-painted (window::display-panes window))))
+      (robot:place-robot robot 7.5 6.5 0)
+      (window::publish (window:window-watcher window) (time:current-simulation))
+      (window:refresh window)
+      (let ((after (mapcar #'window::pane-painted (window::display-panes window))))
+        (is (equal '(nil nil t t t t t) (mapcar #'eq before after)))))))
+
+;;; Watching.
+
+(test watcher.makes-snapshots-only-when-one-is-wanted
+  (in-studio (robot)
+    (let* ((count 0)
+           (watcher (window:make-watcher 'studio-robot (lambda () (incf count)))))
+      (window:watch-simulation watcher (time:current-simulation))
+      (is (= 1 count))
+      (time:run-ticks 10)
+      (is (= 1 count))
+      (is (= 0 (display:snapshot-tick (window:watcher-snapshot watcher))))
+      (setf (window::watcher-wanted-p watcher) t)
+      (time:run-ticks 10)
+      (is (= 2 count))
+      (is (= 11 (display:snapshot-tick (window:watcher-snapshot watcher))))
+      (window:stop-watching watcher)
+      (setf (window::watcher-wanted-p watcher) t)
+      (time:run-ticks 1)
+      (is (= 2 count)))))
+
+(test watcher.follows-a-live-run-and-what-programs-change-between-ticks
+  "The pacer looks for such changes by itself; nothing here passes ticks."
+  (in-studio (robot)
+    (let* ((simulation (time:current-simulation))
+           (news (base:make-semaphore "news"))
+           (watcher (window:make-watcher 'studio-robot
+                                         (lambda () (base:signal-semaphore news)))))
+      (time:start-clock simulation)
+      (unwind-protect
+           (progn
+             (window:start-watching watcher simulation)
+             (is (base:wait-on-semaphore news 20))
+             (window:painted watcher)
+             (robot:place-robot robot 2.5 2.5 0)
+             (is (base:wait-on-semaphore news 20))
+             (is (= 2.5d0 (display:robot-image-x
+                           (display:snapshot-robot (window:watcher-snapshot watcher)
+                                                   'studio-robot)))))
+        (window:stop-watching watcher)
+        (time:stop-clock simulation)))))
+
+;;; The prompt's streams.
+
+(test prompt.lines-are-read-as-they-were-fed
+  (let ((stream (make-instance 'window::line-stream)))
+    (window::feed stream "go-forward 3")
+    (window::feed stream "")
+    (window::feed stream "(list 1)")
+    (window::feed stream nil)
+    (is (equal "go-forward 3" (read-line stream nil)))
+    (is (equal "" (read-line stream nil)))
+    (is (equal '(list 1) (let ((*package* (find-package :ars-magna.tests))) (read stream))))
+    (is (null (read-line stream nil)))))
+
+(test transcript.keeps-the-last-lines
+  (let ((transcript (window::make-transcript (constantly nil))))
+    (window::say transcript (format nil "one~%tw"))
+    (window::say transcript (format nil "o~%"))
+    (is (equal '("one" "two" "") (window::latest-lines transcript 10)))
+    (is (equal '("one" "two") (window::latest-lines transcript 2 1)))
+    (dotimes (line 2000) (window::say transcript (format nil "~D~%" line)))
+    (is (<= (length (window::latest-lines transcript 5000)) 1001))
+    (is (equal '("1999" "") (window::latest-lines transcript 2)))))
+
+;;; Commands.
+
+(test window.commands-steer-a-live-run
+  (in-window (window robot)
+    (let ((simulation (time:current-simulation)))
+      (time:start-clock simulation :rate 20)
+      (unwind-protect
+           (progn
+             (window::com-pause)
+             (is (time:paused-p simulation))
+             (window::com-resume)
+             (is (not (time:paused-p simulation)))
+             (window::com-faster)
+             (is (= 40 (time:simulation-rate simulation)))
+             (window::com-free)
+             (is (eq :free (time:simulation-rate simulation))))
+        (time:stop-clock simulation)))))
+
+(test window.layers-and-colours-can-be-switched
+  (in-window (window robot)
+    (let ((layers (window:window-layers window)))
+      (window::com-wedges)
+      (is (member :wedges (window:window-layers window)))
+      (window::com-wedges)
+      (is (equal layers (window:window-layers window)))
+      (window::com-color)
+      (is (not (window::window-color-p window))))))
+
+(test window.saves-a-picture-of-what-it-shows
+  (in-window (window robot)
+    (uiop:with-current-directory ((uiop:temporary-directory))
+      (let ((*default-pathname-defaults* (uiop:temporary-directory)))
+        (window::com-save-svg)
+        (let ((file (merge-pathnames "studio-robot-000000.svg")))
+          (is (mentions-p (said window) "studio-robot-000000.svg"))
+          (is (mentions-p (uiop:read-file-string file) "Robot designators"))
+          (delete-file file))))))
+
+(test window.trouble-in-a-command-is-said
+  (in-window (window robot)
+    (window::call-guarded-command window "Save" (lambda () (base:reject-use "no paper")))
+    (is (mentions-p (said window) "*ERROR* -> Save: no paper"))))
+
+(test window.a-line-with-arguments-waits-for-them
+  (in-window (window robot)
+    (window::choose-line window "POS")
+    (is (equal "POS " (clim:gadget-value (pane window 'window::interactor))))))
+
+;;; Opening and closing.
+
+(test window.closing-it-leaves-the-simulator-running
+  (in-studio (robot)
+    (let* ((simulation (time:current-simulation))
+           (observers (length (time:simulation-observers simulation)))
+           (clim:*default-server-path* '(:null)))
+      (time:start-clock simulation :rate :free)
+      (unwind-protect
+           (let ((window (window:open-window robot)))
+             (is (eq window (window:open-window robot)))
+             (is (eq window (window:find-window 'studio-robot)))
+             (window:close-window window)
+             (base:join-thread (window::window-thread window))
+             (is (null (window:find-window 'studio-robot)))
+             (is (time:live-p simulation))
+             ;; The history goes on.
+             (is (= (1+ observers) (length (time:simulation-observers simulation)))))
+        (time:stop-clock simulation)))))
