@@ -100,6 +100,12 @@
                  (:file "world-pane") (:file "transcript") (:file "prompt") (:file "window")
                  (:file "commands") (:file "opening")))))
 
+;;; Loaded by tests/clim.lisp, after the package of the tests, where McCLIM is found.
+(defsystem "ars-magna/clim-tests"
+  :description "What the window claims."
+  :depends-on ("ars-magna/clim" "fiveam")
+  :components ((:module "tests" :components ((:file "clim-window")))))
+
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
   :depends-on ("ars-magna" "ars-magna/cli" "fiveam")
@@ -117,7 +123,7 @@
                  (:file "shipped-manipulations") (:file "statistics") (:file "rpl-fluents")
                  (:file "rpl-compiler") (:file "rpl-plans") (:file "rpl-policies")
                  (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-stress")
-                 (:file "display") (:file "display-files") (:file "cli") (:file "architecture") (:file "main"))))
+                 (:file "display") (:file "display-files") (:file "clim") (:file "cli") (:file "architecture") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
              (symbol-call :ars-magna.tests :run-all)))
