@@ -151,8 +151,9 @@ another command, and sometimes fails."
     (:ticks (pick '(0 1 2 5 -1 1.5)))))
 
 (defun senseless-argument ()
-  (pick (list nil t 7 "seven" 'seven :seven -1d6 (part-of-any #'robot:robot-hands)
-              (any-robot) (pick (world:world-thing-list world:*world*)) '(1 . 2) '((:size . 3)))))
+  (pick (list nil t 7 "seven" 'seven :seven -1d6 1d30 (expt 10 400)
+              (part-of-any #'robot:robot-hands) (any-robot)
+              (pick (world:world-thing-list world:*world*)) '(1 . 2) '((:size . 3)))))
 
 (defun argument-for (spec)
   (if (luck .02)

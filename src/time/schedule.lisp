@@ -76,9 +76,9 @@ a tick, by the owner. A layer that adds background activities adds a method.")
 (defun grab-resource (resource &optional (simulation (current-simulation)))
   "Interrupt the command or event that occupies RESOURCE, and a track that it keeps, at the
 start of the next tick. Returns nothing (manual, figure D.3)."
-  (when (simulation-journal simulation)
-    (asking (simulation) (note simulation :grab (externalize resource))))
-  (post simulation (lambda () (release-resource resource simulation))))
+  (post simulation (lambda ()
+                     (note simulation :grab resource)
+                     (release-resource resource simulation))))
 
 (defmethod apply-entry ((operation (eql :schedule)) arguments simulation)
   (declare (ignore simulation))
