@@ -15,6 +15,7 @@
   (simulation nil :read-only t)
   (runner nil :type (or null plan-runner))
   (observer nil :type (or null function))
+  (busy-test nil :type (or null function))
   (lock (make-lock "plans") :read-only t)
   ;; The thread that holds the lock, so that plans may start and end others.
   (holder nil)
@@ -82,7 +83,15 @@ plan may be waiting for the owner to answer it."
                    (not (interface-closed-p interface)))
         (setf (interface-thread interface) nil)
         (return)))
+    (call-for-ticks interface)
     (wait-on-semaphore (interface-wake-up interface))))
+
+(defun call-for-ticks (interface)
+  "Have the live simulation, if it rests for want of events, go on while a plan waits for time."
+  (let ((simulation (interface-simulation interface)))
+    (when (and (next-wake-time (interface-runner interface))
+               (zerop (agenda-pending (simulation-agenda simulation))))
+      (post simulation (constantly nil)))))
 
 (defun ensure-thread (interface)
   "Have a thread for the plans of a live simulation."
@@ -91,7 +100,8 @@ plan may be waiting for the owner to answer it."
                (null (sb-ext:compare-and-swap (interface-thread interface) nil :starting)))
       (start-thread (lambda ()
                       (setf (interface-thread interface) (current-thread))
-                      (call-as-owner simulation (lambda () (run-thread interface))))
+                      (let ((*interface* interface))
+                        (call-as-owner simulation (lambda () (run-thread interface)))))
                     (format nil "plans of ~A" (interface-robot interface))))))
 
 ;;; Setting up.
@@ -124,7 +134,9 @@ count: they tell plans nothing."
   "Let INTERFACE hear no more of its simulation, and its plans end."
   (let ((simulation (interface-simulation interface)))
     (stop-plan (interface-runner interface))
-    (asking (simulation) (remove-observer (interface-observer interface) simulation))
+    (asking (simulation)
+      (remove-observer (interface-observer interface) simulation)
+      (removef (simulation-busy-tests simulation) (interface-busy-test interface)))
     (unless (or (interface-thread interface) (holding-p interface))
       (with-plans (interface) (react-fully interface)))
     (setf (interface-closed-p interface) t)
@@ -135,8 +147,13 @@ count: they tell plans nothing."
     (setf (interface-runner interface) (make-runner interface)
           (interface-observer interface) (lambda (simulation)
                                            (declare (ignore simulation))
-                                           (after-tick interface)))
-    (asking (simulation) (add-observer (interface-observer interface) simulation))))
+                                           (after-tick interface))
+          (interface-busy-test interface) (lambda (simulation)
+                                            (declare (ignore simulation))
+                                            (next-wake-time (interface-runner interface))))
+    (asking (simulation)
+      (add-observer (interface-observer interface) simulation)
+      (push (interface-busy-test interface) (simulation-busy-tests simulation)))))
 
 (defun rpl-init-robot (robot)
   "Let plans drive ROBOT, a robot or its name, from now on: make the fluents anew, for the parts

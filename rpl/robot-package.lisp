@@ -8,7 +8,7 @@
                 #:*simulation* #:current-simulation #:simulation-tick #:asking #:add-observer
                 #:remove-observer #:live-p #:run-ticks #:call-as-owner #:grab-resource
                 #:simulation-seed #:simulation-agenda #:simulation-inbox #:simulation-thread
-                #:agenda-pending #:*hog-seconds*)
+                #:simulation-busy-tests #:agenda-pending #:post #:*hog-seconds*)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:fluent-value #:post-batch #:react
                 #:apply-next-batch #:advance-timers #:next-wake-time #:make-plan-runner

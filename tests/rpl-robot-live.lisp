@@ -1,0 +1,179 @@
+;;;; rpl-robot-live.lisp -- plans in a thread of their own beside a simulator that does not wait.
+
+(in-package :ars-magna.tests)
+(in-suite rpl-robot)
+
+;;; No test here waits for a time: each waits for facts, and gives up only when these do not come.
+
+(defun await (fact)
+  "Wait until FACT, a function, returns true; return that, or NIL if it does not come."
+  (loop with never = (base:make-semaphore "never")
+        repeat 1000
+          thereis (funcall fact)
+        do (base:wait-on-semaphore never 0.01)))
+
+(defmacro awaiting (fact) `(is-true (await (lambda () ,fact)) "~S" ',fact))
+
+(defun call-live (function rate)
+  (let ((driver::*interface* nil) (time:*simulation* nil))
+    (with-messages
+      (let* ((simulation (robot:fresh-simulation '(fitter) :seed 3))
+             (time:*simulation* simulation)
+             (robot (first (robot:simulation-robots simulation))))
+        (progv '(fitter) (list robot)
+          (time:start-clock simulation :rate rate)
+          (driver:rpl-init-robot robot)
+          (unwind-protect (funcall function simulation)
+            (time:stop-clock simulation)
+            (driver::close-interface driver::*interface*)))))))
+
+(defmacro live ((simulation &key (rate :free)) &body body)
+  "Run BODY while a fresh SIMULATION of FITTER runs live, at RATE."
+  `(call-live (lambda (,simulation) (declare (ignorable ,simulation)) ,@body) ,rate))
+
+(test live.a-plan-drives-the-robot
+  (live (simulation)
+    (is (equal '(:done :succeeded)
+               (multiple-value-list
+                (run-as-plan
+                  (rpl:n-times 20
+                    (driver:rpl-robot-turn 1)
+                    (rpl:wait-for driver:robot-stopped*)
+                    (rpl:wait-time 2))
+                  :done))))
+    (is (typep (run-as-plan (rpl:fail :class :oops)) 'rpl:plan-failure))
+    (awaiting (null (driver::interface-thread driver::*interface*)))))
+
+(test live.the-plan-has-its-own-thread
+  (live (simulation)
+    (let ((here (base:current-thread)))
+      (destructuring-bind (plan-thread simulator-thread)
+          (run-as-plan
+            (driver:rpl-robot-place)
+            (rpl:wait-for driver:robot-place-input*)
+            (list (base:current-thread) (time:simulation-thread simulation)))
+        (is (not (eq plan-thread here)))
+        (is (not (eq plan-thread simulator-thread)))
+        (is (eq simulator-thread (time:simulation-thread simulation)))))))
+
+(test live.waiting-costs-nothing
+  "While its plans wait, the thread does not run, whatever number of ticks pass."
+  (live (simulation)
+    (let ((runner (driver:rpl-runner))
+          (task (driver:begin-plan (rpl:interp-lambda ()
+                                   (rpl:wait-for (svref driver:hand-lost* 0))))))
+      (awaiting (eq :waiting (rpl:task-state task)))
+      (let ((steps (rpl:plan-runner-steps runner))
+            (tick (time:simulation-tick simulation)))
+        (command:robot-turn fitter 30)
+        (awaiting (> (time:simulation-tick simulation) (+ 10 tick)))
+        (is (= steps (rpl:plan-runner-steps runner))))
+      (driver:end-plan task)
+      (awaiting (eq :evaporated (rpl:task-state task))))))
+
+(test live.plans-may-ask-the-simulator
+  "The owner never waits for plans, so a plan may wait for the owner."
+  (live (simulation)
+    (is (eq :moved (run-as-plan
+                     (rpl:n-times 20
+                       (world:move-thing (world:find-thing 'ball (robot:robot-world (driver:rpl-robot)))
+                                         (list 2.5 2.5))
+                       (driver:rpl-robot-turn .1)
+                       (rpl:wait-for driver:robot-stopped*))
+                     :moved)))))
+
+(test live.two-hundred-plans-hear-one-pulse
+  (live (simulation)
+    (let* ((order (make-array 0 :adjustable t :fill-pointer t))
+           (tasks (loop for number from 1 to 200
+                        collect (driver:begin-plan 'waiter number order))))
+      (awaiting (every (lambda (task) (eq :waiting (rpl:task-state task))) tasks))
+      (driver:rpl-robot-turn 1)
+      (awaiting (every #'rpl:task-over-p tasks))
+      (is (= 400 (length order)))
+      (is (equal (loop for number from 1 to 200 collect number)
+                 (loop for number across order when (plusp number) collect number))))))
+
+(test live.deadlock-is-reported
+  (live (simulation)
+    (is (eq :deadlock (nth-value 1 (run-as-plan (rpl:wait-for driver:robot-stopped*)))))
+    (is (search "robot-stopped*" (with-output-to-string (stream) (base:error-display stream))))
+    (awaiting (null (driver:plans)))))
+
+(test live.a-stopped-simulator-ends-the-waiting
+  (live (simulation)
+    (let ((ended (base:make-semaphore "ended")) (state nil)
+          (interface driver::*interface*))
+      (base:start-thread
+       (base:spread-specials
+        (lambda ()
+          (setf state (nth-value 1 (run-as-plan
+                                     (loop (driver:rpl-robot-turn 1)
+                                           (rpl:wait-for driver:robot-stopped*)))))
+          (base:signal-semaphore ended))
+        'driver::*interface* 'time:*simulation* 'base:*message-queue*)
+       "runs a plan")
+      (awaiting (> (time:simulation-tick simulation) 20))
+      (time:stop-clock simulation)
+      (is-true (base:wait-on-semaphore ended 30))
+      (is (eq :stopped state))
+      (is-true (driver::interface-valid-p interface))
+      (awaiting (null (rpl:plan-runner-tasks (driver:rpl-runner))))
+      (time:start-clock simulation :rate :free)
+      (is (eq 5 (run-as-plan (rpl:wait-time 3) 5)) "and it goes on after a new start"))))
+
+(defun call-resident (function)
+  "Call FUNCTION while the resident FITTER runs live."
+  (let ((driver::*interface* driver::*interface*)
+        (time:*simulation* time:*simulation*)
+        (*standard-output* (make-broadcast-stream)))
+    (with-messages
+      (unwind-protect
+           (progn (robot:simulator fitter :rate :free)
+                  (driver:rpl-init-robot fitter)
+                  (funcall function))
+        (robot:stop-simulator)))))
+
+(test live.a-restarted-simulator-ends-old-plans
+  (call-resident
+   (lambda ()
+     (let ((task (driver:begin-plan (rpl:interp-lambda ()
+                                      (loop (driver:rpl-robot-turn 1)
+                                            (rpl:wait-for driver:robot-stopped*))))))
+       (awaiting (> (time:simulation-tick) 20))
+       (robot:simulator fitter :rate :free)
+       (awaiting (eq :evaporated (rpl:task-state task)))
+       (signals base:misuse (driver:rpl-robot-turn 1))
+       (is (eq :fine (run-as-plan (driver:rpl-robot-turn 1)
+                                  (rpl:wait-for driver:robot-stopped*)
+                                  :fine)))))))
+
+(test live.a-robot-defined-anew-ends-in-a-failure
+  (call-resident
+   (lambda ()
+     (let ((task (driver:begin-plan (rpl:interp-lambda ()
+                                      (loop (driver:rpl-robot-turn 1)
+                                            (rpl:wait-for driver:robot-stopped*))))))
+       (awaiting (> (time:simulation-tick) 20))
+       (robot:define-robot 'fitter 'workbench '(3.5 5.5) 0
+                           :cameras (list (list (* 2 pi) 5) '(1 3)) :hands '(5 5) :bins '(10 1))
+       (awaiting (rpl:task-over-p task))
+       (is (typep (rpl:task-result task) 'rpl:lisp-failure))
+       (driver:rpl-init-robot fitter)
+       (is (eq :fine (run-as-plan (driver:rpl-robot-turn 1)
+                                  (rpl:wait-for driver:robot-stopped*)
+                                  :fine)))))))
+
+(test live.run-plan-not-in-the-simulators-thread
+  (live (simulation)
+    (let ((trouble nil) (answered (base:make-semaphore "answered"))
+          (interface driver::*interface*))
+      (command:robot-turn fitter .1
+                          (lambda (&rest ignore)
+                            (declare (ignore ignore))
+                            (let ((driver::*interface* interface))
+                              (handler-case (run-as-plan 1)
+                                (base:misuse (condition) (setf trouble condition))))
+                            (base:signal-semaphore answered)))
+      (is-true (base:wait-on-semaphore answered 30))
+      (is-true trouble))))
