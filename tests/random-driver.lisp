@@ -47,18 +47,18 @@
                                               (zerop (world:thing-capacity other))))
                           (world:world-thing-list world:*world*))))))
 
-(world:defkicker hop (thing) (:prob .02)
+(world:defkicker ride-hop (thing) (:prob .02)
   (flet ((step-length () (base:roll-within .8d0 (zoo-dice))))
     (world:kick-thing thing (step-length) (step-length) (zoo-chance .5))))
 
-(world:defkicker be-put-away (thing) (:prob .004)
+(world:defkicker ride-be-put-away (thing) (:prob .004)
   (let ((place (any-place-for thing)))
     (when place (world:move-thing thing place))))
 
-(world:defkicker vanish (thing) (:prob .0007)
+(world:defkicker ride-vanish (thing) (:prob .0007)
   (world:destroy-thing thing))
 
-(world:defkicker change (thing) (:prob .004)
+(world:defkicker ride-change (thing) (:prob .004)
   (world:set-attribute thing :closed (zoo-chance .2))
   (when (zoo-chance .2) (world:set-attribute thing :weight (* 12 (base:roll (zoo-dice)))))
   (when (zoo-chance .1) (error "A kicker that fails.")))
@@ -225,7 +225,8 @@ what has been seen."
     (loop while (< (world:world-live-count world) 14) do (make-something))
     (dolist (thing (world:world-thing-list world))
       (unless (world:thing-kickers thing)
-        (dolist (kicker '(hop be-put-away vanish change)) (world:set-kicker thing kicker))))))
+        (dolist (kicker '(ride-hop ride-be-put-away ride-vanish ride-change))
+          (world:set-kicker thing kicker))))))
 
 (defun meddle ()
   "Change the world by hand."

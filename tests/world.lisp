@@ -10,7 +10,7 @@
   "Call FUNCTION; what it defines (maps, place types, attributes ...) is forgotten afterwards."
   (let ((world::*maps* world::*maps*) (world::*place-types* world::*place-types*)
         (world::*attributes* world::*attributes*) (world::*substances* world::*substances*)
-        (world::*kickers* world::*kickers*)
+        (world::*kickers* '())
         (base:*message-queue* (base:make-message-queue)))
     (funcall function)))
 
