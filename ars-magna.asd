@@ -88,7 +88,8 @@
                  (:file "arguments") (:file "layout") (:file "errands") (:file "robot-lines")
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
                  (:file "status-lines") (:file "running-lines") (:file "worlds")
-                 (:file "world-lines") (:file "prompt") (:file "options") (:file "main")))))
+                 (:file "world-lines") (:file "plans") (:file "plan-lines")
+                 (:file "picture-lines") (:file "prompt") (:file "options") (:file "main")))))
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."
@@ -123,6 +124,8 @@
                  (:file "shipped-manipulations") (:file "statistics") (:file "rpl-fluents")
                  (:file "rpl-compiler") (:file "rpl-plans") (:file "rpl-policies")
                  (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-stress")
+                 (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-robot-live")
+                 (:file "plans")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli") (:file "architecture") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
