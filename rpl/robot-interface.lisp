@@ -116,9 +116,7 @@ count: they tell plans nothing."
 
 (defun seconds-when-live (simulation)
   "Return the time in seconds, by which plans that hog their thread are noticed; headless 0."
-  (if (live-p simulation)
-      (/ (get-internal-real-time) (float internal-time-units-per-second 1d0))
-      0d0))
+  (if (live-p simulation) (seconds-now) 0d0))
 
 (defun make-runner (interface)
   (let ((simulation (interface-simulation interface)))

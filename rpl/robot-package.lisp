@@ -5,8 +5,8 @@
   (:use :cl :ars-magna.base :ars-magna.robot :ars-magna.command)
   (:import-from :ars-magna.world #:world-map #:*world* #:remaining-capacity)
   (:import-from :ars-magna.time
-                #:*simulation* #:current-simulation #:simulation-tick #:asking #:add-observer
-                #:remove-observer #:live-p #:run-ticks #:call-as-owner #:grab-resource
+                #:*simulation* #:seconds-now #:current-simulation #:simulation-tick #:asking
+                #:add-observer #:remove-observer #:live-p #:run-ticks #:call-as-owner #:grab-resource
                 #:simulation-seed #:simulation-agenda #:simulation-inbox #:simulation-thread
                 #:simulation-busy-tests #:agenda-pending #:post #:*hog-seconds*)
   (:import-from :ars-magna.rpl

@@ -14,6 +14,7 @@
   "A continuation that keeps the simulator's thread for longer earns a warning, in seconds.")
 
 (defun seconds-now ()
+  "Return the real time, in seconds since some moment. No result may depend on it."
   (/ (float (get-internal-real-time) 1d0) internal-time-units-per-second))
 
 (defun live-p (simulation)

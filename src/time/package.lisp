@@ -26,4 +26,5 @@ thread; the journal; the live clock. Knows nothing of worlds and robots.")
            #:damaged-journal #:truncated-journal)
   ;; clock
   (:export #:start-clock #:stop-clock #:live-p #:pause #:resume #:step-ticks #:set-rate
-           #:paused-p #:*default-rate* #:*hog-seconds* #:await-idle #:call-watched #:call-as-owner))
+           #:paused-p #:*default-rate* #:*hog-seconds* #:await-idle #:call-watched #:call-as-owner
+           #:seconds-now))
