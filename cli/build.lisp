@@ -102,7 +102,7 @@ defined twice, that a package has grown since it was defined."
 
 (defun write-words (file)
   (with-open-file (out file :direction :output :if-exists :supersede)
-    (format out "~(~{~A~%~}~)" (uiop:symbol-call :ars-magna.cli :all-line-names))))
+    (format out "~(~{~A~%~}~)" (uiop:symbol-call :ars-magna.cli :all-words))))
 
 (defun save-prompt (file)
   "Save a core that runs the prompt in FILE, and the names of its commands in FILE.words."

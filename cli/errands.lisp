@@ -1,11 +1,11 @@
-;;;; errands.lisp -- commands to the robot that the prompt has issued, and waiting for them.
+;;;; errands.lisp -- what the prompt has issued to the robot, and waiting for it.
 
 (in-package :ars-magna.cli)
 
 ;;; A command is issued and the prompt is back at once. A patient session, and each in a headless
 ;;; simulation, reads on when what was issued has completed, that is, when its continuation is
 ;;; called. REPEAT waits in the same way. Tracking a grasp goes on until the grasp is lost, so
-;;; nobody waits for that.
+;;; nobody waits for that. Plans are errands, too: see plans.lisp.
 
 (defparameter *patience* 100000
   "How many ticks a headless prompt waits for one command to complete.")
@@ -14,7 +14,7 @@
   "Commands that are not expected to complete.")
 
 (defstruct (errand (:constructor make-errand ()) (:copier nil))
-  "A command that the prompt has issued."
+  "A command, or a plan, that the prompt has issued."
   (done-p nil))
 
 (defun endless-p (command)
@@ -49,9 +49,11 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
       (await-live test *simulation*)
       (run-until test :limit *patience* :simulation *simulation*)))
 
-(defun await-errand (errand)
-  (unless (await (lambda () (errand-done-p errand)))
-    (reject-line "The command has not completed within ~D ticks; it goes on." *patience*)))
+(defgeneric await-errand (errand)
+  (:documentation "Wait until ERRAND is done; signal BAD-LINE if it is not in good time.")
+  (:method (errand)
+    (unless (await (lambda () (errand-done-p errand)))
+      (reject-line "The command has not completed within ~D ticks; it goes on." *patience*))))
 
 (defun send (session command resource arguments)
   "Issue COMMAND on RESOURCE with ARGUMENTS."

@@ -3,7 +3,8 @@
 (in-package :ars-magna.cli)
 
 (defparameter *families*
-  '((:general . "The prompt") (:seeing . "The robot and its world") (:running . "Running")
+  '((:general . "The prompt") (:seeing . "The robot and its world") (:planning . "Plans")
+    (:running . "Running")
     (:moving . "Moving and turning"))
   "The families of the main menu, with what it calls them.")
 
@@ -22,7 +23,7 @@
 (defun write-filled (text indent &optional (head ""))
   "Write TEXT in lines of at most 79 characters from column INDENT on, after HEAD, which has a line
 of its own if it is too long."
-  (when (>= (length head) indent)
+  (when (and (plusp indent) (>= (length head) indent))
     (format t "~A~%" (shiftf head "")))
   (loop for line in (filled-lines text (- 79 indent))
         for start = head then ""
@@ -60,8 +61,10 @@ of its own if it is too long."
     (when lines
       (format t "Manipulating~%")
       (write-menu lines)))
-  (format t "~%MENU-CAMERA, MENU-HAND and MENU-BIN list the commands of those parts, HELP name tells
-more. The beginning of a name will do. A line in parentheses is Lisp.~%"))
+  (terpri)
+  (write-filled "MENU-CAMERA, MENU-HAND and MENU-BIN list the commands of those parts, PLAN lists the
+plans, HELP name tells more of a command or plan. The beginning of a name will do. A line in
+parentheses is Lisp." 0))
 
 (defun slot-help (slot)
   "Return what HELP says of SLOT."
@@ -76,13 +79,20 @@ more. The beginning of a name will do. A line in parentheses is Lisp.~%"))
   (dolist (slot (line-parameters line)) (write-filled (slot-help slot) 4))
   (dolist (detail (line-details line)) (write-filled detail 2)))
 
-(define-line "HELP" (session (cmd :token "the name of a command" :optional))
+(defun write-help-on (name)
+  "Tell what the command, alias or plan NAME does."
+  (let ((line (find name (all-lines) :key #'line-name :test #'string-equal))
+        (alias (assoc name *aliases* :test #'string-equal))
+        (plan (plan-called name)))
+    (cond (line (write-help line))
+          (alias (format t "~{~A is an alias of ~A~}~%" alias))
+          (plan (write-plan-help plan))
+          (t (write-help (find-line name))))))
+
+(define-line "HELP" (session (cmd :token "the name of a command or a plan" :optional))
     (:general)
     "List the commands of the prompt and those that move the robot, or tell what CMD does."
-  (let ((alias (and cmd (assoc (string-upcase cmd) *aliases* :test #'string=))))
-    (cond (alias (format t "~{~A is an alias of ~A~}~%" alias))
-          (cmd (write-help (find-line cmd)))
-          (t (write-main-menu)))))
+  (if cmd (write-help-on cmd) (write-main-menu)))
 
 (define-line "MENU-BIN" (session) (:general)
     "List the commands of storage bins."

@@ -114,17 +114,25 @@ SESSION to the session. FAMILY, a keyword, says where HELP lists it, and SENTENC
   (reject-line "There is no command ~A.~@[ Did you mean ~A?~] HELP lists all commands." name
                (nearest-name name (append (mapcar #'first *aliases*) (all-line-names)))))
 
+(defun beginning-of-all (lines)
+  "Return the one of LINES with whose name those of all others begin, or NIL: STOP, not STOP-PLAN."
+  (find-if (lambda (line)
+             (every (lambda (other) (starts-with-subseq (line-name line) (line-name other))) lines))
+           lines))
+
 (defun complete-line (name)
-  "Return the only line command whose name, or else full name, begins with NAME."
+  "Return the line command whose name, or else full name, begins with NAME: the only one, or the one
+that all others go on from."
   (let ((candidates (or (lines-starting name (all-lines) #'line-name)
                         (lines-starting name (robot-lines) #'line-full-name))))
     (cond ((null candidates) (reject-unknown name))
-          ((rest candidates) (reject-ambiguous name candidates))
-          (t (first candidates)))))
+          ((beginning-of-all candidates))
+          (t (reject-ambiguous name candidates)))))
 
 (defun find-line (name)
   "Return the line command called NAME, a string of any case: its name, the full name of a command's
-function, or the beginning of a name that no other begins with. Signals BAD-LINE."
+function, or the beginning of a name; of one that no other begins with, unless those others begin with
+all of it. Signals BAD-LINE."
   (let ((name (string-upcase name)))
     (or (find name (all-lines) :key #'line-name :test #'string=)
         (find name (robot-lines) :key #'line-full-name :test #'equal)

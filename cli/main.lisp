@@ -58,18 +58,24 @@ on with, or NIL."
   (load-files session (option-values :load options))
   (run-session session))
 
-(defun standard-session (batch)
-  "Return a session on the standard streams. If nobody sits there, it shows what it reads and waits
-for each command, for a transcript like those of manual E."
+(defun plan-lines (options)
+  "Return the lines for the plans that OPTIONS ask for."
+  (loop for text in (option-values :plan options) collect (format nil "plan ~A" text)))
+
+(defun standard-session (batch lines)
+  "Return a session that does LINES and then those of the standard input. If nobody sits there, it
+shows what it reads and waits for each command, for a transcript like those of manual E. A batch that
+has LINES does not wait for others to be typed."
   (let* ((input (standard-stream 0 :input))
          (piped (not (interactive-stream-p input))))
-    (make-session :input input :output *standard-output* :batch batch
+    (make-session :input (if (and batch lines (not piped)) (make-concatenated-stream) input)
+                  :output *standard-output* :batch batch :lines lines
                   :patient (or batch piped) :echo (and piped (not batch)))))
 
 (defun run-prompt (options)
   "Do what OPTIONS say. Return the status to exit with."
   (let ((robot-name (first-robot options))
-        (session (standard-session (option-value :batch options))))
+        (session (standard-session (option-value :batch options) (plan-lines options))))
     (if (and (session-batch-p session) (null (option-value :rate options)))
         (run-batch session robot-name options)
         (run-live session robot-name options))

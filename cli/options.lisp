@@ -23,7 +23,7 @@
 
 (defparameter *options*
   '(("--world" :world identity) ("--robot" :robot identity) ("--seed" :seed parse-seed)
-    ("--rate" :rate parse-pace) ("--load" :load identity)
+    ("--rate" :rate parse-pace) ("--load" :load identity) ("--plan" :plan identity)
     ("--batch" :batch nil) ("--list" :list nil))
   "Lists (option key parser); PARSER is NIL for an option without a value.")
 

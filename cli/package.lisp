@@ -6,9 +6,20 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:use :cl :ars-magna.base :ars-magna.world :ars-magna.time :ars-magna.robot
         :ars-magna.command :ars-magna.display)
   (:shadowing-import-from :ars-magna.world #:map)
+  (:import-from :ars-magna.rpl
+                #:task-p #:task-name #:task-serial #:task-state #:task-result #:task-over-p
+                #:task-children #:task-awaits #:plan-failure #:failure-class #:failure-data
+                #:report-failure #:*plan-end-hooks* #:plan-deadlocked-p #:post-call
+                #:stop-plan
+                #:all-procedures #:procedure-name #:procedure-lambda-list)
+  (:import-from :ars-magna.rpl-robot
+                #:rpl-init-robot #:rpl-robot #:rpl-runner
+                #:begin-plan #:end-plan #:plans #:print-plans)
   ;; line, names
   (:export #:line #:line-name #:line-parameters #:line-sentence #:define-line #:all-lines
            #:all-line-names #:find-line #:bad-line)
+  ;; plan-lines
+  (:export #:all-words)
   ;; arguments
   (:export #:read-argument #:argument-words)
   ;; session, prompt

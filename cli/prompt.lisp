@@ -11,10 +11,13 @@ comes of earlier lines if the session waits for that."
   (let ((console (session-console session)))
     (unless (session-batch-p session) (show-prompt console prompt))
     (catch-up session)
-    (let ((line (and (not (console-closed-p console)) (read-line (session-input session) nil))))
+    (let* ((given (pop (session-lines session)))
+           (line (or given
+                     (and (not (console-closed-p console))
+                          (read-line (session-input session) nil)))))
       (cond ((session-batch-p session))
             ((null line) (terpri console))
-            ((session-echo-p session) (format console "~A~%" line)))
+            ((or given (session-echo-p session)) (format console "~A~%" line)))
       (with-lock ((session-lock session)) (answered console))
       line)))
 
@@ -85,7 +88,8 @@ comes of earlier lines if the session waits for that."
 (defun interrupted (session)
   (when (session-batch-p session) (throw 'leave 130))
   (answered (session-console session))
-  (format (session-console session) "~&Interrupted.~%"))
+  (format (session-console session) "~&Interrupted.~:[~; Plans go on; STOP-PLAN ends them.~]~%"
+          (plans)))
 
 (defun next-line (session)
   "Read a line of SESSION and do what it says; at the end of input, let the session be over."
@@ -115,11 +119,11 @@ comes of earlier lines if the session waits for that."
       (stop-listening session)))
   session)
 
-(defun prompt (&rest options &key input output batch patient echo)
+(defun prompt (&rest options &key input output batch patient echo lines)
   "Run the command-line interface: prompt for commands to the robot last given to SIMULATOR, until
 QUIT or the end of input. INPUT and OUTPUT are streams, by default the standard ones. If PATIENT,
 or headless, each command completes before the next is read; BATCH is that without a prompt; with
-ECHO, lines are shown as they are read. Returns nothing (manual A, E)."
-  (declare (ignore input output batch patient echo))
+ECHO, lines are shown as they are read; the list LINES is done first. Returns nothing (manual A, E)."
+  (declare (ignore input output batch patient echo lines))
   (run-session (apply #'make-session options))
   (values))

@@ -41,6 +41,10 @@
   ;; True if there are messages that somebody will show soon.
   (news-p nil)
   (errors 0 :type fixnum)
+  ;; Lines to do before any is read.
+  (lines '() :type list)
+  ;; That of the last plan, if it failed.
+  (failure nil)
   ;; What has been issued and may not have ended, and whether Lisp may have issued more.
   (errands '() :type list)
   (lisp-p nil)
@@ -51,12 +55,12 @@
       "Return how many errors there were so far: lines that made no sense, and error messages.")
 
 (defun make-session (&key (input *standard-input*) (output *standard-output*) batch
-                       (patient batch) echo)
-  "Return a session that reads lines from INPUT and writes to OUTPUT. With BATCH, it shows no
-prompt; if PATIENT, as a batch is, each command completes before the next is read; with ECHO, it
-shows what it reads."
+                       (patient batch) echo lines)
+  "Return a session that does the list LINES, then reads others from INPUT, and writes to OUTPUT. With
+BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes before the next is read;
+with ECHO, it shows what it reads."
   (%make-session :input input :console (make-console output) :batch-p (and batch t)
-                 :patient-p (and patient t) :echo-p (and echo t)))
+                 :patient-p (and patient t) :echo-p (and echo t) :lines lines))
 
 (defun session-robot ()
   "Return the robot that the prompt commands. Signals BAD-LINE when there is none."
@@ -126,7 +130,9 @@ shows what it reads."
   "Show the messages of SIMULATION, of which one is new."
   (cond ((not (simulation-ticking-p simulation)) (show-messages session))
         ((in-simulation-p simulation) (show-after-changes session simulation))
-        (t (setf (session-news-p session) t))))
+        (t (setf (session-news-p session) t)
+           ;; The tick may have ended just now, without seeing the news.
+           (unless (simulation-ticking-p simulation) (look session)))))
 
 (defun in-simulation-p (simulation)
   (or (not (live-p simulation))

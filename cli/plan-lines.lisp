@@ -1,0 +1,152 @@
+;;;; plan-lines.lisp -- PLAN, PLANS and STOP-PLAN.
+
+(in-package :ars-magna.cli)
+
+;;; Which plan is meant.
+
+(defun plan-called (name)
+  "Return the plan procedure called NAME, a string, in whatever package; NIL if there is none."
+  (find name (all-procedures) :key #'procedure-name :test #'same-name-p))
+
+(defun reject-unknown-plan (name)
+  (reject-line "There is no plan ~A.~@[ Did you mean ~A?~] PLAN lists all plans."
+               (string-upcase name)
+               (nearest-name name (mapcar #'procedure-name (all-procedures)))))
+
+(defun plan-meant (name)
+  "Return the plan procedure called NAME, or the only one whose name begins so. Signals BAD-LINE."
+  (let ((candidates (remove-if-not (lambda (plan)
+                                     (starts-with-subseq (string-upcase name)
+                                                         (string (procedure-name plan))))
+                                   (all-procedures))))
+    (cond ((plan-called name))
+          ((null candidates) (reject-unknown-plan name))
+          ((rest candidates)
+           (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it." (string-upcase name)
+                        (mapcar #'procedure-name candidates)))
+          (t (first candidates)))))
+
+(defun all-words ()
+  "Return a list of all words that a prompt may complete: names of commands and plans."
+  (append (all-line-names)
+          (mapcar (lambda (plan) (string (procedure-name plan))) (all-procedures))))
+
+;;; What plans take.
+
+(defun parameter-word (parameter keyword)
+  "Return how PARAMETER, of a plan's lambda list after the lambda list keyword KEYWORD, is typed."
+  (let ((name (if (consp parameter) (first parameter) parameter)))
+    (ecase keyword
+      ((nil) (format nil "~(~A~)" name))
+      (&optional (format nil "[~(~A~)]" name))
+      (&key (if (consp name)
+                (format nil "[~(~S~)]" (first name))
+                (format nil "[:~(~A~)]" name)))
+      ((&rest &body) (format nil "[~(~A~)...]" name)))))
+
+(defun parameter-words (lambda-list)
+  "Return how each parameter of LAMBDA-LIST, of a plan, is typed."
+  (loop with keyword = nil
+        for parameter in lambda-list
+        until (eq parameter '&aux)
+        if (member parameter lambda-list-keywords)
+          do (setf keyword parameter)
+        else
+          collect (parameter-word parameter keyword)))
+
+(defun plan-usage (plan)
+  "Return how PLAN, a plan procedure, is typed after the word PLAN."
+  (format nil "~A~{ ~A~}" (procedure-name plan) (parameter-words (procedure-lambda-list plan))))
+
+(defun plan-documentation (plan)
+  (or (documentation (procedure-name plan) 'function) "Not documented."))
+
+(defun write-plan-menu ()
+  "List all plans: how each is typed, and what it does."
+  (dolist (plan (all-procedures))
+    (write-filled (first-sentence (plan-documentation plan)) 27
+                  (format nil "  ~A" (plan-usage plan)))))
+
+(defun write-plan-help (plan)
+  (format t "PLAN ~A~%" (plan-usage plan))
+  (write-filled (plan-documentation plan) 2))
+
+;;; Starting them.
+
+(defun let-plans-drive (robot)
+  "Let ROBOT be the one that plans drive. Signals BAD-LINE while they drive another."
+  (unless (and (plan-runner-now) (eq robot (rpl-robot)))
+    (when (plans) (reject-line "Plans are driving ~A. STOP-PLAN ends them." (rpl-robot)))
+    (rpl-init-robot robot)))
+
+(defun begin-errand (errand plan arguments)
+  "Start PLAN, a plan procedure, with ARGUMENTS for ERRAND. Signals BAD-LINE."
+  (with-lock (*plan-errands-lock*) (push errand *plan-errands*))
+  (handler-bind ((error (lambda (condition)
+                          (close-errand errand)
+                          (when (typep condition 'program-error)
+                            (reject-line "~A It is: PLAN ~A." (sentence condition)
+                                         (plan-usage plan))))))
+    (setf (plan-errand-task errand) (apply #'begin-plan plan arguments))))
+
+(defun sentence (condition)
+  "Return what CONDITION says, as a sentence."
+  (let ((text (string-right-trim "." (one-line (condition-text condition)))))
+    (format nil "~@(~A~)~A." (char text 0) (subseq text 1))))
+
+(defun send-plan (session plan arguments)
+  "Start PLAN, a plan procedure, with ARGUMENTS as an errand of SESSION."
+  (let ((errand (make-plan-errand (procedure-name plan) session (current-simulation))))
+    (let-plans-drive (session-robot))
+    (setf (session-failure session) nil)
+    (let ((task (begin-errand errand plan arguments)))
+      (push errand (session-errands session))
+      (when (live-p (plan-errand-simulation errand)) (start-watching-plan errand))
+      (unless (waits-p session)
+        (format t "Plan ~D is under way: ~(~A~).~%" (task-serial task) (procedure-name plan))))))
+
+(defun read-data (text line)
+  "Return the list of the Lisp data in TEXT, arguments of LINE."
+  (loop with position = (skip-blanks text 0)
+        until (= position (length text))
+        collect (multiple-value-bind (datum end) (read-datum text position line)
+                  (setf position (skip-blanks text end))
+                  datum)))
+
+(define-line "PLAN" (session (name :token "the name of a plan" :optional)
+                             (args :rest "what the plan takes, not evaluated" :optional))
+    (:planning)
+    "List the plans that there are, or let the robot carry out the plan NAME with ARGS. A live prompt
+is back at once; any other waits until the plan is over."
+  (if name
+      (send-plan session (plan-meant name) (read-data (or args "") (find-line "PLAN")))
+      (write-plan-menu)))
+
+;;; Those under way.
+
+(defun failure-report (failure)
+  "Return all that is known of FAILURE, of a plan."
+  (let ((*message-queue* (make-message-queue))
+        (*package* (find-package :ars-user)))
+    (report-failure failure)
+    (message-text (first (take-messages)))))
+
+(define-line "PLANS" (session) (:planning)
+    "Show the plans under way, as trees of what they do and wait for; if the last to end failed, also
+where and why."
+  (if (plans)
+      (print-plans)
+      (format t "No plan is under way. PLAN lists the plans that there are.~%"))
+  (when (session-failure session)
+    (format t "The last plan failed: ~A~&" (failure-report (session-failure session)))))
+
+(defun plan-numbered (number)
+  (or (find number (plans) :key #'task-serial)
+      (reject-line "No plan ~D is under way. PLANS shows which are." number)))
+
+(define-line "STOP-PLAN" (session (n count "the number of a plan under way" :optional))
+    (:planning)
+    "End the plan N, or all that are under way. What the robot itself is at goes on; STOP stops that."
+  (cond ((null (plans)) (reject-line "No plan is under way."))
+        (n (end-plan (plan-numbered n)))
+        (t (end-plan :all))))

@@ -1,0 +1,180 @@
+;;;; plans.lisp -- plans that the prompt has started: waiting for them and telling how they end.
+
+(in-package :ars-magna.cli)
+
+;;; A plan is an errand like a command to the robot. Live, a thread watches each plan and tells of its
+;;; end. Now and then it asks, between two reactions of the plans, whether they can still go on; one
+;;; that cannot is ended if the session waits for it. Headless, the prompt looks after each tick.
+
+(defstruct (plan-errand (:include errand) (:copier nil)
+                        (:constructor make-plan-errand (name session simulation)))
+  "A plan that the prompt has started. STUCK says what keeps it from ever going on, or is NIL."
+  (name nil :type symbol :read-only t)
+  (session nil :type session :read-only t)
+  (simulation nil :read-only t)
+  (task nil)
+  (stuck nil :type (or null string))
+  (over (make-semaphore "plan over") :read-only t)
+  (told (make-semaphore "plan's end told") :read-only t))
+
+(defvar *plan-errands* '() "The plans that the prompt has started and not yet told the end of.")
+(defvar *plan-errands-lock* (make-lock "plans of prompts"))
+
+(defun plan-over-p (errand)
+  (let ((task (plan-errand-task errand)))
+    (and task (task-over-p task))))
+
+(defun plan-runner-now ()
+  "Return the runner of the plans of the robot that they drive, or NIL."
+  (handler-case (rpl-runner) (misuse () nil)))
+
+;;; A plan may end before BEGIN-PLAN has told which task it is.
+
+(defun errand-of-p (errand task)
+  (if (plan-errand-task errand)
+      (eq task (plan-errand-task errand))
+      (eq (task-name task) (plan-errand-name errand))))
+
+(defun errand-of (task)
+  "Return the errand whose plan TASK is, or NIL."
+  (with-lock (*plan-errands-lock*)
+    (let ((errand (find-if (lambda (errand) (errand-of-p errand task)) *plan-errands*)))
+      (when errand (setf (plan-errand-task errand) task))
+      errand)))
+
+(defun note-plan-end (task)
+  "Let who waits for TASK, a plan, know that it is over. True if the prompt has started it."
+  (let ((errand (errand-of task)))
+    (when errand
+      (signal-semaphore (plan-errand-over errand))
+      t)))
+
+(pushnew 'note-plan-end *plan-end-hooks*)
+
+;;; What is told.
+
+(defun user-text (function object)
+  "Return the string that FUNCTION makes of OBJECT, as users would read it, on a line."
+  (let ((*package* (find-package :ars-user))
+        (*print-pretty* nil))
+    (let ((text (one-line (funcall function object))))
+      (if (> (length text) 300) (format nil "~A..." (subseq text 0 297)) text))))
+
+(defun reason-text (failure)
+  "Return in words why a plan failed."
+  (if (eq (type-of failure) 'plan-failure)
+      (format nil "~:[no reason given~;~:*~S~]~{ ~S~}"
+              (failure-class failure) (failure-data failure))
+      (condition-text failure)))
+
+(defmacro with-messages-to ((errand) &body body)
+  "Run BODY, whose messages are of the simulation of ERRAND."
+  `(let ((*message-queue* (simulation-messages (plan-errand-simulation ,errand)))) ,@body))
+
+(defun tell-end (errand)
+  "Queue a message that says how the plan of ERRAND has ended."
+  (let ((name (string-downcase (plan-errand-name errand)))
+        (task (plan-errand-task errand)))
+    (with-messages-to (errand)
+      (case (task-state task)
+        (:succeeded (message-set name " succeeded: "
+                                 (user-text #'prin1-to-string (task-result task))))
+        (:failed (setf (session-failure (plan-errand-session errand)) (task-result task))
+                 (error-set name " failed: " (user-text #'reason-text (task-result task))
+                            ". PLANS tells more."))
+        (t (message-set name " was stopped."))))))
+
+(defun tell-stuck (errand)
+  "Queue a message that says what the plan of ERRAND waits for in vain."
+  (with-messages-to (errand)
+    (error-set "Deadlock: " (string-downcase (plan-errand-name errand)) " "
+               (plan-errand-stuck errand)
+               (if (session-patient-p (plan-errand-session errand))
+                   "; it was stopped."
+                   ". PLANS shows it, STOP-PLAN ends it."))))
+
+(defun close-errand (errand)
+  "Count ERRAND, whose end has been told, as done."
+  (with-lock (*plan-errands-lock*)
+    (setf *plan-errands* (remove errand *plan-errands*)))
+  (setf (errand-done-p errand) t)
+  (signal-semaphore (plan-errand-told errand)))
+
+;;; Deadlocks.
+
+(defun awaited-by (task)
+  "Return a list of what TASK and its parts wait for, in words."
+  (remove-duplicates (if (task-children task)
+                         (mapcan #'awaited-by (task-children task))
+                         (remove nil (list (task-awaits task))))
+                     :test #'string= :from-end t))
+
+(defun stuck-text (runner task)
+  "Return in words what TASK of RUNNER waits for, if no plan of RUNNER can ever go on; else NIL. To be
+called while no plan reacts."
+  (when (and (not (task-over-p task)) (plan-deadlocked-p runner))
+    (user-text (lambda (awaited)
+                 (format nil "waits for ~{~A~^, ~}, which nothing can bring about" awaited))
+               (awaited-by task))))
+
+(defun note-if-stuck (errand runner)
+  (setf (plan-errand-stuck errand) (stuck-text runner (plan-errand-task errand))))
+
+;;; Live.
+
+(defun driving-p (errand runner)
+  "True if RUNNER still runs the plan of ERRAND."
+  (and (live-p (plan-errand-simulation errand))
+       (eq runner (plan-runner-now))))
+
+(defun tell-if-stuck (errand runner known)
+  "Find out whether the plan of ERRAND is stuck; tell it, unless it is KNOWN. Return the answer to the
+last such question."
+  (let ((stuck (plan-errand-stuck errand)))
+    (cond ((null stuck))
+          (known)
+          (t (tell-stuck errand)
+             (when (session-patient-p (plan-errand-session errand))
+               (stop-plan runner (plan-errand-task errand)))))
+    (post-call runner (lambda () (note-if-stuck errand runner)))
+    stuck))
+
+(defun watch-plan (errand runner)
+  "Wait until the plan of ERRAND is over, and tell how it has ended."
+  (loop with stuck = nil
+        until (plan-over-p errand)
+        do (cond ((wait-on-semaphore (plan-errand-over errand) 0.2))
+                 ((driving-p errand runner) (setf stuck (tell-if-stuck errand runner stuck)))
+                 (t (return)))
+        finally (unless (and stuck (session-patient-p (plan-errand-session errand)))
+                  (tell-end errand)))
+  (close-errand errand))
+
+(defun start-watching-plan (errand)
+  (let ((runner (plan-runner-now)))
+    (start-thread (lambda () (watch-plan errand runner))
+                  (format nil "prompt's watch of ~A" (plan-errand-name errand)))))
+
+;;; Headless.
+
+(defun finish-headless (errand)
+  "Tell how the plan of ERRAND has ended, or end it if it is stuck. True unless it goes on."
+  (cond ((plan-over-p errand) (tell-end errand) t)
+        ((plan-errand-stuck errand)
+         (tell-stuck errand)
+         (end-plan (plan-errand-task errand))
+         t)))
+
+(defun await-plan-headless (errand)
+  (let ((runner (plan-runner-now)))
+    (await (lambda () (or (plan-over-p errand) (note-if-stuck errand runner))))
+    (let ((finished-p (finish-headless errand)))
+      (close-errand errand)
+      (unless finished-p
+        (reject-line "~(~A~) has not ended within ~D ticks; it goes on."
+                     (plan-errand-name errand) *patience*)))))
+
+(defmethod await-errand ((errand plan-errand))
+  (if (live-p (plan-errand-simulation errand))
+      (wait-on-semaphore (plan-errand-told errand))
+      (await-plan-headless errand)))
