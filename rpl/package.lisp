@@ -36,7 +36,7 @@ Fluents hold what varies, tasks wait for fluents, a runner lets them react. Know
   (:export #:misplaced-suspension #:misplaced-form #:misplaced-container #:misplaced-advice)
   ;; defining plans
   (:export #:def-interp-proc #:def-interp-macro #:interp-lambda #:make-plan #:call-plan
-           #:procedure #:find-procedure #:procedure-name)
+           #:procedure #:find-procedure #:all-procedures #:procedure-name #:procedure-lambda-list)
   ;; constructs
   (:export #:seq #:par #:pursue #:try-all #:try-in-order #:try-one #:try-each-in-order #:par-loop
            #:with-policy #:whenever #:wait-for #:wait-time #:n-times #:partial-order #:plan
@@ -45,7 +45,7 @@ Fluents hold what varies, tasks wait for fluents, a runner lets them react. Know
   ;; trace and reports
   (:export #:plan-trace #:write-trace #:trace-entry #:trace-entry-tick #:trace-entry-event
            #:trace-entry-task #:trace-entry-form #:trace-entry-detail
-           #:print-tasks #:report-deadlock #:report-failure)
+           #:print-tasks #:report-deadlock #:report-failure #:*plan-end-hooks*)
   ;; the engine
   (:export #:plan-runner #:make-plan-runner #:*runner* #:*runaway-limit* #:current-task #:plan-time
            #:plan-runner-tick #:plan-runner-tasks #:plan-runner-steps

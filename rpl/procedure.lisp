@@ -15,7 +15,9 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
   (body nil :type (or null node))
   (stub nil :type (or null function)))
 (setf (documentation 'procedure-name 'function)
-      "Return the name of a plan procedure, NIL for one made by INTERP-LAMBDA.")
+      "Return the name of a plan procedure, NIL for one made by INTERP-LAMBDA."
+      (documentation 'procedure-lambda-list 'function)
+      "Return the lambda list of a plan procedure.")
 
 (defvar *procedures* (make-hash-table :test 'eq :synchronized t)
   "The cells of all names that plans define or call.")
@@ -33,14 +35,17 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
              (and (fboundp name)
                   (eq (symbol-function name) (procedure-stub procedure)))))))
 
+(defun all-procedures ()
+  "Return a list of all plan procedures that are defined, by name."
+  (sort (remove-if-not #'live-p (hash-table-values *procedures*)) #'string<
+        :key #'procedure-name))
+
 (defun find-procedure (name)
   "Return the plan procedure called NAME; an error if there is none."
   (let ((procedure (gethash name *procedures*)))
     (if (and procedure (live-p procedure))
         procedure
-        (reject-name "plan procedure" name
-                     (loop for procedure in (hash-table-values *procedures*)
-                           when (live-p procedure) collect (procedure-name procedure))))))
+        (reject-name "plan procedure" name (mapcar #'procedure-name (all-procedures))))))
 
 (defmethod print-object ((procedure procedure) stream)
   (print-unreadable-object (procedure stream :type t)
@@ -143,5 +148,4 @@ value."
   (if (and (fboundp name) (not (macro-function name)))
       (fdefinition name)
       (reject-name "plan procedure or function" name
-                   (loop for procedure in (hash-table-values *procedures*)
-                         when (live-p procedure) collect (procedure-name procedure)))))
+                   (mapcar #'procedure-name (all-procedures)))))

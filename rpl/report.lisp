@@ -52,10 +52,15 @@ state, expression, and what each waits for."
 task, what was under way, and the Lisp backtrace of an error."
   (error-set (with-output-to-string (stream) (write-failure-report failure stream))))
 
+(defvar *plan-end-hooks* '()
+  "Functions, or their names, called with each top-level task that has ended; the report of its
+failure is left to the first that returns true. In any thread that lets plans react.")
+
 (defun report-end (task)
   "Report the failure of TASK, a top-level task that has just ended, if it failed."
-  (when (eq (task-state task) :failed)
-    (report-failure (task-result task))))
+  (unless (some (lambda (hook) (funcall hook task)) *plan-end-hooks*)
+    (when (eq (task-state task) :failed)
+      (report-failure (task-result task)))))
 
 ;;; Deadlock.
 
