@@ -102,9 +102,8 @@ the attributes can have")
 
 (define-command camera-get-object-designator
     (operation (camera camera)
-               (type designator-type ":local for what is next to the robot, else :non-local")
-               (specification specification
-                "what the object is like, a descriptor specification"))
+               (type designator-type "where to look: at what is next to the robot, or not")
+               (specification specification "what the object is like"))
     ((designator "a designator of such an object"))
     ((:family :looking) (:section "3.4.3") (:prompt "OBJ-DESIG") (:prefix "get-designator")
      (:delay camera-desig-delay*)
@@ -116,9 +115,8 @@ the attributes can have")
 
 (define-command camera-get-all-object-designators
     (operation (camera camera)
-               (type designator-type ":local for what is next to the robot, else :non-local")
-               (specification specification
-                "what the objects are like, a descriptor specification"))
+               (type designator-type "where to look: at what is next to the robot, or not")
+               (specification specification "what the objects are like"))
     ((designators "a list of designators of such objects"))
     ((:family :looking) (:section "3.4.3") (:prompt "ALL-OBJ-DESIGS")
      (:prefix "get-all-designators") (:delay camera-desig-delay*)
