@@ -102,7 +102,7 @@ the attributes can have")
 
 (define-command camera-get-object-designator
     (operation (camera camera)
-               (type designator-type "where to look: at what is next to the robot, or not")
+               (type designator-type "whether next to the robot")
                (specification specification "what the object is like"))
     ((designator "a designator of such an object"))
     ((:family :looking) (:section "3.4.3") (:prompt "OBJ-DESIG") (:prefix "get-designator")
@@ -115,7 +115,7 @@ the attributes can have")
 
 (define-command camera-get-all-object-designators
     (operation (camera camera)
-               (type designator-type "where to look: at what is next to the robot, or not")
+               (type designator-type "whether next to the robot")
                (specification specification "what the objects are like"))
     ((designators "a list of designators of such objects"))
     ((:family :looking) (:section "3.4.3") (:prompt "ALL-OBJ-DESIGS")
