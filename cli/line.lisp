@@ -26,13 +26,10 @@ the characters up to the next blank, or :REST, for all that is left of the line.
   (details '() :type list :read-only t)
   (action nil :type function :read-only t))
 
-(macrolet ((describe-readers (&rest pairs)
-             `(setf ,@(loop for (reader text) on pairs by #'cddr
-                            append `((documentation ',reader 'function) ,text)))))
-  (describe-readers
-   line-name "Return what the line command is called, in upper case."
-   line-parameters "Return the list of the line command's arguments."
-   line-sentence "Return the sentence that says what the line command does."))
+(document-functions
+  line-name "Return what the line command is called, in upper case."
+  line-parameters "Return the list of the line command's arguments."
+  line-sentence "Return the sentence that says what the line command does.")
 
 (defmethod print-object ((line line) stream)
   (print-unreadable-object (line stream :type t) (write-string (line-name line) stream)))

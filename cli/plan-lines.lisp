@@ -62,10 +62,12 @@
   (or (documentation (procedure-name plan) 'function) "Not documented."))
 
 (defun write-plan-menu ()
-  "List all plans: how each is typed, and what it does."
+  "List all plans, and what each does, on a line each."
   (dolist (plan (all-procedures))
-    (write-filled (first-sentence (plan-documentation plan)) 27
-                  (format nil "  ~A" (plan-usage plan)))))
+    (put-line "~A" (cut (format nil "  ~24A ~A" (procedure-name plan)
+                                (first-sentence (plan-documentation plan)))
+                        79)))
+  (format t "HELP name tells what a plan takes.~%"))
 
 (defun write-plan-help (plan)
   (format t "PLAN ~A~%" (plan-usage plan))

@@ -57,8 +57,7 @@
   "Return the string that FUNCTION makes of OBJECT, as users would read it, on a line."
   (let ((*package* (find-package :ars-user))
         (*print-pretty* nil))
-    (let ((text (one-line (funcall function object))))
-      (if (> (length text) 300) (format nil "~A..." (subseq text 0 297)) text))))
+    (cut (one-line (funcall function object)) 300)))
 
 (defun reason-text (failure)
   "Return in words why a plan failed."
