@@ -1,4 +1,4 @@
-;;;; robot-accessors.lisp -- what plans can ask of their robot without its doing anything (manual C).
+;;;; robot-accessors.lisp -- what plans ask of their robot without its doing anything (manual C).
 
 (in-package :ars-magna.rpl-robot)
 

@@ -107,8 +107,8 @@ plan may be waiting for the owner to answer it."
 ;;; Setting up.
 
 (defun busy-p (interface)
-  "True if a command of a plan is under way, or something else that is sure to happen. Kickers do not
-count: they tell plans nothing."
+  "True if a command of a plan is under way, or something else that is sure to happen. Kickers do
+not count: they tell plans nothing."
   (let ((simulation (interface-simulation interface)))
     (or (plusp (interface-under-way interface))
         (plusp (agenda-pending (simulation-agenda simulation)))
@@ -196,8 +196,8 @@ simulation inside of a live one has only inherited is left alone."
 (defun the-interface ()
   (if (usable-p *interface*)
       *interface*
-      (reject-use "No robot to drive. Call (rpl-init-robot ROBOT) first; after a simulator has been ~
-                   started anew, or the robot defined anew, call it again.")))
+      (reject-use "No robot to drive. Call (rpl-init-robot ROBOT) first; after a simulator has ~
+                   been started anew, or the robot defined anew, call it again.")))
 
 (defun rpl-robot ()
   "Return the robot that plans drive. Signals MISUSE without one."

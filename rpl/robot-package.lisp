@@ -6,7 +6,8 @@
   (:import-from :ars-magna.world #:world-map #:*world* #:remaining-capacity)
   (:import-from :ars-magna.time
                 #:*simulation* #:seconds-now #:current-simulation #:simulation-tick #:asking
-                #:add-observer #:remove-observer #:live-p #:run-ticks #:call-as-owner #:grab-resource
+                #:add-observer #:remove-observer #:live-p #:run-ticks #:call-as-owner
+                #:grab-resource
                 #:simulation-seed #:simulation-agenda #:simulation-inbox #:simulation-thread
                 #:simulation-busy-tests #:agenda-pending #:post #:*hog-seconds*)
   (:import-from :ars-magna.rpl

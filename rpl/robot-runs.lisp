@@ -59,7 +59,7 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
 (defun check-outside (interface)
   "Signal MISUSE where waiting for a plan would keep that plan from going on."
   (when (holding-p interface)
-    (reject-use "run-plan: a plan is at work here. Write a call of the other plan into it instead."))
+    (reject-use "run-plan: a plan is at work here. Let it call the other plan instead."))
   (when (eq (current-thread) (simulation-thread (interface-simulation interface)))
     (reject-use "run-plan: the simulator would wait for itself. Use begin-plan here.")))
 
@@ -93,7 +93,7 @@ simulator was stopped or started anew, or the robot defined anew). Signals UNKNO
       (format stream "No plans.~%")))
 
 (defun end-in (interface task)
-  "Let TASK of INTERFACE, or all if it is NIL, evaporate: now, or when the plans' thread gets to it."
+  "Let TASK of INTERFACE, or all if it is NIL, evaporate: now, or when their thread gets to it."
   (stop-plan (interface-runner interface) task)
   (unless (or (holding-p interface) (interface-thread interface))
     (with-plans (interface) (react-fully interface))))

@@ -24,7 +24,7 @@
   "Things in other rooms than MARVIN's, what they look like, and where to look from.")
 
 (defun fetch-in-office (errand seed &key clean)
-  "Let MARVIN fetch the thing of ERRAND. Return whether it did, what the plan returned, and a digest."
+  "Let MARVIN fetch the thing of ERRAND. Return whether it did, the plan's value, and a digest."
   (destructuring-bind (name description places) errand
     (robot:with-simulation (ars-user::marvin :seed seed :clean clean)
       (let ((value (driver:run-plan 'ars-user::fetch-thing description places)))
@@ -173,7 +173,7 @@
 ;;; The errand in the other style.
 
 (defun run-errand-of (robot name description seed &key clean (camera 0) (limit 4000))
-  "Return whether ROBOT stowed the thing called NAME, and a list of the codes that its continuation got."
+  "Return whether ROBOT stowed the thing called NAME, and the codes that its continuation got."
   (robot:call-with-simulation
    (lambda ()
      (let* ((codes '()) (body (symbol-value robot)) (thing (world:find-thing name)))

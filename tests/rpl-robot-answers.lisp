@@ -1,4 +1,4 @@
-;;;; rpl-robot-answers.lisp -- what each command of plans does to the fluents, in success and failure.
+;;;; rpl-robot-answers.lisp -- what each command does to the fluents, in success and failure.
 
 (in-package :ars-magna.tests)
 
@@ -167,7 +167,8 @@
     (command:hand-remove :not-inside (driver:rpl-hand-remove 0))
     (command:hand-grasp-desig nil (driver:rpl-hand-grasp-desig 0 0 designator) (tracked 'green)
      (eq designator (rpl:fluent-value (svref driver:hand-grasping* 0))))
-    (command:hand-grasp-desig :not-tracked (driver:rpl-hand-grasp-desig 0 0 designator) (seen 'green)
+    (command:hand-grasp-desig :not-tracked (driver:rpl-hand-grasp-desig 0 0 designator)
+     (seen 'green)
      (null (rpl:fluent-value (svref driver:hand-grasping* 0))))
     (command:hand-ungrasp nil (driver:rpl-hand-ungrasp 0) (grasped 'green)
      (null (rpl:fluent-value (svref driver:hand-grasping* 0))))
@@ -189,7 +190,7 @@
     (command:storage-bin-open nil (driver:rpl-storage-bin-open 0) (closed 0)
      (not (driver:rpl-storage-bin-closed? 0)))
     (command:storage-bin-open :bin-open (driver:rpl-storage-bin-open 0)))
-  "Rows (command error-code call [before [true-at-the-pulse]]); DESIGNATOR is what BEFORE returned.")
+  "Rows (command error-code call [before [true-at-the-pulse]]); BEFORE returns DESIGNATOR.")
 
 (defun fluents-of (command)
   "Return the forms for the fluents that COMMAND sets to its error code and that it pulses, or NIL."

@@ -76,8 +76,9 @@
   (live (simulation)
     (is (eq :moved (run-as-plan
                      (rpl:n-times 20
-                       (world:move-thing (world:find-thing 'ball (robot:robot-world (driver:rpl-robot)))
-                                         (list 2.5 2.5))
+                       (world:move-thing
+                        (world:find-thing 'ball (robot:robot-world (driver:rpl-robot)))
+                        (list 2.5 2.5))
                        (driver:rpl-robot-turn .1)
                        (rpl:wait-for driver:robot-stopped*))
                      :moved)))))

@@ -184,7 +184,8 @@
         (*package* (find-package :ars-magna.tests)))
     (with-fitter (:seed seed)
       (driver:run-plan 'wanderer)
-      (list (with-output-to-string (stream) (rpl:write-trace (rpl:plan-trace (driver:rpl-runner)) stream))
+      (list (with-output-to-string (stream)
+              (rpl:write-trace (rpl:plan-trace (driver:rpl-runner)) stream))
             (robot:state-digest)
             (multiple-value-list (robot:robot-position fitter))))))
 

@@ -1,9 +1,9 @@
 ;;;; errand.lisp -- a robot program in the other style: continuations instead of plans.
 
-;;; Good for seeing what both styles cost. RUN-ERRAND finds a thing, goes to it, grasps it and stows it,
-;;; as the manual's figures D.1, D.3 and D.5 do for a robot that nothing goes wrong for; here every
-;;; error leads somewhere. Each step is a function that issues a command and returns at once; its
-;;; continuation takes the next step. What the steps share is in an ERRAND.
+;;; Good for seeing what both styles cost. RUN-ERRAND finds a thing, goes to it, grasps it and stows
+;;; it, as the manual's figures D.1, D.3 and D.5 do for a robot that nothing goes wrong for; here
+;;; every error leads somewhere. Each step is a function that issues a command and returns at once;
+;;; its continuation takes the next step. What the steps share is in an ERRAND.
 ;;;
 ;;;   (with-simulation (dot :seed 1)
 ;;;     (run-errand dot '((:color red)) #'report)
@@ -26,9 +26,9 @@
   (over #f))
 
 (defun run-errand (robot description continuation &key (camera 0) (hand 0) (bin 0))
-  "Let ROBOT find something that fits DESCRIPTION, go to it, grasp it with HAND and stow it in BIN; the
-parts are given by index. Returns at once. CONTINUATION gets, in the end, an error code or NIL, and
-ROBOT. The codes: :GAVE-UP after too many setbacks, :INSUFFICIENT-STRENGTH, :INSUFFICIENT-CAPACITY
+  "Let ROBOT find something that fits DESCRIPTION, go to it, grasp it with HAND and stow it in BIN;
+the parts are given by index. Returns at once. CONTINUATION gets, in the end, an error code or NIL,
+and ROBOT. The codes: :GAVE-UP after too many setbacks, :INSUFFICIENT-STRENGTH, :INSUFFICIENT-CAPACITY
 (the hand then still holds the thing), and :INTERRUPT if another command took a part over."
   (find-target (make-errand :robot robot :description description :continuation continuation
                             :camera (robot-camera robot camera)
@@ -119,8 +119,8 @@ ROBOT. The codes: :GAVE-UP after too many setbacks, :INSUFFICIENT-STRENGTH, :INS
   (look-closely-at errand 12 3 #'grasp-target #'turn-aside))
 
 (defun look-closely-at (errand looks wanted next otherwise)
-  "Look, LOOKS times at most, for what is next to the robot or in the bin, until it has fitted WANTED
-times; take the step NEXT with the last designator then, or else OTHERWISE."
+  "Look, LOOKS times at most, for what is next to the robot or in the bin, until it has fitted
+WANTED times; take the step NEXT with the last designator then, or else OTHERWISE."
   (camera-get-object-designator (errand-camera errand) :local (errand-description errand)
     (continuation (err camera designator)
       (let ((wanted (if designator (- wanted 1) wanted)))

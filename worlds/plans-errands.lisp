@@ -12,8 +12,8 @@
 
 (def-interp-proc find-and-take (me places description &key (camera (widest-camera)) (hand 0) (bin 0)
                                                            (rounds 12))
-  "Let the robot of the reckoning ME look at PLACES, points of its map, in turn, ROUNDS times at most,
-for a thing that fits DESCRIPTION, and stow the first it finds in BIN. Fails with :NOT-FOUND."
+  "Let the robot of the reckoning ME look at PLACES, points of its map, in turn, ROUNDS times at
+most, for a thing that fits DESCRIPTION, and stow the first it finds in BIN. Fails with :NOT-FOUND."
   (let ((taken nil))
     (n-times rounds UNTIL taken
       (dolist (place places)
@@ -36,10 +36,11 @@ for a thing that fits DESCRIPTION, and stow the first it finds in BIN. Fails wit
   (put-thing-down hand camera bin))
 
 (def-interp-proc fetch-thing (description places
-                              &key (start (here (rpl-robot))) (camera (widest-camera)) (hand 0) (bin 0))
+                              &key (start (here (rpl-robot))) (camera (widest-camera))
+                                   (hand 0) (bin 0))
   "Let the robot, which is at START, a list (x y heading), look at PLACES, points of its map, for a
-thing that fits DESCRIPTION, stow it in BIN, come back and put it on the floor. Return the point where
-it believes to be then. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
+thing that fits DESCRIPTION, stow it in BIN, come back and put it on the floor. Return the point
+where it believes to be then. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
   (let ((me (begin-reckoning start))
         (home (list (first start) (second start))))
     (with-retry-counters ((losses 2))
@@ -50,16 +51,17 @@ it believes to be then. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-
 ;;; Tidying.
 
 (def-interp-proc tidy-once (me places description camera hand bin)
-  "Stow one thing that fits DESCRIPTION and is near one of PLACES in BIN. Return true if there was any."
+  "Stow one thing that fits DESCRIPTION and is near one of PLACES in BIN. True if there was any."
   (handle-failure ((:not-found () (return nil)))
     (find-and-take me places description :camera camera :hand hand :bin bin :rounds 5)))
 
-(def-interp-proc tidy-room (descriptions places &key (start (here (rpl-robot))) (camera (widest-camera))
-                                                     (hand 0) (limit 20))
-  "Let the robot, which is at START, collect what lies about near PLACES, points of its map: things that
-fit the first of DESCRIPTIONS into its first storage bin, and so on. It goes on, up to LIMIT things,
-until it has seen none for a whole round; what is kicked about meanwhile is looked for anew. Return how
-many things it has stowed."
+(def-interp-proc tidy-room (descriptions places
+                            &key (start (here (rpl-robot))) (camera (widest-camera)) (hand 0)
+                                 (limit 20))
+  "Let the robot, which is at START, collect what lies about near PLACES, points of its map: things
+that fit the first of DESCRIPTIONS into its first storage bin, and so on. It goes on, up to LIMIT
+things, until it has seen none for a whole round; what is kicked about meanwhile is looked for anew.
+Return how many things it has stowed."
   (let ((me (begin-reckoning start))
         (count 0)
         (found t))

@@ -36,7 +36,8 @@ of CASE with ERROR bound to it, take for the end by returning true; fail after a
   "Close the storage bin with index BIN, unless it is closed; what jams it is tried again."
   (insistently (error (bin-outcome bin (rpl-storage-bin-close bin)))
     (:bin-closed t)
-    (:robot-in-bin (fail :class :robot-in-bin :part (fluent-value (vref storage-bin-jammer* bin))))))
+    (:robot-in-bin
+     (fail :class :robot-in-bin :part (fluent-value (vref storage-bin-jammer* bin))))))
 
 (def-interp-proc reach-into-bin (hand bin)
   "Put HAND into the open storage BIN. Fails with :BIN-FULL if what it holds has no room there."
@@ -123,8 +124,8 @@ hand still holding it, or with :LOST-GRIP if it does not: what is kicked about c
     (:not-inside t)))
 
 (def-interp-proc put-thing-down (hand camera bin &key (description '()))
-  "Take a thing that fits DESCRIPTION out of the storage BIN with HAND, and put it on the floor. Fails
-with :NOTHING-INSIDE if CAMERA sees none in there. The bin is closed then."
+  "Take a thing that fits DESCRIPTION out of the storage BIN with HAND, and put it on the floor.
+Fails with :NOTHING-INSIDE if CAMERA sees none in there. The bin is closed then."
   (open-bin bin)
   (evap-protect
       (seq (look-into-bin camera bin)

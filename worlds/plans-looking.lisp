@@ -1,9 +1,9 @@
 ;;;; plans-looking.lisp -- plans that look for things and go to them.
 
 ;;; Good for any robot with a camera. A description is a descriptor specification of manual 3.4.2,
-;;; such as ((:color blue) (:substance plastic)). Cameras often misread colours, overlook things and see
-;;; some that are not there; so plans look several times, and once they are at what they take for the
-;;; thing they make sure before a hand touches it.
+;;; such as ((:color blue) (:substance plastic)). Cameras often misread colours, overlook things
+;;; and see some that are not there; so plans look several times, and once they are at what they
+;;; take for the thing they make sure before a hand touches it.
 
 (in-package :ars-user)
 (in-readtable :nisp)
@@ -20,8 +20,8 @@ fit DESCRIPTION; a list."
            (vref camera-moved* camera) (vref camera-movement-error* camera)))
 
 (def-interp-proc scan-for-thing (camera description &key (type :non-local) (rounds 2))
-  "Turn CAMERA, all round ROUNDS times at most, until it sees something that fits DESCRIPTION. Return
-a designator of that, or NIL."
+  "Turn CAMERA, all round ROUNDS times at most, until it sees something that fits DESCRIPTION.
+Return a designator of that, or NIL."
   (let ((found nil)
         (views (* rounds (ceiling 2pi (rpl-camera-field-of-view camera)))))
     (n-times views UNTIL found
@@ -79,8 +79,8 @@ is lost, look for it again. Fails with :NOT-REACHED after ATTEMPTS."
     (reckon me)))
 
 (def-interp-proc visit-things (me camera description &key (candidates 3))
-  "Look round for what fits DESCRIPTION, from where the robot of ME is, and go to it; if it turns out
-to be something else, to another, up to CANDIDATES. Return a local designator of it, or NIL."
+  "Look round for what fits DESCRIPTION, from where the robot of ME is, and go to it; if it turns
+out to be something else, to another, up to CANDIDATES. Return a local designator of it, or NIL."
   (let ((found (if (look-for-things camera :local description)
                    (confirm-thing camera description)
                    nil)))

@@ -66,7 +66,7 @@ nothing is there any more."
            (vref camera-input* camera) (vref camera-designators* camera)))
 
 (defun nearest-ahead (designators)
-  "Return the one of DESIGNATORS that is nearest to the robot's heading, within a wide angle, or NIL."
+  "Return the one of DESIGNATORS nearest to the robot's heading, within a wide angle, or NIL."
   (flet ((off (designator) (abs (angle-difference (!_angle designator) 0))))
     (let ((best (first (sort (copy-list designators) #'< :key #'off))))
       (and best (< (off best) .7) best))))
@@ -166,9 +166,9 @@ map. True if so."
     (reckon me)))
 
 (def-interp-proc travel-to (me point &key (tolerance 1) (patience 40) (camera (widest-camera)))
-  "Bring the robot of the reckoning ME to POINT, a list (x y) on its map, as near as TOLERANCE metres,
-through doorways and round obstacles. Fails with :CANNOT-GET-THERE after PATIENCE troubles, or at
-once if there is no way."
+  "Bring the robot of the reckoning ME to POINT, a list (x y) on its map, as near as TOLERANCE
+metres, through doorways and round obstacles. Fails with :CANNOT-GET-THERE after PATIENCE
+troubles, or at once if there is no way."
   (let ((limit (+ patience (reckoning-trouble me)))
         (steps 0))
     (loop UNTIL (<= (distance-left me point) tolerance)

@@ -163,15 +163,15 @@ last; () if there is none. BARRED is a list of (cell cost) for cells that cost u
         finally (return (or next cell))))
 
 (defun farthest-clear (chart barred start cells end)
-  "Return the last of the middles of CELLS and the point END to which a robot can drive straight from
-START, or as far as CELLS go straight on."
+  "Return the last of the middles of CELLS and the point END to which a robot can drive straight
+from START, or as far as CELLS go straight on."
   (or (find-if (lambda (point) (clear-way-p chart barred start point))
                (append (mapcar #'middle-of (rest cells)) (list end))
                :from-end t)
       (if (rest cells) (middle-of (straight-run cells)) end)))
 
 (defun before-doorway (map door last)
-  "Return the point from which a robot best drives into the cell DOOR, coming by way of the cell LAST."
+  "Return the point from which a robot best drives into the cell DOOR, coming by way of LAST."
   (destructuring-bind ((x y) (dx dy)) (list (middle-of door) (mapcar #'- last door))
     (let ((room (loop for length from 1 to 3
                       while (free-p map (+ x (* length dx)) (+ y (* length dy)))

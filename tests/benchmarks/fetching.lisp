@@ -5,10 +5,10 @@
 ;;; Success is judged by the truth: the thing lies on the floor within three metres of the start.
 
 (defparameter *errands*
-  '((ars-user::globe ((:color ars:blue) (:substance ars:plastic)) ((109 24)))
-    (ars-user::bucket ((:color ars:blue) (:substance ars:plastic)) ((108.5 66)))
-    (ars-user::glove-box ((:color ars:lightgreen) (:substance ars:plastic)) ((95 28)))
-    (ars-user::projector ((:color ars:violet) (:substance ars:metal)) ((86.5 53))))
+  '((ars-user::globe ((:color world:blue) (:substance world:plastic)) ((109 24)))
+    (ars-user::bucket ((:color world:blue) (:substance world:plastic)) ((108.5 66)))
+    (ars-user::glove-box ((:color world:lightgreen) (:substance world:plastic)) ((95 28)))
+    (ars-user::projector ((:color world:violet) (:substance world:metal)) ((86.5 53))))
   "Things in other rooms: their names, what they look like, and where to look from.")
 
 (defun brought-p (thing x y)
