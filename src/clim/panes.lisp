@@ -33,9 +33,11 @@
             (floor (clim:bounding-rectangle-height region)))))
 
 (defun repaint (pane)
+  "Paint PANE, all at once."
   (when (clim:sheet-grafted-p pane)
     (setf (pane-painted pane) (pane-content pane))
-    (paint pane)))
+    (clim:with-output-buffered (pane)
+      (paint pane))))
 
 (defun repaint-if-changed (pane)
   (unless (equal (pane-painted pane) (pane-content pane)) (repaint pane)))

@@ -147,4 +147,5 @@
 
 (defmethod clim:read-frame-command ((window robot-window) &key stream)
   (declare (ignore stream))
+  (type-into (pane-named window 'interactor))
   (call-next-method window :stream nil))

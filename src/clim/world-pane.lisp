@@ -12,6 +12,8 @@
    (zoom :initform 1 :accessor pane-zoom)
    (terrain :initform nil :accessor pane-terrain)
    (terrain-key :initform nil :accessor pane-terrain-key)
+   ;; True once the view has been set by something.
+   (placed-p :initform nil :accessor pane-placed-p)
    ;; Where the mouse was when dragging began or last moved on, or NIL.
    (drag :initform nil :accessor pane-drag))
   (:documentation "The pane that shows the world."))
@@ -80,10 +82,20 @@
             (pane-terrain-key pane) key))
     (pane-terrain pane)))
 
+(defun place-view (pane width height)
+  "The first time, begin with the upper left corner of a map that fits into PANE, or else with the
+robot in the middle."
+  (unless (pane-placed-p pane)
+    (setf (pane-placed-p pane) t)
+    (let ((map (window-map (window-of pane))) (scale (pane-scale pane)))
+      (when (or (> (* scale (map-width map)) width) (> (* scale (map-height map)) height))
+        (setf (values (pane-left pane) (pane-top pane)) (centred-view pane))))))
+
 (defmethod paint ((pane world-pane))
   (multiple-value-bind (width height) (pane-size pane)
     (let* ((window (window-of pane)) (snapshot (window-snapshot window)))
       (when (and snapshot (plusp width) (plusp height))
+        (place-view pane width height)
         (clim:copy-from-pixmap (terrain pane width height) 0 0 width height pane 0 0)
         (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))
           (setf (pane-subjects pane)
@@ -126,14 +138,19 @@
             (pane-top pane) 0)
       (repaint-if-changed pane))))
 
-(defun show-robot (pane)
-  "Move the view of PANE so that the window's robot is in its middle."
+(defun centred-view (pane)
+  "Return the left and top of the view of PANE that has the window's robot in its middle."
   (multiple-value-bind (width height) (pane-size pane)
     (let ((robot (window-robot (window-of pane))) (scale (pane-scale pane)))
-      (when robot
-        (move-view pane
-                   (- (round (* scale (robot-image-x robot))) (floor width 2) (pane-left pane))
-                   (- (round (* scale (robot-image-y robot))) (floor height 2) (pane-top pane)))))))
+      (if robot
+          (values (- (round (* scale (robot-image-x robot))) (floor width 2))
+                  (- (round (* scale (robot-image-y robot))) (floor height 2)))
+          (values (pane-left pane) (pane-top pane))))))
+
+(defun show-robot (pane)
+  "Move the view of PANE so that the window's robot is in its middle."
+  (multiple-value-bind (left top) (centred-view pane)
+    (move-view pane (- left (pane-left pane)) (- top (pane-top pane)))))
 
 ;;; The mouse: a click describes a thing, robot or cell; dragging moves the view; the wheel zooms.
 

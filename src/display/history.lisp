@@ -6,9 +6,11 @@
 ;;; lists only ever grow at the front, so a snapshot may share them.
 
 (defstruct (trail (:copier nil))
-  "Where a robot has been: POINTS is a list x y x y ..., newest first."
+  "Where a robot has been: POINTS is a list x y x y ..., newest first; X, Y is the newest."
   (points '() :type list)
-  (count 0 :type fixnum))
+  (count 0 :type fixnum)
+  (x -1d9 :type double-float)
+  (y -1d9 :type double-float))
 
 (defstruct (look (:constructor make-look (view x y ends)) (:copier nil))
   "What a camera's last view came from: rays from X, Y to ENDS, a list x y x y ...."
@@ -32,16 +34,21 @@
   `(or (cdr (assoc ,key ,place :test #'eq))
        (cdr (first (push (cons ,key ,new) ,place)))))
 
-(defun note-position (trail x y)
-  (let ((points (trail-points trail)))
-    (unless (and points
-                 (< (+ (abs (- x (the double-float (first points))))
-                       (abs (- y (the double-float (second points)))))
-                    +trail-step+))
-      (setf (trail-points trail) (list* x y points))
-      (when (> (incf (trail-count trail)) (* 2 +trail-length+))
-        (setf (trail-points trail) (subseq (trail-points trail) 0 (* 2 +trail-length+))
-              (trail-count trail) +trail-length+)))))
+(defun extend-trail (trail x y)
+  (setf (trail-x trail) x
+        (trail-y trail) y
+        (trail-points trail) (list* x y (trail-points trail)))
+  (when (> (incf (trail-count trail)) (* 2 +trail-length+))
+    (setf (trail-points trail) (subseq (trail-points trail) 0 (* 2 +trail-length+))
+          (trail-count trail) +trail-length+)))
+
+(defun note-position (trail robot)
+  "Note where ROBOT is, if it has moved; this runs in every tick."
+  (declare #.*hot* (type trail trail) (type robot robot))
+  (unless (< (+ (abs (- (robot-x robot) (trail-x trail)))
+                (abs (- (robot-y robot) (trail-y trail))))
+             +trail-step+)
+    (extend-trail trail (robot-x robot) (robot-y robot))))
 
 ;;; Looks.
 
@@ -78,6 +85,7 @@
                                       (+ first (* ray (/ width count)))))))))
 
 (defun note-look (history camera)
+  (declare #.*hot* (type history history) (type camera camera))
   (let ((entry (assoc camera (history-looks history) :test #'eq)))
     (unless (or (eq (camera-last-view camera) (and entry (look-view (cdr entry))))
                 (null (robot-cell-index (camera-robot camera))))
@@ -90,9 +98,10 @@
 
 (defun note-moment (history simulation)
   "Let HISTORY know of what is so in SIMULATION now."
+  (declare #.*hot* (type history history))
   (dolist (robot (simulation-robots simulation))
-    (note-position (entry-of robot (history-trails history) (make-trail))
-                   (robot-x robot) (robot-y robot))
+    (declare (type robot robot))
+    (note-position (entry-of robot (history-trails history) (make-trail)) robot)
     (loop for camera across (robot-cameras robot) do (note-look history camera))))
 
 (defvar *histories* (make-hash-table :test #'eq :weakness :key :synchronized t)
