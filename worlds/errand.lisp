@@ -28,8 +28,9 @@
 (defun run-errand (robot description continuation &key (camera 0) (hand 0) (bin 0))
   "Let ROBOT find something that fits DESCRIPTION, go to it, grasp it with HAND and stow it in BIN;
 the parts are given by index. Returns at once. CONTINUATION gets, in the end, an error code or NIL,
-and ROBOT. The codes: :GAVE-UP after too many setbacks, :INSUFFICIENT-STRENGTH, :INSUFFICIENT-CAPACITY
-(the hand then still holds the thing), and :INTERRUPT if another command took a part over."
+and ROBOT. The codes: :GAVE-UP after too many setbacks, :INSUFFICIENT-STRENGTH after three things
+that were too heavy, :INSUFFICIENT-CAPACITY (the hand then still holds the thing), and :INTERRUPT if
+another command took a part over."
   (find-target (make-errand :robot robot :description description :continuation continuation
                             :camera (robot-camera robot camera)
                             :hand (robot-hand robot hand)
