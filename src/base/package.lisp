@@ -13,7 +13,7 @@ and bordeaux-threads so that no other layer has to.")
            #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
            #:read-file-into-string #:starts-with-subseq #:define-constant)
   ;; policy
-  (:export #:*hot* #:double #:cell-index #:tick-count)
+  (:export #:*hot* #:double #:cell-index #:tick-count #:document-functions)
   ;; conditions
   (:export #:ars-magna-error #:wrong-argument #:check-argument #:malformed-definition
            #:reject-clause #:unknown-name #:reject-name #:misuse #:reject-use)

@@ -22,3 +22,9 @@
     (fixnum (coerce number 'double-float))
     (single-float (coerce number 'double-float))
     (t (coerce (the real number) 'double-float))))
+
+(defmacro document-functions (&rest names-and-texts)
+  "Give the functions NAMES the documentation TEXTS, alternating: for the readers of structures,
+which have no place of their own for it."
+  `(setf ,@(loop for (name text) on names-and-texts by #'cddr
+                 append `((documentation ',name 'function) ,text))))

@@ -38,25 +38,22 @@ function of the operation that returns one."
   (report nil :type (or null function) :read-only t)
   (body nil :type function :read-only t))
 
-(macrolet ((describe-readers (&rest pairs)
-             `(setf ,@(loop for (reader text) on pairs by #'cddr
-                            append `((documentation ',reader 'function) ,text)))))
-  (describe-readers
-   spec-name "Return the name of the argument or result, a symbol."
-   spec-type "Return the name of the argument's type."
-   spec-text "Return what the argument or result is, a sentence."
-   error-code-keyword "Return the keyword that the continuation gets."
-   error-code-text "Return the text of the message, a string or a function of the operation."
-   command-name "Return the symbol of the function that issues the command."
-   command-prompt-name "Return what the command is called at the prompt, in upper case."
-   command-prefix "Return the word that the command's messages begin with."
-   command-family "Return :MOVING, :LOOKING, :HANDLING or :MANIPULATING."
-   command-section "Return the section of the manual that describes the command."
-   command-documentation "Return the sentence that says what the command does."
-   command-resource "Return the specification of the command's first argument, its resource."
-   command-parameters "Return the specifications of its arguments but resource and continuation."
-   command-results "Return the specifications of what its continuation gets besides."
-   command-errors "Return the command's own error codes; any can also end with :INTERRUPT."))
+(document-functions
+  spec-name "Return the name of the argument or result, a symbol."
+  spec-type "Return the name of the argument's type."
+  spec-text "Return what the argument or result is, a sentence."
+  error-code-keyword "Return the keyword that the continuation gets."
+  error-code-text "Return the text of the message, a string or a function of the operation."
+  command-name "Return the symbol of the function that issues the command."
+  command-prompt-name "Return what the command is called at the prompt, in upper case."
+  command-prefix "Return the word that the command's messages begin with."
+  command-family "Return :MOVING, :LOOKING, :HANDLING or :MANIPULATING."
+  command-section "Return the section of the manual that describes the command."
+  command-documentation "Return the sentence that says what the command does."
+  command-resource "Return the specification of the command's first argument, its resource."
+  command-parameters "Return the specifications of its arguments but resource and continuation."
+  command-results "Return the specifications of what its continuation gets besides."
+  command-errors "Return the command's own error codes; any can also end with :INTERRUPT.")
 
 (defmethod print-object ((command command) stream)
   (print-unreadable-object (command stream :type t) (princ (command-name command) stream)))

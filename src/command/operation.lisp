@@ -20,15 +20,12 @@
   (step nil :type (or null function))
   (finished-p nil))
 
-(macrolet ((describe-readers (&rest pairs)
-             `(setf ,@(loop for (reader text) on pairs by #'cddr
-                            append `((documentation ',reader 'function) ,text)))))
-  (describe-readers
-   operation-command "Return the command that the operation carries out."
-   operation-resource "Return the robot or part that the operation occupies."
-   operation-arguments "Return the arguments after the resource."
-   operation-simulation "Return the simulation that the operation takes place in."
-   operation-finished-p "True once the operation has ended."))
+(document-functions
+  operation-command "Return the command that the operation carries out."
+  operation-resource "Return the robot or part that the operation occupies."
+  operation-arguments "Return the arguments after the resource."
+  operation-simulation "Return the simulation that the operation takes place in."
+  operation-finished-p "True once the operation has ended.")
 
 ;;; Ending.
 

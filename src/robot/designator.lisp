@@ -30,24 +30,21 @@
   (swing 0d0 :type double-float)
   (refreshed -1 :type fixnum))
 
-(macrolet ((describe-readers (&rest pairs)
-             `(setf ,@(loop for (reader text) on pairs by #'cddr
-                            append `((documentation ',reader 'function) ,text)))))
-  (describe-readers
-   designator-p "True of a designator."
-   designator-type "Return :LOCAL or :NON-LOCAL (manual 3.4.1)."
-   designator-angle "Return the estimated angle of what the designator denotes relative to the
+(document-functions
+  designator-p "True of a designator."
+  designator-type "Return :LOCAL or :NON-LOCAL (manual 3.4.1)."
+  designator-angle "Return the estimated angle of what the designator denotes relative to the
 robot's heading, in radians, not normalised (manual 3.4.1)."
-   designator-data "Return what was seen: a list of lists (attribute value), or of the name of a
+  designator-data "Return what was seen: a list of lists (attribute value), or of the name of a
 place type (manual 3.4.1)."
-   designator-robot "Return the robot that the designator is a handle for."
-   designator-number "Return the designator's number; after it was dropped, another may have it."
-   designator-denotation "Return the THING or PLACE that the designator denotes; NIL: it is false."
-   designator-distance "Return the distance at which the denotation was last seen, in metres."
-   designator-valid-p "True until the designator is dropped."
-   designator-x "Return the x coordinate where the denotation was last seen, in metres."
-   designator-y "Return the y coordinate where the denotation was last seen, in metres."
-   designator-location "Return the container or bin where the denotation was seen, or NIL."))
+  designator-robot "Return the robot that the designator is a handle for."
+  designator-number "Return the designator's number; after it was dropped, another may have it."
+  designator-denotation "Return the THING or PLACE that the designator denotes; NIL: it is false."
+  designator-distance "Return the distance at which the denotation was last seen, in metres."
+  designator-valid-p "True until the designator is dropped."
+  designator-x "Return the x coordinate where the denotation was last seen, in metres."
+  designator-y "Return the y coordinate where the denotation was last seen, in metres."
+  designator-location "Return the container or bin where the denotation was seen, or NIL.")
 
 (defmethod print-object ((designator designator) stream)
   (print-named designator stream (format nil "Designator ~D" (designator-number designator))))

@@ -32,24 +32,21 @@
   (steps 0 :type fixnum)
   (rate nil))
 
-(macrolet ((describe-readers (&rest pairs)
-             `(setf ,@(loop for (reader text) on pairs by #'cddr
-                            append `((documentation ',reader 'function) ,text)))))
-  (describe-readers
-   simulation-inbox "Return what has been posted and waits for the next tick."
-   simulation-p "True of simulations."
-   simulation-name "Return what the simulation is called."
-   simulation-world "Return the world that the simulation changes."
-   simulation-seed "Return the integer from which all chance of the run comes."
-   simulation-agenda "Return the agenda of the simulation."
-   simulation-phases "Return the functions that each tick calls after its events."
-   simulation-busy-tests "Return the functions that say whether ticks are needed."
-   simulation-observers "Return the functions that are called after each tick."
-   simulation-journal "Return the journal that the simulation keeps, or NIL."
-   simulation-messages "Return the message queue that the simulation reports to."
-   simulation-thread "Return the thread that runs the ticks, or NIL when headless."
-   simulation-ticking-p "True inside a tick, while the world changes."
-   simulation-rate "Return the pace of the live clock: ticks per second, or :FREE."))
+(document-functions
+  simulation-inbox "Return what has been posted and waits for the next tick."
+  simulation-p "True of simulations."
+  simulation-name "Return what the simulation is called."
+  simulation-world "Return the world that the simulation changes."
+  simulation-seed "Return the integer from which all chance of the run comes."
+  simulation-agenda "Return the agenda of the simulation."
+  simulation-phases "Return the functions that each tick calls after its events."
+  simulation-busy-tests "Return the functions that say whether ticks are needed."
+  simulation-observers "Return the functions that are called after each tick."
+  simulation-journal "Return the journal that the simulation keeps, or NIL."
+  simulation-messages "Return the message queue that the simulation reports to."
+  simulation-thread "Return the thread that runs the ticks, or NIL when headless."
+  simulation-ticking-p "True inside a tick, while the world changes."
+  simulation-rate "Return the pace of the live clock: ticks per second, or :FREE.")
 
 (defvar *simulation* nil
   "The simulation that code runs for: the one of WITH-SIMULATION, of the thread, or the one last

@@ -28,7 +28,3 @@
   "True if FORM is a list of two real numbers."
   (and (proper-list-p form) (= 2 (length form)) (every #'realp form)))
 
-(defmacro document-functions (&rest names-and-texts)
-  "Give each function named the docstring that follows; for the accessors of structures."
-  `(setf ,@(loop for (name text) on names-and-texts by #'cddr
-                 append `((documentation ',name 'function) ,text))))
