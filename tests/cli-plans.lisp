@@ -1,0 +1,152 @@
+;;;; cli-plans.lisp -- plans started, shown and stopped at the prompt, and its pictures.
+
+(in-package :ars-magna.tests)
+
+(def-suite* cli-plans :in ars-magna)
+
+(rpl:def-interp-proc ars-user::dawdle (ticks &optional (answer :dawdled))
+  "Wait for TICKS. Return ANSWER."
+  (rpl:wait-time ticks)
+  answer)
+
+(rpl:def-interp-proc ars-user::stumble (reason &key (ticks 1) &aux (data '(1 2)))
+  "Wait for TICKS; then fail with REASON."
+  (rpl:wait-time ticks)
+  (rpl:fail :class reason :data data))
+
+(rpl:def-interp-proc ars-user::blunder ()
+  (rpl:wait-time 1)
+  (car (ars-magna.rpl-robot:rpl-robot)))
+
+(rpl:def-interp-proc ars-user::mope ()
+  "Wait for what never comes."
+  (rpl:wait-for (rpl:create-fluent 'ars-user::godot)))
+
+(rpl:def-interp-proc ars-user::stroll (angle)
+  "Turn by ANGLE."
+  (ars-magna.rpl-robot:rpl-robot-turn angle)
+  (rpl:wait-for ars-magna.rpl-robot:robot-stopped*)
+  (rpl:fluent-value ars-magna.rpl-robot:robot-angle-diff*))
+
+;;; Headless.
+
+(test plan.is-over-before-the-next-line
+  (is-true (answers-p '("dawdle succeeded: :DAWDLED" "5" "dawdle succeeded: (A \"b\")")
+                      '("plan dawdle 4" "(simulation-tick *simulation*)"
+                        "plan dawdle 1 (a \"b\") ; unevaluated")))
+  (is-true (answers-p '("robot-turn: Robot turned 0.50" "stroll succeeded: 0.5" "0.5")
+                      '("plan stroll .5" "(robot-angle butler)")))
+  (is-true (answers-p '("dawdle succeeded: 1" "dawdle succeeded: 1")
+                      '("repeat 2 plan dawdle 3 1"))))
+
+(test plan.a-failure-is-an-error-in-a-line
+  (is-true (has-words-p (complaint "plan stumble :thin-ice") "stumble failed" ":THIN-ICE"
+                        ":DATA (1 2)" "PLANS"))
+  (is-true (has-words-p (complaint "plan blunder") "blunder failed" "BUTLER" "LIST"))
+  (is (= 0 (nth-value 1 (type-batch "plan dawdle 1")))))
+
+(test plan.a-deadlock-is-an-error-in-a-line
+  (is-true (has-words-p (complaint "plan mope") "Deadlock" "mope" "godot" "stopped"))
+  (is (equal "No plan is under way. PLAN lists the plans that there are."
+             (first (last (type-batch "plan mope" "plans"))))))
+
+(test plan.what-makes-no-sense-is-an-error-in-a-line
+  (is-true (has-words-p (complaint "plan dwadle 3") "no plan DWADLE" "mean DAWDLE?"))
+  (is-true (has-words-p (complaint "plan dawdle") "DAWDLE ticks [answer]" "arguments"))
+  (is-true (has-words-p (complaint "plan dawdle 1 2 3") "DAWDLE ticks [answer]"))
+  (is-true (has-words-p (complaint "plan dawdle (1") "not complete"))
+  (is-true (has-words-p (complaint "stop-plan") "No plan"))
+  (let ((cli::*patience* 10))
+    (is-true (has-words-p (complaint "plan dawdle 50") "dawdle" "10 ticks" "goes on"))))
+
+(test plan.nothing-stays-behind
+  (type-batch "plan dawdle 1" "plan stumble x" "plan mope" "plan dawdle")
+  (is (null cli::*plan-errands*)))
+
+(test plan.names-may-be-cut-short
+  (is-true (answers-p '("dawdle succeeded: :DAWDLED") '("plan daw 1")))
+  (is (string= "PLAN" (cli:line-name (cli:find-line "plan"))))
+  (is (string= "PLANS" (cli:line-name (cli:find-line "plans"))))
+  (is (string= "STOP" (cli:line-name (cli:find-line "sto"))))
+  (is (string= "STOP-PLAN" (cli:line-name (cli:find-line "stop-")))))
+
+(test plan.alone-lists-them-all
+  (let ((lines (type-batch "plan")))
+    (is (find "  DAWDLE                   Wait for TICKS" lines :test #'string=))
+    (is (find "  FETCH-THING" lines :test (lambda (name line) (eql 0 (search name line)))))
+    (is (notany (lambda (line) (> (length line) 79)) lines)))
+  (is-true (has-words-p (joined (type-batch "help stumble")) "PLAN STUMBLE reason [:ticks]"
+                        "then fail"))
+  (is-false (has-words-p (joined (type-batch "help stumble")) "data")))
+
+(test plans.shows-trees-and-the-last-failure
+  (let ((shown (joined (type-batch "(begin-plan 'mope)" "step" "plans" "stop-plan" "plans"))))
+    (is-true (has-words-p shown "waiting" "mope" "godot" "No plan is under way")))
+  (is-true (has-words-p (joined (type-batch "plan stumble :thin-ice" "plans"))
+                        "The last plan failed" "at tick" "(fail :class"))
+  (is-false (has-words-p (joined (type-batch "plan stumble :thin-ice" "plan dawdle 1" "plans"))
+                         "last plan")))
+
+(test stop-plan.ends-one-or-all
+  (let ((lines (type-batch "(begin-plan 'mope)" "(begin-plan 'mope)" "step"
+                           "stop-plan 99" "stop-plan 1" "(length (plans))")))
+    (is-true (has-words-p (joined lines) "No plan 99"))
+    (is (string= "1" (first (last lines)))))
+  (is (equal "0" (first (last (type-batch "(begin-plan 'mope)" "(begin-plan 'mope)" "step"
+                                          "stop-plan" "(length (plans))"))))))
+
+(test lines.given-come-first
+  (flet ((typed (&rest options)
+           (apply #'type-lines '("(+ 1 1)") :lines '("plan dawdle 2" "(+ 1 0)") options)))
+    (is (equal '("dawdle succeeded: :DAWDLED" "1" "2") (typed :batch t)))
+    (is (equal '("Robot> plan dawdle 2" "Robot> dawdle succeeded: :DAWDLED" "Robot> (+ 1 0)" "1"
+                 "Robot> (+ 1 1)" "2" "Robot> ")
+               (typed :echo t))))
+  (is (equal '("plan fetch 1" "plan b")
+             (cli::plan-lines (cli::parse-options '("--plan" "fetch 1" "--plan=b"))))))
+
+;;; Live. The prompt in these tests is in this thread; it waits for facts.
+
+(defun type-live (lines &rest options)
+  "Type LINES, after LINES of OPTIONS, in a session in a live parlour. Return what it writes."
+  (let* ((output (make-string-output-stream))
+         (session (apply #'cli:make-session :input (make-string-input-stream (joined lines))
+                                            :output output options))
+         (written (make-string-output-stream)))
+    (unwind-protect
+         (let ((*standard-output* written))
+           (robot:simulator ars-user::butler :rate :free :display nil)
+           (cli:run-session session))
+      (robot:stop-simulator))
+    (values (lines-of (get-output-stream-string output)) (cli:session-errors session))))
+
+(test live.a-patient-prompt-waits
+  (multiple-value-bind (lines errors)
+      (type-live '("plan dawdle 4" "plan stumble :thin-ice" "plan mope" "plans") :batch t)
+    (is (= 2 errors))
+    (is (string= "dawdle succeeded: :DAWDLED" (first lines)))
+    (is-true (has-words-p (second lines) "stumble failed" ":THIN-ICE"))
+    (is-true (has-words-p (third lines) "Deadlock" "mope" "godot" "it was stopped"))
+    (is (equal '("No plan is under way. PLAN lists the plans that there are.") (nthcdr 3 lines)))))
+
+(test live.another-is-back-at-once
+  (let ((text (joined (type-live '("plan dawdle 1000000000" "plans" "stop-plan" "quit")))))
+    (is-true (has-words-p text "is under way: dawdle" "waiting: dawdle" "(wait-time ticks)")))
+  (awaiting (null cli::*plan-errands*)))
+
+;;; Pictures.
+
+(test picture.goes-into-a-file
+  (uiop:with-temporary-file (:pathname path :type "svg")
+    (let ((name (uiop:native-namestring path)))
+      (is (equal (list (uiop:native-namestring (truename path)))
+                 (type-batch (format nil "picture \"~A\" 4" name))))
+      (is (eql 0 (search "<" (base:read-file-into-string path))))))
+  (is-true (has-words-p (complaint "picture") "FILE" "missing"))
+  (is-true (has-words-p (complaint "picture world.gif") ".svg or .png"))
+  (is-true (has-words-p (complaint "picture world.svg -1") "scale"))
+  (is-true (has-words-p (complaint "picture /no/such/directory/world.svg") "/no/such/directory")))
+
+(test display.says-why-there-is-none
+  (let ((display:*display-opener* nil))
+    (is-true (has-words-p (complaint "display") "No display" "PICTURE"))))
