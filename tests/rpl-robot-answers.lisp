@@ -64,7 +64,7 @@
 ;;; A row: the command, its error code or NIL, the call, what comes before it, and a form that is
 ;;; true at the pulse.
 
-(defparameter *answers*
+(defparameter *answer-rows*
   '((command:robot-set-speed nil (driver:rpl-robot-set-speed .5) nil
      (= .5 (driver:rpl-robot-speed)))
     (command:robot-set-speed :too-high-speed (driver:rpl-robot-set-speed 5))
@@ -239,7 +239,7 @@
              (and ,truth t)))))
 
 (test answers.set-the-fluents-as-the-manual-says
-  (loop for (name code call before (truth)) in (loop for (a b c d . e) in *answers*
+  (loop for (name code call before (truth)) in (loop for (a b c d . e) in *answer-rows*
                                                      collect (list a b c d (or e '(t))))
         for command = (command:find-command name)
         do (destructuring-bind (pulsed error true)
@@ -253,7 +253,7 @@
 (test answers.of-every-command
   "Each command is tried with success, and with a failure of its own if it has any."
   (dolist (command (command:all-commands))
-    (let ((codes (loop for (name code) in *answers*
+    (let ((codes (loop for (name code) in *answer-rows*
                        when (eq name (command:command-name command)) collect code))
           (own (mapcar #'command:error-code-keyword (command:command-errors command))))
       (is-true (or (null own) (intersection own codes)) "failure of ~A" command)

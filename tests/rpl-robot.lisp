@@ -178,7 +178,7 @@
   (driver:rpl-camera-get-all-object-designators 0 :non-local '())
   (rpl:wait-for (svref driver:camera-input* 0)))
 
-(defun trace-of (seed)
+(defun trace-of-run (seed)
   "Return the trace of a run, its final digest, and where it ended."
   (let ((driver:*trace-plans* t)
         (*package* (find-package :ars-magna.tests)))
@@ -190,17 +190,18 @@
             (multiple-value-list (robot:robot-position fitter))))))
 
 (test plans.same-seed-same-trace
-  (is (equal (trace-of 5) (trace-of 5)))
-  (is (not (equal (third (trace-of 5)) (third (trace-of 6))))))
+  (is (equal (trace-of-run 5) (trace-of-run 5)))
+  (is (not (equal (third (trace-of-run 5)) (third (trace-of-run 6))))))
 
 (test plans.side-by-side-do-not-meet
   "Two headless simulations, each with a plan in a thread of its own, run as they do alone."
-  (let* ((alone (list (trace-of 7) (trace-of 8)))
+  (let* ((alone (list (trace-of-run 7) (trace-of-run 8)))
          (together (list nil nil))
          (threads (loop for i below 2
                         collect (let ((i i))
                                   (base:start-thread (lambda ()
-                                                       (setf (nth i together) (trace-of (+ 7 i))))
+                                                       (setf (nth i together)
+                                                             (trace-of-run (+ 7 i))))
                                                      "a trial")))))
     (mapc #'base:join-thread threads)
     (is (equal alone together))))
