@@ -62,8 +62,8 @@ of its own if it is too long."
       (format t "Manipulating~%")
       (write-menu lines)))
   (terpri)
-  (write-filled "MENU-CAMERA, MENU-HAND and MENU-BIN list the commands of those parts, PLAN lists the
-plans, HELP name tells more of a command or plan. The beginning of a name will do. A line in
+  (write-filled "MENU-CAMERA, MENU-HAND and MENU-BIN list the commands of those parts, PLAN lists
+the plans, HELP name tells more of a command or plan. The beginning of a name will do. A line in
 parentheses is Lisp." 0))
 
 (defun slot-help (slot)

@@ -128,8 +128,8 @@ that all others go on from."
 
 (defun find-line (name)
   "Return the line command called NAME, a string of any case: its name, the full name of a command's
-function, or the beginning of a name; of one that no other begins with, unless those others begin with
-all of it. Signals BAD-LINE."
+function, or the beginning of a name; if several begin so, of the one that the others go on from.
+Signals BAD-LINE."
   (let ((name (string-upcase name)))
     (or (find name (all-lines) :key #'line-name :test #'string=)
         (find name (robot-lines) :key #'line-full-name :test #'equal)

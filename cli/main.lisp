@@ -64,8 +64,8 @@ on with, or NIL."
 
 (defun standard-session (batch lines)
   "Return a session that does LINES and then those of the standard input. If nobody sits there, it
-shows what it reads and waits for each command, for a transcript like those of manual E. A batch that
-has LINES does not wait for others to be typed."
+shows what it reads and waits for each command, for a transcript like those of manual E. A batch
+that has LINES does not wait for others to be typed."
   (let* ((input (standard-stream 0 :input))
          (piped (not (interactive-stream-p input))))
     (make-session :input (if (and batch lines (not piped)) (make-concatenated-stream) input)

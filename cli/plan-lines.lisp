@@ -118,8 +118,8 @@
 (define-line "PLAN" (session (name :token "the name of a plan" :optional)
                              (args :rest "what the plan takes, not evaluated" :optional))
     (:planning)
-    "List the plans that there are, or let the robot carry out the plan NAME with ARGS. A live prompt
-is back at once; any other waits until the plan is over."
+    "List the plans that there are, or let the robot carry out the plan NAME with ARGS. A live
+prompt is back at once; any other waits until the plan is over."
   (if name
       (send-plan session (plan-meant name) (read-data (or args "") (find-line "PLAN")))
       (write-plan-menu)))
@@ -134,8 +134,8 @@ is back at once; any other waits until the plan is over."
     (message-text (first (take-messages)))))
 
 (define-line "PLANS" (session) (:planning)
-    "Show the plans under way, as trees of what they do and wait for; if the last to end failed, also
-where and why."
+    "Show the plans under way, as trees of what they do and wait for; if the last to end failed,
+also where and why."
   (if (plans)
       (print-plans)
       (format t "No plan is under way. PLAN lists the plans that there are.~%"))
@@ -148,7 +148,8 @@ where and why."
 
 (define-line "STOP-PLAN" (session (n count "the number of a plan under way" :optional))
     (:planning)
-    "End the plan N, or all that are under way. What the robot itself is at goes on; STOP stops that."
+    "End the plan N, or all that are under way. What the robot itself is doing goes on; STOP stops
+that."
   (cond ((null (plans)) (reject-line "No plan is under way."))
         (n (end-plan (plan-numbered n)))
         (t (end-plan :all))))

@@ -2,9 +2,13 @@
 
 (in-package :ars-magna.cli)
 
-;;; A plan is an errand like a command to the robot. Live, a thread watches each plan and tells of its
-;;; end. Now and then it asks, between two reactions of the plans, whether they can still go on; one
-;;; that cannot is ended if the session waits for it. Headless, the prompt looks after each tick.
+;;; A plan is an errand like a command to the robot. Live, a thread watches each plan and tells of
+;;; its end. Now and then it asks, between two reactions of the plans, whether they can still go on;
+;;; one that cannot is ended if the session waits for it. Headless, the prompt looks at it after each
+;;; tick.
+;;;
+;;; It is the plan's business to recover from errors of its commands. So a session that waits for a
+;;; plan does not count those, only the plan's own failure: see VERDICT.
 
 (defstruct (plan-errand (:include errand) (:copier nil)
                         (:constructor make-plan-errand (name session simulation)))
@@ -66,31 +70,51 @@
               (failure-class failure) (failure-data failure))
       (condition-text failure)))
 
+(defstruct (verdict (:constructor make-verdict (text)) (:copier nil))
+  "That a plan has failed, as an item of a message. Prints as TEXT."
+  (text "" :type string :read-only t))
+
+(defmethod print-object ((verdict verdict) stream)
+  (write-string (verdict-text verdict) stream))
+
+(defun tell-failure (errand control &rest arguments)
+  "Queue an error message that begins with the name of the plan of ERRAND."
+  (error-set (make-verdict (format nil "~(~A~) ~?" (plan-errand-name errand) control arguments))))
+
 (defmacro with-messages-to ((errand) &body body)
   "Run BODY, whose messages are of the simulation of ERRAND."
   `(let ((*message-queue* (simulation-messages (plan-errand-simulation ,errand)))) ,@body))
 
+(defun waiting-for-plan-p (session)
+  "True if a plan that SESSION has started, and waits for, is under way."
+  (and (session-patient-p session)
+       (with-lock (*plan-errands-lock*)
+         (find session *plan-errands* :key #'plan-errand-session))))
+
+(defun counts-p (message session)
+  "True if MESSAGE is an error that SESSION counts."
+  (and (eq :error (message-kind message))
+       (or (verdict-p (first (message-items message)))
+           (not (waiting-for-plan-p session)))))
+
 (defun tell-end (errand)
   "Queue a message that says how the plan of ERRAND has ended."
   (let ((name (string-downcase (plan-errand-name errand)))
-        (task (plan-errand-task errand)))
+        (result (task-result (plan-errand-task errand))))
     (with-messages-to (errand)
-      (case (task-state task)
-        (:succeeded (message-set name " succeeded: "
-                                 (user-text #'prin1-to-string (task-result task))))
-        (:failed (setf (session-failure (plan-errand-session errand)) (task-result task))
-                 (error-set name " failed: " (user-text #'reason-text (task-result task))
-                            ". PLANS tells more."))
+      (case (task-state (plan-errand-task errand))
+        (:succeeded (message-set name " succeeded: " (user-text #'prin1-to-string result)))
+        (:failed (setf (session-failure (plan-errand-session errand)) result)
+                 (tell-failure errand "failed: ~A. PLANS tells more."
+                               (string-right-trim "." (user-text #'reason-text result))))
         (t (message-set name " was stopped."))))))
 
 (defun tell-stuck (errand)
   "Queue a message that says what the plan of ERRAND waits for in vain."
   (with-messages-to (errand)
-    (error-set "Deadlock: " (string-downcase (plan-errand-name errand)) " "
-               (plan-errand-stuck errand)
-               (if (session-patient-p (plan-errand-session errand))
-                   "; it was stopped."
-                   ". PLANS shows it, STOP-PLAN ends it."))))
+    (tell-failure errand "is in a deadlock: it ~A~:[. STOP-PLAN ends it~;; it was stopped~]."
+                  (plan-errand-stuck errand)
+                  (session-patient-p (plan-errand-session errand)))))
 
 (defun close-errand (errand)
   "Count ERRAND, whose end has been told, as done."
@@ -109,8 +133,8 @@
                      :test #'string= :from-end t))
 
 (defun stuck-text (runner task)
-  "Return in words what TASK of RUNNER waits for, if no plan of RUNNER can ever go on; else NIL. To be
-called while no plan reacts."
+  "Return in words what TASK of RUNNER waits for, if no plan of RUNNER can ever go on; else NIL. To
+be called while no plan reacts."
   (when (and (not (task-over-p task)) (plan-deadlocked-p runner))
     (user-text (lambda (awaited)
                  (format nil "waits for ~{~A~^, ~}, which nothing can bring about" awaited))
@@ -127,8 +151,8 @@ called while no plan reacts."
        (eq runner (plan-runner-now))))
 
 (defun tell-if-stuck (errand runner known)
-  "Find out whether the plan of ERRAND is stuck; tell it, unless it is KNOWN. Return the answer to the
-last such question."
+  "Find out whether the plan of ERRAND is stuck; tell it, unless it is KNOWN. Return the answer to
+the last such question."
   (let ((stuck (plan-errand-stuck errand)))
     (cond ((null stuck))
           (known)

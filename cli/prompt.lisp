@@ -123,7 +123,8 @@ comes of earlier lines if the session waits for that."
   "Run the command-line interface: prompt for commands to the robot last given to SIMULATOR, until
 QUIT or the end of input. INPUT and OUTPUT are streams, by default the standard ones. If PATIENT,
 or headless, each command completes before the next is read; BATCH is that without a prompt; with
-ECHO, lines are shown as they are read; the list LINES is done first. Returns nothing (manual A, E)."
+ECHO, lines are shown as they are read; the list LINES is done first. Returns nothing (manual A,
+E)."
   (declare (ignore input output batch patient echo lines))
   (run-session (apply #'make-session options))
   (values))

@@ -52,13 +52,14 @@
   ;; The robot to go on with, in batch mode, when this one's lines are over.
   (next-robot nil))
 (setf (documentation 'session-errors 'function)
-      "Return how many errors there were so far: lines that made no sense, and error messages.")
+      "Return how many errors there were so far: lines that made no sense, plans that failed, and
+error messages, but not those of a plan that goes on.")
 
 (defun make-session (&key (input *standard-input*) (output *standard-output*) batch
                        (patient batch) echo lines)
-  "Return a session that does the list LINES, then reads others from INPUT, and writes to OUTPUT. With
-BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes before the next is read;
-with ECHO, it shows what it reads."
+  "Return a session that does the list LINES, then reads others from INPUT, and writes to OUTPUT.
+With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes before the next is
+read; with ECHO, it shows what it reads."
   (%make-session :input input :console (make-console output) :batch-p (and batch t)
                  :patient-p (and patient t) :echo-p (and echo t) :lines lines))
 
@@ -113,7 +114,8 @@ with ECHO, it shows what it reads."
       (let ((*showing-p* t)
             (console (session-console session))
             (messages (take-all-messages)))
-        (incf (session-errors session) (count :error messages :key #'message-kind))
+        (incf (session-errors session)
+              (count-if (lambda (message) (counts-p message session)) messages))
         (when (and messages (not flush-all-errors*)) (write-messages messages console))
         (restore-prompt console)
         (finish-output console)))))

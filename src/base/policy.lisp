@@ -14,6 +14,10 @@
   "A moment or a span of simulated time, in ticks."
   '(unsigned-byte 61))
 
+(declaim (ftype (function (t) double-float) other-double))
+(defun other-double (number)
+  (coerce (the real number) 'double-float))
+
 (declaim (inline double))
 (defun double (number)
   "Return NUMBER as a double-float. Conses nothing for the usual kinds of numbers."
@@ -21,7 +25,8 @@
     (double-float number)
     (fixnum (coerce number 'double-float))
     (single-float (coerce number 'double-float))
-    (t (coerce (the real number) 'double-float))))
+    ;; Not inline, so that the compiler does not complain where it cannot rule out complex numbers.
+    (t (other-double number))))
 
 (defmacro document-functions (&rest names-and-texts)
   "Give the functions NAMES the documentation TEXTS, alternating: for the readers of structures,

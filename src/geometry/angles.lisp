@@ -19,7 +19,7 @@
   "Return the angle of the direction (X, Y), in radians from -pi to pi (manual, Figure D.8)."
   (check-argument atan2 y (realp y) "a real number")
   (check-argument atan2 x (realp x) "a real number")
-  (atan (as-double y) (as-double x)))
+  (atan (double y) (double x)))
 
 (declaim (inline reduced-angle))
 (defun reduced-angle (angle)
@@ -35,7 +35,7 @@
 radians, that leads from B to A."
   (check-argument angle-difference a (realp a) "a real number")
   (check-argument angle-difference b (realp b) "a real number")
-  (reduced-angle (- (as-double a) (as-double b))))
+  (reduced-angle (- (double a) (double b))))
 
 (defun nearest-angle (angle candidate &rest more)
   "Return the one of CANDIDATE and MORE that is the least turn away from ANGLE, all in radians,

@@ -47,7 +47,7 @@ the two axes; 0 just if they intersect (Table 3.2)."
 (defun in-interval (x interval)
   "True if the number or point X is in INTERVAL, bounds included (Table 3.2)."
   (dispatch in-interval (x interval) "a number and an INTERVAL, or a PT and a PT-INTERVAL"
-    ((real span) (<= (low interval) (as-double x) (high interval)))
+    ((real span) (<= (low interval) (double x) (high interval)))
     ((pt region) (and (<= (low-x interval) (%pt-x x) (high-x interval))
                       (<= (low-y interval) (%pt-y x) (high-y interval))))))
 
@@ -170,10 +170,10 @@ that is nothing (Table 3.2)."
   "Push each boundary of INTERVAL outward by the number AMOUNT, and return INTERVAL. A negative
 AMOUNT shrinks it, at most to its centre (Table 3.2)."
   (dispatch grow-interval! (interval amount) "an INTERVAL or PT-INTERVAL and a number"
-    ((interval real) (%grow! interval (as-double amount)))
+    ((interval real) (%grow! interval (double amount)))
     ((pt-interval real)
-     (%grow! (%pt-interval-x interval) (as-double amount))
-     (%grow! (%pt-interval-y interval) (as-double amount))))
+     (%grow! (%pt-interval-x interval) (double amount))
+     (%grow! (%pt-interval-y interval) (double amount))))
   interval)
 
 (defun grow-interval (interval amount)

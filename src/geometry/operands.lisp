@@ -17,10 +17,10 @@
 (declaim (inline low high low-x high-x low-y high-y))
 
 (defun low (span)
-  (if (interval-p span) (%interval-min span) (as-double span)))
+  (if (interval-p span) (%interval-min span) (double span)))
 
 (defun high (span)
-  (if (interval-p span) (%interval-max span) (as-double span)))
+  (if (interval-p span) (%interval-max span) (double span)))
 
 (defun low-x (region)
   (if (pt-p region) (%pt-x region) (%interval-min (%pt-interval-x region))))

@@ -36,7 +36,7 @@
 of which one may be an element (Table 3.1)."
   (dispatch add (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (%make-pt (+ (%pt-x a) (%pt-x b)) (+ (%pt-y a) (%pt-y b))))
-    ((real real) (+ (as-double a) (as-double b)))
+    ((real real) (+ (double a) (double b)))
     ((span span) (add! (lift a) b))
     ((region region) (add! (lift a) b))))
 
@@ -56,7 +56,7 @@ their elements (Table 3.1)."
 one may be an element (Table 3.1)."
   (dispatch subtract (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (%make-pt (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
-    ((real real) (- (as-double a) (as-double b)))
+    ((real real) (- (double a) (double b)))
     ((span span) (subtract! (lift a) b))
     ((region region) (subtract! (lift a) b))))
 
@@ -73,14 +73,14 @@ one may be an element (Table 3.1)."
 (defun neg (a)
   "Return the negative of A, a point, number, interval or point interval (Table 3.1)."
   (dispatch neg (a) "a PT, INTERVAL, PT-INTERVAL or number"
-    ((real) (- 0d0 (as-double a)))
+    ((real) (- 0d0 (double a)))
     (((or pt interval pt-interval)) (neg! (copy-obj a)))))
 
 (defun mul! (a factor)
   "Multiply A by the number FACTOR, and return A. A negative FACTOR swaps the bounds of an
 interval; the FACTOR of an interval may be an interval itself (Table 3.1)."
   (dispatch mul! (a factor) "a PT, INTERVAL or PT-INTERVAL and a number"
-    ((pt real) (let ((factor (as-double factor)))
+    ((pt real) (let ((factor (double factor)))
                  (set-pt! a (* (%pt-x a) factor) (* (%pt-y a) factor))))
     ((interval span) (%mul! a (low factor) (high factor)))
     ((pt-interval span)
@@ -94,7 +94,7 @@ interval; the FACTOR of an interval may be an interval itself (Table 3.1)."
 interval as FACTOR gives the interval or point interval of all products (Table 3.1)."
   (dispatch mul (a factor) "a point, interval or point interval and a number"
     ((pt real) (mul! (copy-obj a) factor))
-    ((real real) (* (as-double a) (as-double factor)))
+    ((real real) (* (double a) (double factor)))
     ((span span) (mul! (lift a) factor))
     ((region span) (mul! (lift a) factor))))
 
@@ -119,7 +119,7 @@ interval as FACTOR gives the interval or point interval of all products (Table 3
 interval, the INTERVAL of the lengths of its elements (Table 3.1)."
   (dispatch norm (a) "a PT, INTERVAL, PT-INTERVAL or number"
     ((pt) (length-of (%pt-x a) (%pt-y a)))
-    ((real) (abs (as-double a)))
+    ((real) (abs (double a)))
     ((interval) (%make-interval (least-size a) (greatest-size a)))
     ((pt-interval)
      (let ((x (%pt-interval-x a)) (y (%pt-interval-y a)))

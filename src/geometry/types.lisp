@@ -6,15 +6,6 @@
 ;;; has its min above its max. A point interval owns its two intervals: no other object shares
 ;;; them, so that a destructive operation changes its first operand only (manual 3.2.1).
 
-(declaim (inline as-double))
-(defun as-double (number)
-  "Return NUMBER as a double-float, without consing for the common kinds."
-  (typecase number
-    (double-float number)
-    (fixnum (coerce number 'double-float))
-    (single-float (coerce number 'double-float))
-    (t (double number))))
-
 ;;; Points.
 
 (defstruct (pt (:constructor %make-pt (x y)) (:copier nil) (:conc-name %pt-))
@@ -29,7 +20,7 @@
   "Return the point (X, Y); both are real numbers, in metres. Written (make PT X Y) in Nisp."
   (check-argument make-pt x (realp x) "a real number")
   (check-argument make-pt y (realp y) "a real number")
-  (%make-pt (as-double x) (as-double y)))
+  (%make-pt (double x) (double y)))
 
 (defun pt-x (pt)
   "Return the horizontal coordinate of PT, in metres. Can be set."
@@ -37,7 +28,7 @@
 
 (defun (setf pt-x) (x pt)
   (check-argument pt-x x (realp x) "a real number")
-  (setf (%pt-x pt) (as-double x)))
+  (setf (%pt-x pt) (double x)))
 
 (defun pt-y (pt)
   "Return the vertical coordinate of PT, in metres, growing downward. Can be set."
@@ -45,12 +36,12 @@
 
 (defun (setf pt-y) (y pt)
   (check-argument pt-y y (realp y) "a real number")
-  (setf (%pt-y pt) (as-double y)))
+  (setf (%pt-y pt) (double y)))
 
 (defun set-pt! (pt x y)
   "Move PT to (X, Y) and return it."
-  (setf (%pt-x pt) (as-double x)
-        (%pt-y pt) (as-double y))
+  (setf (%pt-x pt) (double x)
+        (%pt-y pt) (double y))
   pt)
 
 ;;; Intervals.
@@ -75,7 +66,7 @@
   (check-argument make-interval min (realp min) "a real number")
   (check-argument make-interval max (realp max) "a real number")
   (check-argument make-interval min (<= min max) "a number that is not above the max")
-  (%make-interval (as-double min) (as-double max)))
+  (%make-interval (double min) (double max)))
 
 (defun interval-min (interval)
   "Return the lower bound of INTERVAL. Can be set, not above the upper bound."
@@ -84,7 +75,7 @@
 (defun (setf interval-min) (min interval)
   (check-argument interval-min min (and (realp min) (<= min (%interval-max interval)))
                   "a number that is not above the max; set the max first")
-  (setf (%interval-min interval) (as-double min)))
+  (setf (%interval-min interval) (double min)))
 
 (defun interval-max (interval)
   "Return the upper bound of INTERVAL. Can be set, not below the lower bound."
@@ -93,13 +84,13 @@
 (defun (setf interval-max) (max interval)
   (check-argument interval-max max (and (realp max) (>= max (%interval-min interval)))
                   "a number that is not below the min; set the min first")
-  (setf (%interval-max interval) (as-double max)))
+  (setf (%interval-max interval) (double max)))
 
 (declaim (inline set-interval!))
 (defun set-interval! (interval min max)
   "Make INTERVAL reach from MIN to MAX, real numbers, and return it. MIN above MAX is an error."
   (check-argument set-interval! min (<= min max) "a number that is not above the max")
-  (%set-interval! interval (as-double min) (as-double max)))
+  (%set-interval! interval (double min) (double max)))
 
 ;;; Point intervals.
 
@@ -132,7 +123,7 @@ interval that holds only it. Written (make PT-INTERVAL A B) in Nisp."
 (defun lift (x)
   "Return a fresh interval or point interval that holds just what X is or holds."
   (etypecase x
-    (real (let ((x (as-double x))) (%make-interval x x)))
+    (real (let ((x (double x))) (%make-interval x x)))
     (interval (%make-interval (%interval-min x) (%interval-max x)))
     (pt (%make-pt-interval (lift (%pt-x x)) (lift (%pt-y x))))
     (pt-interval (%make-pt-interval (lift (%pt-interval-x x)) (lift (%pt-interval-y x))))))
