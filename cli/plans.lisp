@@ -4,8 +4,7 @@
 
 ;;; A plan is an errand like a command to the robot. Live, a thread watches each plan and tells of
 ;;; its end. Now and then it asks, between two reactions of the plans, whether they can still go on;
-;;; one that cannot is ended if the session waits for it. Headless, the prompt looks at it after each
-;;; tick.
+;;; one that cannot is ended if the session waits for it. Headless, the prompt asks after each tick.
 ;;;
 ;;; It is the plan's business to recover from errors of its commands. So a session that waits for a
 ;;; plan does not count those, only the plan's own failure: see VERDICT.
