@@ -197,6 +197,7 @@ the last such question."
                      (plan-errand-name errand) *patience*)))))
 
 (defmethod await-errand ((errand plan-errand))
-  (if (live-p (plan-errand-simulation errand))
-      (wait-on-semaphore (plan-errand-told errand))
-      (await-plan-headless errand)))
+  (cond ((live-p (plan-errand-simulation errand))
+         (wait-on-semaphore (plan-errand-told errand))
+         (show-messages (plan-errand-session errand)))
+        (t (await-plan-headless errand))))

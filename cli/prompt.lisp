@@ -9,16 +9,18 @@
   "Return the next line of SESSION, or NIL at the end. Show PROMPT unless it is a batch, and what
 comes of earlier lines if the session waits for that."
   (let ((console (session-console session)))
-    (unless (session-batch-p session) (show-prompt console prompt))
+    (unless (session-batch-p session)
+      (with-lock ((session-lock session)) (show-prompt console prompt)))
     (catch-up session)
     (let* ((given (pop (session-lines session)))
            (line (or given
                      (and (not (console-closed-p console))
                           (read-line (session-input session) nil)))))
-      (cond ((session-batch-p session))
-            ((null line) (terpri console))
-            ((or given (session-echo-p session)) (format console "~A~%" line)))
-      (with-lock ((session-lock session)) (answered console))
+      (with-lock ((session-lock session))
+        (cond ((session-batch-p session))
+              ((null line) (terpri console))
+              ((or given (session-echo-p session)) (format console "~A~%" line)))
+        (answered console))
       line)))
 
 ;;; Carrying out a line.
