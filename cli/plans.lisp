@@ -59,6 +59,7 @@
 (defun user-text (function object)
   "Return the string that FUNCTION makes of OBJECT, as users would read it, on a line."
   (let ((*package* (find-package :ars-user))
+        (*read-default-float-format* 'double-float)
         (*print-pretty* nil))
     (cut (one-line (funcall function object)) 300)))
 

@@ -135,9 +135,9 @@
 
 (test live.a-patient-prompt-waits
   (multiple-value-bind (lines errors)
-      (type-live '("plan dawdle 4" "plan stumble :thin-ice" "plan mope" "plans") :batch t)
+      (type-live '("plan dawdle 4 1.5" "plan stumble :thin-ice" "plan mope" "plans") :batch t)
     (is (= 2 errors))
-    (is (string= "dawdle succeeded: :DAWDLED" (first lines)))
+    (is (string= "dawdle succeeded: 1.5" (first lines)))
     (is-true (has-words-p (second lines) "stumble failed" ":THIN-ICE"))
     (is-true (has-words-p (third lines) "Deadlock" "mope" "godot" "it was stopped"))
     (is (equal '("No plan is under way. PLAN lists the plans that there are.") (nthcdr 3 lines)))))
