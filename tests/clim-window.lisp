@@ -243,6 +243,7 @@
              (window:close-window window)
              (base:join-thread (window::window-thread window))
              (is (null (window:find-window 'studio-robot)))
+             (is (eq :disowned (clim:frame-state window)))
              (is (time:live-p simulation))
              ;; The history goes on.
              (is (= (1+ observers) (length (time:simulation-observers simulation)))))

@@ -13,7 +13,10 @@
 (defun run-suite (suite)
   "Run SUITE, report its failures. Return how many checks passed, failed and were skipped."
   (format t "~&~(~20A~)" suite)
-  (let ((results (let ((*test-dribble* (make-broadcast-stream))) (run suite))))
+  (let ((results (let ((*test-dribble* (make-broadcast-stream))
+                       ;; What one suite leaves unread is not for the next.
+                       (base:*message-queue* (base:make-message-queue)))
+                   (run suite))))
     (multiple-value-bind (good failed skipped) (results-status results)
       (declare (ignore good))
       (let ((passed (- (length results) (length failed) (length skipped))))

@@ -3,7 +3,7 @@
 (in-package :ars-magna.base)
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
-  (defparameter *hot* '(optimize (speed 3) (safety 1) (debug 0))
+  (defparameter *hot* '(optimize (speed 3) (safety 1) (debug 0) (sb-ext:inhibit-warnings 3))
     "How a function that a profile pointed at is compiled: (declare #.*hot*)."))
 
 (deftype cell-index ()

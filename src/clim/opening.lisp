@@ -46,6 +46,11 @@
                                        (handler-case (princ-to-string condition)
                                          (error () (string (type-of condition))))))))))
 
+(defun discard (window)
+  "Let the X server forget WINDOW, which has closed, and its pixmaps."
+  (forget-terrain (pane-named window 'world))
+  (clim:disown-frame (clim:frame-manager window) window))
+
 (defun run-window (window)
   "Show WINDOW until it is closed, or something goes wrong."
   (let* ((simulation (window-simulation window))
@@ -55,7 +60,9 @@
            (error (condition) (warn-of-closing window condition)))
       (forget-window window)
       (end-conversation (window-conversation window))
-      (stop-watching (window-watcher window)))))
+      (stop-watching (window-watcher window))
+      ;; The X server may have gone.
+      (ignore-errors (discard window)))))
 
 (defmethod clim:run-frame-top-level :before ((window robot-window) &key &allow-other-keys)
   (painted (window-watcher window)))
