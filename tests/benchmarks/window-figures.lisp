@@ -1,0 +1,235 @@
+;;;; window-figures.lisp -- frames a second, torn frames, and what a window costs a live run.
+
+;;; Loaded by window.lisp. Thirty things, one to a row, move along a map of 75 x 75 cells, 8 pixels
+;;; to a cell, all by the same distance in a tick. So a picture in which they do not stand one
+;;; below the other, or in which one is missing, was grabbed half painted. The grabber is a second
+;;; client of the X server; that it finds torn frames where there are any is shown by the same
+;;; grabs while the pane paints on the screen without a buffer.
+
+(in-package :ars-magna.benchmarks)
+
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (sb-ext:add-package-local-nickname :window :ars-magna.clim)
+  (sb-ext:add-package-local-nickname :canvas :ars-magna.canvas))
+
+(defparameter *movers* 30)
+(defparameter *seconds* 5 "How long what takes its own time is watched.")
+
+;;; The stage.
+
+(world:defmap stage (75 75)
+  (rect (0 0) (75 75) bricks 1 10 20 30) (wall (20 20) (50 20) wood 40 80)
+  (wall (10 64) (60 64) wood 40))
+(robot:defrobot watched (stage (70.5 70.5) 0))
+
+(defun row (mover)
+  "Return the y coordinate of the thing numbered MOVER."
+  (+ 3.5d0 (* 2 mover)))
+
+(defun strew-movers (world)
+  "Return a list of new things in WORLD, one below the other."
+  (loop for mover below *movers*
+        collect (world:make-new-thing 'box (list world 2.5d0 (row mover))
+                                      '((:size 1) (:color red)))))
+
+(defun step-movers (movers)
+  "Move all MOVERS by a pixel to the right, and from there back to the left."
+  (let ((x (+ 2 (mod (+ (world:thing-x (first movers)) -2 1/8) 64))))
+    (dolist (mover movers)
+      (world:place-thing mover :floor x (world:thing-y mover)))))
+
+(defun move-every-tick (movers)
+  "Let MOVERS move by themselves, all in the same tick."
+  (world:put-kicker sidestep (thing (first movers)) ()
+    (declare (ignore thing))
+    (step-movers movers)))
+
+;;; The window's own thread paints.
+
+(defclass errand (clim:window-manager-event)
+  ((function :initarg :function :reader errand-function))
+  (:documentation "Something that the window's thread is to do."))
+
+(defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event errand))
+  (funcall (errand-function event)))
+
+(defun run-in-window (window function)
+  "Let the thread of WINDOW call FUNCTION; return its value."
+  (let ((done (base:make-semaphore "done")) (sheet (clim:frame-top-level-sheet window)) value)
+    (clim:queue-event sheet (make-instance 'errand
+                                           :sheet sheet
+                                           :function (lambda ()
+                                                       (setf value (funcall function))
+                                                       (base:signal-semaphore done))))
+    (base:wait-on-semaphore done)
+    value))
+
+(defun world-pane (window) (clim:find-pane-named window 'window::world))
+
+(defun place-window (window)
+  "Make WINDOW large enough for the whole map; wait until it is."
+  (let ((pane (world-pane window)))
+    (loop until (clim:sheet-grafted-p pane) do (sleep 0.05))
+    (sleep 1)
+    (run-in-window window (lambda () (clim:layout-frame window 1100 900)))
+    (sleep 1)
+    (run-in-window window (lambda ()
+                            (setf (window::pane-left pane) 0
+                                  (window::pane-top pane) 0)
+                            (window::repaint pane)))))
+
+;;; Frames, as fast as they can be painted. A frame is a new snapshot and its picture.
+
+(defvar *frames* 0 "How many pictures of the world have been painted.")
+
+(defmethod window::paint :after ((pane window::world-pane))
+  (incf *frames*))
+
+(defun paint-frames (count window movers paint)
+  "Paint COUNT frames in WINDOW with the function PAINT; wait for the X server to have done so."
+  (let ((watcher (window:window-watcher window)) (pane (world-pane window)))
+    (loop repeat count
+          do (step-movers movers)
+             (window::publish watcher (window::window-simulation window))
+             (funcall paint pane))
+    (clim:medium-finish-output (clim:sheet-medium pane))))
+
+(defun frame-rate (window movers)
+  (run-in-window window (lambda ()
+                          (per-second 1000 (lambda ()
+                                             (paint-frames 1000 window movers
+                                                           #'window::repaint-if-changed))))))
+
+;;; Torn frames.
+
+(defun mover-bytes ()
+  "Return the bytes of a pixel of a mover, as the X server gives them."
+  (let ((color (canvas:shade 'red)))
+    (list (ldb (byte 8 0) color) (ldb (byte 8 8) color) (ldb (byte 8 16) color))))
+
+(defun seek-x-window (name x-window)
+  "Return the X window called NAME that is, or is below, X-WINDOW; NIL if there is none."
+  (if (equal name (ignore-errors (xlib:wm-name x-window)))
+      x-window
+      (some (lambda (child) (seek-x-window name child)) (xlib:query-tree x-window))))
+
+(defun call-with-x-window (function window)
+  "Call FUNCTION with the X window of WINDOW, as another client of the X server knows it."
+  (let ((display (xlib:open-default-display)))
+    (unwind-protect
+         (funcall function
+                  (seek-x-window (clim:frame-pretty-name window)
+                                 (xlib:screen-root (xlib:display-default-screen display))))
+      (xlib:close-display display))))
+
+(defun corner-of (pane)
+  "Return how far right and down in its X window PANE begins, in pixels."
+  (clim:transform-position (clim:sheet-delta-transformation
+                            pane (clim:frame-top-level-sheet (clim:pane-frame pane)))
+                           0 0))
+
+(defun grab (x-window pane)
+  "Return the pixels of the map in PANE, four bytes each, as they are on the screen now."
+  (multiple-value-bind (x y) (corner-of pane)
+    (xlib:get-raw-image x-window :x (round x) :y (round y) :width 600 :height 600
+                                 :format :z-pixmap)))
+
+(defun mover-column (image mover color)
+  "Return the leftmost column of IMAGE that has COLOR in the row of MOVER, or NIL."
+  (let ((start (* 4 600 (round (* 8 (row mover))))))
+    (loop for column below 600
+          when (loop for byte in color for index from (+ start (* 4 column))
+                     always (= byte (aref image index)))
+            return column)))
+
+(defun aligned-column (image color)
+  "Return the column of IMAGE in which all movers stand, or NIL."
+  (let ((columns (loop for mover below *movers* collect (mover-column image mover color))))
+    (and (every #'eql columns (rest columns))
+         (first columns))))
+
+(defun say-torn (name grabs window)
+  "Print how many of GRABS pictures of the world in WINDOW are torn, and how many of the others
+differ from each other."
+  (flet ((columns (x-window)
+           (loop with color = (mover-bytes) with pane = (world-pane window)
+                 repeat grabs
+                 collect (aligned-column (grab x-window pane) color))))
+    (let ((columns (call-with-x-window #'columns window)))
+      (say name (count nil columns) "frames")
+      (say "  positions seen among the others"
+           (length (remove-duplicates (remove nil columns))) "positions"))))
+
+(defun say-torn-painting (name window movers paint)
+  "Print how many of 1,000 grabs are torn while frames are painted in WINDOW with PAINT."
+  (let* ((over-p nil)
+         (painter (base:start-thread
+                   (lambda ()
+                     (loop until over-p
+                           do (run-in-window window (lambda ()
+                                                      (paint-frames 5 window movers paint)))))
+                   "painter")))
+    (say-torn name 1000 window)
+    (setf over-p t)
+    (base:join-thread painter)))
+
+;;; Live.
+
+(defun tick-rate (simulation)
+  "Return how many ticks a second the live SIMULATION passes."
+  (let ((before (time:simulation-tick simulation)))
+    (let ((seconds (seconds-for (lambda () (sleep *seconds*)))))
+      (/ (- (time:simulation-tick simulation) before) seconds))))
+
+(defun cpu-milliseconds (before)
+  "Return how long processors have worked for us since BEFORE, in milliseconds a second."
+  (/ (- (get-internal-run-time) before) (* *seconds* internal-time-units-per-second 1d-3)))
+
+(defun say-live (simulation)
+  "Print frames and ticks a second of the live SIMULATION, which is shown."
+  (let* ((frames *frames*) (before (get-internal-run-time)) (ticks (tick-rate simulation)))
+    (say "live, shown, at 1000 ticks/s" ticks "ticks/s")
+    (say "  frames shown" (/ (- *frames* frames) *seconds*) "frames/s")
+    (say "  time of a processor" (cpu-milliseconds before) "ms a second")))
+
+(defun say-idle (simulation)
+  "Print how busy processors are while the shown SIMULATION is paused."
+  (time:pause simulation)
+  (sleep 1)
+  (let ((before (get-internal-run-time)))
+    (sleep *seconds*)
+    (say "paused, shown: time of a processor" (cpu-milliseconds before) "ms a second")))
+
+;;; All of it.
+
+(defun call-with-shown (function robot)
+  "Call FUNCTION with a window that shows ROBOT."
+  (let ((window (window:open-window robot)))
+    (place-window window)
+    (unwind-protect (funcall function window)
+      (window:close-window window)
+      (base:join-thread (window::window-thread window)))))
+
+(defun say-painting (window movers)
+  (say "frames painted, 30 movers, 8 pixels a cell" (frame-rate window movers) "frames/s")
+  (say-torn-painting "torn frames of 1,000, as fast as they are painted" window movers
+                     #'window::repaint-if-changed)
+  (say-torn-painting "  the same, were there no buffer" window movers
+                     (lambda (pane)
+                       (window::paint pane)
+                       (clim:medium-force-output (clim:sheet-medium pane)))))
+
+(defun say-living (window simulation)
+  (say-live simulation)
+  (say-torn "torn frames of 10,000, live" 10000 window)
+  (say-idle simulation))
+
+(let* ((simulation (robot:fresh-simulation '(watched) :seed 1))
+       (robot (first (robot:simulation-robots simulation)))
+       (movers (strew-movers (robot:robot-world robot))))
+  (call-with-shown (lambda (window) (say-painting window movers)) robot)
+  (move-every-tick movers)
+  (time:start-clock simulation :rate 1000)
+  (say "live, not shown, at 1000 ticks/s" (tick-rate simulation) "ticks/s")
+  (call-with-shown (lambda (window) (say-living window simulation)) robot)
+  (time:stop-clock simulation))
