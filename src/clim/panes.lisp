@@ -24,6 +24,8 @@
 
 (defmethod clim:handle-repaint ((pane display-pane) region)
   (declare (ignore region))
+  ;; CLIM narrows painting down to REGION, but the rest may have changed as well.
+  (setf (clim:medium-clipping-region (clim:sheet-medium pane)) clim:+everywhere+)
   (repaint pane))
 
 (defun pane-size (pane)

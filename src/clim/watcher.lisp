@@ -122,5 +122,7 @@ itself: it will come with the next tick."
   (signal-semaphore (watcher-painted watcher))
   (leave-simulation watcher)
   (let ((pacer (watcher-pacer watcher)))
-    (when (and pacer (not (eq pacer (current-thread)))) (join-thread pacer)))
+    ;; When Lisp exits, the pacer may have been ended before.
+    (when (and pacer (not (eq pacer (current-thread))))
+      (ignore-errors (join-thread pacer))))
   (values))
