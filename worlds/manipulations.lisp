@@ -14,8 +14,6 @@
 (defattribute :lit (#t #f)
   :success .95 :noticed .6)
 
-(set-attribute lamp* :type :lamp)
-
 ;;; What is in the way.
 
 (defun beside-hand-p (thing hand)

@@ -53,7 +53,7 @@
   "A chair: it can be driven past, and a strong hand can carry it.")
 
 (defvar lamp* (new-thing lamp nil
-                ((:size 2) (:weight 1) (:color lightred) (:substance metal)))
+                ((:type :lamp) (:size 2) (:weight 1) (:color lightred) (:substance metal)))
   "A lamp.")
 
 (defvar plant* (new-thing plant nil

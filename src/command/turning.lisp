@@ -88,23 +88,13 @@ odometry's reading of the step."
     "Turn ROBOT in place by about ANGLE."
   (turn-and-succeed operation robot angle))
 
-(define-command robot-about-face (operation (robot robot))
-    ((angle "a reading of the angle turned"))
-    ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
-     (:report (angle) (turned-text angle)))
-    "Turn ROBOT in place by about half a circle."
-  (turn-and-succeed operation robot pi))
-
-(define-command robot-turn-left (operation (robot robot))
-    ((angle "a reading of the angle turned"))
-    ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
-     (:report (angle) (turned-text angle)))
-    "Turn ROBOT in place by about a quarter circle to the left."
-  (turn-and-succeed operation robot (/ pi -2)))
-
-(define-command robot-turn-right (operation (robot robot))
-    ((angle "a reading of the angle turned"))
-    ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
-     (:report (angle) (turned-text angle)))
-    "Turn ROBOT in place by about a quarter circle to the right."
-  (turn-and-succeed operation robot (/ pi 2)))
+(macrolet ((define-turn (name angle words)
+             `(define-command ,name (operation (robot robot))
+                  ((angle "a reading of the angle turned"))
+                  ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
+                   (:report (angle) (turned-text angle)))
+                  ,(format nil "Turn ROBOT in place by about ~A." words)
+                (turn-and-succeed operation robot ,angle))))
+  (define-turn robot-about-face pi "half a circle")
+  (define-turn robot-turn-left (/ pi -2) "a quarter circle to the left")
+  (define-turn robot-turn-right (/ pi 2) "a quarter circle to the right"))
