@@ -19,10 +19,14 @@
       (world:set-attribute (world:find-thing 'crate) :obsmove t)
       (robot:place-robot rover 5 5 1)
       (time:run-ticks 200)
+      (robot:make-odometer rover 'trip)
+      (time:run-ticks 20)
+      (robot:reset-odometer-pos (robot:robot-odometer rover 'trip))
+      (robot:reset-odometer (robot:robot-main-odometer rover))
       (robot:set-seed 99)
       (time:grab-resource rover)
       (command:robot-goto-wall rover)
-      (time:run-ticks 200)
+      (time:run-ticks 180)
       (setf digest (robot:state-digest)
             journal (end-journal time:*simulation*)))
     (is (= 1000 (time:journal-end journal)))
@@ -200,3 +204,17 @@ the office, its kickers or the order of chance does; then it is to be replaced k
       (let ((digest (robot:state-digest simulation)))
         (is (= *office-digest* digest))
         (is (= digest (nth-value 1 (robot:replay (end-journal simulation)))))))))
+
+(test journal.repeats-what-plans-did
+  "A shipped plan, with its odometers, on the noisy office floor; the journal knows no plans."
+  (let (digest journal)
+    (robot:call-with-simulation
+     (lambda ()
+       (is (eq :succeeded
+               (nth-value 1 (ars-user::run-plan 'ars-user::fetch-thing
+                                                '((:color world:blue) (:substance world:plastic))
+                                                '((109 24))))))
+       (setf digest (robot:state-digest)
+             journal (end-journal time:*simulation*)))
+     '(ars-user::marvin) :seed 5 :journal t)
+    (is (= digest (nth-value 1 (robot:replay journal))))))

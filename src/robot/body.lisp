@@ -64,7 +64,7 @@ holds. Signals UNKNOWN-NAME."
   (let ((robot (%make-robot :name (body-name body) :body body :world world)))
     (outfit robot body)
     (set-robot-pose robot (body-x body) (body-y body) (body-angle body))
-    (make-odometer robot 'main)
+    (add-odometer robot 'main)
     (setf (world-robots world) (append (world-robots world) (list robot)))
     robot))
 
@@ -79,7 +79,7 @@ holds. Signals UNKNOWN-NAME."
           (robot-odometer-list robot) '())
     (forget-designators robot)
     (set-robot-pose robot (body-x body) (body-y body) (body-angle body))
-    (make-odometer robot 'main)
+    (add-odometer robot 'main)
     (map nil #'reset-camera (robot-cameras robot))
     (map nil #'reset-hand (robot-hands robot))
     (map nil #'reset-bin (robot-bins robot))

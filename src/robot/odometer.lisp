@@ -81,23 +81,52 @@
     (error 'wrong-argument :operator operator :name "odometer" :value odometer
                            :expected "an odometer, as (robot-main-odometer ROBOT) returns")))
 
+;; Odometers belong to the robot's state, so a journal notes what programs do to them.
+(defun change-robot (robot entry function)
+  "Call FUNCTION, by which a program changes ROBOT; ENTRY is what a journal says of it."
+  (let ((simulation (robot-simulation robot)))
+    (if simulation
+        (change-from-outside simulation function entry)
+        (funcall function))))
+
+(defun reset-reading (odometer part)
+  "Let PART of ODOMETER, :POS or :ANG, count from here."
+  (ecase part
+    (:pos (setf (odometer-x-min odometer) 0d0 (odometer-x-max odometer) 0d0
+                (odometer-y-min odometer) 0d0 (odometer-y-max odometer) 0d0))
+    (:ang (setf (odometer-angle-min odometer) 0d0 (odometer-angle-max odometer) 0d0)
+     (refresh-bounds odometer))))
+
+(defun reset-by-program (odometer part)
+  "Reset PART of ODOMETER because a program says so. Return ODOMETER. One that has been destroyed is
+no part of the robot any more."
+  (let ((robot (odometer-robot odometer)) (name (odometer-name odometer)))
+    (flet ((reset () (reset-reading odometer part)))
+      (if (eq odometer (robot-odometer robot name))
+          (change-robot robot (list :reset-odometer robot name part) #'reset)
+          (reset))))
+  odometer)
+
 (defun reset-odometer-pos (odometer)
   "Let ODOMETER count its position from here. Return ODOMETER (manual 3.2.2)."
   (check-odometer odometer 'reset-odometer-pos)
-  (setf (odometer-x-min odometer) 0d0 (odometer-x-max odometer) 0d0
-        (odometer-y-min odometer) 0d0 (odometer-y-max odometer) 0d0)
-  odometer)
+  (reset-by-program odometer :pos))
 
 (defun reset-odometer-ang (odometer)
   "Let ODOMETER count its angle from the present heading. Return ODOMETER (manual 3.2.2)."
   (check-odometer odometer 'reset-odometer-ang)
-  (setf (odometer-angle-min odometer) 0d0 (odometer-angle-max odometer) 0d0)
-  (refresh-bounds odometer)
-  odometer)
+  (reset-by-program odometer :ang))
 
 (defun reset-odometer (odometer)
   "Let ODOMETER count position and angle from here. Return ODOMETER (manual 3.2.2)."
+  (check-odometer odometer 'reset-odometer)
   (reset-odometer-ang (reset-odometer-pos odometer)))
+
+(defmethod apply-entry ((operation (eql :reset-odometer)) arguments simulation)
+  (declare (ignore simulation))
+  (destructuring-bind (robot name part) arguments
+    (let ((odometer (robot-odometer robot name)))
+      (when odometer (reset-by-program odometer part)))))
 
 (defun get-odometer-pos (odometer &optional interval)
   "Return a PT-INTERVAL that contains the position, in metres, relative to where ODOMETER was
@@ -119,17 +148,25 @@ INTERVAL, if given, is modified and returned (manual 3.2.2)."
   (set-interval! (or interval (make-interval 0 0))
                  (odometer-angle-min odometer) (odometer-angle-max odometer)))
 
-(defun make-odometer (robot name)
-  "Return a new odometer of ROBOT called NAME, a symbol. Another of that name is destroyed: it
-no longer changes (manual 3.2.2)."
-  (check-argument make-odometer robot (robot-p robot) "a robot")
-  (check-argument make-odometer name (and name (symbolp name)) "a symbol")
+(defun add-odometer (robot name)
+  "Give ROBOT a new odometer called NAME, instead of any other of that name. Return it."
   (let ((odometer (%make-odometer robot name)))
     (setf (robot-odometer-list robot)
           (append (remove name (robot-odometer-list robot)
                           :key #'odometer-name :test #'same-name-p)
                   (list odometer)))
     odometer))
+
+(defun make-odometer (robot name)
+  "Return a new odometer of ROBOT called NAME, a symbol. Another of that name is destroyed: it
+no longer changes (manual 3.2.2)."
+  (check-argument make-odometer robot (robot-p robot) "a robot")
+  (check-argument make-odometer name (and name (symbolp name)) "a symbol")
+  (change-robot robot (list :make-odometer robot name) (lambda () (add-odometer robot name))))
+
+(defmethod apply-entry ((operation (eql :make-odometer)) arguments simulation)
+  (declare (ignore simulation))
+  (apply #'make-odometer arguments))
 
 (defun robot-odometers (robot)
   "Return a list of the odometers of ROBOT, oldest first (manual 3.2.2)."
