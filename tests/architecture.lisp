@@ -140,7 +140,7 @@
   (loop for (kind bound-p) in `((function ,(fboundp symbol))
                                 (variable ,(and (boundp symbol) (not (keywordp symbol))))
                                 (type ,(or (find-class symbol nil)
-                                           (sb-ext:valid-type-specifier-p symbol))))
+                                           (sb-int:info :type :expander symbol))))
         when (and bound-p (null (documentation symbol kind)))
           collect kind))
 
