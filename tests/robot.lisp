@@ -111,6 +111,25 @@
       (is (< (abs (- 1 (geo:nominal (robot:get-odometer-ang odometer)))) 1d-9))
       (is (< (abs (- 2.4 (geo:norm (geo:nominal (robot:get-odometer-pos odometer))))) 1d-6)))))
 
+(test odometer.estimate-is-where-the-robot-is-in-a-clean-world
+  "For displays: true after resets here and there; after POS it stays where the odometer counts."
+  (with-rover (:clean t)
+    (let ((main (robot:robot-main-odometer rover)))
+      (flet ((off ()
+               (multiple-value-bind (x y heading) (robot:odometer-estimate main)
+                 (max (abs (- x (robot:robot-x rover))) (abs (- y (robot:robot-y rover)))
+                      (abs (- heading (robot:robot-angle rover)))))))
+        (loop repeat 3
+              do (command:robot-turn rover 0.7)
+                 (time:run-ticks 20)
+                 (command:robot-go-forward rover 3)
+                 (time:run-ticks 20)
+                 (is (< (off) 1d-9))
+                 (robot:reset-odometer main)
+                 (is (< (off) 1d-9)))
+        (robot:place-robot rover 3 3 0)
+        (is (> (off) 1))))))
+
 (test odometer.names-and-resets
   (with-rover ()
     (let ((first (robot:make-odometer rover 'home)))

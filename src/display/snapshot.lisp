@@ -37,8 +37,9 @@
 thing, the name of a place type, or NIL if the designator is false."
   (number 0) (type nil) (angle 0d0) (distance 0d0) (denotation nil))
 
-(define-image odometer-image "What a snapshot knows of an odometer: how uncertain it is."
-  (name nil) (width 0d0) (height 0d0) (axis 0d0) (spread 0d0))
+(define-image odometer-image "What a snapshot knows of an odometer: where, seen from outside, it
+puts the robot, and how uncertain it is."
+  (name nil) (x 0d0) (y 0d0) (heading 0d0) (width 0d0) (height 0d0) (axis 0d0) (spread 0d0))
 
 (setf (documentation 'snapshot-tick 'function) "Return the tick at which the snapshot was taken."
       (documentation 'snapshot-map 'function) "Return the map of the world in the snapshot."
@@ -131,18 +132,17 @@ what it holds of each."
                   :contents (mapcar #'image-of-thing (storage-bin-contents bin))))
 
 (defun image-of-odometer (robot)
-  "Return the image of the main odometer of ROBOT. Its x axis is the heading when it was reset,
-about: the middle of what it says of the heading now."
+  "Return the image of the main odometer of ROBOT: its box, and its bounds of the heading."
   (let* ((odometer (robot-main-odometer robot))
          (position (get-odometer-pos odometer))
          (angle (get-odometer-ang odometer)))
-    (flet ((width (interval) (- (interval-max interval) (interval-min interval))))
-      (make-odometer-image
-       :name (odometer-name odometer)
-       :width (width (pt-interval-x position)) :height (width (pt-interval-y position))
-       :axis (- (robot-angle robot)
-                (* 0.5d0 (+ (interval-min angle) (interval-max angle))))
-       :spread (width angle)))))
+    (multiple-value-bind (x y heading) (odometer-estimate odometer)
+      (flet ((width (interval) (- (interval-max interval) (interval-min interval))))
+        (make-odometer-image
+         :name (odometer-name odometer) :x x :y y :heading heading
+         :width (width (pt-interval-x position)) :height (width (pt-interval-y position))
+         :axis (odometer-origin-angle odometer)
+         :spread (width angle))))))
 
 (defun image-of-robot (robot history)
   (let ((trail (and history (cdr (assoc robot (history-trails history) :test #'eq)))))

@@ -116,10 +116,11 @@ main odometer is; :TRAIL, where robots have been. Rays and trails need KEEP-HIST
       (draw-circle canvas (first target) (second target) (/ graphics-scale* 2) nil))))
 
 (defun draw-odometer (canvas robot)
-  "Draw how uncertain the main odometer is: a box as big as the interval that contains ROBOT's
-position, in the directions of its axes, and lines that bound its heading."
+  "Draw where the main odometer of ROBOT puts it: the box that contains its position, and from the
+middle of that the bounds of its heading."
   (let* ((odometer (robot-image-odometer robot))
-         (x (robot-image-x robot)) (y (robot-image-y robot))
+         (x (odometer-image-x odometer)) (y (odometer-image-y odometer))
+         (heading (odometer-image-heading odometer))
          (half-width (* 1/2 (odometer-image-width odometer)))
          (half-height (* 1/2 (odometer-image-height odometer)))
          (cos (cos (odometer-image-axis odometer)))
@@ -132,8 +133,7 @@ position, in the directions of its axes, and lines that bound its heading."
         (draw-lines canvas draw-gcontext*
                     (pixels-of (append (corner -1 -1) (corner 1 -1) (corner 1 1)
                                        (corner -1 1) (corner -1 -1))))
-        (dolist (angle (list (- (robot-image-angle robot) spread)
-                             (+ (robot-image-angle robot) spread)))
+        (dolist (angle (list (- heading spread) (+ heading spread)))
           (draw-segments canvas draw-gcontext*
                          (pixels-of (list* x y (around x y angle 3)))))))))
 

@@ -15,9 +15,25 @@
   (x-min 0d0 :type double-float) (x-max 0d0 :type double-float)
   (y-min 0d0 :type double-float) (y-max 0d0 :type double-float)
   (angle-min 0d0 :type double-float) (angle-max 0d0 :type double-float)
+  ;; Where and in what heading the robot really was when it was reset; for displays.
+  (origin-x 0d0 :type double-float) (origin-y 0d0 :type double-float)
+  (origin-angle 0d0 :type double-float)
   (cos-min 1d0 :type double-float) (cos-max 1d0 :type double-float)
   (sin-min 0d0 :type double-float) (sin-max 0d0 :type double-float))
-(setf (documentation 'odometer-p 'function) "True of odometers."
+(defun odometer-estimate (odometer)
+  "Return where ODOMETER, seen from outside, puts the robot: the middle of its box, x and y in
+metres on the map, and the heading in radians. For displays: no program of the robot can know."
+  (let* ((x (* 0.5d0 (+ (odometer-x-min odometer) (odometer-x-max odometer))))
+         (y (* 0.5d0 (+ (odometer-y-min odometer) (odometer-y-max odometer))))
+         (axis (odometer-origin-angle odometer))
+         (cos (cos axis)) (sin (sin axis)))
+    (values (+ (odometer-origin-x odometer) (- (* cos x) (* sin y)))
+            (+ (odometer-origin-y odometer) (+ (* sin x) (* cos y)))
+            (+ axis (* 0.5d0 (+ (odometer-angle-min odometer) (odometer-angle-max odometer)))))))
+
+(setf (documentation 'odometer-origin-angle 'function)
+      "Return the robot's true heading when the angle of the odometer was last reset, radians."
+      (documentation 'odometer-p 'function) "True of odometers."
       (documentation 'odometer-name 'function) "Return the symbol that names the odometer.")
 
 (defmethod print-object ((odometer odometer) stream)
@@ -91,11 +107,15 @@
 
 (defun reset-reading (odometer part)
   "Let PART of ODOMETER, :POS or :ANG, count from here."
-  (ecase part
-    (:pos (setf (odometer-x-min odometer) 0d0 (odometer-x-max odometer) 0d0
-                (odometer-y-min odometer) 0d0 (odometer-y-max odometer) 0d0))
-    (:ang (setf (odometer-angle-min odometer) 0d0 (odometer-angle-max odometer) 0d0)
-     (refresh-bounds odometer))))
+  (let ((robot (odometer-robot odometer)))
+    (ecase part
+      (:pos (setf (odometer-x-min odometer) 0d0 (odometer-x-max odometer) 0d0
+                  (odometer-y-min odometer) 0d0 (odometer-y-max odometer) 0d0
+                  (odometer-origin-x odometer) (robot-x robot)
+                  (odometer-origin-y odometer) (robot-y robot)))
+      (:ang (setf (odometer-angle-min odometer) 0d0 (odometer-angle-max odometer) 0d0
+                  (odometer-origin-angle odometer) (robot-angle robot))
+       (refresh-bounds odometer)))))
 
 (defun reset-by-program (odometer part)
   "Reset PART of ODOMETER because a program says so. Return ODOMETER. One that has been destroyed is
@@ -151,6 +171,8 @@ INTERVAL, if given, is modified and returned (manual 3.2.2)."
 (defun add-odometer (robot name)
   "Give ROBOT a new odometer called NAME, instead of any other of that name. Return it."
   (let ((odometer (%make-odometer robot name)))
+    (reset-reading odometer :pos)
+    (reset-reading odometer :ang)
     (setf (robot-odometer-list robot)
           (append (remove name (robot-odometer-list robot)
                           :key #'odometer-name :test #'same-name-p)

@@ -21,7 +21,8 @@ of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
            #:storage-bin #:storage-bin-p #:storage-bin-robot #:storage-bin-index
            #:storage-bin-capacity #:storage-bin-closed-p #:storage-bin-contents)
   ;; odometer
-  (:export #:odometer #:odometer-p #:odometer-name #:make-odometer #:robot-main-odometer
+  (:export #:odometer #:odometer-p #:odometer-name #:odometer-estimate
+           #:odometer-origin-angle #:make-odometer #:robot-main-odometer
            #:robot-odometer #:robot-odometers #:reset-odometer #:reset-odometer-pos
            #:reset-odometer-ang #:get-odometer-pos #:get-odometer-ang)
   ;; motion
