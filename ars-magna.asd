@@ -34,7 +34,8 @@
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "parts") (:file "odometer") (:file "motion")
                  (:file "designator") (:file "place-sense") (:file "body")
-                 (:file "simulation") (:file "references") (:file "sight") (:file "tracks")
+                 (:file "simulation") (:file "references")
+                 (:file "own-odometers") (:file "sight") (:file "tracks")
                  (:file "inside") (:file "state") (:file "replay")
                  (:file "rays") (:file "noise") (:file "matching") (:file "sightings")
                  (:file "scanning") (:file "views") (:file "tending")))

@@ -158,7 +158,7 @@ not count: they tell plans nothing."
 that ROBOT has. Plans under way end. Return ROBOT. To be called before anything else of the
 interface (manual C); RUN-PLAN does it for the robot of a simulation that has only one."
   (let* ((robot (if (robot-p robot) robot (find-robot robot)))
-         (simulation (robot-simulation* robot)))
+         (simulation (robot-simulation robot)))
     (when (and *interface* (ended-by-p *interface* simulation))
       (close-interface *interface*))
     (make-fluents robot)
@@ -173,16 +173,12 @@ simulation inside of a live one has only inherited is left alone."
       (not (interface-valid-p interface))
       (and (live-p simulation) (live-p (interface-simulation interface)))))
 
-(defun robot-simulation* (robot)
-  (or (robot-simulation robot)
-      (resident-simulation (world-map (robot-world robot)))))
-
 (defun interface-valid-p (interface)
   "True if the robot of INTERFACE still is in its world, and that in the same simulation."
   (let ((robot (interface-robot interface))
         (simulation (interface-simulation interface)))
     (and (not (interface-closed-p interface))
-         (eq simulation (robot-simulation* robot))
+         (eq simulation (robot-simulation robot))
          (member robot (simulation-robots simulation))
          t)))
 

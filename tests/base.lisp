@@ -31,13 +31,6 @@
     (is (< (abs (- variance 4)) 0.15d0))
     (is (= 5d0 (base:roll-gaussian 5 0 dice)))))
 
-(test dice.interval-is-geometric
-  (let* ((dice (base:make-dice 3))
-         (rolls (loop repeat 40000 collect (base:roll-interval 0.2 dice))))
-    (is (< (abs (- (/ (reduce #'+ rolls) 40000d0) 4d0)) 0.1d0))
-    (is (< (abs (- (/ (count 0 rolls) 40000d0) 0.2d0)) 0.01d0))
-    (is (= 0 (base:roll-interval 1 dice)))))
-
 (test dice.certainty-rolls-nothing
   (let* ((dice (base:make-dice 4)) (state (base:dice-state dice)))
     (is-false (base:chance 0 dice))

@@ -268,6 +268,25 @@
     (is (/= (digest nil) (digest 5)))
     (is (= (digest 5) (digest 5)))))
 
+(world:defmap annex (8 8) (rect (0 0) (7 7) bricks 1))
+
+(test resident-robots.can-be-changed-before-anything-runs
+  "What is done first makes the simulation, whose journal then knows of it."
+  (with-messages
+    (dolist (change (list (lambda (robot) (robot:place-robot robot 3 3 1))
+                          (lambda (robot) (robot:make-odometer robot 'early))
+                          (lambda (robot)
+                            (robot:reset-odometer (robot:robot-main-odometer robot)))))
+      (setf (world::map-resident annex) nil)
+      (let ((robot (robot:define-robot 'lodger 'annex '(2 2) 0)))
+        (funcall change robot)
+        (let ((simulation (robot:robot-simulation robot)))
+          (is (plusp (time:journal-length (time:simulation-journal simulation))))
+          (robot:define-robot 'latecomer 'annex '(5 5) 0)
+          (time:run-ticks 5 simulation)
+          (is (= (robot:state-digest simulation)
+                 (nth-value 1 (robot:replay (robot::end-of-journal simulation))))))))))
+
 (test place-robot.checks-and-keeps-odometers
   (with-rover ()
     (robot:place-robot rover 3 4 0.5)

@@ -84,18 +84,3 @@
       (let ((radius (sqrt (* -2d0 (log (- 1d0 (roll dice))))))
             (angle (* 2d0 pi (roll dice))))
         (+ (double mean) (* (double deviation) radius (cos angle))))))
-
-(defun roll-interval (probability dice)
-  "Return how many trials of PROBABILITY fail before the next that succeeds (geometric).
-PROBABILITY must be above 0; the answer is never more than 2^40."
-  (declare #.*hot*)
-  (let ((probability (double probability)))
-    (declare (type double-float probability))
-    (if (>= probability 1d0)
-        0
-        (values
-         (the (unsigned-byte 41)
-              (truncate (min #.(expt 2d0 40)
-                             (/ (log (the (double-float (0d0) 1d0) (- 1d0 (roll dice))))
-                                (log (the (double-float (0d0) 1d0)
-                                          (- 1d0 probability)))))))))))

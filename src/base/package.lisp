@@ -22,7 +22,7 @@ and bordeaux-threads so that no other layer has to.")
            #:start-thread #:join-thread #:thread-alive-p #:current-thread #:spread-specials)
   ;; dice
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
-           #:roll-index #:roll-element #:roll-gaussian #:roll-interval #:chance)
+           #:roll-index #:roll-element #:roll-gaussian #:chance)
   ;; names
   (:export #:same-name-p #:name-string #:nearest-name #:value-equal)
   ;; messages
@@ -31,7 +31,7 @@ and bordeaux-threads so that no other layer has to.")
            #:message #:message-kind #:message-items #:take-messages #:message-text
            #:write-message #:write-items #:out #:*message-limit*)
   ;; user code
-  (:export #:call-user-code #:with-user-code #:*break-on-user-error*)
+  (:export #:call-user-code #:*break-on-user-error*)
   ;; parameters
   (:export #:parameter #:parameter-name #:parameter-default #:parameter-unit #:parameter-kind
            #:parameter-group #:parameter-sentence #:parameter-value #:define-parameter

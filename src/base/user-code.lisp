@@ -26,7 +26,3 @@ message saying that it came from ORIGIN (an item or list of items) and return NI
              (report-user-error condition origin)
              (return nil))))
       (apply function arguments))))
-
-(defmacro with-user-code ((origin) &body body)
-  "Run BODY as CALL-USER-CODE would a function of no arguments."
-  `(call-user-code (lambda () ,@body) ,origin))

@@ -104,13 +104,9 @@
                   (sb-ext:posix-getenv "DISPLAY")
                   (substitute #\Space #\Newline (princ-to-string condition))))))
 
-(defun simulation-to-watch (robot)
-  (or (robot-simulation robot)
-      (resident-simulation (world-map (robot-world robot)))))
-
 (defun open-new-window (robot)
   (let* ((port (window-port))
-         (simulation (simulation-to-watch robot))
+         (simulation (robot-simulation robot))
          (window nil)
          (watcher (make-watcher (robot-name robot)
                                 (lambda () (when window (request-refresh window))))))
@@ -127,7 +123,7 @@
   "Show ROBOT in a window: in the one that it has, or else a new one. Return the window. Signals
 MISUSE where there is no X server."
   (let ((window (find-window (robot-name robot))))
-    (cond (window (watch-simulation (window-watcher window) (simulation-to-watch robot))
+    (cond (window (watch-simulation (window-watcher window) (robot-simulation robot))
                   window)
           (t (open-new-window robot)))))
 

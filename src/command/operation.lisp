@@ -133,11 +133,7 @@ followed by (robot-go-forward ...) sets the speed."
     (queue-again agenda operation delay)))
 
 (defun resource-simulation (resource)
-  (robot-simulation-of (if (robot-p resource) resource (part-robot resource))))
-
-(defun robot-simulation-of (robot)
-  (or (robot-simulation robot)
-      (resident-simulation (world-map (robot-world robot)))))
+  (robot-simulation (if (robot-p resource) resource (part-robot resource))))
 
 (defun issue (command resource arguments continuation)
   "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked; CONTINUATION may be NIL.

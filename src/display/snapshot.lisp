@@ -173,10 +173,7 @@ snapshot of WORLD, makes it cheaper."
 
 (defun snapshot-of (robot)
   "Return a snapshot of the world of ROBOT, from whatever thread."
-  (let ((simulation (robot-simulation robot)))
-    (if simulation
-        (asking (simulation) (take-snapshot (robot-world robot)))
-        (take-snapshot (robot-world robot)))))
+  (asking ((robot-simulation robot)) (take-snapshot (robot-world robot))))
 
 (defun snapshot-robot (snapshot name)
   "Return the image of the robot called NAME in SNAPSHOT; of its first robot if none is so called."

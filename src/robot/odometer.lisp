@@ -97,14 +97,6 @@ metres on the map, and the heading in radians. For displays: no program of the r
     (error 'wrong-argument :operator operator :name "odometer" :value odometer
                            :expected "an odometer, as (robot-main-odometer ROBOT) returns")))
 
-;; Odometers belong to the robot's state, so a journal notes what programs do to them.
-(defun change-robot (robot entry function)
-  "Call FUNCTION, by which a program changes ROBOT; ENTRY is what a journal says of it."
-  (let ((simulation (robot-simulation robot)))
-    (if simulation
-        (change-from-outside simulation function entry)
-        (funcall function))))
-
 (defun reset-reading (odometer part)
   "Let PART of ODOMETER, :POS or :ANG, count from here."
   (let ((robot (odometer-robot odometer)))
@@ -116,37 +108,6 @@ metres on the map, and the heading in radians. For displays: no program of the r
       (:ang (setf (odometer-angle-min odometer) 0d0 (odometer-angle-max odometer) 0d0
                   (odometer-origin-angle odometer) (robot-angle robot))
        (refresh-bounds odometer)))))
-
-(defun reset-by-program (odometer part)
-  "Reset PART of ODOMETER because a program says so. Return ODOMETER. One that has been destroyed is
-no part of the robot any more."
-  (let ((robot (odometer-robot odometer)) (name (odometer-name odometer)))
-    (flet ((reset () (reset-reading odometer part)))
-      (if (eq odometer (robot-odometer robot name))
-          (change-robot robot (list :reset-odometer robot name part) #'reset)
-          (reset))))
-  odometer)
-
-(defun reset-odometer-pos (odometer)
-  "Let ODOMETER count its position from here. Return ODOMETER (manual 3.2.2)."
-  (check-odometer odometer 'reset-odometer-pos)
-  (reset-by-program odometer :pos))
-
-(defun reset-odometer-ang (odometer)
-  "Let ODOMETER count its angle from the present heading. Return ODOMETER (manual 3.2.2)."
-  (check-odometer odometer 'reset-odometer-ang)
-  (reset-by-program odometer :ang))
-
-(defun reset-odometer (odometer)
-  "Let ODOMETER count position and angle from here. Return ODOMETER (manual 3.2.2)."
-  (check-odometer odometer 'reset-odometer)
-  (reset-odometer-ang (reset-odometer-pos odometer)))
-
-(defmethod apply-entry ((operation (eql :reset-odometer)) arguments simulation)
-  (declare (ignore simulation))
-  (destructuring-bind (robot name part) arguments
-    (let ((odometer (robot-odometer robot name)))
-      (when odometer (reset-by-program odometer part)))))
 
 (defun get-odometer-pos (odometer &optional interval)
   "Return a PT-INTERVAL that contains the position, in metres, relative to where ODOMETER was
@@ -178,17 +139,6 @@ INTERVAL, if given, is modified and returned (manual 3.2.2)."
                           :key #'odometer-name :test #'same-name-p)
                   (list odometer)))
     odometer))
-
-(defun make-odometer (robot name)
-  "Return a new odometer of ROBOT called NAME, a symbol. Another of that name is destroyed: it
-no longer changes (manual 3.2.2)."
-  (check-argument make-odometer robot (robot-p robot) "a robot")
-  (check-argument make-odometer name (and name (symbolp name)) "a symbol")
-  (change-robot robot (list :make-odometer robot name) (lambda () (add-odometer robot name))))
-
-(defmethod apply-entry ((operation (eql :make-odometer)) arguments simulation)
-  (declare (ignore simulation))
-  (apply #'make-odometer arguments))
 
 (defun robot-odometers (robot)
   "Return a list of the odometers of ROBOT, oldest first (manual 3.2.2)."

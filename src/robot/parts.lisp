@@ -114,10 +114,6 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   storage-bin-closed-p "True if the bin is closed."
   storage-bin-contents "Return the things in the bin, newest first.")
 
-(defun robot-simulation (robot)
-  "Return the simulation of the world that ROBOT is in."
-  (world-simulation (robot-world robot)))
-
 (defun robot-position (robot)
   "Return the true position of ROBOT, x and y as two values, in metres."
   (values (robot-x robot) (robot-y robot)))

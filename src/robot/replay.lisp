@@ -47,7 +47,9 @@ when the world is not loaded."
   (let ((journal (or (simulation-journal simulation)
                      (reject-use "This simulation keeps no journal. Ask for one: ~
                                   (with-simulation (ROBOT :journal t) ...)."))))
-    (setf (journal-end journal) (simulation-tick simulation))
+    (setf (journal-end journal) (simulation-tick simulation)
+          ;; Some may have been defined since it began.
+          (getf (journal-header journal) :robots) (robot-names simulation))
     journal))
 
 (defun save-journal (file &optional (simulation (current-simulation)))

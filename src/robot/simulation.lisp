@@ -31,10 +31,12 @@ ends with it and simulations side by side do not meet.")
 (defun kickers-busy-p (simulation)
   (world-has-kickers-p (simulation-world simulation)))
 
+(defun robot-names (simulation)
+  (mapcar (lambda (robot) (string (robot-name robot))) (simulation-robots simulation)))
+
 (defun begin-journal (simulation)
   (make-journal (list :map (string (map-name (world-map (simulation-world simulation))))
-                      :robots (mapcar (lambda (robot) (string (robot-name robot)))
-                                      (simulation-robots simulation))
+                      :robots (robot-names simulation)
                       :seed (simulation-seed simulation)
                       :parameters (parameter-settings))))
 
@@ -51,20 +53,27 @@ ends with it and simulations side by side do not meet.")
 
 ;;; Resident and fresh.
 
+(defun ensure-simulation (world)
+  "Return the simulation of WORLD; that of a resident world is made when it is first needed."
+  (or (world-simulation world)
+      (simulation-of world (world-seed world) t)))
+
 (defun resident-simulation (map)
   "Return the simulation of the resident world of MAP, or of the map so named."
-  (let ((world (map-resident-world (find-map map))))
-    (or (world-simulation world)
-        (simulation-of world (world-seed world) t))))
+  (ensure-simulation (map-resident-world (find-map map))))
 
-(defun robot-named (designator)
+(defun robot-simulation (robot)
+  "Return the simulation of the world that ROBOT is in."
+  (ensure-simulation (robot-world robot)))
+
+(defun body-of (designator)
   "Return the body of the robot DESIGNATOR, which may be a robot or its name."
   (if (robot-p designator) (robot-body designator) (find-body designator)))
 
 (defun fresh-simulation (robots &key (seed 0) journal)
   "Return a simulation, at tick 0, of a fresh world that holds the things of its map and fresh
 ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
-  (let* ((bodies (mapcar #'robot-named robots))
+  (let* ((bodies (mapcar #'body-of robots))
          (maps (remove-duplicates (mapcar #'body-map bodies))))
     (unless (= (length maps) 1)
       (reject-use "One simulation has one map, and these robots are defined in ~
@@ -113,7 +122,7 @@ second or :FREE, and make it the current simulation. A world that has run before
 anew, with SEED if that is given. Return ROBOT (manual A). STOP-SIMULATOR stops it."
   (let* ((robot (if (robot-p robot) robot (find-robot robot)))
          (world (robot-world robot))
-         (simulation (or (world-simulation world) (resident-simulation (world-map world)))))
+         (simulation (ensure-simulation world)))
     (stop-clock simulation)
     (when (or seed (plusp (simulation-tick simulation)))
       (setf simulation (restart-world world (or seed (simulation-seed simulation)))))

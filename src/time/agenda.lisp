@@ -201,17 +201,3 @@ if the event is interrupted."
             (dolist (event (bucket-by-priority event))
               (setf (event-queued-p event) nil)
               (when (event-pending-p event) (run-event agenda event))))))))
-
-(defun next-due-tick (agenda)
-  "Return the tick of the earliest pending event, or NIL. Meant for reports: it searches."
-  (let ((earliest nil))
-    (flet ((look (bucket)
-             (loop for event = (bucket-first bucket) then (event-next event)
-                   while event
-                   when (and (event-pending-p event)
-                             (or (null earliest) (< (event-time event) earliest)))
-                     do (setf earliest (event-time event)))))
-      (map nil #'look (agenda-near agenda))
-      (map nil #'look (agenda-far agenda))
-      (look (agenda-beyond agenda)))
-    earliest))

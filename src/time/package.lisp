@@ -7,7 +7,7 @@ thread; the journal; the live clock. Knows nothing of worlds and robots.")
   ;; resource, agenda
   (:export #:resource #:resource-event #:event #:event-pending-p #:event-resource
            #:agenda #:make-agenda #:agenda-tick #:agenda-pending #:queue-event #:queue-again
-           #:cancel-event #:interrupt-event #:pending-event #:next-due-tick #:advance-agenda)
+           #:cancel-event #:interrupt-event #:pending-event #:advance-agenda)
   ;; simulation
   (:export #:simulation #:make-simulation #:simulation-p #:simulation-name #:simulation-world
            #:simulation-tick #:simulation-seed #:simulation-agenda #:simulation-phases
