@@ -69,23 +69,30 @@
                  (:file "robot-accessors") (:file "robot-outcomes") (:file "robot-commands")
                  (:file "robot-runs")))
    (:module "src" :serial t
-    :components ((:file "slots") (:file "faces") (:file "ars")))
-   (:module "worlds" :serial t
-    :components ((:file "prototypes") (:file "kickers") (:file "manipulations")
+    :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
+  :in-order-to ((test-op (test-op "ars-magna/tests"))))
+
+(defsystem "ars-magna/worlds"
+  :description "Worlds, robots and plans to start with."
+  :depends-on ("ars-magna")
+  :serial t
+  :components
+  ((:module "worlds" :serial t
+    :components ((:file "package") (:file "prototypes") (:file "kickers") (:file "manipulations")
                  (:file "watson") (:file "office")
                  (:file "hall") (:file "tiny") (:file "wayfinding")
                  (:file "plans-reckoning") (:file "plans-moving")
                  (:file "plans-looking") (:file "plans-handling") (:file "plans-errands")
-                 (:file "errand"))))
-  :in-order-to ((test-op (test-op "ars-magna/tests"))))
+                 (:file "errand")))))
 
 (defsystem "ars-magna/cli"
   :description "The prompt Robot>."
-  :depends-on ("ars-magna")
+  :depends-on ("ars-magna" "ars-magna/worlds")
   :serial t
   :components
   ((:module "cli" :serial t
-    :components ((:file "package") (:file "console") (:file "session") (:file "line")
+    :components ((:file "package") (:file "console") (:file "user-names")
+                 (:file "session") (:file "line")
                  (:file "arguments") (:file "layout") (:file "errands") (:file "robot-lines")
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
                  (:file "status-lines") (:file "running-lines") (:file "worlds")
@@ -110,7 +117,7 @@
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
-  :depends-on ("ars-magna" "ars-magna/cli" "fiveam")
+  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/cli" "fiveam")
   :serial t
   :components
   ((:module "tests" :serial t

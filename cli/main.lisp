@@ -15,7 +15,8 @@
     (cond ((null robot) (first robots))
           ((null world) (robot-called robot))
           ((find robot robots :test #'same-name-p))
-          (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world robots)))))
+          (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world
+                           (mapcar #'name-string robots))))))
 
 (defun load-files (session files)
   (dolist (file files)
@@ -28,6 +29,7 @@
 on with, or NIL."
   (setf (session-next-robot session) nil
         *prompt-robot* robot-name)
+  (call-by-name (robots-beside robot-name))
   (call-with-simulation (lambda ()
                           (load-files session files)
                           (run-session session))
@@ -46,7 +48,7 @@ on with, or NIL."
   (let ((simulation (current-simulation)))
     (format (session-console session)
             "ARS MAGNA: ~A in ~A, seed ~D, ~A.~%HELP lists the commands, QUIT leaves.~%"
-            (session-robot) (simulation-name simulation) (simulation-seed simulation)
+            (session-robot) (name-string (simulation-name simulation)) (simulation-seed simulation)
             (rate-text (simulation-rate simulation)))))
 
 (defun run-live (session robot-name options)

@@ -5,31 +5,38 @@
 ;;; Which plan is meant.
 
 (defun plan-called (name)
-  "Return the plan procedure called NAME, a string, in whatever package; NIL if there is none."
-  (find name (all-procedures) :key #'procedure-name :test #'same-name-p))
+  "Return the plan procedure called NAME, a string: the user's own, or else the newest in whatever
+package; NIL if there is none."
+  (handler-case (find-procedure (or (find-symbol (string-upcase name)) name))
+    (unknown-name () nil)))
+
+(defun plan-name (plan)
+  (name-string (procedure-name plan)))
+
+(defun plan-names ()
+  "Return what all plans are called, each name once."
+  (remove-duplicates (mapcar #'plan-name (all-procedures)) :test #'string=))
 
 (defun reject-unknown-plan (name)
   (reject-line "There is no plan ~A.~@[ Did you mean ~A?~] PLAN lists all plans."
                (string-upcase name)
-               (nearest-name name (mapcar #'procedure-name (all-procedures)))))
+               (nearest-name name (plan-names))))
 
 (defun plan-meant (name)
   "Return the plan procedure called NAME, or the only one whose name begins so. Signals BAD-LINE."
-  (let ((candidates (remove-if-not (lambda (plan)
-                                     (starts-with-subseq (string-upcase name)
-                                                         (string (procedure-name plan))))
-                                   (all-procedures))))
+  (let ((candidates (remove-if-not (lambda (candidate)
+                                     (starts-with-subseq (string-upcase name) candidate))
+                                   (plan-names))))
     (cond ((plan-called name))
           ((null candidates) (reject-unknown-plan name))
           ((rest candidates)
            (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it." (string-upcase name)
-                        (mapcar #'procedure-name candidates)))
-          (t (first candidates)))))
+                        candidates))
+          (t (plan-called (first candidates))))))
 
 (defun all-words ()
   "Return a list of all words that a prompt may complete: names of commands and plans."
-  (append (all-line-names)
-          (mapcar (lambda (plan) (string (procedure-name plan))) (all-procedures))))
+  (append (all-line-names) (plan-names)))
 
 ;;; What plans take.
 
@@ -37,12 +44,12 @@
   "Return how PARAMETER, of a plan's lambda list after the lambda list keyword KEYWORD, is typed."
   (let ((name (if (consp parameter) (first parameter) parameter)))
     (ecase keyword
-      ((nil) (format nil "~(~A~)" name))
-      (&optional (format nil "[~(~A~)]" name))
+      ((nil) (format nil "~(~A~)" (name-string name)))
+      (&optional (format nil "[~(~A~)]" (name-string name)))
       (&key (if (consp name)
                 (format nil "[~(~S~)]" (first name))
-                (format nil "[:~(~A~)]" name)))
-      ((&rest &body) (format nil "[~(~A~)...]" name)))))
+                (format nil "[:~(~A~)]" (name-string name))))
+      ((&rest &body) (format nil "[~(~A~)...]" (name-string name))))))
 
 (defun parameter-words (lambda-list)
   "Return how each parameter of LAMBDA-LIST, of a plan, is typed."
@@ -56,16 +63,16 @@
 
 (defun plan-usage (plan)
   "Return how PLAN, a plan procedure, is typed after the word PLAN."
-  (format nil "~A~{ ~A~}" (procedure-name plan) (parameter-words (procedure-lambda-list plan))))
+  (format nil "~A~{ ~A~}" (plan-name plan) (parameter-words (procedure-lambda-list plan))))
 
 (defun plan-documentation (plan)
   (or (documentation (procedure-name plan) 'function) "Not documented."))
 
 (defun write-plan-menu ()
   "List all plans, and what each does, on a line each."
-  (dolist (plan (all-procedures))
-    (put-line "~A" (cut (format nil "  ~24A ~A" (procedure-name plan)
-                                (first-sentence (plan-documentation plan)))
+  (dolist (name (plan-names))
+    (put-line "~A" (cut (format nil "  ~24A ~A" name
+                                (first-sentence (plan-documentation (plan-called name))))
                         79)))
   (format t "HELP name tells what a plan takes.~%"))
 
@@ -105,7 +112,7 @@
       (push errand (session-errands session))
       (when (live-p (plan-errand-simulation errand)) (start-watching-plan errand))
       (unless (waits-p session)
-        (format t "Plan ~D is under way: ~(~A~).~%" (task-serial task) (procedure-name plan))))))
+        (format t "Plan ~D is under way: ~(~A~).~%" (task-serial task) (plan-name plan))))))
 
 (defun read-data (text line)
   "Return the list of the Lisp data in TEXT, arguments of LINE."
@@ -126,21 +133,48 @@ prompt is back at once; any other waits until the plan is over."
 
 ;;; Those under way.
 
-(defun failure-report (failure)
-  "Return all that is known of FAILURE, of a plan."
-  (let ((*message-queue* (make-message-queue))
-        (*package* (find-package :ars-user)))
-    (report-failure failure)
-    (message-text (first (take-messages)))))
+(defun plan-package (name)
+  "Return the package in which the plan called NAME, or NIL, was written."
+  (let ((plan (plan-called (string name))))
+    (if plan (symbol-package (procedure-name plan)) (user-package))))
+
+(defun call-reading-plan (name function)
+  "Call FUNCTION, which returns text with forms of the plan called NAME. Return it as who reads the
+plan would write it: few symbols have a package."
+  (let* ((*package* (plan-package name))
+         (text (funcall function)))
+    (dolist (prefix '("ars-user::" "ars-worlds::" "ars-worlds:") text)
+      (setf text (without prefix text)))))
+
+(defun without (word text)
+  "Return TEXT without all that is WORD, in whatever case."
+  (with-output-to-string (out)
+    (loop for start = 0 then (+ end (length word))
+          for end = (search word text :start2 start :test #'char-equal)
+          do (write-string text out :start start :end end)
+          while end)))
+
+(defun failure-report (failure name)
+  "Return all that is known of FAILURE, of the plan called NAME."
+  (let ((*message-queue* (make-message-queue)))
+    (call-reading-plan name (lambda ()
+                              (report-failure failure)
+                              (message-text (first (take-messages)))))))
+
+(defun plans-text ()
+  "Return the plans under way as trees."
+  (call-reading-plan (task-name (first (plans)))
+                     (lambda () (with-output-to-string (out) (print-plans out)))))
 
 (define-line "PLANS" (session) (:planning)
     "Show the plans under way, as trees of what they do and wait for; if the last to end failed,
 also where and why."
   (if (plans)
-      (print-plans)
+      (write-string (plans-text))
       (format t "No plan is under way. PLAN lists the plans that there are.~%"))
   (when (session-failure session)
-    (format t "The last plan failed: ~A~&" (failure-report (session-failure session)))))
+    (destructuring-bind (failure name) (session-failure session)
+      (format t "The last plan failed: ~A~&" (failure-report failure name)))))
 
 (defun plan-numbered (number)
   (or (find number (plans) :key #'task-serial)

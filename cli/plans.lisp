@@ -58,7 +58,7 @@
 
 (defun user-text (function object)
   "Return the string that FUNCTION makes of OBJECT, as users would read it, on a line."
-  (let ((*package* (find-package :ars-user))
+  (let ((*package* (user-package))
         (*read-default-float-format* 'double-float)
         (*print-pretty* nil))
     (cut (one-line (funcall function object)) 300)))
@@ -79,7 +79,8 @@
 
 (defun tell-failure (errand control &rest arguments)
   "Queue an error message that begins with the name of the plan of ERRAND."
-  (error-set (make-verdict (format nil "~(~A~) ~?" (plan-errand-name errand) control arguments))))
+  (error-set (make-verdict (format nil "~(~A~) ~?" (name-string (plan-errand-name errand))
+                                   control arguments))))
 
 (defmacro with-messages-to ((errand) &body body)
   "Run BODY, whose messages are of the simulation of ERRAND."
@@ -104,7 +105,8 @@
     (with-messages-to (errand)
       (case (task-state (plan-errand-task errand))
         (:succeeded (message-set name " succeeded: " (user-text #'prin1-to-string result)))
-        (:failed (setf (session-failure (plan-errand-session errand)) result)
+        (:failed (setf (session-failure (plan-errand-session errand))
+                       (list result (plan-errand-name errand)))
                  (tell-failure errand "failed: ~A. PLANS tells more."
                                (string-right-trim "." (user-text #'reason-text result))))
         (t (message-set name " was stopped."))))))
@@ -176,7 +178,7 @@ the last such question."
 (defun start-watching-plan (errand)
   (let ((runner (plan-runner-now)))
     (start-thread (lambda () (watch-plan errand runner))
-                  (format nil "prompt's watch of ~A" (plan-errand-name errand)))))
+                  (format nil "prompt's watch of ~A" (name-string (plan-errand-name errand))))))
 
 ;;; Headless.
 
@@ -195,7 +197,7 @@ the last such question."
       (close-errand errand)
       (unless finished-p
         (reject-line "~(~A~) has not ended within ~D ticks; it goes on."
-                     (plan-errand-name errand) *patience*)))))
+                     (name-string (plan-errand-name errand)) *patience*)))))
 
 (defmethod await-errand ((errand plan-errand))
   (cond ((live-p (plan-errand-simulation errand))

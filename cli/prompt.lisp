@@ -108,7 +108,7 @@ comes of earlier lines if the session waits for that."
 
 (defun call-with-syntax (function)
   "Call FUNCTION with the package and syntax in which users write."
-  (let ((*package* (find-package :ars-user))
+  (let ((*package* (user-package))
         (*readtable* *readtable*)
         (*read-default-float-format* 'double-float))
     (nisp:in-readtable :nisp)

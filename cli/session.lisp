@@ -22,7 +22,8 @@
 
 (defun note-robot (robot options)
   (declare (ignore options))
-  (setf *prompt-robot* (robot-name robot)))
+  (setf *prompt-robot* (robot-name robot))
+  (call-by-name (mapcar #'robot-name (simulation-robots (robot-simulation robot)))))
 
 (defstruct (session (:constructor %make-session) (:copier nil))
   "A prompt at work."
@@ -43,7 +44,7 @@
   (errors 0 :type fixnum)
   ;; Lines to do before any is read.
   (lines '() :type list)
-  ;; That of the last plan, if it failed.
+  ;; That of the last plan, if it failed, and the plan's name, in a list.
   (failure nil)
   ;; What has been issued and may not have ended, and whether Lisp may have issued more.
   (errands '() :type list)

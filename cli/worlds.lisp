@@ -2,12 +2,12 @@
 
 (in-package :ars-magna.cli)
 
-;;; The shipped worlds, in the directory worlds/, are part of the system and called as their maps
+;;; The shipped worlds, in the directory worlds/, are there from the start and called as their maps
 ;;; are. Others come from files: Lisp files that define a map and at least one robot in it.
 
 (defun load-lisp (path)
   "Load the Lisp file at PATH as users write it: in the package ARS-USER unless it says otherwise."
-  (let ((*package* (find-package :ars-user))
+  (let ((*package* (user-package))
         (*read-default-float-format* 'single-float))
     (call-quietly (lambda () (load path)))))
 
@@ -31,6 +31,9 @@ there are none."
   "Return the names of the robots that are defined in MAP."
   (remove map (all-robots) :key #'robot-map :test-not #'eq))
 
+(defun world-name (map)
+  (name-string (map-name map)))
+
 (defun all-worlds ()
   "Return a list of all maps that have robots."
   (remove-if-not #'robots-of (all-maps)))
@@ -50,7 +53,7 @@ a world. Signals BAD-LINE."
     (cond (map (robots-of map))
           (file (load-world file))
           (t (reject-line "There is no world ~A, nor a file of that name. Known: ~{~(~A~)~^, ~}."
-                          name (mapcar #'map-name (all-worlds)))))))
+                          name (mapcar #'world-name (all-worlds)))))))
 
 (defun robots-beside (robot-name)
   "Return the names of all robots in the map of ROBOT-NAME, that one first."
@@ -59,5 +62,5 @@ a world. Signals BAD-LINE."
 (defun write-worlds ()
   "List the worlds: their maps, and their robots."
   (dolist (map (all-worlds))
-    (format t "~(~16A~) ~3D x ~3D   ~{~A~^, ~}~%" (map-name map) (map-width map) (map-height map)
-            (robots-of map))))
+    (format t "~(~16A~) ~3D x ~3D   ~{~A~^, ~}~%" (world-name map) (map-width map) (map-height map)
+            (mapcar #'name-string (robots-of map)))))

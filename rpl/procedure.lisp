@@ -4,7 +4,8 @@
 
 ;;; A name that a plan calls leads to a cell, whether or not there is a procedure of that name yet.
 ;;; So procedures can be defined in any order, and defined anew while plans run: a call takes what
-;;; is in the cell when it happens.
+;;; is in the cell when it happens. Calls go by the very symbol. Who asks for a procedure by name,
+;;; as RUN-PLAN does, need not know the package that it was defined in.
 
 (defstruct (procedure (:constructor make-procedure (name)) (:copier nil))
   "A plan with parameters. ENTRY takes the arguments and returns the environment to run BODY in;
@@ -21,6 +22,9 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
 
 (defvar *procedures* (make-hash-table :test 'eq :synchronized t)
   "The cells of all names that plans define or call.")
+
+(defvar *namesakes* (make-hash-table :test 'equal :synchronized t)
+  "The cells of the procedures that are called the same, by that string, the newest first.")
 
 (defun ensure-procedure (name)
   "Return the cell of the procedure called NAME."
@@ -40,12 +44,23 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
   (sort (remove-if-not #'live-p (hash-table-values *procedures*)) #'string<
         :key #'procedure-name))
 
-(defun find-procedure (name)
-  "Return the plan procedure called NAME; an error if there is none."
+(defun note-newest (procedure)
+  "Let PROCEDURE come before all others that are called the same."
+  (let ((called (name-string (procedure-name procedure))))
+    (setf (gethash called *namesakes*)
+          (cons procedure (remove procedure (gethash called *namesakes*))))))
+
+(defun lookup-procedure (name)
   (let ((procedure (gethash name *procedures*)))
     (if (and procedure (live-p procedure))
         procedure
-        (reject-name "plan procedure" name (mapcar #'procedure-name (all-procedures))))))
+        (find-if #'live-p (gethash (name-string name) *namesakes*)))))
+
+(defun find-procedure (name)
+  "Return the plan procedure called NAME, a symbol or string: that of the very symbol, or else the
+one defined last of those called the same in other packages. Signals UNKNOWN-NAME."
+  (or (and (typep name '(or symbol string)) (lookup-procedure name))
+      (reject-name "plan procedure" name (mapcar #'procedure-name (all-procedures)))))
 
 (defmethod print-object ((procedure procedure) stream)
   (print-unreadable-object (procedure stream :type t)
@@ -84,6 +99,7 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
           (procedure-stub procedure) stub
           (fdefinition name) stub
           (documentation name 'function) documentation)
+    (note-newest procedure)
     name))
 
 (defun anonymous-procedure (lambda-list entry body)

@@ -42,7 +42,7 @@
    "THINGS-AT" "THING-NAME" "THING-SERIAL" "THING-LOCATION" "THING-POSITION" "THING-CONTENTS"
    "THING-ALIVE-P" "WORLD-THING-LIST" "CURRENT-WORLD" "*WORLD*" "WORLD-DICE"
    "DEFKICKER" "SET-KICKER" "PUT-KICKER" "RUN-KICKER" "KICK-THING" "SELF")
-  (:ars-magna.faces "CLI")
+  (:ars-magna.faces "CLI" "DEFINE-USER-PACKAGE")
   ;; 3.8, A
   (:ars-magna.time
    "SCHEDULE" "GRAB-RESOURCE" "*SIMULATION*" "CURRENT-SIMULATION" "SIMULATION-TICK" "RUN-TICKS"
@@ -127,10 +127,6 @@
    "RPL-HAND-GRASP-CHECK" "RPL-HAND-TRACK" "RPL-STORAGE-BIN-OPEN" "RPL-STORAGE-BIN-CLOSE"
    "RUN-PLAN" "BEGIN-PLAN" "END-PLAN" "PLANS" "PRINT-PLANS" "*PLAN-LIMIT*" "RPL-RUNNER"))
 
-(eval-when (:compile-toplevel :load-toplevel :execute)
-  (defpackage :ars-user
-    (:documentation "The package to work in: Common Lisp, ARS and NISP; XLIB is our canvas.")
-    (:use :cl :ars :nisp)
-    (:shadowing-import-from :nisp "LET" "LOOP" "IF")
-    (:shadowing-import-from :ars "EQUAL" "MAP")
-    (:local-nicknames (:xlib :ars-magna.canvas))))
+(define-user-package :ars-user
+  (:documentation "The package to work in: Common Lisp, ARS and NISP; XLIB is our canvas. What is
+defined in it is the user's."))

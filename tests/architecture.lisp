@@ -121,7 +121,7 @@
   "Return the layers' packages and the faces that there are."
   (remove-if-not (lambda (package)
                    (let ((name (package-name package)))
-                     (or (member name '("ARS" "NISP") :test #'string=)
+                     (or (member name '("ARS" "NISP" "ARS-WORLDS") :test #'string=)
                          (and (eql 0 (search "ARS-MAGNA." name))
                               (string/= name "ARS-MAGNA.TESTS")
                               (string/= name "ARS-MAGNA.BUILD")))))

@@ -211,10 +211,10 @@ the office, its kickers or the order of chance does; then it is to be replaced k
     (robot:call-with-simulation
      (lambda ()
        (is (eq :succeeded
-               (nth-value 1 (ars-user::run-plan 'ars-user::fetch-thing
+               (nth-value 1 (ars-magna.rpl-robot:run-plan 'ars-worlds:fetch-thing
                                                 '((:color world:blue) (:substance world:plastic))
                                                 '((109 24))))))
        (setf digest (robot:state-digest)
              journal (end-journal time:*simulation*)))
-     '(ars-user::marvin) :seed 5 :journal t)
+     '(ars-worlds:marvin) :seed 5 :journal t)
     (is (= digest (nth-value 1 (robot:replay journal))))))

@@ -17,17 +17,17 @@
          (< (distance-from x y thing) 3))))
 
 (defparameter *office-errands*
-  '((ars-user::globe ((:color world:blue) (:substance world:plastic)) ((109 24)))
-    (ars-user::bucket ((:color world:blue) (:substance world:plastic)) ((108.5 66)))
-    (ars-user::glove-box ((:color world:lightgreen) (:substance world:plastic)) ((95 28)))
-    (ars-user::projector ((:color world:violet) (:substance world:metal)) ((86.5 53))))
+  '((globe ((:color world:blue) (:substance world:plastic)) ((109 24)))
+    (bucket ((:color world:blue) (:substance world:plastic)) ((108.5 66)))
+    (glove-box ((:color world:lightgreen) (:substance world:plastic)) ((95 28)))
+    (projector ((:color world:violet) (:substance world:metal)) ((86.5 53))))
   "Things in other rooms than MARVIN's, what they look like, and where to look from.")
 
 (defun fetch-in-office (errand seed &key clean)
   "Let MARVIN fetch the thing of ERRAND. Return whether it did, the plan's value, and a digest."
   (destructuring-bind (name description places) errand
-    (robot:with-simulation (ars-user::marvin :seed seed :clean clean)
-      (let ((value (driver:run-plan 'ars-user::fetch-thing description places)))
+    (robot:with-simulation (ars-worlds:marvin :seed seed :clean clean)
+      (let ((value (driver:run-plan 'ars-worlds:fetch-thing description places)))
         (values (brought-p name 62 38) value (robot:state-digest))))))
 
 (test fetch.always-in-a-noiseless-world
@@ -48,36 +48,36 @@
     (is (/= (digest 21) (digest 22)))))
 
 (test fetch.by-other-robots
-  (robot:with-simulation (ars-user::robbie :seed 1)
-    (driver:run-plan 'ars-user::fetch-thing
+  (robot:with-simulation (ars-worlds:robbie :seed 1)
+    (driver:run-plan 'ars-worlds:fetch-thing
                      '((:color world:lightgreen) (:substance world:wood)) '((35.5 22.5)))
-    (is-true (brought-p 'ars-user::broom 10 5)))
-  (robot:with-simulation (ars-user::gofer :seed 1)
-    (driver:run-plan 'ars-user::fetch-thing
+    (is-true (brought-p 'broom 10 5)))
+  (robot:with-simulation (ars-worlds:gofer :seed 1)
+    (driver:run-plan 'ars-worlds:fetch-thing
                      '((:color world:blue) (:substance world:plastic)) '((108 66.5)))
-    (is-true (brought-p 'ars-user::bucket 15 24))))
+    (is-true (brought-p 'bucket 15 24))))
 
 (defun failure-class-of (plan &rest arguments)
   (let ((failure (with-messages (apply #'driver:run-plan plan arguments))))
     (and (typep failure 'rpl:plan-failure) (rpl:failure-class failure))))
 
 (test fetch.says-why-it-failed
-  (robot:with-simulation (ars-user::dot :clean t)
-    (is (eq :not-found (failure-class-of 'ars-user::fetch-thing '((:color world:violet))
+  (robot:with-simulation (ars-worlds:dot :clean t)
+    (is (eq :not-found (failure-class-of 'ars-worlds:fetch-thing '((:color world:violet))
                                          '((5.5 5.5))))))
-  (robot:with-simulation (ars-user::gofer :clean t)
-    (is (eq :too-heavy (failure-class-of 'ars-user::fetch-thing
+  (robot:with-simulation (ars-worlds:gofer :clean t)
+    (is (eq :too-heavy (failure-class-of 'ars-worlds:fetch-thing
                                          '((:color world:red) (:substance world:metal))
                                          '((58 37.5))))))
-  (robot:with-simulation (ars-user::dot :clean t)
-    (is (eq :nothing-inside (failure-class-of 'ars-user::put-thing-down 0 0 0)))
-    (is (null (robot:part-location (robot:robot-camera ars-user::dot 0))))
-    (is (null (robot:part-location (robot:robot-hand ars-user::dot 0))))))
+  (robot:with-simulation (ars-worlds:dot :clean t)
+    (is (eq :nothing-inside (failure-class-of 'ars-worlds:put-thing-down 0 0 0)))
+    (is (null (robot:part-location (robot:robot-camera ars-worlds:dot 0))))
+    (is (null (robot:part-location (robot:robot-hand ars-worlds:dot 0))))))
 
 ;;; Ways.
 
 (defun way-in (map start goal &optional barred)
-  (ars-user::find-way (ars-user::make-chart (world:find-map map)) start goal barred))
+  (ars-worlds:find-way (ars-worlds:make-chart (world:find-map map)) start goal barred))
 
 (test find-way.keeps-to-free-cells-and-neighbours
   (let ((way (way-in 'office '(62 38) '(108.5 70.5))))
@@ -110,49 +110,49 @@
 (defun believed-error (me robot)
   "Return by how many metres the reckoning ME is wrong."
   (multiple-value-bind (x y) (robot:robot-position robot)
-    (destructuring-bind (believed-x believed-y) (ars-user::reckon me)
+    (destructuring-bind (believed-x believed-y) (ars-worlds:reckon me)
       (sqrt (+ (expt (- x believed-x) 2) (expt (- y believed-y) 2))))))
 
 (rpl:def-interp-proc travel-there (me points)
   (dolist (point points)
-    (ars-user::travel-to me point)))
+    (ars-worlds:travel-to me point)))
 
 (test reckoning.stays-right-on-long-ways
   (loop for seed from 31 to 34
-        do (robot:with-simulation (ars-user::marvin :seed seed)
-             (driver:rpl-init-robot ars-user::marvin)
-             (let ((me (ars-user::begin-reckoning '(62 38 0))))
+        do (robot:with-simulation (ars-worlds:marvin :seed seed)
+             (driver:rpl-init-robot ars-worlds:marvin)
+             (let ((me (ars-worlds:begin-reckoning '(62 38 0))))
                (is (eq :succeeded (nth-value 1 (driver:run-plan 'travel-there me
                                                                 '((108.5 24.5) (20 55) (62 38))))))
-               (is (> 1.5 (believed-error me ars-user::marvin)))
-               (multiple-value-bind (x y) (robot:robot-position ars-user::marvin)
+               (is (> 1.5 (believed-error me ars-worlds:marvin)))
+               (multiple-value-bind (x y) (robot:robot-position ars-worlds:marvin)
                  (is (> 2.5 (sqrt (+ (expt (- x 62) 2) (expt (- y 38) 2))))))))))
 
 (test reckoning.knows-nothing-of-the-truth
-  (robot:with-simulation (ars-user::dot :clean t)
-    (driver:rpl-init-robot ars-user::dot)
-    (let ((me (ars-user::begin-reckoning '(3.5 6.5 0))))
-      (robot:place-robot ars-user::dot 9.5 2.5 1)
-      (is (equal '(3.5d0 6.5d0) (ars-user::reckon me)))
-      (command:robot-go-forward ars-user::dot 1)
+  (robot:with-simulation (ars-worlds:dot :clean t)
+    (driver:rpl-init-robot ars-worlds:dot)
+    (let ((me (ars-worlds:begin-reckoning '(3.5 6.5 0))))
+      (robot:place-robot ars-worlds:dot 9.5 2.5 1)
+      (is (equal '(3.5d0 6.5d0) (ars-worlds:reckon me)))
+      (command:robot-go-forward ars-worlds:dot 1)
       (time:run-ticks 10)
-      (is (> .01 (abs (- 4.3 (first (ars-user::reckon me)))))))))
+      (is (> .01 (abs (- 4.3 (first (ars-worlds:reckon me)))))))))
 
 (test patrol.visits-what-can-be-reached
-  (robot:with-simulation (ars-user::robbie :seed 2)
-    (is (= 6 (driver:run-plan 'ars-user::patrol-places '((23 10) (34 8) (6 22)) :rounds 2)))
-    (multiple-value-bind (x y) (robot:robot-position ars-user::robbie)
+  (robot:with-simulation (ars-worlds:robbie :seed 2)
+    (is (= 6 (driver:run-plan 'ars-worlds:patrol-places '((23 10) (34 8) (6 22)) :rounds 2)))
+    (multiple-value-bind (x y) (robot:robot-position ars-worlds:robbie)
       (is (> 2 (sqrt (+ (expt (- x 6) 2) (expt (- y 22) 2))))))))
 
 ;;; Tidying.
 
 (world:defmap playroom (20 16)
   (rect (0 0) (20 16) plaster 10 20 30 20)
-  (obj (table :prototype ars-user::table*) (10.5 8.5) ())
-  (obj (ball :prototype ars-user::ball* :kickers (ars-user::roll-away)) (3.5 8.5) ())
-  (obj (ball :prototype ars-user::ball* :kickers (ars-user::roll-away)) (16.5 4.5) ())
-  (obj (book :prototype ars-user::book*) (5.5 3.5) ())
-  (obj (book :prototype ars-user::book*) (15.5 11.5) ()))
+  (obj (table :prototype ars-worlds:table*) (10.5 8.5) ())
+  (obj (ball :prototype ars-worlds:ball* :kickers (ars-worlds:roll-away)) (3.5 8.5) ())
+  (obj (ball :prototype ars-worlds:ball* :kickers (ars-worlds:roll-away)) (16.5 4.5) ())
+  (obj (book :prototype ars-worlds:book*) (5.5 3.5) ())
+  (obj (book :prototype ars-worlds:book*) (15.5 11.5) ()))
 
 (robot:defrobot nurse (playroom (10 4) 0)
   :cameras (((/ pi 2) 5)) :hands (10) :bins (20 10))
@@ -163,7 +163,7 @@
 (test tidy.stows-what-is-kicked-about
   (loop for seed from 1 to 3
         do (robot:with-simulation (nurse :seed seed)
-             (driver:run-plan 'ars-user::tidy-room
+             (driver:run-plan 'ars-worlds:tidy-room
                               '(((:color world:red) (:substance world:plastic))
                                 ((:color world:blue) (:substance world:paper)))
                               '((6 5) (14 10)))
@@ -177,7 +177,7 @@
   (robot:call-with-simulation
    (lambda ()
      (let* ((codes '()) (body (symbol-value robot)) (thing (world:find-thing name)))
-       (ars-user::run-errand body description
+       (ars-worlds:run-errand body description
                              (lambda (err robot) (declare (ignore robot)) (push err codes))
                              :camera camera)
        (time:run-until (lambda () codes) :limit limit)
@@ -189,23 +189,23 @@
 (test errand.always-in-a-noiseless-world
   (loop for seed from 1 to 5
         do (multiple-value-bind (stowed codes)
-               (run-errand-of 'ars-user::dot 'ars-user::ball '((:color world:red)) seed :clean t)
+               (run-errand-of 'ars-worlds:dot 'ball '((:color world:red)) seed :clean t)
              (is-true stowed)
              (is (equal '(nil) codes)))
-           (is-true (run-errand-of 'ars-user::porter 'ars-user::lamp
+           (is-true (run-errand-of 'ars-worlds:porter 'lamp
                                    '((:color world:lightred) (:substance world:metal))
                                    seed :clean t :camera 1))))
 
 (test errand.nine-of-ten-with-noise
   (is (<= 9 (loop for seed from 1 to 10
-                  count (run-errand-of 'ars-user::dot 'ars-user::ball
+                  count (run-errand-of 'ars-worlds:dot 'ball
                                        '((:color world:red) (:substance world:plastic)) seed))))
   (is (<= 9 (loop for seed from 1 to 10
-                  count (run-errand-of 'ars-user::porter 'ars-user::small-box
+                  count (run-errand-of 'ars-worlds:porter 'small-box
                                        '((:color world:lightblue) (:substance world:wood))
                                        seed :camera 1)))))
 
 (test errand.gives-up-once
   (with-messages
-    (is (equal '(:gave-up) (nth-value 1 (run-errand-of 'ars-user::dot 'ars-user::ball
+    (is (equal '(:gave-up) (nth-value 1 (run-errand-of 'ars-worlds:dot 'ball
                                                        '((:color world:violet)) 1 :clean t))))))

@@ -244,8 +244,8 @@
 (test robbie.is-as-the-manual-says
   "Manual 5.2."
   (let ((robbie (robot:find-robot 'robbie)))
-    (is (eq robbie ars-user::robbie))
-    (is (eq ars-user::watson (world:world-map (robot:robot-world robbie))))
+    (is (eq robbie ars-worlds:robbie))
+    (is (eq ars-worlds:watson (world:world-map (robot:robot-world robbie))))
     (is (equalp '(10 5) (robot-start 'robbie)))
     (is (= 0 (robot::body-angle (robot:robot-body robbie))))
     (is (equalp (list (list (/ pi 4) 3) (list (/ pi 2) 5))
@@ -292,4 +292,4 @@
 (test box.is-as-the-manual-says
   "Manual 5.3."
   (is (equalp '(8 8 2) (loop for key in '(:capacity :size :weight)
-                             collect (world:get-attribute ars-user::box* key)))))
+                             collect (world:get-attribute ars-worlds:box* key)))))

@@ -9,7 +9,7 @@
 ;;;     (run-errand dot '((:color red)) #'report)
 ;;;     (run-ticks 500))
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 (defstruct (errand (:copier nil))

@@ -32,7 +32,7 @@
 ;;;   #.................#.....#
 ;;;   #########################
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 (defmap hall (75 75)
@@ -82,3 +82,7 @@
   :cameras (((/ pi 4) 3) ((/ pi 2) 5))
   :hands (10 4)
   :bins (20 5))
+
+(document-variables
+ hall "The map of a great hall in which nothing moves by itself, 75 x 75."
+ porter "The robot in HALL, built like ROBBIE.")

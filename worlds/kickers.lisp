@@ -5,7 +5,7 @@
 ;;; was doing is an attribute of the thing, which no robot senses. All chance comes from the
 ;;; world's dice for users: a run with the same seed repeats itself. Manual 5.3.1.
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 ;;; Chance. These are for kickers: they use the dice of the world that is being run.
@@ -50,7 +50,7 @@ moved."
 
 (defkicker change-light (lamp) (:prob .02)
   (set-attribute lamp :color
-                 (if (eq 'lightred (get-attribute lamp :color)) 'lightgreen 'lightred)))
+                 (if (string= 'lightred (get-attribute lamp :color)) 'lightgreen 'lightred)))
 
 (defkicker print-page (printer) (:prob .01 :test (< (length (thing-contents printer)) 3))
   (new-thing page printer () :prototype sheet*))
@@ -83,3 +83,12 @@ direction. True if it has arrived."
   (let ((rounds (get-attribute walker :rounds)))
     (when (approach walker (first rounds) .5)
       (set-attribute walker :rounds (append (rest rounds) (list (first rounds)))))))
+
+(document-variables
+ roll-away "Lets a ball start rolling; it rolls some metres and bounces off walls."
+ blow-about "Lets what is light be blown about, less than a metre at a time."
+ be-borrowed "Lets somebody use what lies about, and leave it at one of its :haunts, points (x y)."
+ change-light "Lets a lamp change between lightred and lightgreen."
+ print-page "Lets a printer put a page into itself, while it holds fewer than three things."
+ wander-about "Lets a person or pet walk a few metres now and then."
+ do-rounds "Lets somebody walk from one to the next of his :rounds, points (x y), for ever.")

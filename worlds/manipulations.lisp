@@ -5,7 +5,7 @@
 ;;; have the same :lock-id. Besides :FAILED, the codes say what was in the way; the value
 ;;; returned is the hand. Manual 5.5.
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 (defattribute :locked (#t #f)

@@ -47,7 +47,7 @@
 ;;;   #............#...........#....##.....#...........#.........#
 ;;;   ############################################################
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 (defmap office (120 80)
@@ -333,3 +333,8 @@
   :cameras (((/ pi 2) 7))
   :hands (3)
   :bins (10))
+
+(document-variables
+ office "The map of a busy floor of an institute, 120 x 80."
+ marvin "The well-equipped robot in OFFICE, in its corridor."
+ gofer "The messenger robot in OFFICE, in its mail room.")

@@ -7,7 +7,7 @@
 ;;;
 ;;; A robot knows its map, where it starts, and where to look; not where things are.
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 (def-interp-proc find-and-take (me places description &key (camera (widest-camera)) (hand 0) (bin 0)

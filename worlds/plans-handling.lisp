@@ -4,7 +4,7 @@
 ;;; camera's track; bins jam. Each step is repeated until it has succeeded, or fails for a reason
 ;;; that repeating does not change. Cameras, hands and bins are given by index.
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 (def-interp-macro (hand-outcome ?hand ?command)

@@ -5,7 +5,7 @@
 ;;; and see some that are not there; so plans look several times, and once they are at what they
 ;;; take for the thing they make sure before a hand touches it.
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 (def-interp-proc look-for-things (camera type description)

@@ -4,7 +4,7 @@
 ;;; What goes wrong on the way -- a wall met, somebody in the way, a doorway not seen -- is
 ;;; recovered from; only what cannot be helped fails. One plan at a time may drive a robot.
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 (def-interp-macro (outcome ?command ?pulse ?result)

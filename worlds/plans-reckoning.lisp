@@ -4,7 +4,7 @@
 ;;; starts and goes on by an odometer. Walls met and doorways sensed correct it. The true position
 ;;; is read nowhere but by HERE, for a plan's start.
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 (defstruct (reckoning (:constructor make-reckoning (chart odometer x y heading)) (:copier nil))

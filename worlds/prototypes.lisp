@@ -5,7 +5,7 @@
 ;;; goes into any bin, what weighs up to 4 into any hand of ROBBIE's. No prototype has more in it
 ;;; than it holds. Manual 5.3.
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 ;;; Furniture: it blocks the way; what is tall blocks the view too.

@@ -17,7 +17,7 @@
 ;;;   #..........#
 ;;;   ############
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 (defmap tiny (12 12)
@@ -36,3 +36,7 @@
   :cameras (((/ pi 2) 5))
   :hands (5)
   :bins (10))
+
+(document-variables
+ tiny "The map of a single small room in which nothing moves by itself, 12 x 12."
+ dot "The robot in TINY: a camera, a hand, a bin.")

@@ -37,7 +37,7 @@
 ;;;   #...........#.......#..........#.......#
 ;;;   ########################################
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 (defmap watson (40 30)
@@ -199,3 +199,7 @@
   :cameras (((/ pi 4) 3) ((/ pi 2) 5))
   :hands (10 4)
   :bins (20 5))
+
+(document-variables
+ watson "The map of a family's house, 40 x 30."
+ robbie "The robot in WATSON: two cameras, two hands, two bins (manual 5.2).")

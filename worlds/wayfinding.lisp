@@ -4,7 +4,7 @@
 ;;; and places of its map, and which cells it found barred. Costs are whole numbers, so that ways
 ;;; are the same everywhere. Points and cells are lists (x y).
 
-(in-package :ars-user)
+(in-package :ars-worlds)
 (in-readtable :nisp)
 
 (defstruct (chart (:constructor %make-chart (map costs)) (:copier nil))

@@ -37,7 +37,8 @@
 
 (defun names-text (things)
   "Return what THINGS are called, each name once."
-  (format nil "~{~A~^, ~}" (remove-duplicates (mapcar #'thing-name things) :from-end t)))
+  (let ((names (mapcar (lambda (thing) (name-string (thing-name thing))) things)))
+    (format nil "~{~A~^, ~}" (remove-duplicates names :test #'string= :from-end t))))
 
 (defun robot-glyph (view robots things)
   "Return the glyph of the first of ROBOTS, which stands on THINGS."

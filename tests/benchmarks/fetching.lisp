@@ -5,10 +5,10 @@
 ;;; Success is judged by the truth: the thing lies on the floor within three metres of the start.
 
 (defparameter *errands*
-  '((ars-user::globe ((:color world:blue) (:substance world:plastic)) ((109 24)))
-    (ars-user::bucket ((:color world:blue) (:substance world:plastic)) ((108.5 66)))
-    (ars-user::glove-box ((:color world:lightgreen) (:substance world:plastic)) ((95 28)))
-    (ars-user::projector ((:color world:violet) (:substance world:metal)) ((86.5 53))))
+  '((globe ((:color world:blue) (:substance world:plastic)) ((109 24)))
+    (bucket ((:color world:blue) (:substance world:plastic)) ((108.5 66)))
+    (glove-box ((:color world:lightgreen) (:substance world:plastic)) ((95 28)))
+    (projector ((:color world:violet) (:substance world:metal)) ((86.5 53))))
   "Things in other rooms: their names, what they look like, and where to look from.")
 
 (defun brought-p (thing x y)
@@ -19,9 +19,9 @@
 (defun fetch (errand seed)
   "Let MARVIN fetch what ERRAND says. Return true if it did, and the ticks that took."
   (destructuring-bind (name description places) errand
-    (robot:with-simulation (ars-user::marvin :seed seed)
+    (robot:with-simulation (ars-worlds:marvin :seed seed)
       (let ((thing (world:find-thing name)))
-        (ars-magna.rpl-robot:run-plan 'ars-user::fetch-thing description places)
+        (ars-magna.rpl-robot:run-plan 'ars-worlds:fetch-thing description places)
         (values (brought-p thing 62 38) (time:simulation-tick))))))
 
 (dolist (errand *errands*)

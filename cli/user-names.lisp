@@ -1,0 +1,37 @@
+;;;; user-names.lisp -- robots are called by their names in ARS-USER, wherever they were defined.
+
+(in-package :ars-magna.cli)
+
+;;; The variable of a robot is a symbol of the package that its world was written in. ARS-USER
+;;; imports the robots that the prompt may command, so that (robot-turn robbie 1 nil) means what it
+;;; says. What the user has defined under such a name himself stays as it is.
+
+(defun user-package () (find-package :ars-user))
+
+(defun defined-p (symbol)
+  (or (boundp symbol) (fboundp symbol)))
+
+(defun other-robot-p (symbol)
+  "True if SYMBOL is a robot's variable that ARS-USER has imported."
+  (and (not (eq (symbol-package symbol) (user-package)))
+       (boundp symbol)
+       (robot-p (symbol-value symbol))))
+
+(defun give-way-p (symbol status)
+  "True if SYMBOL, which ARS-USER has with STATUS, may give way to a robot's name: it has merely
+been read, or is a robot's of another world."
+  (and (not (eq status :inherited))
+       (or (not (defined-p symbol)) (other-robot-p symbol))))
+
+(defun call-by-its-name (name)
+  "Let NAME, a robot's variable, be known in ARS-USER, unless its name means something else there."
+  (multiple-value-bind (known status) (find-symbol (symbol-name name) (user-package))
+    (unless (eq known name)
+      (when (and status (give-way-p known status))
+        (unintern known (user-package))
+        (setf status nil))
+      (unless status (import (list name) (user-package))))))
+
+(defun call-by-name (names)
+  "Let NAMES, of robots, be known in ARS-USER."
+  (mapc #'call-by-its-name names))

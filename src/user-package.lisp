@@ -1,0 +1,70 @@
+;;;; user-package.lisp -- DEFINE-USER-PACKAGE: packages that are ready to work in.
+
+(in-package :ars-magna.faces)
+
+;;; ARS and NISP extend some operators of Common Lisp and export the extensions under the same
+;;; names. A package that uses all three has to say which it means: the extensions, which do what
+;;; the originals do where those make sense.
+
+(defun option-values (key options)
+  "Return all that OPTIONS, as of DEFPACKAGE, say under KEY, a list."
+  (loop for (name . values) in options when (eq name key) append values))
+
+(defun used-packages (definition names)
+  "Return the packages called NAMES, which DEFINITION is to use."
+  (loop for name in names
+        collect (or (find-package name)
+                    (reject-clause definition (cons :use names) "packages that there are"))))
+
+(defun standard-named (name)
+  "Return the symbol of Common Lisp called NAME, or NIL."
+  (multiple-value-bind (symbol status) (find-symbol name :cl)
+    (and (eq status :external) symbol)))
+
+(defun extensions-in (package)
+  "Return the names under which PACKAGE exports something else than Common Lisp does."
+  (let ((names '()))
+    (do-external-symbols (symbol package names)
+      (unless (member (standard-named (symbol-name symbol)) (list nil symbol))
+        (push (symbol-name symbol) names)))))
+
+(defun shadowing-options (packages settled)
+  "Return options of DEFPACKAGE by which the extensions in PACKAGES win, those in the last of them
+if there are several of a name; not those under the names SETTLED."
+  (loop for package in (reverse packages)
+        for names = (set-difference (extensions-in package) settled :test #'string=)
+        when names
+          collect `(:shadowing-import-from ,(package-name package) ,@(sort names #'string<))
+        do (setf settled (append names settled))))
+
+(defun settled-names (options)
+  "Return the names for which OPTIONS themselves say which symbol is meant."
+  (append (option-values :shadow options)
+          (loop for (key nil . names) in options
+                when (eq key :shadowing-import-from) append names)))
+
+(defun clash-options (definition options)
+  "Return options of DEFPACKAGE that settle the clashes of what OPTIONS use with Common Lisp."
+  (let ((packages (used-packages definition (option-values :use options))))
+    (when (member (find-package :cl) packages)
+      (shadowing-options packages (settled-names options)))))
+
+(defun user-package-options (definition options)
+  "Return the options of DEFPACKAGE for OPTIONS of DEFINE-USER-PACKAGE."
+  (let ((bad (find-if-not #'consp options)))
+    (when bad
+      (reject-clause definition bad "an option of DEFPACKAGE, such as (:export #:kitchen)")))
+  (let ((options (if (assoc :use options) options `((:use :cl :ars :nisp) ,@options))))
+    (append options
+            (clash-options definition options)
+            (unless (find "XLIB" (option-values :local-nicknames options)
+                          :key #'first :test #'string=)
+              '((:local-nicknames (:xlib :ars-magna.canvas)))))))
+
+(defmacro define-user-package (name &rest options)
+  "Define the package NAME, ready to work in, as DEFPACKAGE does with OPTIONS. Unless they contain
+(:use ...), it uses CL, ARS and NISP; what its packages export under a name of Common Lisp's, such
+as ARS:EQUAL or NISP:LOOP, wins over that unless OPTIONS say otherwise. In it XLIB is our canvas:
+ARS-MAGNA.CANVAS. Signals MALFORMED-DEFINITION. Our addition to the manual."
+  `(defpackage ,name
+     ,@(user-package-options (format nil "define-user-package ~(~A~)" name) options)))

@@ -1,0 +1,45 @@
+;;;; package.lisp -- the package of the shipped worlds, robots and plans.
+
+(ars:define-user-package :ars-worlds
+  (:documentation "Worlds to start with, what they are furnished with, what moves in them, and plans
+and programs for the robots there. Written as users write theirs.")
+  ;; prototypes
+  (:export #:table* #:desk* #:drawer* #:shelf* #:cupboard* #:cabinet* #:bed* #:sofa* #:chair*
+           #:lamp* #:plant* #:box* #:crate* #:waste-basket* #:suitcase* #:bottle* #:cup* #:tin*
+           #:ball* #:book* #:sheet* #:pen* #:key* #:toolbox* #:person*)
+  ;; kickers, and what they are written with
+  (:export #:roll-away #:blow-about #:be-borrowed #:change-light #:print-page #:wander-about
+           #:do-rounds
+           #:user-dice #:random-step #:scale-step #:take-step #:approach)
+  ;; manipulations; OPEN and CLOSE are Common Lisp's symbols
+  (:export #:lock #:unlock #:switch-on #:switch-off)
+  ;; worlds and their robots
+  (:export #:watson #:robbie #:office #:marvin #:gofer #:hall #:porter #:tiny #:dot)
+  ;; wayfinding
+  (:export #:chart #:make-chart #:find-way #:next-step)
+  ;; plans: reckoning
+  (:export #:reckoning #:here #:begin-reckoning #:reckon #:distance-left #:angle-towards
+           #:point-ahead)
+  ;; plans: moving
+  (:export #:outcome #:driving-speed* #:turn-by #:drive-by #:turn-towards #:drive-towards
+           #:feel-ahead #:look-for-places #:begin-track #:stop-track #:go-to-designated
+           #:find-doorway #:in-doorway-p #:take-bearings #:pass-doorway #:widest-camera
+           #:travel-to #:patrol-places)
+  ;; plans: looking
+  (:export #:look-for-things #:turn-camera #:scan-for-thing #:look-again #:confirm-thing
+           #:approach-thing #:visit-things)
+  ;; plans: handling
+  (:export #:open-bin #:close-bin #:reach-into-bin #:draw-back #:let-go #:holding-p
+           #:look-closely #:grasp-thing #:stow-thing #:take-thing #:look-into-bin
+           #:withdraw-camera #:put-thing-down)
+  ;; plans: errands
+  (:export #:find-and-take #:fetch-thing #:tidy-once #:tidy-room)
+  ;; an errand with continuations
+  (:export #:run-errand))
+
+(in-package :ars-worlds)
+
+(defmacro document-variables (&rest documentation)
+  "Document the variables named by turns with their texts in DOCUMENTATION."
+  `(setf ,@(loop for (name text) on documentation by #'cddr
+                 append `((documentation ',name 'variable) ,text))))
