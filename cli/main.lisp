@@ -15,8 +15,7 @@
     (cond ((null robot) (first robots))
           ((null world) (robot-called robot))
           ((find robot robots :test #'same-name-p))
-          (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world
-                           (mapcar #'name-string robots))))))
+          (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world robots)))))
 
 (defun load-files (session files)
   (dolist (file files)
@@ -48,7 +47,7 @@ on with, or NIL."
   (let ((simulation (current-simulation)))
     (format (session-console session)
             "ARS MAGNA: ~A in ~A, seed ~D, ~A.~%HELP lists the commands, QUIT leaves.~%"
-            (session-robot) (name-string (simulation-name simulation)) (simulation-seed simulation)
+            (session-robot) (simulation-name simulation) (simulation-seed simulation)
             (rate-text (simulation-rate simulation)))))
 
 (defun run-live (session robot-name options)

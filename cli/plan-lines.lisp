@@ -10,12 +10,9 @@ package; NIL if there is none."
   (handler-case (find-procedure (or (find-symbol (string-upcase name)) name))
     (unknown-name () nil)))
 
-(defun plan-name (plan)
-  (name-string (procedure-name plan)))
-
 (defun plan-names ()
   "Return what all plans are called, each name once."
-  (remove-duplicates (mapcar #'plan-name (all-procedures)) :test #'string=))
+  (remove-duplicates (mapcar #'procedure-name (all-procedures)) :test #'same-name-p))
 
 (defun reject-unknown-plan (name)
   (reject-line "There is no plan ~A.~@[ Did you mean ~A?~] PLAN lists all plans."
@@ -25,18 +22,18 @@ package; NIL if there is none."
 (defun plan-meant (name)
   "Return the plan procedure called NAME, or the only one whose name begins so. Signals BAD-LINE."
   (let ((candidates (remove-if-not (lambda (candidate)
-                                     (starts-with-subseq (string-upcase name) candidate))
+                                     (starts-with-subseq (string-upcase name) (string candidate)))
                                    (plan-names))))
     (cond ((plan-called name))
           ((null candidates) (reject-unknown-plan name))
           ((rest candidates)
            (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it." (string-upcase name)
                         candidates))
-          (t (plan-called (first candidates))))))
+          (t (plan-called (string (first candidates)))))))
 
 (defun all-words ()
   "Return a list of all words that a prompt may complete: names of commands and plans."
-  (append (all-line-names) (plan-names)))
+  (append (all-line-names) (mapcar #'string (plan-names))))
 
 ;;; What plans take.
 
@@ -44,12 +41,12 @@ package; NIL if there is none."
   "Return how PARAMETER, of a plan's lambda list after the lambda list keyword KEYWORD, is typed."
   (let ((name (if (consp parameter) (first parameter) parameter)))
     (ecase keyword
-      ((nil) (format nil "~(~A~)" (name-string name)))
-      (&optional (format nil "[~(~A~)]" (name-string name)))
+      ((nil) (format nil "~(~A~)" name))
+      (&optional (format nil "[~(~A~)]" name))
       (&key (if (consp name)
                 (format nil "[~(~S~)]" (first name))
-                (format nil "[:~(~A~)]" (name-string name))))
-      ((&rest &body) (format nil "[~(~A~)...]" (name-string name))))))
+                (format nil "[:~(~A~)]" name)))
+      ((&rest &body) (format nil "[~(~A~)...]" name)))))
 
 (defun parameter-words (lambda-list)
   "Return how each parameter of LAMBDA-LIST, of a plan, is typed."
@@ -63,7 +60,7 @@ package; NIL if there is none."
 
 (defun plan-usage (plan)
   "Return how PLAN, a plan procedure, is typed after the word PLAN."
-  (format nil "~A~{ ~A~}" (plan-name plan) (parameter-words (procedure-lambda-list plan))))
+  (format nil "~A~{ ~A~}" (procedure-name plan) (parameter-words (procedure-lambda-list plan))))
 
 (defun plan-documentation (plan)
   (or (documentation (procedure-name plan) 'function) "Not documented."))
@@ -72,7 +69,7 @@ package; NIL if there is none."
   "List all plans, and what each does, on a line each."
   (dolist (name (plan-names))
     (put-line "~A" (cut (format nil "  ~24A ~A" name
-                                (first-sentence (plan-documentation (plan-called name))))
+                                (first-sentence (plan-documentation (plan-called (string name)))))
                         79)))
   (format t "HELP name tells what a plan takes.~%"))
 
@@ -112,7 +109,7 @@ package; NIL if there is none."
       (push errand (session-errands session))
       (when (live-p (plan-errand-simulation errand)) (start-watching-plan errand))
       (unless (waits-p session)
-        (format t "Plan ~D is under way: ~(~A~).~%" (task-serial task) (plan-name plan))))))
+        (format t "Plan ~D is under way: ~(~A~).~%" (task-serial task) (procedure-name plan))))))
 
 (defun read-data (text line)
   "Return the list of the Lisp data in TEXT, arguments of LINE."
@@ -142,6 +139,7 @@ prompt is back at once; any other waits until the plan is over."
   "Call FUNCTION, which returns text with forms of the plan called NAME. Return it as who reads the
 plan would write it: few symbols have a package."
   (let* ((*package* (plan-package name))
+         (*print-pretty* nil)
          (text (funcall function)))
     (dolist (prefix '("ars-user::" "ars-worlds::" "ars-worlds:") text)
       (setf text (without prefix text)))))
@@ -161,17 +159,18 @@ plan would write it: few symbols have a package."
                               (report-failure failure)
                               (message-text (first (take-messages)))))))
 
-(defun plans-text ()
-  "Return the plans under way as trees."
-  (call-reading-plan (task-name (first (plans)))
+(defun plans-text (plans)
+  "Return PLANS, those under way, as trees."
+  (call-reading-plan (task-name (first plans))
                      (lambda () (with-output-to-string (out) (print-plans out)))))
 
 (define-line "PLANS" (session) (:planning)
     "Show the plans under way, as trees of what they do and wait for; if the last to end failed,
 also where and why."
-  (if (plans)
-      (write-string (plans-text))
-      (format t "No plan is under way. PLAN lists the plans that there are.~%"))
+  (let ((plans (plans)))
+    (if plans
+        (write-string (plans-text plans))
+        (format t "No plan is under way. PLAN lists the plans that there are.~%")))
   (when (session-failure session)
     (destructuring-bind (failure name) (session-failure session)
       (format t "The last plan failed: ~A~&" (failure-report failure name)))))

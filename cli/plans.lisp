@@ -79,8 +79,7 @@
 
 (defun tell-failure (errand control &rest arguments)
   "Queue an error message that begins with the name of the plan of ERRAND."
-  (error-set (make-verdict (format nil "~(~A~) ~?" (name-string (plan-errand-name errand))
-                                   control arguments))))
+  (error-set (make-verdict (format nil "~(~A~) ~?" (plan-errand-name errand) control arguments))))
 
 (defmacro with-messages-to ((errand) &body body)
   "Run BODY, whose messages are of the simulation of ERRAND."
@@ -178,7 +177,7 @@ the last such question."
 (defun start-watching-plan (errand)
   (let ((runner (plan-runner-now)))
     (start-thread (lambda () (watch-plan errand runner))
-                  (format nil "prompt's watch of ~A" (name-string (plan-errand-name errand))))))
+                  (format nil "prompt's watch of ~A" (plan-errand-name errand)))))
 
 ;;; Headless.
 
@@ -197,7 +196,7 @@ the last such question."
       (close-errand errand)
       (unless finished-p
         (reject-line "~(~A~) has not ended within ~D ticks; it goes on."
-                     (name-string (plan-errand-name errand)) *patience*)))))
+                     (plan-errand-name errand) *patience*)))))
 
 (defmethod await-errand ((errand plan-errand))
   (cond ((live-p (plan-errand-simulation errand))

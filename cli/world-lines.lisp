@@ -13,7 +13,7 @@
     (when (plans) (format t "The plans under way end.~%"))
     (when *simulation* (stop-simulator))
     (simulator robot-name :rate (or rate *default-rate*) :display (terminal-p session)))
-  (format t "~A in ~A.~%" (name-string robot-name) (name-string (simulation-name *simulation*))))
+  (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))
 
 (define-line "WORLD" (session (name :token "a shipped world, or a Lisp file" :optional))
     (:seeing)
@@ -26,7 +26,7 @@ tick 0."
 (defun robot-called (name)
   (or (find name (all-robots) :test #'same-name-p)
       (reject-line "There is no robot ~A.~@[ Did you mean ~A?~]" (string-upcase name)
-                   (nearest-name name (mapcar #'name-string (all-robots))))))
+                   (nearest-name name (all-robots)))))
 
 (defun robots-here ()
   (and *simulation* (mapcar #'robot-name (simulation-robots *simulation*))))

@@ -31,9 +31,6 @@ there are none."
   "Return the names of the robots that are defined in MAP."
   (remove map (all-robots) :key #'robot-map :test-not #'eq))
 
-(defun world-name (map)
-  (name-string (map-name map)))
-
 (defun all-worlds ()
   "Return a list of all maps that have robots."
   (remove-if-not #'robots-of (all-maps)))
@@ -53,7 +50,7 @@ a world. Signals BAD-LINE."
     (cond (map (robots-of map))
           (file (load-world file))
           (t (reject-line "There is no world ~A, nor a file of that name. Known: ~{~(~A~)~^, ~}."
-                          name (mapcar #'world-name (all-worlds)))))))
+                          name (mapcar #'map-name (all-worlds)))))))
 
 (defun robots-beside (robot-name)
   "Return the names of all robots in the map of ROBOT-NAME, that one first."
@@ -62,5 +59,5 @@ a world. Signals BAD-LINE."
 (defun write-worlds ()
   "List the worlds: their maps, and their robots."
   (dolist (map (all-worlds))
-    (format t "~(~16A~) ~3D x ~3D   ~{~A~^, ~}~%" (world-name map) (map-width map) (map-height map)
-            (mapcar #'name-string (robots-of map)))))
+    (format t "~(~16A~) ~3D x ~3D   ~{~A~^, ~}~%" (map-name map) (map-width map) (map-height map)
+            (robots-of map))))

@@ -163,5 +163,13 @@ value."
 (defun lisp-function (name)
   (if (and (fboundp name) (not (macro-function name)))
       (fdefinition name)
-      (reject-name "plan procedure or function" name
-                   (mapcar #'procedure-name (all-procedures)))))
+      (reject-call name)))
+
+(defun reject-call (name)
+  "Signal that there is neither a plan nor a function to call by NAME."
+  (let ((namesake (lookup-procedure name)))
+    (when namesake
+      (reject-use "There is no plan procedure or function ~S. Calls go by the very symbol: if the ~
+                   plan ~:*~A of another package is meant, write ~S."
+                  name (procedure-name namesake)))
+    (reject-name "plan procedure or function" name (mapcar #'procedure-name (all-procedures)))))

@@ -211,9 +211,9 @@ the office, its kickers or the order of chance does; then it is to be replaced k
     (robot:call-with-simulation
      (lambda ()
        (is (eq :succeeded
-               (nth-value 1 (ars-magna.rpl-robot:run-plan 'ars-worlds:fetch-thing
-                                                '((:color world:blue) (:substance world:plastic))
-                                                '((109 24))))))
+               (nth-value 1 (ars-magna.rpl-robot:run-plan
+                             'ars-worlds:fetch-thing
+                             '((:color world:blue) (:substance world:plastic)) '((109 24))))))
        (setf digest (robot:state-digest)
              journal (end-journal time:*simulation*)))
      '(ars-worlds:marvin) :seed 5 :journal t)

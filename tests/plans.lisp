@@ -178,8 +178,8 @@
    (lambda ()
      (let* ((codes '()) (body (symbol-value robot)) (thing (world:find-thing name)))
        (ars-worlds:run-errand body description
-                             (lambda (err robot) (declare (ignore robot)) (push err codes))
-                             :camera camera)
+                              (lambda (err robot) (declare (ignore robot)) (push err codes))
+                              :camera camera)
        (time:run-until (lambda () codes) :limit limit)
        (time:run-ticks 50)
        (values (and (member thing (robot:storage-bin-contents (robot:robot-storage-bin body 0))) t)

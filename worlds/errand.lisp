@@ -5,8 +5,8 @@
 ;;; every error leads somewhere. Each step is a function that issues a command and returns at once;
 ;;; its continuation takes the next step. What the steps share is in an ERRAND.
 ;;;
-;;;   (with-simulation (dot :seed 1)
-;;;     (run-errand dot '((:color red)) #'report)
+;;;   (with-simulation (ars-worlds:dot :seed 1)
+;;;     (ars-worlds:run-errand ars-worlds:dot '((:color red)) #'report)
 ;;;     (run-ticks 500))
 
 (in-package :ars-worlds)

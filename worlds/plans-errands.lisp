@@ -2,7 +2,7 @@
 
 ;;; Good for a first look at what plans can do, and as parts of others:
 ;;;
-;;;   (with-simulation (marvin :seed 1)
+;;;   (with-simulation (ars-worlds:marvin :seed 1)
 ;;;     (run-plan 'fetch-thing '((:color blue) (:substance plastic)) '((108.5 24.5))))
 ;;;
 ;;; A robot knows its map, where it starts, and where to look; not where things are.

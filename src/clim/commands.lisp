@@ -117,7 +117,7 @@
 ;;; Pictures.
 
 (defun picture-file (window type)
-  (format nil "~(~A~)-~6,'0D.~A" (name-string (watcher-robot (window-watcher window)))
+  (format nil "~(~A~)-~6,'0D.~A" (watcher-robot (window-watcher window))
           (snapshot-tick (window-snapshot window)) type))
 
 (defun save-window (window type)

@@ -116,7 +116,7 @@
     (with-lock (*windows-lock*) (push window *windows*))
     (setf (window-thread window)
           (start-thread (lambda () (run-window window))
-                        (format nil "display of ~A" (name-string (robot-name robot)))))
+                        (format nil "display of ~A" (robot-name robot))))
     window))
 
 (defun open-window (robot)

@@ -112,7 +112,7 @@ itself: it will come with the next tick."
   (watch-simulation watcher simulation)
   (setf (watcher-pacer watcher)
         (start-thread (lambda () (pace watcher))
-                      (format nil "pacer of ~A" (name-string (watcher-robot watcher)))))
+                      (format nil "pacer of ~A" (watcher-robot watcher))))
   watcher)
 
 (defun stop-watching (watcher)

@@ -71,8 +71,7 @@
   "Return a window, not shown yet, for the robot of WATCHER. OPTIONS are CLIM's for frames, and
 :layers and :color-p."
   (let ((window (apply #'clim:make-application-frame 'robot-window
-                       :pretty-name (format nil "ARS MAGNA: ~A"
-                                            (name-string (watcher-robot watcher)))
+                       :pretty-name (format nil "ARS MAGNA: ~A" (watcher-robot watcher))
                        :watcher watcher options)))
     (setf (window-transcript window) (make-transcript (lambda () (request-refresh window)))
           (window-conversation window)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.display)
 
 (defmethod subject-title ((image thing-image)) (princ-to-string (thing-image-thing image)))
-(defmethod subject-title ((image robot-image)) (name-string (robot-image-name image)))
+(defmethod subject-title ((image robot-image)) (princ-to-string (robot-image-name image)))
 (defmethod subject-title ((image camera-image)) (format nil "Camera ~D" (camera-image-index image)))
 (defmethod subject-title ((image hand-image)) (format nil "Hand ~D" (hand-image-index image)))
 (defmethod subject-title ((image bin-image)) (format nil "Storage-bin ~D" (bin-image-index image)))
@@ -27,8 +27,7 @@
     (format stream "~A at ~,2F, ~,2F~%" (subject-title image)
             (thing-image-x image) (thing-image-y image))
     (loop for (name value) in (thing-image-attributes image)
-          do (format stream "  ~(~S~) ~(~A~)~%" name
-                     (if (symbolp value) (name-string value) value)))
+          do (format stream "  ~(~S~) ~(~A~)~%" name value))
     (let ((contents (thing-contents (thing-image-thing image))))
       (when contents (format stream "  contains ~{~A~^, ~}~%" contents))))
   (:method ((image robot-image) stream)

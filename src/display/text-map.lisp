@@ -37,8 +37,7 @@
 
 (defun names-text (things)
   "Return what THINGS are called, each name once."
-  (let ((names (mapcar (lambda (thing) (name-string (thing-name thing))) things)))
-    (format nil "~{~A~^, ~}" (remove-duplicates names :test #'string= :from-end t))))
+  (format nil "~{~A~^, ~}" (remove-duplicates (mapcar #'thing-name things) :from-end t)))
 
 (defun robot-glyph (view robots things)
   "Return the glyph of the first of ROBOTS, which stands on THINGS."

@@ -1,0 +1,101 @@
+;;;; cli-robots.lisp -- the prompt calls robots by name, wherever they were defined.
+
+(in-package :ars-magna.tests)
+
+(def-suite* cli-robots :in ars-magna)
+
+;;; What is known in ARS-USER is what users see, so these tests leave nothing of theirs in it.
+
+(defun known-as (name)
+  "Return the symbol called NAME in ARS-USER, or NIL."
+  (find-symbol name :ars-user))
+
+(defun forget-name (name)
+  (let ((symbol (known-as name)))
+    (when symbol (unintern symbol :ars-user))))
+
+(defmacro with-names ((&rest names) &body body)
+  "Run BODY while ARS-USER knows none of the strings NAMES, and forget them again."
+  `(progn
+     (mapc #'forget-name ',names)
+     (unwind-protect (progn ,@body)
+       (mapc #'forget-name ',names))))
+
+(defun type-to (robot &rest lines)
+  "Type LINES to ROBOT, a name, in a headless batch as ./cli/ars-magna begins one."
+  (let* ((output (make-string-output-stream))
+         (session (cli:make-session :batch t :output output
+                                    :input (make-string-input-stream (joined lines)))))
+    (base:call-with-parameters
+     '()
+     (lambda ()
+       (base:clean-simulation)
+       (cli::run-batch session robot '())))
+    (lines-of (get-output-stream-string output))))
+
+(test robots.of-shipped-worlds-are-known-by-name
+  (with-names ("DOT" "PORTER")
+    (is (equal '("robot-turn: Robot turned 1.00")
+               (type-to 'ars-worlds:dot "(robot-turn dot 1 nil)")))
+    (is (eq 'ars-worlds:dot (known-as "DOT")))
+    (is (equal '("robot-turn: Robot turned 1.00")
+               (type-to 'ars-worlds:dot "world hall" "(robot-turn porter 1 nil)")))))
+
+(test robots.of-a-world-are-all-known
+  (with-names ("MARVIN" "GOFER")
+    (is (equal '("15") (type-to 'ars-worlds:marvin "(values (round (robot-position gofer)))")))))
+
+(test robots.that-run-live-are-known
+  (with-names ("DOT")
+    (unwind-protect (robot:simulator 'ars-worlds:dot :rate :free :display nil)
+      (robot:stop-simulator))
+    (is (eq 'ars-worlds:dot (known-as "DOT")))))
+
+(test robots.displace-what-was-merely-read
+  (with-names ("DOT")
+    (let ((read (intern "DOT" :ars-user)))
+      (cli::call-by-name '(ars-worlds:dot))
+      (is (eq 'ars-worlds:dot (known-as "DOT")))
+      (is (null (symbol-package read))))))
+
+(test robots.leave-alone-what-the-user-has-defined
+  (dolist (define (list (lambda (symbol) (setf (symbol-value symbol) 1))
+                        (lambda (symbol) (setf (fdefinition symbol) #'list))))
+    (with-names ("DOT")
+      (let ((own (intern "DOT" :ars-user)))
+        (funcall define own)
+        (cli::call-by-name '(ars-worlds:dot))
+        (is (eq own (known-as "DOT"))))))
+  (cli::call-by-name '(loop robot))
+  (is (eq 'ars-magna.nisp:loop (known-as "LOOP")))
+  (is (eq 'robot:robot (known-as "ROBOT"))))
+
+(defun type-with-world (definition robot &rest lines)
+  "Type LINES to ROBOT, a string, after loading the world's file that DEFINITION is the text of."
+  (uiop:with-temporary-file (:pathname path :stream stream :type "lisp")
+    (write-string definition stream)
+    :close-stream
+    (apply #'type-to (find robot (cli::load-world path) :test #'string=) lines)))
+
+(defun forget-robot (name)
+  "Let there be no robot called NAME, nor the map that it is in."
+  (let ((map (world:world-map (robot:robot-world (robot:find-robot name)))))
+    (setf robot::*bodies* (remove name robot::*bodies* :key #'robot::body-name :test #'string=)
+          world::*maps* (remove map world::*maps*))))
+
+(test robots.of-users-worlds-are-known
+  (with-names ("BEETLE" "CELLAR")
+    (is (equal '("robot-turn: Robot turned 1.00")
+               (type-with-world "(defmap cellar (5 5)) (defrobot beetle (cellar (2 2) 0))"
+                                "BEETLE" "(robot-turn beetle 1 nil)")))
+    (forget-robot "BEETLE")))
+
+(test robots.of-users-packages-are-known
+  (with-names ("BEETLE")
+    (is (equal '("robot-turn: Robot turned 1.00")
+               (type-with-world "(define-user-package :ars-test-house)
+                                 (in-package :ars-test-house)
+                                 (defmap cellar (5 5)) (defrobot beetle (cellar (2 2) 0))"
+                                "BEETLE" "(robot-turn beetle 1 nil)")))
+    (forget-robot "BEETLE"))
+  (delete-package :ars-test-house))
