@@ -8,8 +8,8 @@
   :serial t
   :components
   ((:module "src/base" :serial t
-    :components ((:file "package") (:file "policy") (:file "conditions")
-                 (:file "threads") (:file "dice") (:file "names")
+    :components ((:file "package") (:file "policy") (:file "public")
+                 (:file "conditions") (:file "threads") (:file "dice") (:file "names")
                  (:file "messages") (:file "user-code")
                  (:file "parameters") (:file "physics") (:file "digest")))
    (:module "src/geometry" :serial t

@@ -20,6 +20,7 @@ past tick LIMIT."
           ((and limit (> (or (next-wake-time runner) (runner-tick runner)) limit)) (return :limit))
           (t (pass-time runner)))))
 
+(addition run-plan-alone)
 (defun run-plan-alone (plan &key arguments (runner (make-plan-runner)) limit)
   "Run PLAN, a plan procedure or the name of one, with the list ARGUMENTS by RUNNER in virtual time:
 when no task is ready the next tick at which one wakes comes at once. Return the plan's value, its

@@ -16,6 +16,7 @@
       (values (rest body) (first body))
       (values body nil)))
 
+(public def-interp-proc)
 (defmacro def-interp-proc (name (&rest parameters) &body body &environment environment)
   "Define NAME as a plan procedure with PARAMETERS, an ordinary lambda list in which a hyphen and a
 type may follow each variable; BODY is plan text and may start with a documentation string. The
@@ -34,6 +35,7 @@ plans (manual D.2)."
              (install-procedure ',name ',parameters ,documentation
                                 ,entry ,(procedure-body-code name form body scope))))))))
 
+(addition interp-lambda)
 (defmacro interp-lambda ((&rest parameters) &body body &environment environment)
   "Return a plan procedure without a name: PARAMETERS and BODY are as for DEF-INTERP-PROC. BODY sees
 the variables around it, but not blocks, tags and local plans. Run it by CALL-PLAN."
@@ -81,6 +83,7 @@ of the variable and the word for each word that must be there literally."
               (and given expected (symbolp given) (symbolp expected) (same-name-p given expected)))
     (reject-clause (format nil "~(~A~)" name) form (format nil "the word ~(~S~)" expected))))
 
+(public def-interp-macro)
 (defmacro def-interp-macro ((name &rest pattern) &body template)
   "Define NAME as a macro for plans. ?x in PATTERN stands for any form, to which the variable x is
 bound while TEMPLATE is evaluated; a pattern may end in a dot and ?x for all forms that are left.

@@ -126,6 +126,7 @@ none does and TASK has ended, +PARKED+."
         for older = (task-older child)
         do (evaporate child)))
 
+(addition evaporate)
 (defun evaporate (task)
   "End TASK, because it is no longer needed, with all that it consists of, newest first. What it
 has protected by EVAP-PROTECT is done first and may take time. A task that has not started, is over

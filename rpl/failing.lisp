@@ -102,6 +102,7 @@ when that comes to its end."
                                  frame)
                      nil))))))
 
+(addition with-failure-handling)
 (defmacro with-failure-handling (clauses &body body)
   "Run BODY in a plan; a failure is handled by the first of CLAUSES, (type (variable) form...),
 whose type it matches: T, a class given to FAIL, a condition type of failures or of Lisp's, or
@@ -109,10 +110,12 @@ whose type it matches: T, a class given to FAIL, a condition type of failures or
 at the handler's end the failure goes on."
   (misplaced 'with-failure-handling (list* clauses body)))
 
+(addition handle-failure)
 (defmacro handle-failure (clauses &body body)
   "Do as WITH-FAILURE-HANDLING."
   (misplaced 'handle-failure (list* clauses body)))
 
+(addition retry)
 (defmacro retry ()
   "In a handler of WITH-FAILURE-HANDLING: run its body anew."
   (misplaced 'retry '()))
@@ -155,10 +158,12 @@ at the handler's end the failure goes on."
 
 ;;; Counted retries.
 
+(addition with-retry-counters)
 (defmacro with-retry-counters (counters &body body)
   "Run BODY in a plan with COUNTERS, each (name number), for DO-RETRY."
   `(let ,counters ,@body))
 
+(addition do-retry)
 (defmacro do-retry (counter &body body)
   "In a handler: run BODY, most likely (retry), if COUNTER is positive, and count it down."
   `(when (plusp ,counter)

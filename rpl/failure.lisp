@@ -6,6 +6,7 @@
 ;;; IGNORE-ERRORS in a plan's Lisp code must not swallow it. It spreads from a task to the
 ;;; construct that the task is part of, until something handles it.
 
+(addition plan-failure)
 (define-condition plan-failure (serious-condition)
   ((class :initarg :class :initform nil :reader failure-class)
    (data :initarg :data :initform '() :reader failure-data)
@@ -19,15 +20,20 @@
   (:documentation "A plan could not do what it is for. Conditions of a user's own may inherit from
 this; (fail :class name ...) makes one of them, or a plain one of class NAME."))
 
+(addition composite-failure)
 (define-condition composite-failure (plan-failure)
   ((failures :initarg :failures :initform '() :reader composite-failures))
   (:documentation "Everything that could have been tried has failed."))
 
+(addition lisp-failure)
 (define-condition lisp-failure (plan-failure)
   ((condition :initarg :condition :reader lisp-failure-condition)
    (backtrace :initarg :backtrace :initform "" :reader lisp-failure-backtrace))
   (:documentation "Lisp code of a plan signalled an error."))
 
+(addition failure-class failure-data failure-form failure-task-path failure-tick failure-cause
+          failure-suppressed failure-plan-backtrace composite-failures lisp-failure-condition
+          lisp-failure-backtrace)
 (loop for (reader text) in
       '((failure-class "Return the class that FAIL was given, NIL if none.")
         (failure-data "Return what else FAIL was given, a property list.")
@@ -78,6 +84,7 @@ innermost first.")
       (apply #'make-condition class data)
       (make-condition 'plan-failure :class class :data data)))
 
+(public fail)
 (defun fail (&rest arguments)
   "Let the task fail. ARGUMENTS are nothing; or :class, a name or a condition class inheriting from
 PLAN-FAILURE, and a property list of data or initargs, with or without the word :class; or a

@@ -9,6 +9,7 @@
 ;;; or a derived fluent that is itself used) makes it a dependent of its sources and the last one
 ;;; to go undoes that, so that nothing leaks. HEIGHT is the longest way down to a base fluent.
 
+(public fluent)
 (defstruct (fluent (:constructor %make-fluent (name now)) (:copier nil))
   "A quantity that varies in time. Plans wait for fluents to become true (manual C)."
   (name nil :read-only t)
@@ -50,20 +51,24 @@ watcher, the value, and NIL or the error met in computing it. PENDING counts eve
 
 (declaim (sb-ext:freeze-type derived watcher link fluent))
 
+(addition fluent-p fluent-name)
 (setf (documentation 'fluent-name 'function)
       "Return the name that the fluent was created with; of a network, its operator."
       (documentation 'fluent-p 'function)
       "True of fluents, networks included.")
 
+(public create-fluent)
 (defun create-fluent (name &optional value)
   "Return a new fluent called NAME with VALUE (manual D.4)."
   (%make-fluent name value))
 
+(public state)
 (defun state (name)
   "Return a new fluent called NAME, at first false: NAME is the proposition that the fluent stands
 for (manual D.2)."
   (create-fluent name nil))
 
+(addition create-fluent-vector)
 (defun create-fluent-vector (name count &optional value)
   "Return a vector of COUNT new fluents with VALUE, one for each part of a kind (manual C)."
   (let ((vector (make-array count)))

@@ -89,6 +89,7 @@
              (release fluent)))))
 
 (declaim (inline fluent-value))
+(public fluent-value)
 (defun fluent-value (object)
   "Return the value that OBJECT, a fluent, has now. Any other OBJECT is its own value. Can be set:
 see SET-VALUE (manual D.2)."
@@ -114,12 +115,14 @@ value is always FUNCTION of their values."
       (let ((name (nth-value 2 (function-lambda-expression function))))
         (if (symbolp name) name 'function))))
 
+(addition fl-funcall)
 (defun fl-funcall (function &rest arguments)
   "Return a fluent whose value is always what FUNCTION returns for the values of ARGUMENTS, some of
 them fluents. FUNCTION must depend on nothing else and set no fluent. Without fluents among
 ARGUMENTS, call FUNCTION at once."
   (apply #'lift (function-label function) (coerce function 'function) arguments))
 
+(addition fl-apply)
 (defun fl-apply (function &rest arguments)
   "Do as FL-FUNCALL; the last of ARGUMENTS is a list of further ones, as for APPLY."
   (apply #'fl-funcall function (apply #'list* arguments)))

@@ -84,11 +84,13 @@
                                      :branches ,(branches-code steps scope)
                                      :before ,before)))))
 
+(addition partial-order)
 (defmacro partial-order (steps &body constraints)
   "Run STEPS in a plan side by side, as PAR, under CONSTRAINTS: by (:order a b) the step tagged b
 does not start before the one tagged a is over. Steps are tagged by (:tag name form)."
   (misplaced 'partial-order (list* steps constraints)))
 
+(addition plan)
 (defmacro plan (steps &rest constraints)
   "Do as PARTIAL-ORDER; CONSTRAINTS may also be one list of them, and give reasons after the names."
   (misplaced 'plan (list* steps constraints)))

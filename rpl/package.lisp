@@ -36,7 +36,8 @@ Fluents hold what varies, tasks wait for fluents, a runner lets them react. Know
   (:export #:misplaced-suspension #:misplaced-form #:misplaced-container #:misplaced-advice)
   ;; defining plans
   (:export #:def-interp-proc #:def-interp-macro #:interp-lambda #:make-plan #:call-plan
-           #:procedure #:find-procedure #:all-procedures #:procedure-name #:procedure-lambda-list)
+           #:procedure #:procedure-p #:find-procedure #:all-procedures #:procedure-name
+           #:procedure-lambda-list)
   ;; constructs
   (:export #:seq #:par #:pursue #:try-all #:try-in-order #:try-one #:try-each-in-order #:par-loop
            #:with-policy #:whenever #:wait-for #:wait-time #:n-times #:partial-order #:plan

@@ -40,6 +40,7 @@
       (setf (frame-data frame) result))
     (complete-when-alone task (frame-data frame))))
 
+(public par)
 (defmacro par (&body branches)
   "Run BRANCHES in a plan side by side. Succeed when all have, with the value of the last one; fail
 as soon as one fails, and evaporate the others (manual D.7)."
@@ -65,6 +66,7 @@ as soon as one fails, and evaporate the others (manual D.7)."
         ((eq how :succeeded) (complete task result))
         (t (complete-when-alone task nil))))
 
+(public pursue)
 (defmacro pursue (&body branches)
   "Run BRANCHES in a plan side by side. Succeed as soon as one does, with its value; fail as soon as
 one fails. Evaporate the others (manual D.4)."
@@ -91,6 +93,7 @@ one fails. Evaporate the others (manual D.4)."
                                              :failures (reverse (frame-data frame)))
                              task frame))))
 
+(addition try-all)
 (defmacro try-all (&body branches)
   "Run BRANCHES in a plan side by side. Succeed as soon as one does, with its value, and evaporate
 the others; if all fail, fail with a composite failure."
@@ -129,6 +132,7 @@ environment of its own. DATA is the number of the last and its value."
       (setf (cdr (frame-data frame)) result))
     (complete-when-alone task (cdr (frame-data frame)))))
 
+(addition par-loop)
 (defmacro par-loop ((variable sequence) &body body)
   "Run BODY in a plan for all elements of SEQUENCE side by side, each with its own VARIABLE; succeed
 and fail as PAR does."

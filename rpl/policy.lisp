@@ -25,6 +25,7 @@
     (when (= 1 (task-index child))
       (complete task (and (eq how :succeeded) result)))))
 
+(public with-policy)
 (defmacro with-policy (policy &body body)
   "Run BODY in a plan under POLICY, a form that runs beside it, starts before it and takes
 precedence over it. The end of BODY ends POLICY; if one of them fails, all fails. Return BODY's
@@ -84,6 +85,7 @@ value (manual D.4)."
     (when target (unblock-task target)))
   nil)
 
+(addition with-task-blocked)
 (defmacro with-task-blocked (task &body body)
   "Run BODY in a plan while TASK, and what it consists of, does not run. What TASK waits for still
 counts; it goes on when BODY has ended, however that ended. An evaporating task is not kept."

@@ -15,7 +15,9 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
   (entry nil :type (or null function))
   (body nil :type (or null node))
   (stub nil :type (or null function)))
-(setf (documentation 'procedure-name 'function)
+(addition procedure-p procedure-name procedure-lambda-list)
+(setf (documentation 'procedure-p 'function) "True of plan procedures."
+      (documentation 'procedure-name 'function)
       "Return the name of a plan procedure, NIL for one made by INTERP-LAMBDA."
       (documentation 'procedure-lambda-list 'function)
       "Return the lambda list of a plan procedure.")
@@ -39,6 +41,7 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
              (and (fboundp name)
                   (eq (symbol-function name) (procedure-stub procedure)))))))
 
+(addition all-procedures)
 (defun all-procedures ()
   "Return a list of all plan procedures that are defined, by name."
   (sort (remove-if-not #'live-p (hash-table-values *procedures*)) #'string<
@@ -56,6 +59,7 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
         procedure
         (find-if #'live-p (gethash (name-string name) *namesakes*)))))
 
+(addition find-procedure)
 (defun find-procedure (name)
   "Return the plan procedure called NAME, a symbol or string: that of the very symbol, or else the
 one defined last of those called the same in other packages. Signals UNKNOWN-NAME."

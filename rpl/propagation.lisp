@@ -114,6 +114,7 @@
     (reject-use "A function lifted over fluents set ~A. Networks only compute: set it in a plan."
                 fluent)))
 
+(public set-value)
 (defun set-value (fluent value)
   "Give FLUENT the value VALUE and return it. Those who wait for FLUENT, or for a network that it
 is in, hear of it if that changed something (EQL) and the outcome is true. FLUENT must not be a
@@ -137,6 +138,7 @@ network (manual D.2)."
   (dolist (fluent fluents) (setf (fluent-now fluent) nil))
   (spread-all fluents))
 
+(public pulse)
 (defun pulse (fluent &optional (value t))
   "Let FLUENT have VALUE for an instant and be false afterwards. All who wait for it, or for a
 network that is true at that instant, will wake. Return VALUE (manual C)."

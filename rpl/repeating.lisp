@@ -49,6 +49,7 @@ before the first turn, 1 while the body runs and 2 between turns; DATA is how ma
 (define-plan-form "LOOP" :may (&rest forms) (form scope)
   (turns-code form nil forms scope))
 
+(addition n-times)
 (defmacro n-times (count &body body)
   "Run BODY in a plan COUNT times, one turn after the other. BODY may start with UNTIL or WHILE and
 a test made before each turn. Return NIL."

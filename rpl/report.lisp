@@ -2,6 +2,7 @@
 
 (in-package :ars-magna.rpl)
 
+(addition task-awaits)
 (defun task-awaits (task)
   "Return in words what TASK waits for: a fluent or network, a tick, a valve; NIL if it does not, or
 waits for its own parts."
@@ -24,6 +25,7 @@ waits for its own parts."
   (dolist (child (task-children task))
     (write-task-tree child (1+ depth) stream)))
 
+(addition print-tasks)
 (defun print-tasks (&optional (which *runner*) (stream *standard-output*))
   "Write to STREAM the tree of tasks of WHICH, a task or a plan runner (all its tasks): number,
 state, expression, and what each waits for."

@@ -26,6 +26,7 @@ robot."
   "Define accessors of the plans' robot: (name reader documentation)."
   `(progn
      ,@(loop for (name reader text) in definitions
+             collect `(public ,name)
              collect `(defun ,name ()
                         ,(format nil "~A Signals MISUSE without a robot. (Manual C.)" text)
                         (,reader (rpl-robot))))))
@@ -34,6 +35,7 @@ robot."
   "Define accessors of its parts: (name kind reader documentation)."
   `(progn
      ,@(loop for (name kind reader text) in definitions
+             collect `(public ,name)
              collect `(defun ,name (,(intern (string kind)))
                         ,(format nil "~A ~A is an index or a fluent. Signals WRONG-ARGUMENT. ~
                                       (Manual C.)" text kind)
@@ -68,6 +70,7 @@ robot."
   (rpl-storage-bin-closed? :bin storage-bin-closed-p
    "True if the bin is closed."))
 
+(public rpl-designator-data)
 (defun rpl-designator-data (designator)
   "Return the description in DESIGNATOR, or in the value of the fluent DESIGNATOR: a place type's
 name in a list, or attributes and values. Signals WRONG-ARGUMENT (manual, figure D.4)."
@@ -76,12 +79,14 @@ name in a list, or attributes and values. Signals WRONG-ARGUMENT (manual, figure
                     "a designator, or a fluent that holds one")
     (designator-data designator)))
 
+(public rpl-new-odometer)
 (defun rpl-new-odometer (name)
   "Return a new odometer of the plans' robot, called NAME (manual, figure D.8)."
   (make-odometer (rpl-robot) (fluent-value name)))
 
 ;;; Resources.
 
+(public rpl-grab-robot)
 (defun rpl-grab-robot ()
   "Stop whatever the robot itself is doing (manual C)."
   (grab-resource (rpl-robot) (interface-simulation (the-interface))))
@@ -89,6 +94,7 @@ name in a list, or attributes and values. Signals WRONG-ARGUMENT (manual, figure
 (macrolet ((define-grabs (&rest definitions)
              `(progn
                 ,@(loop for (name kind text) in definitions
+                        collect `(public ,name)
                         collect `(defun ,name (index)
                                    ,(format nil "Stop whatever goes on on ~A INDEX. Signals ~
                                                  WRONG-ARGUMENT. (Manual C.)" text)

@@ -11,6 +11,7 @@
   "Define fluent variables for KIND, :robot, :camera, :hand or :bin: (name documentation)."
   `(progn
      ,@(loop for (name text) in definitions
+             collect `(public ,name)
              collect `(defvar ,name nil ,(format nil "~A~@[~A~] (Manual C.)" text
                                                  (unless (eq kind :robot)
                                                    (format nil " A vector, by ~(~A~)." kind))))

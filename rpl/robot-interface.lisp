@@ -6,6 +6,7 @@
 ;;; they run in a thread of their own, which exists while there are plans; the simulator only
 ;;; posts to it and never waits for it. Whoever lets plans react holds the interface's lock.
 
+(addition *trace-plans*)
 (defparameter *trace-plans* nil
   "When true, RPL-INIT-ROBOT makes the plans' runner keep a trace; see PLAN-TRACE.")
 
@@ -153,6 +154,7 @@ not count: they tell plans nothing."
       (add-observer (interface-observer interface) simulation)
       (push (interface-busy-test interface) (simulation-busy-tests simulation)))))
 
+(public rpl-init-robot)
 (defun rpl-init-robot (robot)
   "Let plans drive ROBOT, a robot or its name, from now on: make the fluents anew, for the parts
 that ROBOT has. Plans under way end. Return ROBOT. To be called before anything else of the
@@ -195,10 +197,12 @@ simulation inside of a live one has only inherited is left alone."
       (reject-use "No robot to drive. Call (rpl-init-robot ROBOT) first; after a simulator has ~
                    been started anew, or the robot defined anew, call it again.")))
 
+(addition rpl-robot)
 (defun rpl-robot ()
   "Return the robot that plans drive. Signals MISUSE without one."
   (interface-robot (the-interface)))
 
+(addition rpl-runner)
 (defun rpl-runner ()
   "Return the plan runner of the robot that plans drive; see PLAN-TRACE, PRINT-TASKS."
   (interface-runner (the-interface)))

@@ -94,6 +94,7 @@ clause...)."
              for command = (find-command command-name)
              for name = (plan-function-name command-name)
              for parameters = (parameters-in-plan command)
+             collect `(public ,name)
              collect `(defun ,name ,parameters
                         ,(format nil "~A~%Returns nothing; sets ~(~{~A~^, ~}~). Arguments may be ~
                                       fluents. (Manual C.)"

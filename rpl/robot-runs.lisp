@@ -2,6 +2,7 @@
 
 (in-package :ars-magna.rpl-robot)
 
+(addition *plan-limit*)
 (defparameter *plan-limit* 100000
   "How many ticks RUN-PLAN lets pass, headless, before it gives a plan up.")
 
@@ -16,6 +17,7 @@
         (rpl-init-robot (first robots))
         *interface*)))
 
+(addition begin-plan)
 (defun begin-plan (plan &rest arguments)
   "Start PLAN, a plan procedure or its name, with ARGUMENTS, and return its task at once. Headless
 it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
@@ -63,6 +65,7 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
   (when (eq (current-thread) (simulation-thread (interface-simulation interface)))
     (reject-use "run-plan: the simulator would wait for itself. Use begin-plan here.")))
 
+(addition run-plan)
 (defun run-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or its name, with ARGUMENTS on the robot of RPL-INIT-ROBOT, or on
 the only one of the current simulation. Return what it returns, or the failure with which it failed,
@@ -80,12 +83,14 @@ simulator was stopped or started anew, or the robot defined anew). Signals UNKNO
       (unless (task-over-p task) (end-in interface task))
       (values (task-result task) state))))
 
+(addition plans)
 (defun plans ()
   "Return a list of the tasks of the plans under way, in order of their start."
   (if (usable-p *interface*)
       (plan-runner-tasks (interface-runner *interface*))
       '()))
 
+(addition print-plans)
 (defun print-plans (&optional (stream *standard-output*))
   "Print the plans under way to STREAM, each as a tree of tasks: what each does and waits for."
   (if (usable-p *interface*)
@@ -98,6 +103,7 @@ simulator was stopped or started anew, or the robot defined anew). Signals UNKNO
   (unless (or (holding-p interface) (interface-thread interface))
     (with-plans (interface) (react-fully interface))))
 
+(addition end-plan)
 (defun end-plan (task)
   "Let the plan TASK, or all plans if it is :ALL, evaporate. Returns nothing. Signals
 WRONG-ARGUMENT."

@@ -57,14 +57,17 @@
   "Return how many steps RUNNER has taken: expressions begun or ended."
   (runner-steps runner))
 
+(addition plan-trace)
 (defun plan-trace (&optional (runner *runner*))
   "Return the trace of RUNNER, a vector of trace entries in order; NIL if it keeps none."
   (runner-trace runner))
 
+(addition plan-time)
 (defun plan-time ()
   "Return the tick that it is for the plan that asks."
   (runner-tick *runner*))
 
+(addition current-task)
 (defun current-task ()
   "Return the task that asks."
   (runner-current *runner*))

@@ -29,6 +29,7 @@
         (node-form (svref (steps-parts node) (1- i)))
         (node-form node))))
 
+(public seq)
 (defmacro seq (&body steps)
   "Run STEPS in order and return the value of the last one; fail as soon as one fails. Policies
 get their chance between steps. In ordinary Lisp, PROGN (manual D.2)."

@@ -81,6 +81,7 @@ its index there, NIL if none does."
                                              :task-tags (append tags (scope-task-tags scope))))))
       (funcall coder scope)))
 
+(addition with-tags)
 (defmacro with-tags (&body body)
   "Run BODY in a plan with the name of each (:tag name form) in it bound to the task that runs that
 form: see TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. A procedure's body is a WITH-TAGS too."
@@ -89,6 +90,7 @@ form: see TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. A procedure's body is a 
 (define-plan-form "WITH-TAGS" :must (&rest body) (form scope)
   (with-tags-code form (tags-in body) scope (lambda (scope) (body-code body scope))))
 
+(addition task-status)
 (defun task-status (task)
   "Return a fluent that is :created, :running, :blocked, :succeeded, :failed or :evaporated, as TASK
 is."

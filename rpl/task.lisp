@@ -29,6 +29,7 @@ frame, child, the child's state and its result."
   (counter 0 :type fixnum)
   (data nil))
 
+(addition task)
 (defstruct (task (:constructor make-task (name node)) (:copier nil))
   "One incarnation of a plan's expression. FRAME and VALUE say how it will go on; SIGNAL, if any,
 what will happen to it instead. LEVEL 0 is the plan proper, a policy is one above what it guards."
@@ -55,6 +56,7 @@ what will happen to it instead. LEVEL 0 is the plan proper, a policy is one abov
   (newer nil :type (or null task)))
 (declaim (sb-ext:freeze-type frame task))
 
+(addition task-p task-name task-state task-serial task-parent task-result)
 (loop for (reader text) in
       '((task-name "Return what the task is called: its tag, its procedure, or NIL.")
         (task-state "Return the task's state: :created, :ready, :running, :waiting, and when it is
@@ -66,10 +68,12 @@ over :succeeded, :failed or :evaporated.")
       do (setf (documentation reader 'function) text))
 
 (declaim (inline task-over-p))
+(addition task-over-p)
 (defun task-over-p (task)
   "True if TASK has succeeded, failed or evaporated."
   (member (task-state task) '(:succeeded :failed :evaporated)))
 
+(addition task-children)
 (defun task-children (task)
   "Return the tasks that TASK consists of now, oldest first."
   (loop with children = '()
@@ -83,6 +87,7 @@ over :succeeded, :failed or :evaporated.")
     (declare (ignore frame))
     (node-form node)))
 
+(addition task-form)
 (defun task-form (task)
   "Return the source of the expression that TASK is at."
   (let ((frame (task-frame task)))
@@ -111,6 +116,7 @@ over :succeeded, :failed or :evaporated.")
   "Return a short text that says which task TASK is."
   (format nil "~:[~A~;~:*~(~A~)~*~]" (task-name task) (form-text (node-form (task-node task)) 40)))
 
+(addition task-path)
 (defun task-path (task)
   "Return the labels of the tasks from the top of the plan to TASK."
   (loop with path = '()

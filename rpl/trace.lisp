@@ -14,6 +14,7 @@ to the task number TASK at the expression FORM. DETAIL is what it waits for, or 
   (form nil :read-only t)
   (detail nil :read-only t))
 
+(addition trace-entry-tick trace-entry-event trace-entry-task trace-entry-form trace-entry-detail)
 (loop for (reader text) in
       '((trace-entry-tick "Return the tick of a trace entry.")
         (trace-entry-event "Return what happened: :start, :wait, :wake, :succeed, :fail,
@@ -31,6 +32,7 @@ to the task number TASK at the expression FORM. DETAIL is what it waits for, or 
           (trace-entry-tick entry) (trace-entry-event entry) (trace-entry-task entry)
           (form-text (trace-entry-form entry)) (trace-entry-detail entry)))
 
+(addition write-trace)
 (defun write-trace (trace destination)
   "Write TRACE, a vector of trace entries, to DESTINATION, a stream or the path of a file that is
 written anew: a line with tick, event, task number and expression for each."

@@ -51,11 +51,13 @@
     (setf (frame-counter frame) 0)
     (values t frame nil)))
 
+(addition try-in-order)
 (defmacro try-in-order (&body attempts)
   "Run ATTEMPTS in a plan one after the other until one succeeds; return its value. If all fail,
 fail with a composite failure."
   (misplaced 'try-in-order attempts))
 
+(addition try-one)
 (defmacro try-one (&body attempts)
   "Do as TRY-IN-ORDER, in an order that the plan runner chooses: at random if it was given dice,
 otherwise as written."
@@ -93,6 +95,7 @@ otherwise as written."
                     (vector environment (pop (attempt-record-order record)))
                     frame)))))
 
+(addition try-each-in-order)
 (defmacro try-each-in-order ((variable sequence) &body body)
   "Run BODY in a plan with VARIABLE bound to each element of SEQUENCE in turn until it succeeds;
 return its value. If it never does, fail with a composite failure."
@@ -145,6 +148,7 @@ return its value. If it never does, fail with a composite failure."
       (push failure (failure-suppressed first))
       (warning-set "A cleanup failed in " (task-label task) ": " (failure-text failure))))
 
+(addition evap-protect)
 (defmacro evap-protect (form cleanup &key limit)
   "Run FORM in a plan, and CLEANUP however FORM ends: well, by failure, by evaporation or by being
 left. CLEANUP may wait, for LIMIT ticks at most if given. A failure of CLEANUP counts only if FORM

@@ -15,6 +15,7 @@
       (documentation 'valve-owner 'function) "Return the task that has the valve, or NIL."
       (documentation 'valve-p 'function) "True of valves.")
 
+(addition make-valve)
 (defun make-valve (name)
   "Return a new valve called NAME, that nobody owns."
   (%make-valve name))
@@ -75,6 +76,7 @@
   (give-back frame)
   nil)
 
+(addition with-valve)
 (defmacro with-valve ((valve) &body body)
   "Run BODY in a plan while the task owns VALVE, waiting for it first if another task has it. The
 valve is given back however BODY ends. If tasks wait for each other's valves, an error message says

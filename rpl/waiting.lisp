@@ -56,6 +56,7 @@ returns (NIL: for ever)."
         (park task watcher))
       (park task "what cannot change: no fluent")))
 
+(public wait-for)
 (defmacro wait-for (fluent &key timeout)
   "Wait in a plan until FLUENT, or a network such as (and a (not b)), is true; not at all if it is
 already. A pulse is enough. Return its value. After TIMEOUT ticks, if given, go on nevertheless and
@@ -101,6 +102,7 @@ return NIL (manual C)."
       (:ticks span)
       (:seconds (ceiling (* span (runner-ticks-per-second *runner*)))))))
 
+(public wait-time)
 (defmacro wait-time (span &key (unit :ticks))
   "Wait in a plan for SPAN, counted in ticks, or in seconds if UNIT is :seconds (manual D.4)."
   (misplaced 'wait-time (list span :unit unit)))
@@ -175,6 +177,7 @@ watcher; COUNTER is 1 while BODY runs and 2 while the task waits."
     (when watcher (unwatch watcher)))
   nil)
 
+(public whenever)
 (defmacro whenever (fluent &body body)
   "Run BODY in a plan whenever FLUENT, or a network, becomes true or is pulsed, and at once if it is
 true. Several such events while BODY runs count as one; with (FLUENT :missed :all) as the first

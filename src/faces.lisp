@@ -7,14 +7,28 @@
 
 (in-package :ars-magna.faces)
 
-(defun export-from (face layer names)
-  "Import the external symbols of LAYER called NAMES into the package FACE, and export them."
-  (dolist (name names)
-    (multiple-value-bind (symbol status) (find-symbol (string name) layer)
-      (unless (eq status :external)
-        (reject-use "~A does not export ~A, which ~A should show." layer name face))
-      (shadowing-import (list symbol) face)
-      (export (list symbol) face))))
+(defparameter *addition-sentence* "An addition to the manual."
+  "What the documentation of names that the manual does not have ends with.")
+
+(defun tell-addition (symbol)
+  "Let each documentation of SYMBOL end with *ADDITION-SENTENCE*, on a line of its own."
+  (dolist (kind '(function variable type))
+    (let ((text (documentation symbol kind)))
+      (unless (or (null text) (search *addition-sentence* text))
+        (setf (documentation symbol kind) (format nil "~A~%~A" text *addition-sentence*))))))
+
+(defun externalp (symbol)
+  (let ((layer (symbol-package symbol)))
+    (eq :external (nth-value 1 (find-symbol (symbol-name symbol) layer)))))
+
+(defun show (symbol face)
+  "Import SYMBOL into the package FACE, and export it. Signals MISUSE if its layer does not."
+  (unless (externalp symbol)
+    (reject-use "~S is marked for ~A, but ~A does not export it. Add it to that package's exports."
+                symbol face (package-name (symbol-package symbol))))
+  (shadowing-import (list symbol) face)
+  (export (list symbol) face)
+  (when (addition-p symbol) (tell-addition symbol)))
 
 (defun ensure-face (face documentation)
   "Return the package FACE, with DOCUMENTATION; it uses no other."
@@ -22,15 +36,20 @@
     (setf (documentation package t) documentation)
     package))
 
-(defmacro define-face (face documentation &body layers)
-  "Define the package FACE, which exports what each of LAYERS, a list (layer name...), lists."
+(defun fill-face (face documentation)
+  "Let the package FACE, with DOCUMENTATION, export what is marked for it."
+  (ensure-face face documentation)
+  (dolist (symbol (public-symbols face))
+    (show symbol face)))
+
+(defmacro define-face (face documentation)
+  "Define the package FACE, :ARS or :NISP, which exports what is marked for it (see PUBLIC)."
   `(eval-when (:compile-toplevel :load-toplevel :execute)
-     (ensure-face ,face ,documentation)
-     ,@(loop for (layer . names) in layers
-             collect `(export-from ,face ,layer ',names))))
+     (fill-face ,face ,documentation)))
 
 ;;; The prompt is a system of its own, which nothing here depends on.
 
+(public cli)
 (defun cli (&rest options)
   "Run the command-line interface Robot> on the current simulation until QUIT or the end of input;
 the simulator keeps running. OPTIONS are those of ARS-MAGNA.CLI:PROMPT. Loads the system

@@ -61,10 +61,11 @@ if there are several of a name; not those under the names SETTLED."
                           :key #'first :test #'string=)
               '((:local-nicknames (:xlib :ars-magna.canvas)))))))
 
+(addition define-user-package)
 (defmacro define-user-package (name &rest options)
   "Define the package NAME, ready to work in, as DEFPACKAGE does with OPTIONS. Unless they contain
 (:use ...), it uses CL, ARS and NISP; what its packages export under a name of Common Lisp's, such
 as ARS:EQUAL or NISP:LOOP, wins over that unless OPTIONS say otherwise. In it XLIB is our canvas:
-ARS-MAGNA.CANVAS. Signals MALFORMED-DEFINITION. Our addition to the manual."
+ARS-MAGNA.CANVAS. Signals MALFORMED-DEFINITION."
   `(defpackage ,name
      ,@(user-package-options (format nil "define-user-package ~(~A~)" name) options)))

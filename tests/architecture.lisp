@@ -154,3 +154,36 @@
 (test packages.say-what-they-are
   (dolist (package (project-packages))
     (is (plusp (length (documentation package t))) "~A" (package-name package))))
+
+;;; What users see.
+
+(defun documentations (symbol)
+  "Return all that is said of SYMBOL, a list of strings."
+  (loop for kind in '(function variable type)
+        for text = (documentation symbol kind)
+        when text collect text))
+
+(defun says-addition-p (text)
+  (let ((sentence (format nil "~%An addition to the manual.")))
+    (eql (search sentence text) (- (length text) (length sentence)))))
+
+(defun face-package (face)
+  "Return the package FACE; in here :NISP is a nickname of a layer."
+  (find (string face) (list-all-packages) :key #'package-name :test #'string=))
+
+(test public.is-what-is-marked
+  (dolist (face '(:ars :nisp))
+    (is (null (set-exclusive-or (base:public-symbols face)
+                                (external-symbols (face-package face)))))))
+
+(test public.is-told-apart-from-the-manual
+  (dolist (symbol (append (base:public-symbols :ars) (base:public-symbols :nisp)))
+    (let ((texts (documentations symbol)))
+      (if (base:addition-p symbol)
+          (is (every #'says-addition-p texts) "~S does not say that the manual lacks it" symbol)
+          (is (or (null texts) (some (lambda (text) (search "anual" text)) texts))
+              "~S does not cite the manual" symbol)))))
+
+(test public.must-be-exported-by-its-layer
+  (signals base:misuse
+    (ars-magna.faces::show 'ars-magna.base::find-mark :ars)))

@@ -5,10 +5,12 @@
 ;;; A misused library signals one of these. A robot that fails in a task does not: it
 ;;; reports an error code through its command's continuation (manual 3.1.1).
 
+(addition ars-magna-error)
 (define-condition ars-magna-error (error)
   ()
   (:documentation "The root of every error that ARS MAGNA signals."))
 
+(addition wrong-argument)
 (define-condition wrong-argument (ars-magna-error)
   ((operator :initarg :operator :reader wrong-argument-operator)
    (name     :initarg :name     :reader wrong-argument-name)
@@ -30,6 +32,7 @@
   "Signal WRONG-ARGUMENT unless TEST holds; EXPECTED says in words what PLACE should be."
   `(unless ,test (reject-argument ',operator ',place ,place ,expected)))
 
+(addition malformed-definition)
 (define-condition malformed-definition (ars-magna-error)
   ((definition :initarg :definition :reader malformed-definition-definition)
    (clause     :initarg :clause     :reader malformed-definition-clause)
@@ -46,6 +49,7 @@
   "Signal MALFORMED-DEFINITION about CLAUSE of DEFINITION (a string such as \"defmap watson\")."
   (error 'malformed-definition :definition definition :clause clause :expected expected))
 
+(addition unknown-name)
 (define-condition unknown-name (ars-magna-error)
   ((kind    :initarg :kind    :reader unknown-name-kind)
    (name    :initarg :name    :reader unknown-name-name)
@@ -60,6 +64,7 @@
                      (unknown-name-known condition))))
   (:documentation "A name was given that nothing of that kind has."))
 
+(addition misuse)
 (define-condition misuse (ars-magna-error)
   ((text :initarg :text :reader misuse-text))
   (:report (lambda (condition stream) (write-string (misuse-text condition) stream)))

@@ -49,10 +49,12 @@
     (setf (dice-state dice) state)
     (mix-word state)))
 
+(addition roll)
 (defun roll (dice)
   "Return a double-float uniform in [0, 1)."
   (* (the double-float (float (ash (roll-word dice) -11) 1d0)) #.(expt 2d0 -53)))
 
+(addition chance)
 (defun chance (probability dice)
   "True with PROBABILITY. Certain outcomes (0 or less, 1 or more) roll nothing."
   (let ((probability (double probability)))
@@ -60,23 +62,28 @@
           ((>= probability 1d0) t)
           (t (< (roll dice) probability)))))
 
+(addition roll-between)
 (defun roll-between (low high dice)
   "Return a double-float uniform in [LOW, HIGH)."
   (let ((low (double low)) (high (double high)))
     (+ low (* (roll dice) (- high low)))))
 
+(addition roll-within)
 (defun roll-within (range dice)
   "Return a double-float uniform in [-RANGE, RANGE); 0 if RANGE is 0."
   (if (zerop range) 0d0 (roll-between (- range) range dice)))
 
+(addition roll-index)
 (defun roll-index (count dice)
   "Return an integer uniform in [0, COUNT)."
   (values (floor (* (roll dice) count))))
 
+(addition roll-element)
 (defun roll-element (sequence dice)
   "Return an element of the non-empty SEQUENCE, each as likely as another."
   (elt sequence (roll-index (length sequence) dice)))
 
+(addition roll-gaussian)
 (defun roll-gaussian (mean deviation dice)
   "Return a normally distributed double-float. A DEVIATION of 0 returns MEAN and rolls nothing."
   (if (zerop deviation)

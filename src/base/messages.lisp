@@ -8,6 +8,7 @@
 (defparameter *message-limit* 1000
   "How many messages a queue holds before it forgets the oldest (manual 3.7; our bound).")
 
+(public flush-all-errors*)
 (defvar flush-all-errors* nil
   "When true, queued messages are discarded instead of displayed. Default NIL (manual 3.7).")
 
@@ -46,17 +47,20 @@ that reports) after each message is queued."
   (let ((listener (message-queue-listener queue)))
     (when listener (funcall listener))))
 
+(public error-set)
 (defun error-set (&rest stuff)
   "Queue an error message made of the items STUFF, printed by OUT's rules. Return nothing
 (manual 3.7)."
   (queue-message (make-message :error stuff) *message-queue*)
   (values))
 
+(public warning-set)
 (defun warning-set (&rest stuff)
   "Queue a warning made of the items STUFF, printed by OUT's rules. Return nothing (manual 3.7)."
   (queue-message (make-message :warning stuff) *message-queue*)
   (values))
 
+(public message-set)
 (defun message-set (&rest stuff)
   "Queue a message made of the items STUFF, printed by OUT's rules. Return nothing (manual 3.7)."
   (queue-message (make-message :message stuff) *message-queue*)
@@ -91,6 +95,7 @@ ones were forgotten, a warning that says how many comes first."
   "Write each of ITEMS to STREAM by OUT's rules."
   (dolist (item items) (write-item item stream)))
 
+(public (out :nisp))
 (defun out (&rest items)
   "Print each of ITEMS, without quotes, to standard output; T ends the line. Return nothing
 (manual 3.1.3)."
@@ -108,6 +113,7 @@ ones were forgotten, a warning that says how many comes first."
           (ecase (message-kind message) (:error "ERROR") (:warning "WARNING") (:message nil))
           (message-text message)))
 
+(public error-display)
 (defun error-display (&optional (stream *standard-output*))
   "Write all queued messages to STREAM, oldest first, and flush the queue. Writes nothing
 when FLUSH-ALL-ERRORS* is true. Return nothing (manual 3.7)."

@@ -14,6 +14,8 @@ and bordeaux-threads so that no other layer has to.")
            #:read-file-into-string #:starts-with-subseq #:define-constant)
   ;; policy
   (:export #:*hot* #:double #:cell-index #:tick-count #:document-functions)
+  ;; public
+  (:export #:public #:addition #:addition-p #:public-symbols)
   ;; conditions
   (:export #:ars-magna-error #:wrong-argument #:check-argument #:malformed-definition
            #:reject-clause #:unknown-name #:reject-name #:misuse #:reject-use)
@@ -33,8 +35,9 @@ and bordeaux-threads so that no other layer has to.")
   ;; user code
   (:export #:call-user-code #:*break-on-user-error*)
   ;; parameters
-  (:export #:parameter #:parameter-name #:parameter-default #:parameter-unit #:parameter-kind
-           #:parameter-group #:parameter-sentence #:parameter-value #:define-parameter
+  (:export #:parameter #:parameter-p #:parameter-name #:parameter-default #:parameter-unit
+           #:parameter-kind #:parameter-group #:parameter-sentence #:parameter-value
+           #:define-parameter
            #:all-parameters #:find-parameter #:call-with-parameters #:parameter-settings
            #:check-parameters #:parameter-values #:follow-parameters
            #:clean-simulation #:dirty-simulation #:*noise-before-cleaning*)

@@ -17,12 +17,16 @@
   (group "" :type string :read-only t)
   (sentence "" :type string :read-only t))
 
-(setf (documentation 'parameter-default 'function) "Return the value that the manual gives."
+(addition parameter-p parameter-default parameter-unit parameter-kind parameter-group
+          parameter-sentence)
+(setf (documentation 'parameter-p 'function) "True of parameters."
+      (documentation 'parameter-default 'function) "Return the value that the manual gives."
       (documentation 'parameter-unit 'function) "Return the unit of the values, a string."
       (documentation 'parameter-kind 'function) "Return :NOISE, :DELAY, :LIMIT or :SETTING."
       (documentation 'parameter-group 'function) "Return the heading that chapter 4 lists it under."
       (documentation 'parameter-sentence 'function) "Return what the parameter means.")
 
+(addition parameter-name)
 (defun parameter-name (parameter)
   "Return what PARAMETER is called, a lower-case string such as \"max-speed*\"."
   (string-downcase (parameter-symbol parameter)))
@@ -30,6 +34,7 @@
 (defvar *parameters* '()
   "All parameters, in the order of their definition.")
 
+(addition all-parameters)
 (defun all-parameters ()
   "Return a list of all parameters in the order of chapter 4."
   (copy-list *parameters*))
@@ -39,21 +44,25 @@
         (append (remove (parameter-symbol parameter) *parameters* :key #'parameter-symbol)
                 (list parameter))))
 
-(defmacro define-parameter (symbol default (&key (unit "") (type t) (kind :limit) (group "") clean)
+(defmacro define-parameter (symbol default
+                            (&key (unit "") (type t) (kind :limit) (group "") clean addition)
                             sentence)
   "Define SYMBOL as a special variable and simulation parameter. CLEAN is its value in a
-noiseless world, for parameters of kind :noise."
+noiseless world, for parameters of kind :noise; ADDITION is true if the manual does not have it."
   `(progn
+     (,(if addition 'addition 'public) ,symbol)
      (defvar ,symbol ,default
-       ,(format nil "~A Default ~A~@[ ~A~]. (Manual, chapter 4.)" sentence
+       ,(format nil "~A Default ~A~@[ ~A~].~:[ (Manual, chapter 4.)~;~]" sentence
                 (let ((*read-default-float-format* 'double-float))
                   (princ-to-string (eval default)))
-                (and (string/= unit "") unit)))
+                (and (string/= unit "") unit)
+                addition))
      (register-parameter
       (make-parameter :symbol ',symbol :default ,default :unit ,unit :type ',type
                       :kind ,kind :clean ,clean :group ,group :sentence ,sentence))
      ',symbol))
 
+(addition find-parameter)
 (defun find-parameter (name)
   "Return the parameter called NAME (a string or symbol, with or without its final star).
 Signals UNKNOWN-NAME."
@@ -79,6 +88,7 @@ Signals UNKNOWN-NAME."
                            :value value
                            :expected (describe-type (parameter-type parameter)))))
 
+(addition parameter-value)
 (defun parameter-value (parameter)
   "Return the value that PARAMETER (or the parameter so named) has now. Can be set; signals
 WRONG-ARGUMENT if the new value is of the wrong type or out of range."
@@ -107,6 +117,7 @@ WRONG-ARGUMENT if the new value is of the wrong type or out of range."
 (defvar *noise-before-cleaning* nil
   "What CLEAN-SIMULATION changed: a list (symbol value), or NIL in a dirty simulation.")
 
+(public clean-simulation)
 (defun clean-simulation ()
   "Remove all noise and error: set every noise parameter to its noiseless value and
 NO-SENSOR-ERROR* to T. Delays and limits stay. A second call changes nothing. Returns nothing
@@ -119,6 +130,7 @@ NO-SENSOR-ERROR* to T. Delays and limits stay. A second call changes nothing. Re
                   and do (setf (parameter-value parameter) (parameter-clean parameter)))))
   (values))
 
+(public dirty-simulation)
 (defun dirty-simulation ()
   "Restore the noise parameters as they were before CLEAN-SIMULATION; without it, do nothing.
 Returns nothing (manual, chapter 4)."

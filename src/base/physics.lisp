@@ -5,10 +5,10 @@
 (macrolet
     ((define-group (group &rest definitions)
        `(progn
-          ,@(loop for (symbol default unit kind type sentence . clean) in definitions
+          ,@(loop for (symbol default unit kind type sentence . options) in definitions
                   collect `(define-parameter ,symbol ,default
-                               (:unit ,unit :kind ,kind :type ,type :group ,group
-                                :clean ,(if clean (first clean) 0d0))
+                               (,@options :unit ,unit :kind ,kind :type ,type :group ,group
+                                :clean 0d0)
                              ,sentence))))
      (define-physics (&rest groups)
        `(progn ,@(loop for group in groups collect `(define-group ,@group)))))
@@ -69,14 +69,14 @@
      (miss-place-prob* 0.1d0 "probability" :noise (real 0 1)
       "The chance that a search overlooks a place.")
      (false-thing-prob* 0.01d0 "probability" :noise (real 0 1)
-      "The chance that a search for things finds one that is not there. Not in the manual,
-which has false designators of things but no parameter for them.")
+      "The chance that a search for things finds one that is not there. The manual has false
+designators of things, but no parameter for them." :addition t)
      (pixel-error-range* 2.0d0 "substance units" :noise (real 0)
       "The normal error of a pixel, uniform to either side.")
      (pixel-outlier-prob* 0.01d0 "probability" :noise (real 0 1)
       "The chance that a pixel is any value of the map's range.")
      (no-sensor-error* nil "" :noise boolean
-      "When true, nothing is sensed wrongly." t)
+      "When true, nothing is sensed wrongly." :clean t)
      (discrete-noise-factor* 0.1d0 "per cell" :limit (real 0)
       "How fast the reading of discrete attributes gets worse with distance.")
      (continuous-noise-factor* 0.05d0 "cells" :limit (real 0)
@@ -103,5 +103,5 @@ which has false designators of things but no parameter for them.")
       "How long opening or closing a storage bin takes."))
     ("Time"
      (tick-quantum* 1 "ticks" :setting (real 1)
-      "How much time one tick stands for: motion, drift and chances scale with it. Not in the
-manual, whose chapter 1.2 only wishes to skip ahead."))))
+      "How much time one tick stands for: motion, drift and chances scale with it. The manual
+only wishes, in chapter 1.2, to skip ahead." :addition t))))

@@ -2,6 +2,7 @@
 
 (in-package :ars-magna.base)
 
+(addition *break-on-user-error*)
 (defvar *break-on-user-error* nil
   "When true, an error in user code (a continuation, kicker, manipulation, test or graphics
 body) enters the debugger where it happens; when NIL, the default, it is queued as an error

@@ -38,12 +38,16 @@ function of the operation that returns one."
   (report nil :type (or null function) :read-only t)
   (body nil :type function :read-only t))
 
+(addition spec-name spec-type spec-text error-code-keyword error-code-text command-p command-name
+          command-prompt-name command-prefix command-family command-section command-documentation
+          command-resource command-parameters command-results command-errors)
 (document-functions
   spec-name "Return the name of the argument or result, a symbol."
   spec-type "Return the name of the argument's type."
   spec-text "Return what the argument or result is, a sentence."
   error-code-keyword "Return the keyword that the continuation gets."
   error-code-text "Return the text of the message, a string or a function of the operation."
+  command-p "True of commands."
   command-name "Return the symbol of the function that issues the command."
   command-prompt-name "Return what the command is called at the prompt, in upper case."
   command-prefix "Return the word that the command's messages begin with."
@@ -60,10 +64,12 @@ function of the operation that returns one."
 
 (defvar *commands* '() "All commands, in order of definition.")
 
+(addition all-commands)
 (defun all-commands ()
   "Return a list of all commands, in order of definition."
   (copy-list *commands*))
 
+(addition find-command)
 (defun find-command (name)
   "Return the command whose function, or whose command at the prompt, is called NAME. Signals
 UNKNOWN-NAME."

@@ -64,6 +64,7 @@ BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now o
         (variables (mapcar #'first parameters))
         (report (option :report options)))
     `(progn
+       (public ,name)
        (register-command
         (make-command
          :name ',name

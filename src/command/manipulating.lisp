@@ -154,6 +154,7 @@
                    (string (manipulation-name manipulation)) arguments)
             (begin operation)))))
 
+(public run-manipulation)
 (defun run-manipulation (name &rest arguments)
   "Carry out the manipulation NAME, a symbol, with ARGUMENTS, of which the last is the continuation
 (NIL for none) and the others are as one of its methods wants them: designators for the objects,
@@ -169,6 +170,7 @@ manipulation's own. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method take
     (issue-manipulation manipulation (method-resource method arguments) arguments continuation)
     (values)))
 
+(public manipulate)
 (defmacro manipulate (name &rest arguments)
   "Do as RUN-MANIPULATION does with the manipulation NAME, which is not evaluated, such as
 (manipulate lock box-designator key-designator hand continuation) (manual 5.5.2)."

@@ -29,9 +29,13 @@ others, each a list (variable type), with NIL for no type."
   (name nil :type symbol :read-only t)
   (methods '() :type list)
   (command nil :type (or null command)))
+(addition manipulation-name)
+(document-functions
+  manipulation-name "Return the symbol that the manipulation is called.")
 
 (defvar *manipulations* '() "All manipulations, in order of definition.")
 
+(addition all-manipulations)
 (defun all-manipulations ()
   "Return a list of the names of all manipulations, in order of definition."
   (mapcar #'manipulation-name *manipulations*))
@@ -39,7 +43,9 @@ others, each a list (variable type), with NIL for no type."
 (defun lookup-manipulation (name)
   (find name *manipulations* :key #'manipulation-name :test #'same-name-p))
 
+(addition find-manipulation)
 (defun find-manipulation (name)
+  "Return the manipulation called NAME, a symbol or string. Signals UNKNOWN-NAME."
   (or (and (typep name '(or symbol string)) (lookup-manipulation name))
       (reject-name "manipulation" name (all-manipulations))))
 
@@ -132,6 +138,7 @@ parameter list, BODY a function of as many arguments. Return NAME."
       :delay (check-option definition :delay delay 'tick-count "a number of ticks, 0 or more")))
     name))
 
+(public defmanipulation)
 (defmacro defmanipulation (name parameters options &body body)
   "Define a method of the manipulation NAME (manual 5.5.1). PARAMETERS is
   (variable - descriptor ... :by resource other ...)

@@ -8,9 +8,9 @@
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.nisp #:matchvar-p #:matchvar-name)
   ;; command
-  (:export #:command #:command-name #:command-prompt-name #:command-family #:command-section
-           #:command-resource #:command-parameters #:command-results #:command-errors
-           #:command-documentation #:command-prefix
+  (:export #:command #:command-p #:command-name #:command-prompt-name #:command-family
+           #:command-section #:command-resource #:command-parameters #:command-results
+           #:command-errors #:command-documentation #:command-prefix
            #:parameter-spec #:spec-name #:spec-type #:spec-text
            #:error-code #:error-code-keyword #:error-code-text
            #:all-commands #:find-command #:argument-type-text #:argument-of-type-p)
@@ -35,4 +35,4 @@
            #:storage-bin-close)
   ;; manipulations
   (:export #:defmanipulation #:define-manipulation #:manipulate #:run-manipulation
-           #:all-manipulations))
+           #:find-manipulation #:all-manipulations #:manipulation-name))

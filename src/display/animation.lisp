@@ -71,6 +71,7 @@ ticks and at the end."
   (merge-pathnames (make-pathname :name (format nil "~A-~4,'0D" (pathname-name file) number))
                    (merge-pathnames file)))
 
+(addition save-animation)
 (defun save-animation (journal file &key every until (rate 10) series (display :world)
                                       (layers *picture-layers*) (in-color t)
                                       (scale graphics-scale*))

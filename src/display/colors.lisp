@@ -24,6 +24,7 @@
   (coerce (loop for index below count collect (mix dark light (/ index (1- count))))
           'simple-vector))
 
+(public black* white* grey*)
 (defvar black* #x000000 "Black, a colour for WITH-COLOR (manual B.1).")
 (defvar white* #xFFFFFF "White, a colour for WITH-COLOR (manual B.1).")
 (defvar grey* (shades 64 black* white*)
@@ -33,6 +34,7 @@
   "Define each of the variables as a vector of 12 colours between two."
   `(progn
      ,@(loop for (variable dark light hue) in definitions
+             collect `(public ,variable)
              collect `(defvar ,variable (shades 12 ,dark ,light)
                         ,(format nil "A vector of 12 shades of ~A, from dark to light. ~
                                       (Manual B.1.)" hue)))))

@@ -27,13 +27,16 @@
       (documentation 'gcontext-line-style 'function)
       "Return how lines look: :SOLID, :DASH or :DOUBLE-DASH. Can be set.")
 
+(public draw-gcontext*)
 (defvar draw-gcontext* (create-gcontext)
   "The graphics context that :graphics and :draw-function bodies draw with (manual B.1).")
 
+(public (graphics-scale* :ars))
 (defvar graphics-scale* 8
   "How many pixels there are to the side of a grid cell in the display of the world. Default 8
 (manual B; the default is ours).")
 
+(public in-color*)
 (defvar in-color* t
   "True while drawing on a display that has colours, false on a monochrome one (manual B.1).")
 
@@ -64,6 +67,7 @@
 OPTIONS give, as CLX does."
   `(call-with-gcontext (lambda () ,@body) ,gcontext ,@options))
 
+(public with-color)
 (defmacro with-color (color &body body)
   "Run BODY drawing in COLOR, one of the colours in the manual's vectors or any integer #xRRGGBB;
 in black if the display has no colours (manual B.1). Signals WRONG-ARGUMENT."
@@ -71,6 +75,7 @@ in black if the display has no colours (manual B.1). Signals WRONG-ARGUMENT."
     `(let ((,value ,color))
        (with-gcontext (draw-gcontext* :foreground (if in-color* ,value black*)) ,@body))))
 
+(public with-lines)
 (defmacro with-lines ((&key width style) &body body)
   "Run BODY drawing lines WIDTH pixels wide in STYLE, one of CLX's: :SOLID, :DASH or :DOUBLE-DASH
 (manual B.1). Signals WRONG-ARGUMENT."

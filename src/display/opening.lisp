@@ -5,6 +5,7 @@
 (defvar *display-opener* nil
   "A function of a robot that opens its display in a window, or NIL if nothing that can is loaded.")
 
+(addition open-display)
 (defun open-display (robot)
   "Show ROBOT and its world in a window that follows what happens there (manual B). Return ROBOT.
 Signals MISUSE where no window is to be had: see ars-magna/clim."

@@ -75,6 +75,7 @@ are to a cell. IN-COLOR is false for a picture in black and white. Signals WRONG
                              :display display :layers layers :in-color in-color :scale scale))
             file (picture-kind 'save-snapshot file)))
 
+(addition save-picture)
 (defun save-picture (robot file &key (display :world) (layers *picture-layers*) (in-color t)
                                   (scale graphics-scale*))
   "Save a picture of the world of ROBOT as it is now in FILE, replacing it: SVG or, where the

@@ -140,6 +140,7 @@
                :columns (max 1 (- (min (map-width map) (+ (floor (robot-x robot)) radius 1)) left))
                :rows (max 1 (- (min (map-height map) (+ (floor (robot-y robot)) radius 1)) top)))))
 
+(addition text-map)
 (defun text-map (robot &key (columns 80) radius)
   "Return a string that shows the world of ROBOT in lines of at most COLUMNS characters: walls,
 places, things by their initials, robots as arrows, and what it all means. With RADIUS, a

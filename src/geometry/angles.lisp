@@ -5,6 +5,7 @@
 ;;; With y down, the heading of angle a is (cos a, sin a), and a left turn is -pi/2. Angles are
 ;;; never normalised; only differences are reduced, to (-pi, pi].
 
+(public (2pi :ars :nisp))
 (defconstant 2pi (* 2 pi)
   "Two pi, a full turn in radians (manual 3.2).")
 
@@ -12,9 +13,11 @@
 (unless (documentation 'pi 'variable)
   (setf (documentation 'pi 'variable) "Half a turn in radians."))
 
+(public (origin* :ars :nisp))
 (defvar origin* (make-pt 0 0)
   "The point (0, 0), where an odometer starts (manual, Figure D.8).")
 
+(public (atan2 :ars :nisp))
 (defun atan2 (y x)
   "Return the angle of the direction (X, Y), in radians from -pi to pi (manual, Figure D.8)."
   (check-argument atan2 y (realp y) "a real number")
@@ -30,6 +33,7 @@
       (let ((turns (ceiling (the (double-float -4d18 4d18) (- (/ angle 2pi) 0.5d0)))))
         (- angle (* 2pi turns)))))
 
+(addition angle-difference)
 (defun angle-difference (a b)
   "Return the angle A minus the angle B without whole turns: the signed turn, in (-pi, pi]
 radians, that leads from B to A."
@@ -37,6 +41,7 @@ radians, that leads from B to A."
   (check-argument angle-difference b (realp b) "a real number")
   (reduced-angle (- (double a) (double b))))
 
+(addition nearest-angle)
 (defun nearest-angle (angle candidate &rest more)
   "Return the one of CANDIDATE and MORE that is the least turn away from ANGLE, all in radians,
 as it was given; the first of equals."

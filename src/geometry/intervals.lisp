@@ -8,44 +8,47 @@
 (defmacro define-comparison (name combine (low-a high-a low-b high-b) documentation form)
   "Define NAME as a function of two operands whose value along an axis is FORM, evaluated with
 the four variables bound to their bounds; COMBINE joins the values of two axes."
-  `(defun ,name (a b)
-     ,documentation
-     (flet ((compare (,low-a ,high-a ,low-b ,high-b)
-              (declare (type double-float ,low-a ,high-a ,low-b ,high-b)
-                       (ignorable ,low-a ,high-a ,low-b ,high-b))
-              ,form))
-       (declare (inline compare))
-       (dispatch ,name (a b) "two intervals or numbers, or two point intervals or points"
-         ((span span) (compare (low a) (high a) (low b) (high b)))
-         ((region region)
-          (,combine (compare (low-x a) (high-x a) (low-x b) (high-x b))
-                    (compare (low-y a) (high-y a) (low-y b) (high-y b))))))))
+  `(progn
+     (public ,name)
+     (defun ,name (a b)
+       ,documentation
+       (flet ((compare (,low-a ,high-a ,low-b ,high-b)
+                (declare (type double-float ,low-a ,high-a ,low-b ,high-b)
+                         (ignorable ,low-a ,high-a ,low-b ,high-b))
+                ,form))
+         (declare (inline compare))
+         (dispatch ,name (a b) "two intervals or numbers, or two point intervals or points"
+           ((span span) (compare (low a) (high a) (low b) (high b)))
+           ((region region)
+            (,combine (compare (low-x a) (high-x a) (low-x b) (high-x b))
+                      (compare (low-y a) (high-y a) (low-y b) (high-y b)))))))))
 
 (define-comparison interval-intersect? and (low-a high-a low-b high-b)
-  "True if the intervals A and B share an element, be it a bound (Table 3.2)."
+  "True if the intervals A and B share an element, be it a bound (manual, Table 3.2)."
   (and (<= low-a high-b) (<= low-b high-a)))
 
 (define-comparison interval-subset? and (low-a high-a low-b high-b)
-  "True if every element of the interval A is in the interval B (Table 3.2)."
+  "True if every element of the interval A is in the interval B (manual, Table 3.2)."
   (and (<= low-b low-a) (<= high-a high-b)))
 
 (define-comparison less and (low-a high-a low-b high-b)
   "True if every element of the interval A is less than every element of B, of point intervals
-along both axes (Table 3.2)."
+along both axes (manual, Table 3.2)."
   (< high-a low-b))
 
 (define-comparison greater and (low-a high-a low-b high-b)
   "True if every element of the interval A is greater than every element of B, of point
-intervals along both axes (Table 3.2)."
+intervals along both axes (manual, Table 3.2)."
   (> low-a high-b))
 
 (define-comparison interval-dist max (low-a high-a low-b high-b)
   "Return the gap between the intervals A and B, of point intervals the wider of the gaps along
-the two axes; 0 just if they intersect (Table 3.2)."
+the two axes; 0 just if they intersect (manual, Table 3.2)."
   (max 0d0 (- low-a high-b) (- low-b high-a)))
 
+(public in-interval)
 (defun in-interval (x interval)
-  "True if the number or point X is in INTERVAL, bounds included (Table 3.2)."
+  "True if the number or point X is in INTERVAL, bounds included (manual, Table 3.2)."
   (dispatch in-interval (x interval) "a number and an INTERVAL, or a PT and a PT-INTERVAL"
     ((real span) (<= (low interval) (double x) (high interval)))
     ((pt region) (and (<= (low-x interval) (%pt-x x) (high-x interval))
@@ -58,21 +61,24 @@ the two axes; 0 just if they intersect (Table 3.2)."
   (declare (type double-float low high))
   (* 0.5d0 (+ low high)))
 
+(public interval-width)
 (defun interval-width (interval)
   "Return the largest distance between two elements of INTERVAL: of a point interval, its
-diagonal (Table 3.2)."
+diagonal (manual, Table 3.2)."
   (dispatch interval-width (interval) "an INTERVAL or PT-INTERVAL"
     ((span) (- (high interval) (low interval)))
     ((region) (length-of (- (high-x interval) (low-x interval))
                          (- (high-y interval) (low-y interval))))))
 
+(public interval-overlap-width)
 (defun interval-overlap-width (a b)
-  "Return the width of what the intervals A and B have in common; 0 if nothing (Table 3.2)."
+  "Return the width of what the intervals A and B have in common; 0 if nothing (manual, Table 3.2)."
   (let ((common (interval-intersect a b)))
     (if common (interval-width common) 0d0)))
 
+(public nominal)
 (defun nominal (interval)
-  "Return the centre of INTERVAL, the best estimate: a number, or a fresh PT (Table 3.2)."
+  "Return the centre of INTERVAL, the best estimate: a number, or a fresh PT (manual, Table 3.2)."
   (dispatch nominal (interval) "an INTERVAL or PT-INTERVAL"
     ((span) (centre (low interval) (high interval)))
     ((region) (%make-pt (centre (low-x interval) (high-x interval))
@@ -84,9 +90,10 @@ diagonal (Table 3.2)."
 (defun %intersect! (interval low high)
   (%set-interval! interval (max (%interval-min interval) low) (min (%interval-max interval) high)))
 
+(public interval-intersect!)
 (defun interval-intersect! (a b)
   "Change A into what the intervals A and B have in common, and return A. If that is nothing,
-leave A as it is and return NIL (Table 3.2)."
+leave A as it is and return NIL (manual, Table 3.2)."
   (dispatch interval-intersect! (a b) "an INTERVAL or PT-INTERVAL and one like it"
     ((interval span)
      (when (interval-intersect? a b)
@@ -97,9 +104,10 @@ leave A as it is and return NIL (Table 3.2)."
        (%intersect! (%pt-interval-y a) (low-y b) (high-y b))
        a))))
 
+(public interval-intersect)
 (defun interval-intersect (a b)
   "Return what the intervals A and B have in common, as a fresh interval of their kind; NIL if
-that is nothing (Table 3.2)."
+that is nothing (manual, Table 3.2)."
   (dispatch interval-intersect (a b) "two intervals or two point intervals"
     ((span span) (interval-intersect! (lift a) b))
     ((region region) (interval-intersect! (lift a) b))))
@@ -110,8 +118,9 @@ that is nothing (Table 3.2)."
 (defun %bound! (interval low high)
   (%set-interval! interval (min (%interval-min interval) low) (max (%interval-max interval) high)))
 
+(public interval-lbi!)
 (defun interval-lbi! (a b)
-  "Grow the interval A just so that it contains B too, and return A (Table 3.2)."
+  "Grow the interval A just so that it contains B too, and return A (manual, Table 3.2)."
   (dispatch interval-lbi! (a b) "an INTERVAL or PT-INTERVAL and one like it"
     ((interval span) (%bound! a (low b) (high b)))
     ((pt-interval region)
@@ -119,33 +128,38 @@ that is nothing (Table 3.2)."
      (%bound! (%pt-interval-y a) (low-y b) (high-y b))))
   a)
 
+(public interval-lbi)
 (defun interval-lbi (a b)
-  "Return the least interval that contains the intervals A and B (Table 3.2)."
+  "Return the least interval that contains the intervals A and B (manual, Table 3.2)."
   (dispatch interval-lbi (a b) "two intervals or two point intervals"
     ((span span) (interval-lbi! (lift a) b))
     ((region region) (interval-lbi! (lift a) b))))
 
+(public add-to-lbi!)
 (defun add-to-lbi! (interval x)
-  "Grow INTERVAL just so that it contains the number or point X, and return it (Table 3.2)."
+  "Grow INTERVAL just so that it contains the number or point X, and return it (manual, Table 3.2)."
   (dispatch add-to-lbi! (interval x) "an INTERVAL and a number, or a PT-INTERVAL and a PT"
     ((interval real) (interval-lbi! interval x))
     ((pt-interval pt) (interval-lbi! interval x))))
 
+(public add-to-lbi)
 (defun add-to-lbi (interval x)
-  "Return the least interval that contains INTERVAL and the number or point X (Table 3.2)."
+  "Return the least interval that contains INTERVAL and the number or point X (manual, Table 3.2)."
   (dispatch add-to-lbi (interval x) "an INTERVAL and a number, or a PT-INTERVAL and a PT"
     ((span real) (interval-lbi! (lift interval) x))
     ((region pt) (interval-lbi! (lift interval) x))))
 
+(public interval-lift)
 (defun interval-lift (x)
   "Return the interval that contains only X: an INTERVAL of a number, a PT-INTERVAL of a point
-(Table 3.2)."
+(manual, Table 3.2)."
   (dispatch interval-lift (x) "a number or a PT"
     (((or real pt)) (lift x))))
 
+(public lift-lbi)
 (defun lift-lbi (x &rest more)
   "Return the least interval that contains X and each of MORE, all numbers or all points
-(Table 3.2)."
+(manual, Table 3.2)."
   (declare (dynamic-extent more))
   (check-argument lift-lbi x (typep x '(or real pt)) "a number or a PT")
   (let ((interval (lift x)))
@@ -166,9 +180,10 @@ that is nothing (Table 3.2)."
         (let ((centre (centre (%interval-min interval) (%interval-max interval))))
           (%set-interval! interval centre centre)))))
 
+(public grow-interval!)
 (defun grow-interval! (interval amount)
   "Push each boundary of INTERVAL outward by the number AMOUNT, and return INTERVAL. A negative
-AMOUNT shrinks it, at most to its centre (Table 3.2)."
+AMOUNT shrinks it, at most to its centre (manual, Table 3.2)."
   (dispatch grow-interval! (interval amount) "an INTERVAL or PT-INTERVAL and a number"
     ((interval real) (%grow! interval (double amount)))
     ((pt-interval real)
@@ -176,9 +191,10 @@ AMOUNT shrinks it, at most to its centre (Table 3.2)."
      (%grow! (%pt-interval-y interval) (double amount))))
   interval)
 
+(public grow-interval)
 (defun grow-interval (interval amount)
   "Return INTERVAL with each boundary pushed outward by the number AMOUNT, which may be negative;
-INTERVAL then shrinks, at most to its centre (Table 3.2)."
+INTERVAL then shrinks, at most to its centre (manual, Table 3.2)."
   (dispatch grow-interval (interval amount) "an INTERVAL or PT-INTERVAL and a number"
     ((span real) (grow-interval! (lift interval) amount))
     ((region real) (grow-interval! (lift interval) amount))))

@@ -21,8 +21,10 @@
         (d (* (%interval-max interval) high)))
     (%set-interval! interval (min a b c d) (max a b c d))))
 
+(public add!)
 (defun add! (a b)
-  "Change A into the sum of A and B, and return A. Intervals add bound by bound (Table 3.1)."
+  "Change A into the sum of A and B, and return A. Intervals add bound by bound (manual,
+Table 3.1)."
   (dispatch add! (a b) "a PT and a PT, or an INTERVAL or PT-INTERVAL and one like it"
     ((pt pt) (set-pt! a (+ (%pt-x a) (%pt-x b)) (+ (%pt-y a) (%pt-y b))))
     ((interval span) (%add! a (low b) (high b)))
@@ -31,18 +33,20 @@
      (%add! (%pt-interval-y a) (low-y b) (high-y b))))
   a)
 
+(public add)
 (defun add (a b)
   "Return the sum of A and B: two points (as vectors), or two intervals or two point intervals,
-of which one may be an element (Table 3.1)."
+of which one may be an element (manual, Table 3.1)."
   (dispatch add (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (%make-pt (+ (%pt-x a) (%pt-x b)) (+ (%pt-y a) (%pt-y b))))
     ((real real) (+ (double a) (double b)))
     ((span span) (add! (lift a) b))
     ((region region) (add! (lift a) b))))
 
+(public subtract!)
 (defun subtract! (a b)
   "Change A into A minus B, and return A. Of intervals, the result holds every difference of
-their elements (Table 3.1)."
+their elements (manual, Table 3.1)."
   (dispatch subtract! (a b) "a PT and a PT, or an INTERVAL or PT-INTERVAL and one like it"
     ((pt pt) (set-pt! a (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((interval span) (%add! a (- (high b)) (- (low b))))
@@ -51,17 +55,19 @@ their elements (Table 3.1)."
      (%add! (%pt-interval-y a) (- (high-y b)) (- (low-y b)))))
   a)
 
+(public subtract)
 (defun subtract (a b)
   "Return A minus B: two points (as vectors), or two intervals or two point intervals, of which
-one may be an element (Table 3.1)."
+one may be an element (manual, Table 3.1)."
   (dispatch subtract (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (%make-pt (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((real real) (- (double a) (double b)))
     ((span span) (subtract! (lift a) b))
     ((region region) (subtract! (lift a) b))))
 
+(public neg!)
 (defun neg! (a)
-  "Change A into its negative, and return A. An interval swaps its bounds (Table 3.1)."
+  "Change A into its negative, and return A. An interval swaps its bounds (manual, Table 3.1)."
   (dispatch neg! (a) "a PT, INTERVAL or PT-INTERVAL"
     ((pt) (set-pt! a (- 0d0 (%pt-x a)) (- 0d0 (%pt-y a))))
     ((interval) (%neg! a))
@@ -70,15 +76,17 @@ one may be an element (Table 3.1)."
      (%neg! (%pt-interval-y a))))
   a)
 
+(public neg)
 (defun neg (a)
-  "Return the negative of A, a point, number, interval or point interval (Table 3.1)."
+  "Return the negative of A, a point, number, interval or point interval (manual, Table 3.1)."
   (dispatch neg (a) "a PT, INTERVAL, PT-INTERVAL or number"
     ((real) (- 0d0 (double a)))
     (((or pt interval pt-interval)) (neg! (copy-obj a)))))
 
+(public mul!)
 (defun mul! (a factor)
   "Multiply A by the number FACTOR, and return A. A negative FACTOR swaps the bounds of an
-interval; the FACTOR of an interval may be an interval itself (Table 3.1)."
+interval; the FACTOR of an interval may be an interval itself (manual, Table 3.1)."
   (dispatch mul! (a factor) "a PT, INTERVAL or PT-INTERVAL and a number"
     ((pt real) (let ((factor (double factor)))
                  (set-pt! a (* (%pt-x a) factor) (* (%pt-y a) factor))))
@@ -89,9 +97,10 @@ interval; the FACTOR of an interval may be an interval itself (Table 3.1)."
        (%mul! (%pt-interval-y a) low high))))
   a)
 
+(public mul)
 (defun mul (a factor)
   "Return A, a point, number, interval or point interval, multiplied by the number FACTOR; an
-interval as FACTOR gives the interval or point interval of all products (Table 3.1)."
+interval as FACTOR gives the interval or point interval of all products (manual, Table 3.1)."
   (dispatch mul (a factor) "a point, interval or point interval and a number"
     ((pt real) (mul! (copy-obj a) factor))
     ((real real) (* (double a) (double factor)))
@@ -114,9 +123,10 @@ interval as FACTOR gives the interval or point interval of all products (Table 3
   "Return the greatest absolute value in INTERVAL."
   (max (abs (%interval-min interval)) (abs (%interval-max interval))))
 
+(public norm)
 (defun norm (a)
   "Return the Euclidean length of the point A as a vector, in metres; of an interval or point
-interval, the INTERVAL of the lengths of its elements (Table 3.1)."
+interval, the INTERVAL of the lengths of its elements (manual, Table 3.1)."
   (dispatch norm (a) "a PT, INTERVAL, PT-INTERVAL or number"
     ((pt) (length-of (%pt-x a) (%pt-y a)))
     ((real) (abs (double a)))
@@ -126,9 +136,10 @@ interval, the INTERVAL of the lengths of its elements (Table 3.1)."
        (%make-interval (length-of (least-size x) (least-size y))
                        (length-of (greatest-size x) (greatest-size y)))))))
 
+(public dist)
 (defun dist (a b)
   "Return the Euclidean distance between the points A and B, in metres; if either is an interval
-or point interval, the INTERVAL of the distances between their elements (Table 3.1)."
+or point interval, the INTERVAL of the distances between their elements (manual, Table 3.1)."
   (dispatch dist (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (length-of (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((span span) (norm (subtract a b)))

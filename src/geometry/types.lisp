@@ -8,6 +8,7 @@
 
 ;;; Points.
 
+(public pt)
 (defstruct (pt (:constructor %make-pt (x y)) (:copier nil) (:conc-name %pt-))
   "A point or vector in the plane, in metres: x grows to the right, y downward (manual 3.2.1)."
   (x 0d0 :type double-float)
@@ -16,12 +17,14 @@
 
 (declaim (inline make-pt pt-x pt-y (setf pt-x) (setf pt-y) set-pt!))
 
+(addition make-pt)
 (defun make-pt (x y)
   "Return the point (X, Y); both are real numbers, in metres. Written (make PT X Y) in Nisp."
   (check-argument make-pt x (realp x) "a real number")
   (check-argument make-pt y (realp y) "a real number")
   (%make-pt (double x) (double y)))
 
+(addition pt-x)
 (defun pt-x (pt)
   "Return the horizontal coordinate of PT, in metres. Can be set."
   (%pt-x pt))
@@ -30,6 +33,7 @@
   (check-argument pt-x x (realp x) "a real number")
   (setf (%pt-x pt) (double x)))
 
+(addition pt-y)
 (defun pt-y (pt)
   "Return the vertical coordinate of PT, in metres, growing downward. Can be set."
   (%pt-y pt))
@@ -46,6 +50,7 @@
 
 ;;; Intervals.
 
+(public interval)
 (defstruct (interval (:constructor %make-interval (min max)) (:copier nil)
                      (:conc-name %interval-))
   "The real numbers from min to max, both included: an uncertain number (manual 3.2.1)."
@@ -60,6 +65,7 @@
         (%interval-max interval) max)
   interval)
 
+(addition make-interval)
 (defun make-interval (min max)
   "Return the interval from MIN to MAX, real numbers. MIN above MAX is an error. Written
 (make INTERVAL MIN MAX) in Nisp."
@@ -68,6 +74,7 @@
   (check-argument make-interval min (<= min max) "a number that is not above the max")
   (%make-interval (double min) (double max)))
 
+(addition interval-min)
 (defun interval-min (interval)
   "Return the lower bound of INTERVAL. Can be set, not above the upper bound."
   (%interval-min interval))
@@ -77,6 +84,7 @@
                   "a number that is not above the max; set the max first")
   (setf (%interval-min interval) (double min)))
 
+(addition interval-max)
 (defun interval-max (interval)
   "Return the upper bound of INTERVAL. Can be set, not below the lower bound."
   (%interval-max interval))
@@ -94,6 +102,7 @@
 
 ;;; Point intervals.
 
+(public pt-interval)
 (defstruct (pt-interval (:constructor %make-pt-interval (x y)) (:copier nil)
                         (:conc-name %pt-interval-))
   "A box with sides parallel to the axes: an uncertain point (manual 3.2.1)."
@@ -101,6 +110,7 @@
   (y (%make-interval 0d0 0d0) :type interval :read-only t))
 (declaim (sb-ext:freeze-type pt-interval))
 
+(addition make-pt-interval)
 (defun make-pt-interval (a b)
   "Return the box whose sides are the intervals A (along x) and B (along y), or whose opposite
 corners are the points A and B, in any order. The intervals are copied; a number stands for the
@@ -130,11 +140,13 @@ interval that holds only it. Written (make PT-INTERVAL A B) in Nisp."
 
 (declaim (inline pt-interval-x pt-interval-y))
 
+(addition pt-interval-x)
 (defun pt-interval-x (pt-interval)
   "Return the INTERVAL along x of PT-INTERVAL, its own: changing it changes PT-INTERVAL. Setting
 it copies the bounds of an interval."
   (%pt-interval-x pt-interval))
 
+(addition pt-interval-y)
 (defun pt-interval-y (pt-interval)
   "Return the INTERVAL along y of PT-INTERVAL, its own: changing it changes PT-INTERVAL. Setting
 it copies the bounds of an interval."
@@ -152,11 +164,13 @@ it copies the bounds of an interval."
                   (%interval-min interval) (%interval-max interval))
   interval)
 
+(addition pt-interval-dx)
 (defun pt-interval-dx (pt-interval)
   "Return how wide PT-INTERVAL is along x, in metres."
   (let ((side (%pt-interval-x pt-interval)))
     (- (%interval-max side) (%interval-min side))))
 
+(addition pt-interval-dy)
 (defun pt-interval-dy (pt-interval)
   "Return how wide PT-INTERVAL is along y, in metres."
   (let ((side (%pt-interval-y pt-interval)))
@@ -176,6 +190,7 @@ it copies the bounds of an interval."
       (documentation 'interval-p 'function) "True of an INTERVAL."
       (documentation 'pt-interval-p 'function) "True of a PT-INTERVAL.")
 
+(public copy-obj)
 (defun copy-obj (object)
   "Return a fresh copy of OBJECT, a PT, INTERVAL or PT-INTERVAL (its sides copied too); a number
 is its own copy (manual 3.2.1)."
@@ -185,6 +200,7 @@ is its own copy (manual 3.2.1)."
     ((or interval pt-interval) (lift object))
     (t (check-argument copy-obj object nil "a PT, INTERVAL or PT-INTERVAL"))))
 
+(public equal)
 (defun equal (a b)
   "True if A and B are the same PT, INTERVAL or PT-INTERVAL value, exactly; of anything else, if
 they are CL:EQUAL (manual 3.2.1)."

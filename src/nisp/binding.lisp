@@ -4,16 +4,19 @@
 
 ;;; From here on LET means ours in this package.
 
+(public let)
 (defmacro let (bindings &body body)
   "Evaluate BODY with BINDINGS in force, as CL:LET; a hyphen and a type may follow each binding:
 (let ((v init) - TYPE (w init)) ...) (manual 3.1)."
   `(cl:let ,(untyped-bindings bindings) ,@body))
 
+(public \\)
 (defmacro \\ (lambda-list &body body)
   "Return the function (lambda LAMBDA-LIST BODY...); a hyphen and a type may follow each parameter
 (manual 3.1). The name is one backslash, typed as two."
   `#'(lambda ,(untyped-lambda-list lambda-list "\\") ,@body))
 
+(public continuation)
 (defmacro continuation (lambda-list &body body)
   "Return a function for a robot command to call with an error code (NIL: none) and what else it
 reports. Like LAMBDA, but types may follow the parameters and unused ones are no matter
@@ -34,11 +37,13 @@ given, then the parameters and the body."
       `(defun ,name ,(untyped-lambda-list (first definition) operator)
          ,@(rest definition)))))
 
+(public deffunc)
 (defmacro deffunc (name &rest definition)
   "Define NAME as a function without side effects: (deffunc name - TYPE (args) body...). Types may
 follow the parameters (manual 3.1)."
   (expand-procedure 'deffunc name definition))
 
+(public defproc)
 (defmacro defproc (name &rest definition)
   "Define NAME as a procedure with side effects: (defproc name - TYPE (args) body...). Types may
 follow the parameters (manual 3.1)."

@@ -4,6 +4,7 @@
 
 ;;; From here on IF and LOOP mean ours in this package; both expand to Common Lisp's at once.
 
+(public if)
 (defmacro if (test then &rest else)
   "Evaluate THEN if TEST is true, otherwise the forms ELSE, of which there may be any number
 (manual, Figure D.5)."
@@ -18,6 +19,7 @@ keyword but compound forms or nothing."
          (or (null (cddr forms)) (consp (third forms)))
          (find (first forms) '(:until :while) :test #'string=))))
 
+(public loop)
 (defmacro loop (&rest forms)
   "Evaluate the body forms again and again: (loop UNTIL test body...) until the test is true
 before a round, (loop WHILE test body...) while it is. Other FORMS mean what they mean to CL:LOOP
@@ -27,10 +29,12 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
         `(cl:loop ,keyword ,(second forms) :do (progn ,@(cddr forms)))
         `(cl:loop ,@forms))))
 
+(public !=)
 (defmacro != (place value &rest more)
   "Set PLACE to VALUE, and so on through MORE pairs: SETF (manual 3.1)."
   `(setf ,place ,value ,@more))
 
+(public nop)
 (defun nop ()
   "Do nothing, but let other threads run meanwhile. Return nothing (manual, Figure D.3)."
   (sb-thread:thread-yield)
@@ -43,6 +47,7 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
   (check-argument vref index (and (integerp index) (< -1 index (length vector)))
                   (format nil "the index of one of ~D elements, from 0" (length vector))))
 
+(public vref)
 (defun vref (vector index)
   "Return the element of VECTOR (a vector or a list) at INDEX, counted from 0. Can be set
 (manual 3.1.3)."

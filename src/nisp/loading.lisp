@@ -11,6 +11,7 @@
   (let ((file (probe-file (merge-pathnames path (make-pathname :type "lisp")))))
     (and file (pathname-name file) file)))
 
+(public dsklap)
 (defun dsklap (path)
   "Load the Lisp file at PATH, or the ASDF system named by the last component of PATH, as in
 (dsklap \"ars-dir/ars-magna\"). Return true. It is an error if there is neither (manual A)."

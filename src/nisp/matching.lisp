@@ -57,6 +57,7 @@ TEMPORARIES with those that it sets."
         ((eq pattern t) (values `(eq ,datum t) temporaries))
         (t (values `(value-equal ',pattern ,datum) temporaries))))
 
+(public matchq)
 (defmacro matchq (pattern datum)
   "True if PATTERN, which is not evaluated, matches the value of DATUM. ?x matches anything, a
 second ?x only the same again; when all matches, each variable x is set to what its ?x matched.

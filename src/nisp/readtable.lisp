@@ -12,4 +12,5 @@
     (set-dispatch-macro-character #\# #\f 'read-false readtable)
     readtable))
 
+(addition (in-readtable :nisp))
 (ensure-nisp-readtable)

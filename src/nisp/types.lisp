@@ -5,23 +5,28 @@
 ;;; Types are known by name, whatever package it was read in. A layer registers a type when it
 ;;; is loaded; after that the registry is only read.
 
+(public void)
 (deftype void ()
   "The type of no values (manual 3.1)."
   nil)
 
+(public lst)
 (deftype lst (&optional (type t))
   "The type of the lists of objects of TYPE, which is not looked into (manual 3.1)."
   (declare (ignore type))
   'list)
 
+(public ~)
 (deftype ~ (type)
   "The type of #F and the objects of TYPE (manual 3.1)."
   `(or null ,type))
 
+(public thing-descriptor)
 (deftype thing-descriptor ()
   "The type of object descriptors and of specifications of objects (manual 3.3)."
   'list)
 
+(public robot-continuation)
 (deftype robot-continuation ()
   "The type of what a robot command takes as its continuation, NIL for none (manual 3.1.1)."
   '(or function symbol))
@@ -94,6 +99,7 @@ unknown TYPE and a wrong number of ARGUMENTS are errors."
                   (nisp-type-name known) (nisp-type-parameters known)))
     (apply maker arguments)))
 
+(public make)
 (defmacro make (type &rest arguments)
   "Return a new object of TYPE, a name that is not evaluated, made from ARGUMENTS, such as
 (make PT 1 2) (manual 3.1)."

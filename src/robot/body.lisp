@@ -22,6 +22,7 @@
 
 (defvar *bodies* '() "The bodies of all robots, in order of definition.")
 
+(addition all-robots)
 (defun all-robots ()
   "Return a list of the names of all robots, in order of definition."
   (mapcar #'body-name *bodies*))
@@ -33,6 +34,7 @@
 (defun find-body-name (name)
   (body-name (find-body name)))
 
+(addition find-robot)
 (defun find-robot (name)
   "Return the robot called NAME, a symbol or string: the one that the variable of that name
 holds. Signals UNKNOWN-NAME."
@@ -146,6 +148,7 @@ holds. Signals UNKNOWN-NAME."
                                  :key #'body-name :test #'same-name-p)
                          (list body))))
 
+(addition define-robot)
 (defun define-robot (name environment position angle &key cameras hands bins)
   "Do as DEFROBOT does, with values: ENVIRONMENT is a map or its name, POSITION a list (x y),
 CAMERAS a list of lists (fov resolution). Return the robot."
@@ -174,6 +177,7 @@ CAMERAS a list of lists (fov resolution). Return the robot."
              (unless (listp value) (reject (list key value) "a list after the keyword")))
     (when (oddp (length options)) (reject options "pairs of a keyword and a list"))))
 
+(public defrobot)
 (defmacro defrobot (name (&rest start) &rest options)
   "Define a robot: (defrobot NAME (ENVIRONMENT (X Y) ANGLE) [:cameras ((FOV RESOLUTION) ...)]
 [:hands (STRENGTH ...)] [:bins (CAPACITY ...)]). NAME becomes a special variable bound to the

@@ -8,8 +8,9 @@
 ;;; its serial number never again. Its LOCATION is where the camera was that saw it: a
 ;;; container, a storage bin, or NIL in the open.
 
+(public designator)
 (defstruct (designator (:constructor make-designator) (:copier nil))
-  "A handle on a thing or place that a camera has seen, or believes that it has."
+  "A handle on a thing or place that a camera has seen, or believes that it has (manual 3.4.1)."
   (type :non-local :type (member :local :non-local))
   (angle 0d0 :type double-float)
   (data '() :type list)
@@ -30,6 +31,9 @@
   (swing 0d0 :type double-float)
   (refreshed -1 :type fixnum))
 
+(addition designator-p designator-type designator-angle designator-data designator-robot
+          designator-number designator-denotation designator-distance designator-valid-p
+          designator-x designator-y designator-location)
 (document-functions
   designator-p "True of a designator."
   designator-type "Return :LOCAL or :NON-LOCAL (manual 3.4.1)."
@@ -54,6 +58,7 @@ place type (manual 3.4.1)."
 (defparameter *designator-limit* 1000
   "How many designators a robot keeps; past that, the oldest that no camera tracks is removed.")
 
+(addition find-designator)
 (defun find-designator (robot number)
   "Return the designator of ROBOT with NUMBER, or NIL."
   (let ((designators (robot-designators robot)))
@@ -61,6 +66,7 @@ place type (manual 3.4.1)."
          (< -1 number (length designators))
          (aref designators number))))
 
+(addition live-designators)
 (defun live-designators (robot)
   "Return a list of the valid designators of ROBOT, by number."
   (coerce (remove nil (robot-designators robot)) 'list))
@@ -120,6 +126,7 @@ a hand is where the hand is."
   (and (= (floor x) (floor (robot-x robot)))
        (= (floor y) (floor (robot-y robot)))))
 
+(addition designator-position)
 (defun designator-position (designator)
   "Return, as two values, where what DESIGNATOR denotes really is, or seems to be, in metres; NIL
 and NIL if it is nowhere."

@@ -8,6 +8,7 @@
 ;;; reach and in no bin that is closed or another robot's; and a hand holds one thing at most. Parts
 ;;; take up no room: what they reach into has as much capacity left as before.
 
+(public in-location)
 (defun in-location (thing location)
   "True if THING is directly in LOCATION: a hand, a storage bin, another thing, or :FLOOR (manual
 5.5.1)."

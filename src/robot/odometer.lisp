@@ -8,8 +8,10 @@
 ;;; and sine of the heading change only when the robot turns. Sums are widened by more than their
 ;;; rounding error.
 
+(public odometer)
 (defstruct (odometer (:constructor %make-odometer (robot name)) (:copier nil))
-  "An uncertain estimate of the robot's position and heading since the odometer was reset."
+  "An uncertain estimate of the robot's position and heading since the odometer was reset (manual
+3.2.2)."
   (robot nil :type (or null robot))
   (name nil :type symbol)
   (x-min 0d0 :type double-float) (x-max 0d0 :type double-float)
@@ -31,6 +33,7 @@ metres on the map, and the heading in radians. For displays: no program of the r
             (+ (odometer-origin-y odometer) (+ (* sin x) (* cos y)))
             (+ axis (* 0.5d0 (+ (odometer-angle-min odometer) (odometer-angle-max odometer)))))))
 
+(addition odometer-p odometer-name)
 (setf (documentation 'odometer-origin-angle 'function)
       "Return the robot's true heading when the angle of the odometer was last reset, radians."
       (documentation 'odometer-p 'function) "True of odometers."
@@ -109,6 +112,7 @@ metres on the map, and the heading in radians. For displays: no program of the r
                   (odometer-origin-angle odometer) (robot-angle robot))
        (refresh-bounds odometer)))))
 
+(public get-odometer-pos)
 (defun get-odometer-pos (odometer &optional interval)
   "Return a PT-INTERVAL that contains the position, in metres, relative to where ODOMETER was
 last reset; its x axis is the heading then. INTERVAL, a PT-INTERVAL, is modified and returned if
@@ -120,6 +124,7 @@ given (manual 3.2.2)."
                     (odometer-x-min odometer) (odometer-x-max odometer)
                     (odometer-y-min odometer) (odometer-y-max odometer)))
 
+(public get-odometer-ang)
 (defun get-odometer-ang (odometer &optional interval)
   "Return an INTERVAL that contains the angle turned, in radians, since ODOMETER was last reset.
 INTERVAL, if given, is modified and returned (manual 3.2.2)."
@@ -140,15 +145,18 @@ INTERVAL, if given, is modified and returned (manual 3.2.2)."
                   (list odometer)))
     odometer))
 
+(public robot-odometers)
 (defun robot-odometers (robot)
   "Return a list of the odometers of ROBOT, oldest first (manual 3.2.2)."
   (check-argument robot-odometers robot (robot-p robot) "a robot")
   (copy-list (robot-odometer-list robot)))
 
+(public robot-odometer)
 (defun robot-odometer (robot name)
   "Return the odometer of ROBOT called NAME, or NIL (manual 3.2.2)."
   (find name (robot-odometers robot) :key #'odometer-name :test #'same-name-p))
 
+(public robot-main-odometer)
 (defun robot-main-odometer (robot)
   "Return the odometer that ROBOT started with; it is called MAIN (manual 3.2.2)."
   (robot-odometer robot 'main))

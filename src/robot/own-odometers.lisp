@@ -5,6 +5,7 @@
 ;;; Odometers belong to the robot's state. So programs change them by way of its simulation, whose
 ;;; journal notes what they did.
 
+(addition make-odometer)
 (defun make-odometer (robot name)
   "Return a new odometer of ROBOT called NAME, a symbol. Another of that name is destroyed: it
 no longer changes (manual 3.2.2)."
@@ -29,16 +30,19 @@ no part of the robot any more."
           (reset))))
   odometer)
 
+(public reset-odometer-pos)
 (defun reset-odometer-pos (odometer)
   "Let ODOMETER count its position from here. Return ODOMETER (manual 3.2.2)."
   (check-odometer odometer 'reset-odometer-pos)
   (reset-by-program odometer :pos))
 
+(public reset-odometer-ang)
 (defun reset-odometer-ang (odometer)
   "Let ODOMETER count its angle from the present heading. Return ODOMETER (manual 3.2.2)."
   (check-odometer odometer 'reset-odometer-ang)
   (reset-by-program odometer :ang))
 
+(public reset-odometer)
 (defun reset-odometer (odometer)
   "Let ODOMETER count position and angle from here. Return ODOMETER (manual 3.2.2)."
   (check-odometer odometer 'reset-odometer)

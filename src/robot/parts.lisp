@@ -5,8 +5,10 @@
 ;;; The robot and each part is a resource: it does one thing at a time. A part's LOCATION is NIL
 ;;; (with the robot), a container among the things, or a storage bin.
 
+(public robot)
 (defstruct (robot (:include resource) (:constructor %make-robot) (:copier nil))
-  "A point robot: it turns in place, drives straight ahead, and carries its parts along."
+  "A point robot: it turns in place, drives straight ahead, and carries its parts along (manual
+2.2)."
   (name nil :type symbol)
   (body nil)
   (world nil :type (or null world))
@@ -46,6 +48,7 @@
   (index 0 :type fixnum)
   (location nil))
 
+(public camera)
 (defstruct (camera (:include part) (:copier nil))
   "A camera: it sees a wedge FIELD-OF-VIEW radians wide around its ANGLE, which is relative to
 the robot, and its views have RESOLUTION pixels (manual 3.4)."
@@ -56,17 +59,26 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   ;; What it does in the background of its commands, see tracks.lisp.
   (tracking nil))
 
+(public hand)
 (defstruct (hand (:include part) (:copier nil))
   "A hand: an arm with a gripper that lifts up to STRENGTH weight units (manual 3.6)."
   (strength 0d0 :type double-float)
   (contents '() :type list))
 
+(public storage-bin)
 (defstruct (storage-bin (:include part) (:copier nil))
   "A storage bin on the robot, with room for things of CAPACITY size units (manual 3.6)."
   (capacity 0d0 :type double-float)
   (closed-p nil :type boolean)
   (contents '() :type list))
 
+(addition robot-p part-p camera-p hand-p storage-bin-p camera-robot camera-index camera-location
+          hand-robot hand-index hand-location storage-bin-robot storage-bin-index robot-name
+          robot-world robot-x robot-y robot-angle robot-speed robot-turn-angle robot-cameras
+          robot-hands robot-bins robot-last-place part-robot part-index part-location
+          camera-field-of-view camera-resolution camera-angle camera-last-view camera-tracking
+          hand-strength hand-contents storage-bin-capacity storage-bin-closed-p
+          storage-bin-contents)
 (document-functions
   robot-p "True of robots."
   part-p "True of cameras, hands and storage bins."
@@ -114,10 +126,12 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   storage-bin-closed-p "True if the bin is closed."
   storage-bin-contents "Return the things in the bin, newest first.")
 
+(addition robot-position)
 (defun robot-position (robot)
   "Return the true position of ROBOT, x and y as two values, in metres."
   (values (robot-x robot) (robot-y robot)))
 
+(addition hand-holding)
 (defun hand-holding (hand)
   "Return the thing that HAND holds, or NIL."
   (first (hand-contents hand)))
@@ -134,14 +148,17 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
                                                (length parts) (robot-name robot))))
     (svref parts index)))
 
+(public robot-camera)
 (defun robot-camera (robot index)
   "Return the camera of ROBOT with INDEX, from 0. Signals WRONG-ARGUMENT (manual 3.4)."
   (part-of robot #'robot-cameras index 'robot-camera))
 
+(public robot-hand)
 (defun robot-hand (robot index)
   "Return the hand of ROBOT with INDEX, from 0. Signals WRONG-ARGUMENT (manual 3.6)."
   (part-of robot #'robot-hands index 'robot-hand))
 
+(public robot-storage-bin)
 (defun robot-storage-bin (robot index)
   "Return the storage bin of ROBOT with INDEX, from 0. Signals WRONG-ARGUMENT (manual 3.6)."
   (part-of robot #'robot-bins index 'robot-storage-bin))

@@ -55,6 +55,7 @@
   (let ((*world* (simulation-world simulation)))
     (apply (first arguments) (rest arguments))))
 
+(addition place-robot)
 (defun place-robot (robot x y angle)
   "Put ROBOT at (X,Y) heading ANGLE at once, without error and ignoring obstacles: a change from
 outside, as the prompt's POS and ANGLE make. Signals WRONG-ARGUMENT (manual E)."

@@ -29,6 +29,7 @@
                             (mapcar #'find-body-name robots)
                             :seed seed :parameters (full-settings parameters) :journal t))))
 
+(addition with-replay)
 (defmacro with-replay ((journal &key until) &body body)
   "Run BODY in a fresh headless simulation in which JOURNAL (a journal or a file that holds one)
 has been repeated, up to the tick UNTIL or its end, with robots and parameters bound as in
@@ -37,6 +38,7 @@ their continuations. Return the values of BODY. Signals DAMAGED-JOURNAL, and UNK
 when the world is not loaded."
   `(call-with-replay (lambda () ,@body) ,journal :until ,until))
 
+(addition replay)
 (defun replay (journal &key until)
   "Repeat JOURNAL as WITH-REPLAY does. Return the simulation, and its STATE-DIGEST."
   (with-replay (journal :until until)
@@ -52,10 +54,12 @@ when the world is not loaded."
           (getf (journal-header journal) :robots) (robot-names simulation))
     journal))
 
+(addition save-journal)
 (defun save-journal (file &optional (simulation (current-simulation)))
   "Write the journal of SIMULATION up to now to FILE. Return its truename. Signals MISUSE."
   (asking (simulation) (write-journal (end-of-journal simulation) file)))
 
+(addition load-journal)
 (defun load-journal (file)
   "Return the journal in FILE. Signals DAMAGED-JOURNAL."
   (read-journal file))

@@ -19,6 +19,7 @@ ends with it and simulations side by side do not meet.")
 (defvar *simulator-hooks* '()
   "Functions of a robot and the plist of SIMULATOR's options, called when it has started.")
 
+(addition simulation-robots)
 (defun simulation-robots (&optional (simulation (current-simulation)))
   "Return a list of the robots in SIMULATION."
   (world-robots (simulation-world simulation)))
@@ -62,6 +63,7 @@ ends with it and simulations side by side do not meet.")
   "Return the simulation of the resident world of MAP, or of the map so named."
   (ensure-simulation (map-resident-world (find-map map))))
 
+(addition robot-simulation)
 (defun robot-simulation (robot)
   "Return the simulation of the world that ROBOT is in."
   (ensure-simulation (robot-world robot)))
@@ -99,6 +101,7 @@ ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
            (append robots (mapcar #'symbol-value *simulation-variables*))
          (funcall function))))))
 
+(addition with-simulation)
 (defmacro with-simulation ((robots &key (seed 0) parameters clean journal) &body body)
   "Run BODY with ROBOTS, the name of a robot or a list of names, bound to fresh robots in a
 fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. The integer SEED
@@ -116,6 +119,7 @@ Messages go to a queue of its own. Return the values of BODY."
   (mapc #'reset-robot (world-robots world))
   (simulation-of world seed t))
 
+(public simulator)
 (defun simulator (robot &rest options &key (rate *default-rate*) (seed nil) &allow-other-keys)
   "Run the world of ROBOT (a robot or its name) live, in a thread of its own, at RATE ticks per
 second or :FREE, and make it the current simulation. A world that has run before starts
@@ -131,12 +135,14 @@ anew, with SEED if that is given. Return ROBOT (manual A). STOP-SIMULATOR stops 
     (dolist (hook *simulator-hooks*) (funcall hook robot options))
     robot))
 
+(addition stop-simulator)
 (defun stop-simulator (&optional (simulation (current-simulation)))
   "Stop the live SIMULATION after its current tick. What is under way stays pending. Return
 nothing."
   (stop-clock simulation)
   (values))
 
+(addition set-seed)
 (defun set-seed (seed &optional (simulation (current-simulation)))
   "Make all chance in SIMULATION depend on the integer SEED from now on. Return SEED."
   (check-argument set-seed seed (integerp seed) "an integer")

@@ -30,6 +30,7 @@
       (map nil #'add (robot-hands robot))
       (map nil #'add (robot-bins robot)))))
 
+(addition state-digest)
 (defun state-digest (&optional (simulation (current-simulation)))
   "Return a 64-bit number that stands for the state of SIMULATION to the bit: two runs that have
 the same digest at a tick are in the same state."

@@ -15,6 +15,7 @@
   (designator nil :type designator :read-only t)
   (teller nil :type function :read-only t))
 
+(addition camera-tracks)
 (defun camera-tracks (camera)
   "Return the designator that CAMERA tracks, or NIL."
   (let ((track (camera-tracking camera)))
@@ -24,6 +25,7 @@
   "True if CAMERA tracks DESIGNATOR."
   (eq (camera-tracks camera) designator))
 
+(addition tracking-cameras)
 (defun tracking-cameras (designator)
   "Return a list of the cameras that track DESIGNATOR, by index."
   (loop for camera across (robot-cameras (designator-robot designator))

@@ -7,9 +7,11 @@
 ;;; ticks it answers questions. Others steer it by setting its fields and waking it. This is the
 ;;; only file that reads the real clock, and no result depends on what it reads.
 
+(addition *default-rate*)
 (defparameter *default-rate* 20
   "The pace of a live simulation unless another is given: ticks per second, or :FREE.")
 
+(addition *hog-seconds*)
 (defparameter *hog-seconds* 0.5
   "A continuation that keeps the simulator's thread for longer earns a warning, in seconds.")
 
@@ -17,10 +19,12 @@
   "Return the real time, in seconds since some moment. No result may depend on it."
   (/ (float (get-internal-real-time) 1d0) internal-time-units-per-second))
 
+(addition live-p)
 (defun live-p (simulation)
   "True if SIMULATION runs in a thread of its own."
   (and (simulation-thread simulation) t))
 
+(addition paused-p)
 (defun paused-p (simulation)
   "True if the live SIMULATION has been told to pause."
   (simulation-paused-p simulation))
@@ -143,18 +147,21 @@ way stay as they are; START-CLOCK goes on with them. Return SIMULATION."
   (signal-semaphore (simulation-wake-up simulation))
   (values))
 
+(addition pause)
 (defun pause (&optional (simulation (current-simulation)))
   "Let the live SIMULATION stand still after its current tick, until RESUME. Returns nothing."
   (setf (simulation-paused-p simulation) t
         (simulation-steps simulation) 0)
   (steer simulation))
 
+(addition resume)
 (defun resume (&optional (simulation (current-simulation)))
   "Let the live SIMULATION go on after PAUSE. Returns nothing."
   (setf (simulation-paused-p simulation) nil
         (simulation-steps simulation) 0)
   (steer simulation))
 
+(addition step-ticks)
 (defun step-ticks (&optional (count 1) (simulation (current-simulation)))
   "Pass COUNT ticks and then pause. A headless SIMULATION has passed them on return; a live one
 passes them at its pace. Returns nothing."
@@ -166,6 +173,7 @@ passes them at its pace. Returns nothing."
         (t (run-ticks count simulation)
            (values))))
 
+(addition set-rate)
 (defun set-rate (rate &optional (simulation (current-simulation)))
   "Set the pace of SIMULATION to RATE, ticks per second or :FREE. Returns RATE. Signals
 WRONG-ARGUMENT."
@@ -174,6 +182,7 @@ WRONG-ARGUMENT."
   (steer simulation)
   rate)
 
+(addition await-idle)
 (defun await-idle (&optional (simulation (current-simulation)) (seconds 60))
   "Wait until nothing is left to do in the live SIMULATION, at most SECONDS. True if so."
   (let ((idle (make-semaphore "idle")))

@@ -37,6 +37,7 @@ those posted before. Any thread may post. Return nothing."
                                                     questions '()))
           do (mapc #'funcall (reverse questions))))
 
+(addition ask)
 (defun ask (simulation function)
   "Call FUNCTION, with no arguments, where the world of SIMULATION stands still: at once if this
 thread owns it, else between two ticks in the thread that does. Return its values; what it
@@ -62,6 +63,7 @@ signals is signalled here."
             do (answer-questions simulation))
     (if trouble (error trouble) (values-list values))))
 
+(addition asking)
 (defmacro asking ((simulation) &body body)
   "Run BODY as ASK would a function."
   `(ask ,simulation (lambda () ,@body)))

@@ -15,6 +15,7 @@
   (newest-first '() :type list)
   (length 0 :type fixnum)
   (end 0 :type tick-count))
+(addition journal-p journal-header journal-length journal-end)
 (setf (documentation 'make-journal 'function) "Return an empty journal that begins with HEADER."
       (documentation 'journal-p 'function) "True of journals."
       (documentation 'journal-header 'function)
@@ -22,6 +23,7 @@
       (documentation 'journal-length 'function) "Return how many entries the journal has."
       (documentation 'journal-end 'function) "Return the tick at which the journal ends.")
 
+(addition journal-entries)
 (defun journal-entries (journal)
   "Return the entries (tick operation argument ...) of JOURNAL, oldest first."
   (reverse (journal-newest-first journal)))
@@ -76,6 +78,7 @@ internalized.")
 
 ;;; On file.
 
+(addition damaged-journal)
 (define-condition damaged-journal (ars-magna-error)
   ((file   :initarg :file   :reader damaged-journal-file)
    (reason :initarg :reason :reader damaged-journal-reason))

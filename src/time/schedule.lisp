@@ -49,6 +49,7 @@ nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an 
             (funcall enter)))))
   (values))
 
+(public schedule)
 (defmacro schedule ((resource &key priority interrupt (when t when-p) timeout timer)
                     &body body)
   "Queue an event that runs BODY on RESOURCE (NIL: none) in the next tick, or TIMER ticks from
@@ -73,6 +74,7 @@ a tick, by the owner. A layer that adds background activities adds a method.")
            (event (pending-event agenda resource)))
       (when event (interrupt-event agenda event)))))
 
+(public grab-resource)
 (defun grab-resource (resource &optional (simulation (current-simulation)))
   "Interrupt the command or event that occupies RESOURCE, and a track that it keeps, at the
 start of the next tick. Returns nothing (manual, figure D.3)."

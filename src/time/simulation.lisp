@@ -32,6 +32,8 @@
   (steps 0 :type fixnum)
   (rate nil))
 
+(addition simulation-p simulation-name simulation-world simulation-seed simulation-journal
+          simulation-rate)
 (document-functions
   simulation-inbox "Return what has been posted and waits for the next tick."
   simulation-p "True of simulations."
@@ -48,10 +50,12 @@
   simulation-ticking-p "True inside a tick, while the world changes."
   simulation-rate "Return the pace of the live clock: ticks per second, or :FREE.")
 
+(addition *simulation*)
 (defvar *simulation* nil
   "The simulation that code runs for: the one of WITH-SIMULATION, of the thread, or the one last
 given to SIMULATOR.")
 
+(addition current-simulation)
 (defun current-simulation ()
   "Return *SIMULATION*. Signals MISUSE when there is none."
   (or *simulation*
@@ -65,6 +69,7 @@ given to SIMULATOR.")
   (apply #'%make-simulation arguments))
 
 (declaim (inline simulation-tick))
+(addition simulation-tick)
 (defun simulation-tick (&optional (simulation (current-simulation)))
   "Return how many ticks of SIMULATION have passed; inside a tick, its number."
   (agenda-tick (simulation-agenda simulation)))

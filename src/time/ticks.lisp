@@ -16,12 +16,14 @@
   (loop while (simulation-notifications simulation)
         do (mapc #'funcall (reverse (shiftf (simulation-notifications simulation) '())))))
 
+(addition add-observer)
 (defun add-observer (function &optional (simulation (current-simulation)))
   "Call FUNCTION with SIMULATION after each of its ticks. Return FUNCTION."
   (setf (simulation-observers simulation)
         (append (simulation-observers simulation) (list function)))
   function)
 
+(addition remove-observer)
 (defun remove-observer (function &optional (simulation (current-simulation)))
   "Stop calling FUNCTION after the ticks of SIMULATION."
   (setf (simulation-observers simulation) (remove function (simulation-observers simulation)))
@@ -56,6 +58,7 @@
   (when (simulation-notifications simulation) (deliver-notifications simulation))
   (when (simulation-observers simulation) (call-observers simulation)))
 
+(addition idle-p)
 (defun idle-p (&optional (simulation (current-simulation)))
   "True if nothing can happen in SIMULATION until somebody asks for something."
   (and (zerop (agenda-pending (simulation-agenda simulation)))
@@ -70,6 +73,7 @@
     (reject-use "~(~A~): this simulation runs live, its ticks pass by themselves. ~
                  Use (with-simulation (ROBOT) ...) or (stop-simulator)." operator)))
 
+(addition run-ticks)
 (defun run-ticks (count &optional (simulation (current-simulation)))
   "Pass COUNT ticks of the headless SIMULATION. Return the tick then reached. Signals
 WRONG-ARGUMENT, and MISUSE if SIMULATION runs live or is inside a tick."
@@ -82,6 +86,7 @@ WRONG-ARGUMENT, and MISUSE if SIMULATION runs live or is inside a tick."
     (loop repeat count do (tick simulation)))
   (simulation-tick simulation))
 
+(addition run-until)
 (defun run-until (predicate &key (limit 100000) (simulation (current-simulation)))
   "Pass ticks of the headless SIMULATION until PREDICATE, a function of no arguments, returns
 true, but at most LIMIT. Return what it returned and the tick reached; NIL means the limit."

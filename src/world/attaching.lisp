@@ -25,6 +25,7 @@
       (join-group attachment (thing-world thing)))
     attachment))
 
+(public set-kicker)
 (defun set-kicker (thing kicker-name)
   "Attach to THING the kicker called KICKER-NAME, a symbol, or given as itself (manual 5.3.1).
 Signals WRONG-ARGUMENT and UNKNOWN-NAME. Return it as attached, what SELF is when it runs."
@@ -44,6 +45,7 @@ Signals WRONG-ARGUMENT and UNKNOWN-NAME. Return it as attached, what SELF is whe
           (attach-kicker thing kicker)
           (detach-kicker thing name)))))
 
+(public put-kicker)
 (defmacro put-kicker (name target &optional options &body body)
   "Define a kicker NAME for one thing alone, with options as for DEFKICKER, instead of any other of
 that name on it; or, with an empty BODY, remove its kicker NAME, even a global one (manual

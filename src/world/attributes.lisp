@@ -17,7 +17,10 @@
   (noticed 0d0 :type double-float :read-only t)
   (supporters '() :type list :read-only t))
 
+(addition attribute-p attribute-name attribute-kind attribute-domain attribute-success
+          attribute-base attribute-max-mult attribute-noticed attribute-supporters)
 (document-functions
+ attribute-p "True of an attribute."
  attribute-name "Return the keyword that the attribute is called."
  attribute-kind "Return :discrete or :numeric."
  attribute-domain "Return the list of possible values of a discrete attribute; NIL if numeric."
@@ -34,10 +37,12 @@
   "Return the keyword that stands for the attribute called NAME, a symbol."
   (if (keywordp name) name (make-keyword (name-string name))))
 
+(addition find-attribute)
 (defun find-attribute (name)
   "Return the attribute called NAME, a symbol, or NIL if nobody has defined it."
   (find (attribute-key name) *attributes* :key #'attribute-name :test #'eq))
 
+(addition all-attributes)
 (defun all-attributes ()
   "Return a list of all attributes, in order of definition."
   (copy-list *attributes*))
@@ -73,6 +78,7 @@
                      :supporters (mapcar #'attribute-key supported-by)))
     name))
 
+(public defattribute numeric)
 (defmacro defattribute (name domain &rest options)
   "Define the attribute NAME, a keyword by convention (manual 5.4). DOMAIN is NUMERIC or a list
 of the possible values, unevaluated. Options, in any order:

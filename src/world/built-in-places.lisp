@@ -6,6 +6,7 @@
 ;;; through the opening (as printed they face a wall), and concave and beak, which it only
 ;;; names, are ours. Angles grow clockwise from the right, y points down.
 
+(public doorway)
 (def-place-type doorway (cell)
   :confusion 0.05
   :check-matchers ((((- - -)
@@ -22,6 +23,7 @@
                      (* - -)) (/ pi 4))))
 
 ;;; The empty cell diagonally outside a corner of a wall, facing away from either arm.
+(public convex)
 (def-place-type convex (cell)
   :confusion 0.03
   :check-matchers ((((- - -)
@@ -41,6 +43,7 @@
 
 ;;; The empty cell where two walls meet, facing away from either. The corner itself must be
 ;;; filled, or every cell along an oblique wall would count.
+(public concave)
 (def-place-type concave (cell)
   :confusion 0.03
   :check-matchers ((((* * x)
@@ -59,6 +62,7 @@
                 (values basic (+ basic (/ pi 2)))))
 
 ;;; The empty cell in front of the end of a thin wall, facing away from it.
+(public beak)
 (def-place-type beak (cell)
   :confusion 0.02
   :check-matchers ((((- - -)

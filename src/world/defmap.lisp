@@ -15,10 +15,10 @@
       (when path (write-cache map path key)))
     map))
 
+(addition rebuild-map)
 (defun rebuild-map (map)
   "Find the places of MAP (a map or its name) anew, by the place types that are defined now, and
-rewrite its cache. Worlds of MAP see the change at once. Our addition to manual 5.1.1. Return
-the map."
+rewrite its cache. Worlds of MAP see the change at once. Return the map."
   (let ((map (find-map map)))
     (classify-places map)
     (when (map-cache map)
@@ -111,6 +111,7 @@ THINGS functions that return recipes. Return the map."
   (check-options definition (cddr size) '(:cache))
   (values (first size) (second size) (getf (cddr size) :cache)))
 
+(public defmap)
 (defmacro defmap (name size &body clauses)
   "Define the map NAME (manual 5.1), a special variable bound to it. SIZE is (width height), in
 cells of a metre, and perhaps :cache with the name of a file to keep the built grid in. Clauses:

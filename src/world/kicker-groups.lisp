@@ -175,6 +175,7 @@ Return nothing."
           (run-group group dice tick)))))
   (values))
 
+(public run-kicker)
 (defun run-kicker (attachment)
   "Run ATTACHMENT, which should be given as SELF, once more on the next tick, whatever its
 probability and test say; its own trial is left out that tick (manual 5.3.1). Return nothing."

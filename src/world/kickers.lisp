@@ -12,7 +12,9 @@
   (prob 1d0 :type (double-float 0d0 1d0))
   (test nil :type (or null function))
   (body (constantly nil) :type function))
+(addition kicker-p kicker-name kicker-prob)
 (document-functions
+ kicker-p "True of a kicker."
  kicker-name "Return the symbol that the kicker is called."
  kicker-prob "Return the kicker's probability per tick.")
 
@@ -25,6 +27,7 @@
   (ran 0 :type tick-count)
   (group nil)
   (index 0 :type fixnum))
+(addition attachment-kicker attachment-thing)
 (document-functions
  attachment-kicker "Return the attached kicker."
  attachment-thing "Return the thing that the kicker is on.")
@@ -48,13 +51,16 @@
 (defvar *kickers* '() "All kickers that have been defined by name, in order of definition.")
 (defvar *kicker-generation* 0 "How many times a kicker has been redefined.")
 
+(public self)
 (defvar self nil
   "While a kicker's test or body runs: the kicker being run, for RUN-KICKER (manual 5.3.1).")
 
+(addition all-kickers)
 (defun all-kickers ()
   "Return a list of all kickers that have been defined by name, in order of definition."
   (copy-list *kickers*))
 
+(addition find-kicker)
 (defun find-kicker (name)
   "Return the kicker called NAME, a symbol or string; a kicker is returned as it is. Signals
 UNKNOWN-NAME."
@@ -101,6 +107,7 @@ a thing. Return the kicker."
   (unless (and name (symbolp name) (not (constantp name)))
     (reject-clause definition name "a symbol as the name of the kicker")))
 
+(public defkicker)
 (defmacro defkicker (name lambda-list options &body body)
   "Define the kicker NAME (manual 5.3.1), whose BODY runs with probability :prob (default 1) on
 any tick on which the form :test (default true) holds. LAMBDA-LIST is one variable, bound to the

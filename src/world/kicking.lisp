@@ -35,6 +35,7 @@ FROM-Y, as two values; NIL if all eight are filled."
         (relocate thing :floor x y)
         t))))
 
+(public kick-thing)
 (defun kick-thing (thing dx dy kick-if-wall)
   "Move THING by DX, DY metres (manual 5.3.1). If that ends in a wall, move it to an empty cell
 beside that one (the nearest to where it was) if KICK-IF-WALL is true, or else not at all. True

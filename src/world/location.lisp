@@ -25,6 +25,7 @@ storage bin."))
 (defgeneric location-name (location)
   (:documentation "Return the symbol or string that LOCATION is called, for messages."))
 
+(addition remaining-capacity)
 (defgeneric remaining-capacity (location)
   (:documentation "Return, in units of size, how much can still be put into LOCATION: its capacity
 less the sizes of what is directly in it (a double-float, at least 0)."))

@@ -21,8 +21,10 @@
 (deftype doubles () '(simple-array double-float (*)))
 (deftype indices () '(simple-array (unsigned-byte 16) (*)))
 
+(public map)
 (defstruct (map (:constructor %make-map) (:copier nil))
-  "A fixed grid of cells, with the recipe of the things that a fresh world of it holds."
+  "A fixed grid of cells, with the recipe of the things that a fresh world of it holds (manual
+5.1)."
   (name nil :type symbol :read-only t)
   (width 1 :type (integer 1 32767) :read-only t)
   (height 1 :type (integer 1 32767) :read-only t)
@@ -43,6 +45,7 @@
 (defun make-octets (size) (make-array size :element-type '(unsigned-byte 8) :initial-element 0))
 (defun make-doubles (size) (make-array size :element-type 'double-float :initial-element 0d0))
 
+(addition map-p map-name map-width map-height)
 (document-functions
  map-p "True of a map."
  map-name "Return the symbol that the map is called."
@@ -69,10 +72,12 @@
 
 (defvar *maps* '() "All maps, in order of definition.")
 
+(addition all-maps)
 (defun all-maps ()
   "Return a list of all maps, in order of definition."
   (copy-list *maps*))
 
+(addition find-map)
 (defun find-map (name)
   "Return the map called NAME, a symbol or string; a map is returned as it is. Signals
 UNKNOWN-NAME."
@@ -114,6 +119,7 @@ UNKNOWN-NAME."
   (let ((index (cell-index-at map x y)))
     (or (null index) (logtest +wall+ (aref (map-flags map) index)))))
 
+(addition wall-at-p)
 (defun wall-at-p (map x y)
   "True if the point (X, Y) of MAP, in metres, is in a wall or outside the map."
   (let ((index (map-index map x y)))
@@ -124,6 +130,7 @@ UNKNOWN-NAME."
   (map nil :type map :read-only t)
   (x 0 :type fixnum)
   (y 0 :type fixnum))
+(addition cell-p cell-map cell-x cell-y)
 (document-functions
  cell-p "True of a cell."
  cell-map "Return the map that the cell is in."
@@ -134,6 +141,7 @@ UNKNOWN-NAME."
   (print-unreadable-object (cell stream)
     (format stream "CELL ~D ~D of ~A" (cell-x cell) (cell-y cell) (map-name (cell-map cell)))))
 
+(addition map-cell)
 (defun map-cell (map x y)
   "Return the cell of MAP that holds the point (X, Y), in metres; it may be outside the map."
   (check-argument map-cell map (map-p map) "a map")
@@ -142,20 +150,24 @@ UNKNOWN-NAME."
 (defun cell-index-in-map (cell)
   (cell-index-at (cell-map cell) (cell-x cell) (cell-y cell)))
 
+(addition cell-filled?)
 (defun cell-filled? (cell)
   "True if CELL is a wall; outside the map everything is (manual 5.1.1)."
   (filled-at-p (cell-map cell) (cell-x cell) (cell-y cell)))
 
+(addition cell-substance-type)
 (defun cell-substance-type (cell)
   "Return the name of the substance of the wall in CELL, or NIL."
   (let ((map (cell-map cell)) (index (cell-index-in-map cell)))
     (and index (aref (map-substance-types map) (aref (map-substances map) index)))))
 
+(addition cell-substance-parameter)
 (defun cell-substance-parameter (cell)
   "Return the substance parameter of the wall in CELL; 0 if it is empty or outside the map."
   (let ((index (cell-index-in-map cell)))
     (if index (aref (map-parameters (cell-map cell)) index) 0d0)))
 
+(public cell-occupancy-window)
 (defun cell-occupancy-window (cell width height)
   "Return a list of HEIGHT rows, each a list of WIDTH entries, centred on CELL: T for a wall,
 NIL for an empty cell (manual 5.1.1). Of an even number of entries one more lies before CELL."

@@ -29,6 +29,7 @@ but evaluated, stands for."
                        "NIL, what holds things, (:with thing) or (map x y)"))
         (t (values (check-holder 'new-thing nil location) location))))
 
+(addition make-new-thing)
 (defun make-new-thing (name location descriptor &key prototype contents kickers)
   "Return a new thing NAME, a symbol, with the attributes of DESCRIPTOR; NEW-THING as a function.
 LOCATION is NIL for a prototype, a container, hand or storage bin, or a list (:with thing) or
@@ -54,6 +55,7 @@ begins with the name of a global function that is not also that of a variable, o
              (and (symbolp head)
                   (or (not (fboundp head)) (boundp head) (same-name-p head 'map)))))))
 
+(public new-thing)
 (defmacro new-thing (name location descriptor &key prototype)
   "Make and return a thing NAME with the attributes of DESCRIPTOR, both unevaluated (manual 5.3).
 LOCATION is one of

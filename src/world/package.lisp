@@ -8,12 +8,13 @@
   (:import-from :ars-magna.nisp #:matchvar-p)
   ;; attributes
   (:export #:attribute #:defattribute #:define-attribute #:find-attribute #:all-attributes
-           #:attribute-key #:attribute-name #:attribute-kind #:attribute-domain
+           #:attribute-p #:attribute-key #:attribute-name #:attribute-kind #:attribute-domain
            #:attribute-success #:attribute-base #:attribute-max-mult #:attribute-noticed
            #:attribute-supporters #:numeric
            #:red #:green #:blue #:violet #:lightred #:lightgreen #:lightblue #:lightviolet)
   ;; substances
-  (:export #:substance #:defsubstance #:define-substance #:all-substances #:substance-name
+  (:export #:substance #:defsubstance #:define-substance #:find-substance #:all-substances
+           #:substance-p #:substance-name
            #:substance-parameter #:substance-value-type #:substance-value-parameter
            #:wood #:metal #:bricks #:slate #:stone #:plaster #:glass #:cloth #:paper #:plastic)
   ;; map
@@ -55,7 +56,7 @@
   ;; placing
   (:export #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing)
   ;; kickers
-  (:export #:kicker #:kicker-name #:kicker-prob #:defkicker #:define-kicker #:find-kicker
+  (:export #:kicker #:kicker-p #:kicker-name #:kicker-prob #:defkicker #:define-kicker #:find-kicker
            #:all-kickers #:set-kicker #:put-kicker #:run-kicker #:run-kickers #:kick-thing
            #:attachment #:attachment-kicker #:attachment-thing #:self)
   ;; check

@@ -20,6 +20,8 @@
   (graphics nil :type (or null function))
   (key 0 :type integer))
 
+(addition place-type-p place-type-name place-type-confusion place-type-invisible-p
+          place-type-graphics)
 (document-functions
  place-type-p "True of a place type."
  place-type-name "Return the symbol that the place type is called."
@@ -36,10 +38,12 @@ be set. X and Y are the upper left corner of the cell in pixels.")
 
 (defvar *place-types* '() "All place types, by rank.")
 
+(addition all-place-types)
 (defun all-place-types ()
   "Return a list of all place types, by rank."
   (copy-list *place-types*))
 
+(addition find-place-type)
 (defun find-place-type (name)
   "Return the place type called NAME, a symbol or string, or NIL. A place type is returned as
 it is."
@@ -88,6 +92,7 @@ TYPE was defined."
       (reject-clause definition graphics "((window x y) body...), three variables and a body"))
     `(lambda ,(first graphics) (declare (ignorable ,@(first graphics))) ,@(rest graphics))))
 
+(public def-place-type)
 (defmacro def-place-type (name (&rest lambda-list) &rest options)
   "Define the place type NAME (manual 5.1.1). LAMBDA-LIST is (CELL); options, in any order:
   :confusion p -- probability of a false designator in a search for the type; default 0

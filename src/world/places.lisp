@@ -122,6 +122,7 @@ outside."
   (type nil :type place-type :read-only t)
   (canonical-dir 0d0 :type double-float :read-only t)
   (cell nil :type cell :read-only t))
+(addition place-p place-type place-canonical-dir place-cell)
 (document-functions
  make-place "Return a place of a PLACE-TYPE with its basic canonical direction (radians) and cell."
  place-p "True of a place."
@@ -129,6 +130,7 @@ outside."
  place-canonical-dir "Return the place's basic canonical direction, radians (manual 5.1.1)."
  place-cell "Return the cell that is the place.")
 
+(addition cell-type)
 (defun cell-type (cell)
   "Return the PLACE that CELL is, or NIL (manual 5.1.1)."
   (let* ((map (cell-map cell))
@@ -139,6 +141,7 @@ outside."
                   (aref (map-directions map) index)
                   (make-cell map (cell-x cell) (cell-y cell))))))
 
+(addition place-directions)
 (defun place-directions (place)
   "Return the two canonical directions of PLACE, radians: what its type's :directions form says,
 or its basic direction and the opposite. Trouble in the form is queued as an error message."

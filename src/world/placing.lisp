@@ -107,10 +107,11 @@ The primitive: it checks and tells nothing. Return THING."
     (note-move thing old location)
     thing))
 
+(addition move-thing)
 (defun move-thing (thing location &optional (y nil y-p))
   "Move THING to LOCATION: a container, hand or storage bin, or a position, either a list (x y)
-or, as two arguments, its coordinates in metres. Our addition to manual 5.3; walls, lids and
-capacities do not matter. Signals WRONG-ARGUMENT outside the map, MISUSE for prototypes, things
+or, as two arguments, its coordinates in metres. Walls, lids and capacities do not
+matter. Signals WRONG-ARGUMENT outside the map, MISUSE for prototypes, things
 destroyed, and a container put into itself. Return THING."
   (check-movable 'move-thing thing)
   (let ((position (cond (y-p (list location y))
@@ -134,9 +135,10 @@ destroyed, and a container put into itself. Return THING."
     (remove-thing thing (thing-world thing))
     (note-move thing old nil)))
 
+(addition destroy-thing)
 (defun destroy-thing (thing)
-  "Destroy THING; what it contains stays where it was. Destroying it again does nothing. Our
-addition to manual 5.3.1. Signals MISUSE for prototypes. Return nothing."
+  "Destroy THING; what it contains stays where it was. Destroying it again does nothing.
+Signals MISUSE for prototypes. Return nothing."
   (unless (and (thing-p thing) (not (thing-alive-p thing)))
     (check-movable 'destroy-thing thing)
     (with-world-access ((thing-world thing) destroy-thing thing)
@@ -171,6 +173,7 @@ addition to manual 5.3.1. Signals MISUSE for prototypes. Return nothing."
        (loop for ((name) . rest) on object
              never (find name rest :key #'first :test #'same-name-p))))
 
+(public set-attribute)
 (defun set-attribute (thing attribute new-value)
   "Set ATTRIBUTE, a keyword, of THING to NEW-VALUE and return that (manual 5.3). NIL means false
 or unspecified. Signals WRONG-ARGUMENT for a value that the attribute cannot have."
@@ -184,6 +187,7 @@ or unspecified. Signals WRONG-ARGUMENT for a value that the attribute cannot hav
 (defun (setf get-attribute) (new-value thing attribute)
   (set-attribute thing attribute new-value))
 
+(public change-attribute)
 (defun change-attribute (thing descriptor)
   "Set all attributes of THING that the object descriptor DESCRIPTOR gives; others stay
 (manual 5.3). Signals WRONG-ARGUMENT. Return THING."

@@ -14,6 +14,7 @@
         (or (map-resident map)
             (setf (map-resident map) (make-world map))))))
 
+(addition current-world)
 (defun current-world (map)
   "Return the world of MAP (a map or its name) that code works in here and now: *WORLD* if it is
 of MAP, else MAP's resident world. A world is returned as it is."
@@ -40,6 +41,7 @@ if there is none the resident worlds of all maps."
       (or (same-name-p name (thing-name thing))
           (string-equal name (princ-to-string thing)))))
 
+(addition find-things)
 (defun find-things (name &optional world)
   "Return a list of the things called NAME (a symbol or string, perhaps \"PEN#2\", or a serial
 number) in WORLD, in order of creation. WORLD may be a map; by default it is *WORLD* or, at top
@@ -48,6 +50,7 @@ level, the resident worlds of all maps."
         append (loop for thing across (world-things each)
                      when (and thing (called-p thing name)) collect thing)))
 
+(addition find-thing)
 (defun find-thing (name &optional world)
   "Return the first of FIND-THINGS with the same arguments, or NIL."
   (first (find-things name world)))

@@ -10,14 +10,19 @@
   "A type of substance with the parameter that things of it have unless they say otherwise."
   (name nil :type symbol :read-only t)
   (%parameter 0d0 :type double-float :read-only t))
-(setf (documentation 'substance-name 'function) "Return the symbol that the substance is called.")
+(addition substance-p substance-name)
+(document-functions
+ substance-p "True of a substance."
+ substance-name "Return the symbol that the substance is called.")
 
 (defvar *substances* '() "All substances, in order of definition.")
 
+(addition all-substances)
 (defun all-substances ()
   "Return a list of all substances, in order of definition."
   (copy-list *substances*))
 
+(addition find-substance)
 (defun find-substance (name)
   "Return the substance called NAME, a symbol, or NIL."
   (find name *substances* :key #'substance-name :test #'same-name-p))
@@ -35,13 +40,15 @@ NAME."
                              (append *substances* (list new))))
       name)))
 
+(addition defsubstance)
 (defmacro defsubstance (name parameter)
   "Define the type of substance NAME, a symbol: things whose :substance is NAME are viewed as
-PARAMETER, a number. Our addition to manual 2.1 and 3.3. Return the name."
+PARAMETER, a number. Return the name."
   (unless (and name (symbolp name) (not (keywordp name)))
     (reject-clause "defsubstance" name "a symbol as the name of the substance"))
   `(define-substance ',name ,parameter))
 
+(addition substance-parameter)
 (defun substance-parameter (substance)
   "Return the parameter of SUBSTANCE: a SUBSTANCE or its name. An unknown one has 0."
   (let ((substance (if (substance-p substance) substance (find-substance substance))))

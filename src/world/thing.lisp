@@ -28,6 +28,10 @@
   (capacity 0d0 :type double-float)
   (substance-parameter 0d0 :type double-float))
 
+(addition thing-p thing-name thing-serial thing-world thing-location thing-x thing-y
+          thing-attributes thing-contents thing-kickers thing-alive-p thing-obsmove-p
+          thing-obsview-p thing-closed-p thing-substance-p thing-size thing-weight thing-capacity
+          thing-substance-parameter)
 (document-functions
  thing-p "True of a thing."
  thing-name "Return the symbol that the thing is called; others may be called the same."
@@ -98,6 +102,7 @@ false, always can."
           (thing-substance-parameter thing)
           (substance-value-parameter (get-attribute thing :substance)))))
 
+(public get-attribute)
 (defun get-attribute (thing attribute)
   "Return the value of ATTRIBUTE, a keyword, of THING, or NIL if it is unspecified. Can be set,
 which is SET-ATTRIBUTE (manual 5.3)."
@@ -113,12 +118,14 @@ which is SET-ATTRIBUTE (manual 5.3)."
 
 ;;; Containment.
 
+(addition thing-outermost)
 (defun thing-outermost (thing)
   "Return the outermost thing that THING is in; THING itself if it is in no other thing."
   (loop for location = (thing-location thing)
         while (thing-p location) do (setf thing location)
         finally (return thing)))
 
+(addition thing-position)
 (defun thing-position (thing)
   "Return, as two values, the coordinates of THING, metres: where what holds it is. NIL and NIL
 if it is nowhere."
@@ -128,6 +135,7 @@ if it is nowhere."
       ((nil) (values nil nil))
       (t (location-position location)))))
 
+(addition thing-total-weight)
 (defun thing-total-weight (thing)
   "Return the weight of THING with all that it contains."
   (loop with sum double-float = (thing-weight thing)

@@ -29,6 +29,7 @@
   (kicker-generation 0 :type fixnum)
   (due-kickers '() :type list))
 
+(addition world-p world-map world-seed world-robots world-simulation world-tick)
 (document-functions
  world-p "True of a world."
  world-map "Return the map that the world is of."
@@ -60,6 +61,7 @@ after a thing has moved, been made or been destroyed. Can be set.")
   (cl:map 'simple-vector (lambda (purpose) (make-dice seed purpose)) +dice-purposes+))
 
 (declaim (inline world-dice))
+(addition world-dice)
 (defun world-dice (world purpose)
   "Return the dice of WORLD for PURPOSE: :motion, :odometry, :place, :looking, :tracking,
 :handling, :kickers, :manipulations or :user."
@@ -68,6 +70,7 @@ after a thing has moved, been made or been destroyed. Can be set.")
                      (:motion 0) (:odometry 1) (:place 2) (:looking 3) (:tracking 4)
                      (:handling 5) (:kickers 6) (:manipulations 7) (:user 8)))))
 
+(addition *world*)
 (defvar *world* nil
   "The world that code runs in, bound inside a headless simulation. NIL at top level, where
 each map's resident world counts.")
@@ -86,6 +89,7 @@ meanwhile are left out."
       (let ((thing (aref things position)))
         (when (and thing (thing-alive-p thing)) (funcall function thing))))))
 
+(addition world-thing-list)
 (defun world-thing-list (world)
   "Return a fresh list of the things alive in WORLD, in order of creation."
   (coerce (remove nil (world-things world)) 'list))
@@ -109,6 +113,7 @@ meanwhile are left out."
   (prog1 (world-next-serial world)
     (incf (world-next-serial world))))
 
+(addition things-at)
 (defun things-at (world x y)
   "Return the list of things on the floor of the cell of WORLD that holds the point (X, Y), in
 order of arrival; do not alter it. NIL outside the map."

@@ -1,0 +1,60 @@
+;;;; public.lisp -- which names users see, and which of them the manual does not have.
+
+(in-package :ars-magna.base)
+
+;;; A mark stands directly before the definition of a name: PUBLIC if the name is the manual's,
+;;; ADDITION if it is ours. The packages that users see, the faces ARS and NISP, collect what is
+;;; marked (see src/faces.lisp). What no mark names is the business of the layers alone.
+
+(defstruct (mark (:constructor make-mark (symbol faces addition-p)) (:copier nil))
+  "What is known of a public name: the FACES that show it, keywords, and whether it is ours."
+  (symbol nil :type symbol :read-only t)
+  (faces '() :type list :read-only t)
+  (addition-p nil :type boolean :read-only t))
+
+(defvar *marks* '() "All marks, in order of definition.")
+
+(defparameter *layers-of-nisp*
+  '("ARS-MAGNA.NISP" "ARS-MAGNA.CANVAS" "ARS-MAGNA.RPL" "ARS-MAGNA.RPL-ROBOT")
+  "The packages whose public names NISP shows, unless a mark says otherwise; ARS shows all others.")
+
+(defun face-of (symbol)
+  "Return the face, :ARS or :NISP, that shows SYMBOL if its mark does not say."
+  (let ((layer (package-name (symbol-package symbol))))
+    (if (member layer *layers-of-nisp* :test #'string=) :nisp :ars)))
+
+(defun find-mark (symbol)
+  (find symbol *marks* :key #'mark-symbol :test #'eq))
+
+(defun register-mark (mark)
+  (let ((old (find-mark (mark-symbol mark))))
+    (setf *marks* (if old
+                      (substitute mark old *marks* :test #'eq)
+                      (append *marks* (list mark))))))
+
+(defun mark-names (names addition-p)
+  "Mark each of NAMES, a symbol or a list (symbol face...)."
+  (dolist (name names)
+    (destructuring-bind (symbol &rest faces) (ensure-list name)
+      (register-mark (make-mark symbol (or faces (list (face-of symbol))) addition-p)))))
+
+(defmacro public (&rest names)
+  "Mark NAMES, which are defined next, as names of the manual that users see. A name may be a list
+(name face...): of :ARS and :NISP, those that show it."
+  `(mark-names ',names nil))
+
+(defmacro addition (&rest names)
+  "Mark NAMES, which are defined next, as names that users see and the manual does not have. A name
+may be a list (name face...), as for PUBLIC."
+  `(mark-names ',names t))
+
+(defun public-symbols (face)
+  "Return a list of the symbols that are marked for FACE, :ARS or :NISP, in order of definition."
+  (loop for mark in *marks*
+        when (member face (mark-faces mark))
+          collect (mark-symbol mark)))
+
+(defun addition-p (symbol)
+  "True if SYMBOL is marked as an addition to the manual."
+  (let ((mark (find-mark symbol)))
+    (and mark (mark-addition-p mark))))
