@@ -10,8 +10,10 @@
   ((:module "src/base" :serial t
     :components ((:file "package") (:file "policy") (:file "public")
                  (:file "conditions") (:file "threads") (:file "dice") (:file "names")
+                 (:file "variables")
+                 (:file "digest") (:file "sources") (:file "definitions") (:file "registry")
                  (:file "messages") (:file "user-code")
-                 (:file "parameters") (:file "physics") (:file "digest")))
+                 (:file "parameters") (:file "physics")))
    (:module "src/geometry" :serial t
     :components ((:file "package") (:file "types") (:file "operands") (:file "points")
                  (:file "intervals") (:file "angles")))
@@ -20,12 +22,15 @@
                  (:file "types") (:file "slots") (:file "values") (:file "matching")
                  (:file "reader") (:file "readtable") (:file "loading")))
    (:module "src/world" :serial t
-    :components ((:file "package") (:file "clauses") (:file "attributes") (:file "substances")
+    :components ((:file "package") (:file "clauses") (:file "attributes")
+                 (:file "built-in-attributes") (:file "substances")
                  (:file "map") (:file "match-forms") (:file "place-types") (:file "places")
+                 (:file "trying-places") (:file "def-place-type")
                  (:file "built-in-places") (:file "walls") (:file "map-cache")
                  (:file "access") (:file "location") (:file "thing") (:file "world")
                  (:file "kickers") (:file "kicker-groups") (:file "attaching")
-                 (:file "placing") (:file "recipes") (:file "residents") (:file "new-thing")
+                 (:file "placing") (:file "recipes") (:file "undeclared") (:file "residents")
+                 (:file "new-thing")
                  (:file "kicking") (:file "defmap") (:file "check")))
    (:module "src/time" :serial t
     :components ((:file "package") (:file "resource") (:file "agenda") (:file "simulation")

@@ -69,7 +69,6 @@ ROBOT; signal BAD-LINE if it stands for none. Without a method, DATUM is the arg
 (define-argument-type 'count (lambda (value) (typep value '(integer 0)))
   "a whole number, 0 or more")
 (define-argument-type 'integer #'integerp "a whole number")
-(define-argument-type 'angle #'realp "an angle in radians")
 
 ;;; Reading.
 

@@ -15,9 +15,12 @@
     (format nil "~A~%~A" text line)))
 
 (defun quiet-warning (condition)
-  "Keep the compiler from telling users at length what they will be told in a moment."
-  (when (typep condition '(or style-warning sb-ext:compiler-note))
-    (muffle-warning condition)))
+  "Keep the compiler from telling users at length what they will be told in a moment. Doubts about
+definitions are messages like others."
+  (typecase condition
+    (definition-warning (warning-set (one-line (princ-to-string condition)))
+                        (muffle-warning condition))
+    ((or style-warning sb-ext:compiler-note) (muffle-warning condition))))
 
 (defun call-quietly (function)
   (handler-bind ((warning #'quiet-warning)

@@ -4,7 +4,7 @@
 
 (defun start-robot (session robot-name)
   "Let SESSION go on with the robot ROBOT-NAME in its world, which starts anew."
-  (cond ((null *world*) (start-live session robot-name))
+  (cond ((not (and *simulation* (headless-p *simulation*))) (start-live session robot-name))
         ((session-batch-p session) (setf (session-next-robot session) robot-name))
         (t (reject-line "This prompt is in a headless simulation, which has one world."))))
 
@@ -24,9 +24,9 @@ tick 0."
       (write-worlds)))
 
 (defun robot-called (name)
-  (or (find name (all-robots) :test #'same-name-p)
+  (or (find name (robot-names) :test #'same-name-p)
       (reject-line "There is no robot ~A.~@[ Did you mean ~A?~]" (string-upcase name)
-                   (nearest-name name (all-robots)))))
+                   (nearest-name name (robot-names)))))
 
 (defun robots-here ()
   (and *simulation* (mapcar #'robot-name (simulation-robots *simulation*))))

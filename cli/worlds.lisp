@@ -11,25 +11,24 @@
         (*read-default-float-format* 'single-float))
     (call-quietly (lambda () (load path)))))
 
-(defun robots-by-name ()
-  (loop for name in (all-robots) collect (cons name (find-robot name))))
-
 (defun load-world (path)
   "Load the Lisp file at PATH. Return the names of the robots that it defines. Signals BAD-LINE if
 there are none."
-  (let ((before (robots-by-name)))
+  (let ((before (all-bodies)))
     (load-lisp path)
-    (or (loop for (name . robot) in (robots-by-name)
-              unless (eq robot (cdr (assoc name before))) collect name)
+    (or (mapcar #'body-name (remove-if (lambda (body) (member body before)) (all-bodies)))
         (reject-line "~A defines no robot; a world's file has a DEFROBOT."
                      (uiop:native-namestring path)))))
 
-(defun robot-map (robot-name)
-  (world-map (robot-world (find-robot robot-name))))
+(defun robot-names ()
+  "Return the names of all robots."
+  (mapcar #'body-name (all-bodies)))
 
 (defun robots-of (map)
-  "Return the names of the robots that are defined in MAP."
-  (remove map (all-robots) :key #'robot-map :test-not #'eq))
+  "Return the names of the robots that are defined in MAP, or in the map so named."
+  (loop for body in (all-bodies)
+        when (eq (find-map map) (find-map (body-map body) nil))
+          collect (body-name body)))
 
 (defun all-worlds ()
   "Return a list of all maps that have robots."
@@ -54,7 +53,7 @@ a world. Signals BAD-LINE."
 
 (defun robots-beside (robot-name)
   "Return the names of all robots in the map of ROBOT-NAME, that one first."
-  (cons robot-name (remove robot-name (robots-of (robot-map robot-name)))))
+  (cons robot-name (remove robot-name (robots-of (body-map (find-body robot-name))))))
 
 (defun write-worlds ()
   "List the worlds: their maps, and their robots."

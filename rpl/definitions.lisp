@@ -33,7 +33,8 @@ plans (manual D.2)."
                (declare-procedure ',name)
                (declaim (ftype function ,name)))
              (install-procedure ',name ',parameters ,documentation
-                                ,entry ,(procedure-body-code name form body scope))))))))
+                                ,entry ,(procedure-body-code name form body scope)
+                                ',(source-here))))))))
 
 (addition interp-lambda)
 (defmacro interp-lambda ((&rest parameters) &body body &environment environment)

@@ -22,16 +22,16 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
       (documentation 'procedure-lambda-list 'function)
       "Return the lambda list of a plan procedure.")
 
-(defvar *procedures* (make-hash-table :test 'eq :synchronized t)
-  "The cells of all names that plans define or call.")
+(define-registry procedure "plan procedure" :object-p procedure-p :by-symbol t
+  :finder registered-procedure :lister registered-procedures :internal t)
 
-(defvar *namesakes* (make-hash-table :test 'equal :synchronized t)
-  "The cells of the procedures that are called the same, by that string, the newest first.")
+(defvar *cells* (make-hash-table :test 'eq :synchronized t)
+  "The cells of all names that plans define or call.")
 
 (defun ensure-procedure (name)
   "Return the cell of the procedure called NAME."
-  (or (gethash name *procedures*)
-      (setf (gethash name *procedures*) (make-procedure name))))
+  (or (gethash name *cells*)
+      (setf (gethash name *cells*) (make-procedure name))))
 
 (defun live-p (procedure)
   "True if PROCEDURE is defined and its name has not been defined as a Lisp function since."
@@ -41,30 +41,26 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
              (and (fboundp name)
                   (eq (symbol-function name) (procedure-stub procedure)))))))
 
-(addition all-procedures)
+(addition all-procedures find-procedure)
 (defun all-procedures ()
-  "Return a list of all plan procedures that are defined, by name."
-  (sort (remove-if-not #'live-p (hash-table-values *procedures*)) #'string<
-        :key #'procedure-name))
+  "Return a list of all plan procedures that are defined, in order of definition."
+  (remove-if-not #'live-p (registered-procedures)))
 
-(defun note-newest (procedure)
-  "Let PROCEDURE come before all others that are called the same."
-  (let ((called (name-string (procedure-name procedure))))
-    (setf (gethash called *namesakes*)
-          (cons procedure (remove procedure (gethash called *namesakes*))))))
+(defun live-namesake (name)
+  "Return the live procedure defined last of those called NAME in any package, or NIL."
+  (find-if (lambda (procedure)
+             (and (same-name-p name (procedure-name procedure)) (live-p procedure)))
+           (registered-procedures) :from-end t))
 
-(defun lookup-procedure (name)
-  (let ((procedure (gethash name *procedures*)))
-    (if (and procedure (live-p procedure))
-        procedure
-        (find-if #'live-p (gethash (name-string name) *namesakes*)))))
-
-(addition find-procedure)
-(defun find-procedure (name)
+(defun find-procedure (name &optional (errorp t))
   "Return the plan procedure called NAME, a symbol or string: that of the very symbol, or else the
-one defined last of those called the same in other packages. Signals UNKNOWN-NAME."
-  (or (and (typep name '(or symbol string)) (lookup-procedure name))
-      (reject-name "plan procedure" name (mapcar #'procedure-name (all-procedures)))))
+one defined last of those called the same in other packages. If there is none, signal UNKNOWN-NAME,
+or return NIL if ERRORP is NIL."
+  (let ((known (registered-procedure name nil)))
+    (cond ((and known (live-p known)) known)
+          ((and (typep name '(or symbol string)) (live-namesake name)))
+          (errorp (reject-name "plan procedure" name
+                               (mapcar #'procedure-name (all-procedures)))))))
 
 (defmethod print-object ((procedure procedure) stream)
   (print-unreadable-object (procedure stream :type t)
@@ -82,7 +78,7 @@ one defined last of those called the same in other packages. Signals UNKNOWN-NAM
 (defun procedure-name-p (name)
   "True if NAME is known to name a plan procedure."
   (and (gethash name *declared-procedures*)
-       (let ((procedure (gethash name *procedures*)))
+       (let ((procedure (gethash name *cells*)))
          (or (null procedure) (null (procedure-entry procedure)) (live-p procedure)))))
 
 (defun procedure-stub-for (name)
@@ -92,19 +88,28 @@ one defined last of those called the same in other packages. Signals UNKNOWN-NAM
     (reject-use "~S is a plan procedure and was called by Lisp code. Call it from a plan, outside ~
                  of any lambda; at top level run it: (run-plan-alone '~S ...)." name name)))
 
-(defun install-procedure (name lambda-list documentation entry body)
-  "Make NAME a plan procedure. Calls from now on, also in running plans, mean this one."
-  (let ((procedure (ensure-procedure name))
-        (stub (procedure-stub-for name)))
+(defun install-procedure (name lambda-list documentation entry body &optional source)
+  "Make NAME a plan procedure, as SOURCE defines it. Calls from now on, also in running plans, mean
+this one."
+  (let ((procedure (ensure-procedure name)))
     (declare-procedure name)
     (setf (procedure-lambda-list procedure) lambda-list
           (procedure-entry procedure) entry
           (procedure-body procedure) body
-          (procedure-stub procedure) stub
-          (fdefinition name) stub
+          (procedure-stub procedure) (procedure-stub-for name)
           (documentation name 'function) documentation)
-    (note-newest procedure)
+    (reinstate procedure)
+    (let ((*definition* (list source 'def-interp-proc name)))
+      (register *procedures* name procedure))
     name))
+
+(defmethod reinstate ((procedure procedure))
+  (setf (fdefinition (procedure-name procedure)) (procedure-stub procedure))
+  procedure)
+
+(defmethod take-back ((procedure procedure))
+  (when (live-p procedure) (fmakunbound (procedure-name procedure)))
+  (setf (procedure-entry procedure) nil))
 
 (defun anonymous-procedure (lambda-list entry body)
   (let ((procedure (make-procedure nil)))
@@ -171,7 +176,7 @@ value."
 
 (defun reject-call (name)
   "Signal that there is neither a plan nor a function to call by NAME."
-  (let ((namesake (lookup-procedure name)))
+  (let ((namesake (find-procedure name nil)))
     (when namesake
       (reject-use "There is no plan procedure or function ~S. Calls go by the very symbol: if the ~
                    plan ~:*~A of another package is meant, write ~S."

@@ -14,3 +14,5 @@
   (:documentation "The package to work in: Common Lisp, ARS and NISP; XLIB is our canvas. What is
 defined in it is the user's."))
 
+;;; What is defined from here on is not the simulator's.
+(seal-definitions)

@@ -77,18 +77,12 @@
     :close-stream
     (apply #'type-to (find robot (cli::load-world path) :test #'string=) lines)))
 
-(defun forget-robot (name)
-  "Let there be no robot called NAME, nor the map that it is in."
-  (let ((map (world:world-map (robot:robot-world (robot:find-robot name)))))
-    (setf robot::*bodies* (remove name robot::*bodies* :key #'robot::body-name :test #'string=)
-          world::*maps* (remove map world::*maps*))))
-
 (test robots.of-users-worlds-are-known
   (with-names ("BEETLE" "CELLAR")
     (is (equal '("robot-turn: Robot turned 1.00")
                (type-with-world "(defmap cellar (5 5)) (defrobot beetle (cellar (2 2) 0))"
                                 "BEETLE" "(robot-turn beetle 1 nil)")))
-    (forget-robot "BEETLE")))
+    (base:undefine 'robot "BEETLE")))
 
 (test robots.of-users-packages-are-known
   (with-names ("BEETLE")
@@ -97,5 +91,5 @@
                                  (in-package :ars-test-house)
                                  (defmap cellar (5 5)) (defrobot beetle (cellar (2 2) 0))"
                                 "BEETLE" "(robot-turn beetle 1 nil)")))
-    (forget-robot "BEETLE"))
+    (base:undefine 'robot "BEETLE"))
   (delete-package :ars-test-house))

@@ -134,18 +134,17 @@
 (defun call-with-studio (function)
   "Call FUNCTION with a robot in a small world of known things; what is defined is forgotten."
   (with-own-definitions
-    (let ((robot::*bodies* robot::*bodies*))
-      (eval '(world:defmap studio (20 10)
-              (rect (0 0) (19 9) bricks 10)
-              (wall (10 1) (10 3) wood 50)
-              (wall (10 5) (10 8) wood 50)
-              (obj box (3.5 4.5) ((:size 2) (:color red) (:obsmove t)))
-              (obj pen (5.5 4.5) ((:size 0.2) (:color green)))))
-      (eval '(robot:defrobot studio-robot (studio (6.5 6.5) 0)
-              :cameras ((1 10)) :hands (5) :bins (10)))
-      (robot:call-with-simulation
-       (lambda () (funcall function (first (robot:simulation-robots))))
-       '(studio-robot) :journal t))))
+    (eval '(world:defmap studio (20 10)
+            (rect (0 0) (19 9) bricks 10)
+            (wall (10 1) (10 3) wood 50)
+            (wall (10 5) (10 8) wood 50)
+            (obj box (3.5 4.5) ((:size 2) (:color red) (:obsmove t)))
+            (obj pen (5.5 4.5) ((:size 0.2) (:color green)))))
+    (eval '(robot:defrobot studio-robot (studio (6.5 6.5) 0)
+            :cameras ((1 10)) :hands (5) :bins (10)))
+    (robot:call-with-simulation
+     (lambda () (funcall function (first (robot:simulation-robots))))
+     '(studio-robot) :journal t)))
 
 (defmacro in-studio ((robot) &body body)
   `(call-with-studio (lambda (,robot) (declare (ignorable ,robot)) ,@body)))

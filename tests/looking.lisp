@@ -142,8 +142,9 @@ claiming that this was once."
       (is (eq :non-local (robot:designator-type designator)))
       (is (near (robot:designator-angle designator) (atan 2d0 4d0)))
       (is (near (robot:designator-distance designator) (sqrt 20d0)))
-      (is (equal '((:color world:red) (:size 4))
-                 (last (robot:designator-data designator) 2)))
+      (is (equal '((:color red) (:size 4))
+                 (last (robot:designator-data designator) 2))
+          "in the words of the question")
       (is (eq designator (robot:find-designator watcher 0)))
       (is (equal '("get-designator: Camera 0 found Designator 0") (queued-texts))))))
 

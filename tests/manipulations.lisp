@@ -6,7 +6,7 @@
 
 (defmacro with-own-manipulations (&body body)
   "Run BODY, with COOK in a clean simulation; the manipulations it defines are then forgotten."
-  `(let ((command::*manipulations* '()))
+  `(with-only (command::*manipulations*)
      (with-cook (:clean t :seed 1)
        ,@body)))
 
@@ -93,7 +93,7 @@
 
 (defun what-is-wrong (parameters &optional options)
   "Return the clause that is wrong in a DEFMANIPULATION with PARAMETERS and OPTIONS."
-  (handler-case (let ((command::*manipulations* '()))
+  (handler-case (with-only (command::*manipulations*)
                   (eval `(command:defmanipulation try ,parameters ,options nil))
                   :nothing)
     (base:malformed-definition (trouble) (base::malformed-definition-clause trouble))))
@@ -118,15 +118,15 @@
 
 (test defmanipulation.replaces-a-method-with-the-same-parameters
   (with-own-manipulations
-    (define-way 'poke '(it - ((:size 1)) :by hand) '(nil 1))
     (define-way 'poke '(it - () :by hand) '(nil 2))
+    (define-way 'poke '(it - ((:size 1)) :by hand) '(nil 1))
     (flet ((poke () (outcome-of 'poke (designate 'apple) (hand 0))))
-      (is (equal '(nil 1) (poke)) "the first defined that applies")
+      (is (equal '(nil 1) (poke)) "the last defined that applies")
       (define-way 'poke '(it - ((:size 1)) :by hand) '(nil 3))
       (is (equal '(nil 3) (poke)) "replaced where it was")
       (world:set-attribute (thing 'apple) :size 2)
       (is (equal '(nil 2) (poke)))
-      (is (equal '(poke) (command:all-manipulations))))))
+      (is (equal '(poke) (mapcar #'command:manipulation-name (command:all-manipulations)))))))
 
 (test defmanipulation.takes-the-manual's-example
   (with-own-manipulations
@@ -185,7 +185,7 @@
                        (subseq texts (search "poke:" texts)))))))))
 
 (test manipulation.knows-its-own-robot's-designators-only
-  (let ((command::*manipulations* '()))
+  (with-only (command::*manipulations*)
     (robot:with-simulation ((cook rover-in-kitchen) :clean t)
       (define-way 'poke '(it - () :by hand) '(nil done))
       (let ((other (robot:robot-hand (robot:find-robot 'rover-in-kitchen) 0)))
@@ -201,8 +201,8 @@
 
 (test manipulation.is-tested-when-its-delay-has-passed
   (with-own-manipulations
-    (define-way 'poke '(it - ((:size 1)) :by hand) '(nil 1) :delay 5)
     (define-way 'poke '(it - () :by hand) '(nil 2))
+    (define-way 'poke '(it - ((:size 1)) :by hand) '(nil 1) :delay 5)
     (let ((*answers* '()) (apple (designate 'apple)))
       (command:manipulate poke apple (hand 0) (recorder 'poke))
       (time:run-ticks 3)
@@ -287,7 +287,7 @@
   (third (reply 'command:camera-get-object-designator (camera 0) :local specification)))
 
 (test manipulation.is-in-the-journal
-  (let ((command::*manipulations* '()))
+  (with-only (command::*manipulations*)
     (define-way 'poke '(it - () :by hand count) '(nil nil) :success .5)
     (command:define-manipulation 'grow '(it - () :by hand by - number)
                                  (lambda (it hand by)

@@ -70,7 +70,7 @@
 (test failure.an-unknown-procedure-names-the-nearest
   (let ((failure (plan-failure-of (count-upp 3))))
     (is (typep (rpl:lisp-failure-condition failure) 'base:unknown-name))
-    (is (search "COUNT-UP" (princ-to-string failure)))))
+    (is (search "count-up" (princ-to-string failure)))))
 
 ;;; Handling.
 

@@ -107,7 +107,7 @@
     (command:robot-goto-designator :not-tracking (driver:rpl-robot-goto-designator 0) nil
      (null (rpl:fluent-value driver:robot-arrived-at*)))
     (command:robot-place nil (driver:rpl-robot-place) (robot:place-robot fitter 6.5 5.5 0)
-     (eq 'world:doorway (rpl:fluent-value driver:robot-place*)))
+     (eq 'doorway (rpl:fluent-value driver:robot-place*)))
 
     (command:camera-turn nil (driver:rpl-camera-turn 0 1) nil (= 1 (driver:rpl-camera-angle 0)))
     (command:camera-align-robot nil (driver:rpl-camera-align-robot 1))

@@ -332,7 +332,7 @@
                (is (= 5 (length sightings)))
                (dolist (sighting sightings)
                  (is (subsetp (robot::sighting-data sighting)
-                              '((:color world:red) (:size 3) (:substance world:wood)
+                              '((:color red) (:size 3) (:substance world:wood)
                                 (:obsmove nil) (:obsview nil) (:closed nil) (:lit nil))
                               :test #'equal)))))
     (is (= 1 (length (remove-duplicates (loop repeat 20 collect (robot:take-view (eye)))

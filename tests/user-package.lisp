@@ -85,7 +85,8 @@
                   (ars-magna.world:all-maps) (ars-magna.world:all-kickers)
                   (ars-magna.robot:all-robots) (ars-magna.command:all-manipulations)
                   (ars-magna.rpl:all-procedures)
-                  (remove-if-not 'ars-magna.world:find-attribute '(:locked :lit)))))"
+                  (ars-magna.world:find-attribute :locked nil)
+                  (ars-magna.world:find-attribute :lit nil))))"
   "Prints lists of what there is besides the manual's world.")
 
 (defun printed-in-child (system form)
@@ -100,7 +101,7 @@
    :output :string :error-output :interactive))
 
 (test user-package.nothing-is-in-it-at-first
-  (is (string= "(NIL NIL NIL NIL NIL NIL NIL NIL)"
+  (is (string= "(NIL NIL NIL NIL NIL NIL NIL NIL NIL)"
                (printed-in-child "ars-magna" *what-is-defined*))))
 
 ;;; Plans of the same name in several packages.

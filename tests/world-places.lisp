@@ -118,7 +118,7 @@ faces the end of the wall."
     (let ((map (map-of 30 30 '(rect (3 3) (20 20) bricks 1) '(rect (1 25) (8 28) bricks 1)
                        '(wall (12 0) (25 26) bricks 1))))
       (flet ((alone (name)
-               (let ((world::*place-types* (list (world:find-place-type name))))
+               (with-only (world::*place-types* name)
                  (mapcar #'rest (places-of (world:rebuild-map map))))))
         (is (= 2 (length (alone 'my-corner))))
         (is (equalp (alone 'my-corner) (alone 'other-corner)))))))
@@ -127,7 +127,7 @@ faces the end of the wall."
   (with-own-definitions
     (let ((map (around "*-*" "---" "***")))
       (flet ((found (form)
-               (let ((world::*place-types* '()))
+               (with-only (world::*place-types*)
                  (eval `(world:def-place-type spot (cell) :check-matchers ((,form 1))))
                  (mapcar #'rest (places-of (world:rebuild-map map))))))
         (is (equal '((3 3 1d0)) (found '((t nil t) (nil nil nil) (t t t)))))
@@ -153,7 +153,7 @@ faces the end of the wall."
                                                              ,(base:roll-index 12 dice))
                                                          #1# bricks 1)))))
           (flet ((found (form)
-                   (let ((world::*place-types* '()))
+                   (with-only (world::*place-types*)
                      (eval `(world:def-place-type spot (cell) :check-matchers ((,form 0))))
                      (places-of (world:rebuild-map map)))))
             (is (equal (found form) (found (wide-form form))) "~S" form)))))))
@@ -181,7 +181,7 @@ faces the end of the wall."
 
 (test checker.targets-outside-or-filled-are-ignored
   (with-own-definitions
-    (let ((world::*place-types* '()))
+    (with-only (world::*place-types*)
       (eval '(world:def-place-type shifted (cell) :checker (values t -1 0 0)))
       (is (equal '((0 0 0d0) (0 1 0d0) (1 1 0d0))
                  (sort (mapcar #'rest (places-of (picture-map "-*-" "--*"))) #'<
@@ -196,18 +196,21 @@ faces the end of the wall."
       (is (equal '(w 1 2) (funcall (world:place-type-graphics type) 'w 1 2)))
       (is (= 0 (world:place-type-confusion type))))
     (is (not (world:place-type-invisible-p (world:find-place-type :doorway))))
-    (is (null (world:find-place-type 'door)))
+    (is (null (world:find-place-type 'door nil)))
     (is (equalp '(.05 .03)
                 (mapcar (lambda (name) (coerce (world:place-type-confusion
                                                 (world:find-place-type name)) 'single-float))
                         '(doorway convex))))))
 
+(defvar *trap* nil "Whether the directions of a place type fail.")
+
 (test place-directions.survives-a-bad-form
   (with-own-definitions
     (eval '(world:def-place-type broken (cell) :check-matchers ((((-)) 1/2))
-            :directions (error "out of order")))
-    (is (equalp (list 0.5d0 (+ 0.5d0 pi)) (directions-at (map-of 3 3) 1 1)))
-    (is (search "BROKEN" (first (message-texts))))))
+            :directions (if (eq 'trap *trap*) (error "out of order") (values 1 2))))
+    (let ((map (map-of 3 3)) (*trap* 'trap))
+      (is (equalp (list 0.5d0 (+ 0.5d0 pi)) (directions-at map 1 1)))
+      (is (search "BROKEN" (first (message-texts)))))))
 
 (test def-place-type.rejects-malformed-clauses
   (loop for (options . expected)
@@ -234,7 +237,22 @@ faces the end of the wall."
 
 (test checker.trouble-is-the-definitions
   (with-own-definitions
-    (eval '(world:def-place-type broken (cell) :checker (error "out of order")))
-    (is (search "def-place-type broken" (complaint-about '(world:defmap test-map (3 3)))))
-    (eval '(world:def-place-type broken (cell) :checker (values t 1 0.5 0)))
-    (is (search "four values" (complaint-about '(world:defmap test-map (3 3)))))))
+    (is (search "def-place-type broken"
+                (complaint-about '(world:def-place-type broken (cell)
+                                   :checker (error "out of order")))))
+    (is (search "four values"
+                (complaint-about '(world:def-place-type broken (cell)
+                                   :checker (values t 1 0.5 0)))))
+    (is (null (world:find-place-type 'broken nil)))))
+
+(test checker.that-breaks-later-spoils-no-map
+  "A type whose code fails in a map is left out of that map, with a warning."
+  (with-own-definitions
+    (eval '(world:def-place-type broken (cell)
+            :checker (when (eq 'test-map (world:map-name (world:cell-map cell)))
+                       (error "out of order"))))
+    (eval '(world:def-place-type anywhere (cell) :check-matchers ((((-)) 1))))
+    (let ((warnings (warnings-of (lambda () (map-of 3 3)))))
+      (is (= 1 (length warnings)))
+      (is (search "BROKEN" (string-upcase (first warnings))))
+      (is (equal "ANYWHERE" (first (place-at (world:find-map 'test-map) 1 1)))))))

@@ -39,7 +39,7 @@
 
 (test defattribute.defines-with-defaults
   (with-own-definitions
-    (is (null (world:find-attribute :shape)))
+    (is (null (world:find-attribute :shape nil)))
     (is (eq :shape (eval '(world:defattribute :shape (cylinder cube)))))
     (let ((shape (world:find-attribute :shape)))
       (is (= 1 (world:attribute-success shape)))
@@ -51,7 +51,7 @@
       (is (eq :numeric (world:attribute-kind shape)))
       (is (= .5 (world:attribute-noticed shape))))
     (is (= 1 (count :shape (world:all-attributes) :key #'world:attribute-name)))
-    (is (null (world:find-attribute :no-such)))))
+    (is (null (world:find-attribute :no-such nil)))))
 
 (test defattribute.rejects-malformed-options
   (loop for (form . expected)

@@ -8,14 +8,22 @@
 
 (defun call-with-own-definitions (function)
   "Call FUNCTION; what it defines (maps, place types, attributes ...) is forgotten afterwards."
-  (let ((world::*maps* world::*maps*) (world::*place-types* world::*place-types*)
-        (world::*attributes* world::*attributes*) (world::*substances* world::*substances*)
-        (world::*kickers* '())
-        (base:*message-queue* (base:make-message-queue)))
-    (funcall function)))
+  (let ((base:*message-queue* (base:make-message-queue)))
+    (base:call-with-own-definitions function)))
 
 (defmacro with-own-definitions (&body body)
   `(call-with-own-definitions (lambda () ,@body)))
+
+(defmacro with-only ((registry &rest names) &body body)
+  "Run BODY where REGISTRY knows what is called NAMES, forms, and nothing else."
+  `(base:with-own-definitions ()
+     (base::set-definitions
+      ,registry
+      (remove-if-not (lambda (definition)
+                       (member (base:definition-name definition) (list ,@names)
+                               :test #'base:same-name-p))
+                     (base::registry-definitions ,registry)))
+     ,@body))
 
 (defun map-of (width height &rest clauses)
   "Return a map with CLAUSES of walls."
@@ -36,6 +44,16 @@
   "Return the text of the MALFORMED-DEFINITION that evaluating FORM signals, or NIL."
   (handler-case (with-own-definitions (eval form) nil)
     (base:malformed-definition (condition) (princ-to-string condition))))
+
+(defun warnings-of (function)
+  "Call FUNCTION; return the texts of the warnings about definitions that it signals."
+  (let ((texts '()))
+    (handler-bind ((base:definition-warning
+                     (lambda (warning)
+                       (push (princ-to-string warning) texts)
+                       (muffle-warning warning))))
+      (funcall function))
+    (nreverse texts)))
 
 (defun message-texts ()
   (mapcar #'base:message-text (base:take-messages)))

@@ -31,7 +31,10 @@
         ((not (beside-hand-p container hand)) :out-of-reach)
         ((not (get-attribute container :closed)) :lid-open)))
 
-;;; Lids.
+;;; Lids. Of methods that fit, the last one counts, so the special ones come last.
+
+(defmanipulation open (container - ((:capacity (.01 100000))) :by hand - HAND) ()
+  (values :already-open hand))
 
 (defmanipulation open (container - ((:capacity (.01 100000)) (:closed #t)) :by hand - HAND)
     (:success .98 :delay 2)
@@ -40,8 +43,8 @@
     (unless trouble (set-attribute container :closed #f))
     (values trouble hand)))
 
-(defmanipulation open (container - ((:capacity (.01 100000))) :by hand - HAND) ()
-  (values :already-open hand))
+(defmanipulation close (container - ((:capacity (.01 100000))) :by hand - HAND) ()
+  (values :already-closed hand))
 
 (defmanipulation close (container - ((:capacity (.01 100000)) (:closed #f)) :by hand - HAND)
     (:success .98 :delay 2)
@@ -49,9 +52,6 @@
   (let ((trouble (lid-trouble container hand)))
     (unless trouble (set-attribute container :closed #t))
     (values trouble hand)))
-
-(defmanipulation close (container - ((:capacity (.01 100000))) :by hand - HAND) ()
-  (values :already-closed hand))
 
 ;;; Locks.
 

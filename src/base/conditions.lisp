@@ -36,32 +36,58 @@
 (define-condition malformed-definition (ars-magna-error)
   ((definition :initarg :definition :reader malformed-definition-definition)
    (clause     :initarg :clause     :reader malformed-definition-clause)
-   (expected   :initarg :expected   :reader malformed-definition-expected))
+   (expected   :initarg :expected   :reader malformed-definition-expected)
+   (place      :initarg :place      :initform nil :reader malformed-definition-place))
   (:report (lambda (condition stream)
              (let ((*print-case* :downcase))
-               (format stream "~A: cannot use the clause~%  ~S~%Expected ~A."
+               (format stream "~A~@[ (~A)~]: cannot use the clause~%  ~S~%Expected ~A."
                        (malformed-definition-definition condition)
+                       (malformed-definition-place condition)
                        (malformed-definition-clause condition)
                        (malformed-definition-expected condition)))))
   (:documentation "A defining form (DEFMAP, DEFROBOT ...) has a clause that makes no sense."))
 
-(defun reject-clause (definition clause expected)
-  "Signal MALFORMED-DEFINITION about CLAUSE of DEFINITION (a string such as \"defmap watson\")."
-  (error 'malformed-definition :definition definition :clause clause :expected expected))
+(addition definition-warning definition-warning-text)
+(define-condition definition-warning (warning)
+  ((text :initarg :text :reader definition-warning-text))
+  (:report (lambda (condition stream)
+             (write-string (definition-warning-text condition) stream)))
+  (:documentation "A definition can be used, but does perhaps not say what its author meant."))
+
+(setf (documentation 'definition-warning-text 'function)
+      "Return what a DEFINITION-WARNING says, a string.")
+
+(defun warn-of-definition (control &rest arguments)
+  "Signal a DEFINITION-WARNING with a text formatted from CONTROL and ARGUMENTS."
+  (warn 'definition-warning :text (let ((*print-case* :downcase))
+                                    (apply #'format nil control arguments))))
+
+(defun plain-name (name)
+  "Return NAME as people write it: a symbol in lower case, without its package."
+  (if (symbolp name) (string-downcase name) name))
 
 (addition unknown-name)
+(defun names-to-show (names)
+  "Return NAMES as people write them, the first dozen of them if there are more."
+  (let ((more (- (length names) 12)))
+    (append (mapcar #'plain-name (subseq names 0 (min 12 (length names))))
+            (when (plusp more) (list (format nil "and ~D more" more))))))
+
 (define-condition unknown-name (ars-magna-error)
   ((kind    :initarg :kind    :reader unknown-name-kind)
    (name    :initarg :name    :reader unknown-name-name)
    (nearest :initarg :nearest :initform nil :reader unknown-name-nearest)
    (known   :initarg :known   :initform '() :reader unknown-name-known))
   (:report (lambda (condition stream)
-             (format stream "There is no ~A called ~S.~@[ Did you mean ~A?~]~
-                             ~@[ Known: ~{~A~^, ~}.~]"
-                     (unknown-name-kind condition)
-                     (unknown-name-name condition)
-                     (unknown-name-nearest condition)
-                     (unknown-name-known condition))))
+             (with-accessors ((kind unknown-name-kind) (name unknown-name-name)
+                              (nearest unknown-name-nearest) (known unknown-name-known))
+                 condition
+               (format stream "There is no ~A called ~A.~@[ Did you mean ~A?~]~
+                               ~@[ Known: ~{~A~^, ~}.~]"
+                       kind
+                       (if (symbolp name) (plain-name name) (prin1-to-string name))
+                       (and nearest (plain-name nearest))
+                       (names-to-show known)))))
   (:documentation "A name was given that nothing of that kind has."))
 
 (addition misuse)

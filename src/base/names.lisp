@@ -50,6 +50,16 @@
         (when (< distance least)
           (setf best candidate least distance))))))
 
+(defun resembles-p (a b)
+  "True if the name A is so much like the different name B that one may be a slip for the other:
+one letter apart, or two if they are long or only exchanged."
+  (let* ((a (string-upcase a)) (b (string-upcase b))
+         (distance (edit-distance a b)))
+    (or (= distance 1)
+        (and (= distance 2)
+             (or (<= 8 (min (length a) (length b)))
+                 (string= (sort (copy-seq a) #'char<) (sort (copy-seq b) #'char<)))))))
+
 (defun reject-name (kind name known)
   "Signal UNKNOWN-NAME: nothing of KIND (a string) among the names KNOWN is called NAME."
   (error 'unknown-name :kind kind :name name :known known

@@ -18,7 +18,8 @@ and bordeaux-threads so that no other layer has to.")
   (:export #:public #:addition #:addition-p #:public-symbols)
   ;; conditions
   (:export #:ars-magna-error #:wrong-argument #:check-argument #:malformed-definition
-           #:reject-clause #:unknown-name #:reject-name #:misuse #:reject-use)
+           #:definition-warning #:definition-warning-text #:warn-of-definition
+           #:unknown-name #:plain-name #:misuse #:reject-use)
   ;; threads
   (:export #:make-lock #:with-lock #:make-semaphore #:signal-semaphore #:wait-on-semaphore
            #:start-thread #:join-thread #:thread-alive-p #:current-thread #:spread-specials)
@@ -26,7 +27,18 @@ and bordeaux-threads so that no other layer has to.")
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance)
   ;; names
-  (:export #:same-name-p #:name-string #:nearest-name #:value-equal)
+  (:export #:same-name-p #:name-string #:nearest-name #:resembles-p #:reject-name #:value-equal)
+  ;; variables
+  (:export #:variable-name-p #:variable-forms #:known-variable-p)
+  ;; sources, definitions
+  (:export #:source-here #:source-file #:text-file #:current-source #:*definition*
+           #:read-definition-again #:reject-clause #:expand-definition #:call-as-definition
+           #:read-value #:clause-place #:skip-definition #:skip-clause #:read-again)
+  ;; registry
+  (:export #:registry #:define-registry #:registry-objects #:register #:seal-definitions #:lookup
+           #:lookup-definition #:definition-name #:definition-object #:definition-source
+           #:defined-names #:find-definition #:undefine #:take-back #:reinstate #:become
+           #:with-own-definitions #:call-with-own-definitions)
   ;; messages
   (:export #:error-set #:warning-set #:message-set #:error-display #:flush-all-errors*
            #:*message-queue* #:make-message-queue #:message-queue #:message-queue-listener

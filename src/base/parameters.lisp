@@ -31,18 +31,12 @@
   "Return what PARAMETER is called, a lower-case string such as \"max-speed*\"."
   (string-downcase (parameter-symbol parameter)))
 
-(defvar *parameters* '()
-  "All parameters, in the order of their definition.")
+(defun parameter-aliases (parameter)
+  "Return what PARAMETER is called without its final star, in a list."
+  (list (string-right-trim "*" (symbol-name (parameter-symbol parameter)))))
 
-(addition all-parameters)
-(defun all-parameters ()
-  "Return a list of all parameters in the order of chapter 4."
-  (copy-list *parameters*))
-
-(defun register-parameter (parameter)
-  (setf *parameters*
-        (append (remove (parameter-symbol parameter) *parameters* :key #'parameter-symbol)
-                (list parameter))))
+(define-registry parameter "simulation parameter"
+  :object-p parameter-p :fixed t :aliases #'parameter-aliases)
 
 (defmacro define-parameter (symbol default
                             (&key (unit "") (type t) (kind :limit) (group "") clean addition)
@@ -57,22 +51,11 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
                   (princ-to-string (eval default)))
                 (and (string/= unit "") unit)
                 addition))
-     (register-parameter
+     (register
+      *parameters* ',symbol
       (make-parameter :symbol ',symbol :default ,default :unit ,unit :type ',type
                       :kind ,kind :clean ,clean :group ,group :sentence ,sentence))
      ',symbol))
-
-(addition find-parameter)
-(defun find-parameter (name)
-  "Return the parameter called NAME (a string or symbol, with or without its final star).
-Signals UNKNOWN-NAME."
-  (let ((name (name-string name)))
-    (or (find-if (lambda (parameter)
-                   (let ((own (name-string (parameter-symbol parameter))))
-                     (or (string= own name)
-                         (string= own (concatenate 'string name "*")))))
-                 *parameters*)
-        (reject-name "simulation parameter" name (mapcar #'parameter-name *parameters*)))))
 
 (defun describe-type (type)
   "Return TYPE, a parameter's, in words."
@@ -92,22 +75,21 @@ Signals UNKNOWN-NAME."
 (defun parameter-value (parameter)
   "Return the value that PARAMETER (or the parameter so named) has now. Can be set; signals
 WRONG-ARGUMENT if the new value is of the wrong type or out of range."
-  (let ((parameter (if (parameter-p parameter) parameter (find-parameter parameter))))
-    (symbol-value (parameter-symbol parameter))))
+  (symbol-value (parameter-symbol (find-parameter parameter))))
 
 (defun (setf parameter-value) (value parameter)
-  (let ((parameter (if (parameter-p parameter) parameter (find-parameter parameter))))
+  (let ((parameter (find-parameter parameter)))
     (check-parameter-value parameter value)
     (setf (symbol-value (parameter-symbol parameter)) value)))
 
 (defun check-parameters ()
   "Signal WRONG-ARGUMENT if any parameter has a value of the wrong type or out of range."
-  (dolist (parameter *parameters*)
+  (dolist (parameter (registry-objects *parameters*))
     (check-parameter-value parameter (parameter-value parameter))))
 
 (defun parameter-settings ()
   "Return a list (symbol value) for each parameter whose value is not its default."
-  (loop for parameter in *parameters*
+  (loop for parameter in (registry-objects *parameters*)
         for value = (parameter-value parameter)
         unless (value-equal value (parameter-default parameter))
           collect (list (parameter-symbol parameter) value)))
@@ -124,7 +106,7 @@ NO-SENSOR-ERROR* to T. Delays and limits stay. A second call changes nothing. Re
 (manual, chapter 4)."
   (unless *noise-before-cleaning*
     (setf *noise-before-cleaning*
-          (loop for parameter in *parameters*
+          (loop for parameter in (registry-objects *parameters*)
                 when (eq (parameter-kind parameter) :noise)
                   collect (list (parameter-symbol parameter) (parameter-value parameter))
                   and do (setf (parameter-value parameter) (parameter-clean parameter)))))
@@ -145,8 +127,8 @@ Returns nothing (manual, chapter 4)."
 is now where they say nothing. Changes made inside end with the call."
   (let* ((settings (loop for (name value) in settings
                          collect (cons (parameter-symbol (find-parameter name)) value)))
-         (symbols (mapcar #'parameter-symbol *parameters*))
-         (values (loop for parameter in *parameters*
+         (symbols (mapcar #'parameter-symbol (registry-objects *parameters*)))
+         (values (loop for parameter in (registry-objects *parameters*)
                        for symbol = (parameter-symbol parameter)
                        for setting = (assoc symbol settings)
                        do (when setting (check-parameter-value parameter (cdr setting)))
@@ -156,7 +138,7 @@ is now where they say nothing. Changes made inside end with the call."
 
 (defun parameter-values ()
   "Return a vector of the values of all parameters as they are now, for FOLLOW-PARAMETERS."
-  (map 'vector #'parameter-value *parameters*))
+  (map 'vector #'parameter-value (registry-objects *parameters*)))
 
 (defun usable-value-p (parameter value)
   "True if PARAMETER can have VALUE; if not, queue an error message."
@@ -169,7 +151,7 @@ last brought up to date, and do that. If GLOBAL-P, the caller is a thread with b
 own: values set globally by others come in and values set here go out. A value that cannot be
 used is put back, with an error message. NOTE is called with each symbol and its new value."
   (declare #.*hot* (type simple-vector known) (type function note))
-  (loop for parameter in *parameters*
+  (loop for parameter in (registry-objects *parameters*)
         for index of-type fixnum from 0
         for symbol = (parameter-symbol (the parameter parameter))
         for old = (svref known index)

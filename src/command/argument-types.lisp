@@ -8,17 +8,12 @@
   (predicate nil :type function :read-only t)
   (words "" :type string :read-only t))
 
-(defvar *argument-types* '() "All argument types.")
+(define-registry argument-type "argument type" :object-p argument-type-p :fixed t :internal t)
 
 (defun define-argument-type (name predicate text)
   "Let NAME be an argument type: what satisfies PREDICATE, which TEXT says in words."
-  (setf *argument-types* (cons (make-argument-type name predicate text)
-                               (remove name *argument-types* :key #'argument-type-name)))
+  (register *argument-types* name (make-argument-type name predicate text))
   name)
-
-(defun find-argument-type (name)
-  (or (find name *argument-types* :key #'argument-type-name)
-      (reject-name "argument type" name (mapcar #'argument-type-name *argument-types*))))
 
 (defun argument-of-type-p (value type)
   "True if VALUE can be an argument of the type named TYPE."

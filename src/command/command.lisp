@@ -62,22 +62,11 @@ function of the operation that returns one."
 (defmethod print-object ((command command) stream)
   (print-unreadable-object (command stream :type t) (princ (command-name command) stream)))
 
-(defvar *commands* '() "All commands, in order of definition.")
+(defun command-aliases (command)
+  "Return what COMMAND is called at the prompt, in a list."
+  (list (command-prompt-name command)))
 
-(addition all-commands)
-(defun all-commands ()
-  "Return a list of all commands, in order of definition."
-  (copy-list *commands*))
-
-(addition find-command)
-(defun find-command (name)
-  "Return the command whose function, or whose command at the prompt, is called NAME. Signals
-UNKNOWN-NAME."
-  (or (find-if (lambda (command)
-                 (or (same-name-p name (command-name command))
-                     (same-name-p name (command-prompt-name command))))
-               *commands*)
-      (reject-name "command" name (mapcar #'command-name *commands*))))
+(define-registry command "command" :object-p command-p :fixed t :aliases #'command-aliases)
 
 (declaim (inline command-of))
 (defun command-of (symbol)
@@ -86,8 +75,5 @@ UNKNOWN-NAME."
 
 (defun register-command (command)
   (setf (get (command-name command) 'command) command)
-  (let ((old (member (command-name command) *commands* :key #'command-name)))
-    (if old
-        (setf (first old) command)
-        (setf *commands* (append *commands* (list command))))
-    (command-name command)))
+  (register *commands* (command-name command) command)
+  (command-name command))

@@ -16,7 +16,7 @@
 
 (defun fits-type-p (value type)
   "True if VALUE can be of the type called TYPE. Types that commands do not know fit all."
-  (let ((known (find type *argument-types* :key #'argument-type-name :test #'same-name-p)))
+  (let ((known (and type (find-argument-type type nil))))
     (or (null type) (null known) (funcall (argument-type-predicate known) value))))
 
 (defun resource-p* (object)
@@ -167,6 +167,7 @@ manipulation's own. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method take
          (arguments (butlast arguments))
          (method (first (methods-for manipulation arguments))))
     (check-command-argument name 'continuation continuation 'continuation)
+    (check-in-run (method-resource method arguments) name)
     (issue-manipulation manipulation (method-resource method arguments) arguments continuation)
     (values)))
 

@@ -2,10 +2,14 @@
 
 (in-package :ars-magna.command)
 
-;;; A manipulation is a name with methods. Of those that take what was given, the first that is for
-;;; the things designated is chosen when the manipulation begins; it must still be for them when its
-;;; delay has passed. What happens then is a command's operation on the value of the method's
-;;; :BY parameter.
+;;; A manipulation is a name with methods, the newest first. Of those that take what was given, the
+;;; first that is for the things designated is chosen when the manipulation begins; it must still be
+;;; for them when its delay has passed. What happens then is a command's operation on the value of
+;;; the method's :BY parameter.
+;;;
+;;; A method with the same parameter list is replaced where it stands. When a file is loaded that
+;;; has changed since, the methods that it defined before are forgotten first: so a method whose
+;;; parameters were edited does not stay behind.
 
 (defstruct (parameter-list (:constructor make-parameter-list (objects patterns by others))
                            (:copier nil))
@@ -19,6 +23,7 @@ others, each a list (variable type), with NIL for no type."
 (defstruct (manipulation-method (:conc-name method-) (:copier nil))
   "One way to carry out a manipulation."
   (form '() :type list :read-only t)
+  (source '() :type list :read-only t)
   (parameters nil :type parameter-list :read-only t)
   (success 1d0 :type double-float :read-only t)
   (delay 0 :type tick-count :read-only t)
@@ -26,28 +31,18 @@ others, each a list (variable type), with NIL for no type."
 
 (defstruct (manipulation (:constructor make-manipulation (name)) (:copier nil))
   "A named action on things. COMMAND, made when it is first needed, carries it out."
-  (name nil :type symbol :read-only t)
+  (name nil :type symbol)
   (methods '() :type list)
   (command nil :type (or null command)))
 (addition manipulation-name)
 (document-functions
   manipulation-name "Return the symbol that the manipulation is called.")
 
-(defvar *manipulations* '() "All manipulations, in order of definition.")
+(define-registry manipulation "manipulation" :object-p manipulation-p)
 
-(addition all-manipulations)
-(defun all-manipulations ()
-  "Return a list of the names of all manipulations, in order of definition."
-  (mapcar #'manipulation-name *manipulations*))
-
-(defun lookup-manipulation (name)
-  (find name *manipulations* :key #'manipulation-name :test #'same-name-p))
-
-(addition find-manipulation)
-(defun find-manipulation (name)
-  "Return the manipulation called NAME, a symbol or string. Signals UNKNOWN-NAME."
-  (or (and (typep name '(or symbol string)) (lookup-manipulation name))
-      (reject-name "manipulation" name (all-manipulations))))
+(defmethod print-object ((manipulation manipulation) stream)
+  (print-unreadable-object (manipulation stream :type t)
+    (princ (manipulation-name manipulation) stream)))
 
 ;;; Parameter lists.
 
@@ -110,36 +105,63 @@ others, each a list (variable type), with NIL for no type."
                (loop for key in options by #'cddr always (member key '(:success :delay))))
     (reject-clause definition options "([:success probability] [:delay ticks])")))
 
-(defun ensure-manipulation (name)
-  (or (lookup-manipulation name)
-      (let ((new (make-manipulation name)))
-        (setf *manipulations* (append *manipulations* (list new)))
-        new)))
+(defun outdated-p (method source)
+  "True if METHOD is from the file of SOURCE, but from an earlier version of it."
+  (let ((old (method-source method)))
+    (and source
+         (equal (source-file old) (source-file source))
+         (not (equal old source)))))
 
-(defun add-method-to (manipulation method)
-  "Let MANIPULATION have METHOD, instead of one with the same parameter list or after all others."
-  (let ((old (find (method-form method) (manipulation-methods manipulation)
-                   :key #'method-form :test #'value-equal)))
-    (setf (manipulation-methods manipulation)
-          (if old
-              (substitute method old (manipulation-methods manipulation))
-              (append (manipulation-methods manipulation) (list method))))))
+(defun with-method (methods method)
+  "Return the list METHODS with METHOD: instead of one with the same parameter list, or before all
+others."
+  (let* ((current (remove-if (lambda (old) (outdated-p old (method-source method))) methods))
+         (old (find (method-form method) current :key #'method-form :test #'value-equal)))
+    (if old
+        (substitute method old current)
+        (cons method current))))
+
+(defun say-if-shared (name methods method)
+  "Warn if METHOD is the first from its file, and METHODS of NAME are from others."
+  (let* ((file (source-file (method-source method)))
+         (files (mapcar (lambda (old) (source-file (method-source old))) methods))
+         (others (remove nil files)))
+    (when (and others (not (member file files :test #'equal)))
+      (warn-of-definition "The manipulation ~(~A~) has methods from ~{~A~^, ~} too: they are used ~
+                           where none defined later fits. (undefine 'manipulation '~(~A~)) ~
+                           forgets them all."
+                          name (remove-duplicates others :test #'equal) name))))
 
 (defun define-manipulation (name form body &key (success 1) (delay 0))
   "Define a method of the manipulation NAME; what DEFMANIPULATION expands to. FORM is its
 parameter list, BODY a function of as many arguments. Return NAME."
-  (let ((definition (format nil "defmanipulation ~(~A~)" name)))
-    (add-method-to
-     (ensure-manipulation name)
-     (make-manipulation-method
-      :form form :parameters (parse-parameters definition form) :body body
-      :success (double (check-option definition :success success '(real 0 1)
-                                     "a probability from 0 to 1"))
-      :delay (check-option definition :delay delay 'tick-count "a number of ticks, 0 or more")))
+  (let* ((definition (format nil "defmanipulation ~(~A~)" name))
+         (manipulation (or (find-manipulation name nil) (make-manipulation name)))
+         (method (make-manipulation-method
+                  :form form :source (current-source)
+                  :parameters (parse-parameters definition form) :body body
+                  :success (double (check-option definition :success success '(real 0 1)
+                                                 "a probability from 0 to 1"))
+                  :delay (check-option definition :delay delay 'tick-count
+                                       "a number of ticks, 0 or more"))))
+    (say-if-shared name (manipulation-methods manipulation) method)
+    (setf (manipulation-methods manipulation)
+          (with-method (manipulation-methods manipulation) method))
+    (unless (find-manipulation name nil)
+      (register *manipulations* name manipulation))
     name))
 
+(defun manipulation-forms (definition name parameters options body)
+  "Return the forms that DEFMANIPULATION expands to."
+  (check-name definition name "manipulation")
+  (check-method-options definition options)
+  (let ((variables (parameter-variables (parse-parameters definition parameters))))
+    `((define-manipulation ',name ',parameters
+        (lambda ,variables (declare (ignorable ,@variables)) ,@body)
+        ,@options))))
+
 (public defmanipulation)
-(defmacro defmanipulation (name parameters options &body body)
+(defmacro defmanipulation (&whole form name parameters options &body body)
   "Define a method of the manipulation NAME (manual 5.5.1). PARAMETERS is
   (variable - descriptor ... :by resource other ...)
 where each object's variable will be bound to a thing that is exactly as the descriptor
@@ -147,12 +169,9 @@ where each object's variable will be bound to a thing that is exactly as the des
 value wherever it occurs. A hyphen and a type may follow the resource, which is what the
 scheduler arbitrates, and each of the others. OPTIONS is ([:success probability] [:delay ticks]),
 by default 1 and 0. BODY runs in a tick; it returns an error code or NIL, and a value.
-A method with the same parameter list is replaced. Signals MALFORMED-DEFINITION. Return NAME."
+Of several methods that fit, the one defined last is used. One with the same parameter list is
+replaced, and so are those that an earlier version of the same file defined. Signals
+MALFORMED-DEFINITION. Return NAME."
   (let ((definition (format nil "defmanipulation ~(~A~)" name)))
-    (unless (and name (symbolp name))
-      (reject-clause definition name "a symbol as the name of the manipulation"))
-    (check-method-options definition options)
-    (let ((variables (parameter-variables (parse-parameters definition parameters))))
-      `(define-manipulation ',name ',parameters
-         (lambda ,variables (declare (ignorable ,@variables)) ,@body)
-         ,@options))))
+    (expand-definition form (lambda ()
+                              (manipulation-forms definition name parameters options body)))))

@@ -137,7 +137,9 @@ followed by (robot-go-forward ...) sets the speed."
 
 (defun issue (command resource arguments continuation)
   "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked; CONTINUATION may be NIL.
-Return nothing: the command takes effect in the next tick."
+Return nothing: the command takes effect in the next tick. Signals MISUSE if the robot's run is
+over."
+  (check-in-run resource (command-name command))
   (let* ((simulation (resource-simulation resource))
          (operation (make-operation command resource arguments continuation simulation)))
     (post simulation

@@ -8,14 +8,23 @@
 ;;; two numbers mean a range. NIL means false or unspecified. A matchvar is bound where
 ;;; it comes first and must meet the same value wherever it comes again, in this pattern or a later.
 
-(defun proper-list-p (object)
-  (and (listp object) (ignore-errors (list-length object)) (null (cdr (last object)))))
-
 (defun clause-p (clause)
   (and (proper-list-p clause)
        (<= 2 (length clause) 3)
        (first clause) (symbolp (first clause))
        (typep (third clause) '(or null (real 0)))))
+
+(defun reversed-p (key value)
+  "True if VALUE for the attribute KEY is a range with the higher end first."
+  (and (range-p value)
+       (not (alternatives-p key value))
+       (> (first value) (second value))))
+
+(defun check-clause (definition clause)
+  (let ((key (attribute-key (first clause))))
+    (when (reversed-p key (second clause))
+      (reject-clause definition clause "a range with the lower end first"))
+    (warn-of-slips definition "a pattern" (list clause))))
 
 (defun parse-pattern (definition specification)
   "Return the pattern that SPECIFICATION, a list of lists (attribute value [threshold]), stands
@@ -26,6 +35,7 @@ for. Signals MALFORMED-DEFINITION about DEFINITION."
                        (find-if-not #'clause-p specification)
                        specification)
                    "a descriptor ((attribute value [threshold]) ...) after each object's hyphen"))
+  (dolist (clause specification) (check-clause definition clause))
   (loop for (name value threshold) in specification
         collect (list (attribute-key name) value (or threshold 0))))
 
@@ -39,7 +49,7 @@ for. Signals MALFORMED-DEFINITION about DEFINITION."
 
 (defun alternatives-p (key value)
   "True if VALUE, a list, means for the attribute KEY that any of its elements will do."
-  (let ((attribute (find-attribute key)))
+  (let ((attribute (attribute-of key)))
     (if attribute
         (or (eq :discrete (attribute-kind attribute)) (not (range-p value)))
         (not (range-p value)))))
@@ -65,7 +75,7 @@ parameter or its type."
 (defun has-value-p (key value)
   "True if VALUE is a value of the attribute KEY; NIL is one of those that can be true or false."
   (or value
-      (let ((attribute (find-attribute key)))
+      (let ((attribute (attribute-of key)))
         (and attribute (member nil (attribute-domain attribute))))))
 
 (defun bind-matchvar (matchvar key value bindings)

@@ -5,13 +5,17 @@
 ;;; All of these act on the place type that the robot senses, which may not be the one that is
 ;;; there. Its directions are then those that the sensed type gives the cell.
 
+(defun place-name (type robot)
+  "Return the name of the place type TYPE, as the author of the map that ROBOT is in writes it."
+  (own-symbol (place-type-name type) (map-package (world-map (robot-world robot)))))
+
 (define-command robot-place (operation (robot robot))
     ((place-type "the name of the place type sensed, or NIL"))
     ((:family :moving) (:section "2.2, C")
      (:report (type) (format nil "Place is ~A" type)))
     "Sense the type of the place where ROBOT is."
   (let ((type (sense-place-type robot)))
-    (setf (robot-last-place robot) (and type (place-type-name type)))
+    (setf (robot-last-place robot) (and type (place-name type robot)))
     (succeed operation (robot-last-place robot))))
 
 (defun turn-to-face (operation robot direction)

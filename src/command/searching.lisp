@@ -10,8 +10,8 @@
   ":local or :non-local")
 
 (define-argument-type 'specification #'specification-p
-  "a descriptor specification: a list such as ((:color (red blue)) (:size 4 .5)), with values that
-the attributes can have")
+  "a descriptor specification: a list such as ((:color (red blue)) (:size (3 5) .5)), with values
+that the attributes can have, and of a range the lower end first")
 
 (define-argument-type 'place-type
   (lambda (value) (and value (typep value '(or symbol string place-type))))
@@ -48,11 +48,17 @@ the attributes can have")
 
 (defun place-search-obstacle (camera place-type)
   "Return the error code that keeps CAMERA from a search for places of PLACE-TYPE, or NIL."
-  (let ((type (find-place-type place-type)))
+  (let ((type (find-place-type place-type nil)))
     (cond ((camera-tracking camera) :already-tracking)
           ((null type) :invalid-place-type)
           ((place-type-invisible-p type) :invisible-place-type)
           ((camera-location camera) :camera-enclosed))))
+
+(defun asked-name (place-type)
+  "Return the symbol for PLACE-TYPE, a name or a place type: the very one that was asked for."
+  (if (symbolp place-type)
+      place-type
+      (place-type-name (find-place-type place-type))))
 
 (defun search-for-places (operation camera place-type all)
   (let ((obstacle (place-search-obstacle camera place-type)))
@@ -60,7 +66,8 @@ the attributes can have")
         (fail-with operation obstacle)
         (funcall (if all #'name-all #'name-one)
                  operation camera
-                 (look-for-places camera (find-place-type place-type) :all all)))))
+                 (look-for-places camera (find-place-type place-type) :all all
+                                  :name (asked-name place-type))))))
 
 (define-command camera-get-place-designator (operation (camera camera)
                                              (place-type place-type "the name of a place type"))

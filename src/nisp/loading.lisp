@@ -6,7 +6,7 @@
   "Return what follows the last slash of the string PATH."
   (subseq path (1+ (or (position #\/ path :from-end t) -1))))
 
-(defun source-file (path)
+(defun lisp-file (path)
   "Return the Lisp file at PATH, with or without its type, or NIL."
   (let ((file (probe-file (merge-pathnames path (make-pathname :type "lisp")))))
     (and file (pathname-name file) file)))
@@ -17,7 +17,7 @@
 (dsklap \"ars-dir/ars-magna\"). Return true. It is an error if there is neither (manual A)."
   (check-argument dsklap path (typep path '(or string pathname symbol)) "a path or a system's name")
   (let* ((path (if (pathnamep path) (namestring path) (string path)))
-         (file (source-file path))
+         (file (lisp-file path))
          (system (string-downcase (last-component path))))
     (cond (file (load file))
           ((asdf:find-system system nil) (asdf:load-system system) t)

@@ -3,7 +3,8 @@
 (in-package :ars-magna.robot)
 
 ;;; A body is the recipe of a robot. DEFROBOT puts a robot made by it into its map's resident
-;;; world and binds the robot's name; a fresh simulation makes another by the same recipe.
+;;; world and binds the robot's name; a fresh simulation makes another by the same recipe. A robot
+;;; whose world or definition has been replaced is retired: it takes no more commands.
 
 (defstruct (body (:copier nil))
   "What DEFROBOT said of a robot."
@@ -20,25 +21,29 @@
       (documentation 'body-name 'function) "Return the name of the robot."
       (documentation 'body-map 'function) "Return the name of the map that the robot starts in.")
 
-(defvar *bodies* '() "The bodies of all robots, in order of definition.")
+(define-registry robot "robot" :object-p body-p
+  :finder find-body :lister all-bodies :internal t)
+
+(defun body-robot (body)
+  "Return the robot that the variable of BODY's name holds here and now."
+  (let ((name (body-name body)))
+    (and (boundp name) (symbol-value name))))
 
 (addition all-robots)
 (defun all-robots ()
-  "Return a list of the names of all robots, in order of definition."
-  (mapcar #'body-name *bodies*))
-
-(defun find-body (name)
-  (or (find name *bodies* :key #'body-name :test #'same-name-p)
-      (reject-name "robot" name (all-robots))))
-
-(defun find-body-name (name)
-  (body-name (find-body name)))
+  "Return a list of all robots, those that the variables of their names hold, in order of
+definition."
+  (remove nil (mapcar #'body-robot (all-bodies))))
 
 (addition find-robot)
-(defun find-robot (name)
-  "Return the robot called NAME, a symbol or string: the one that the variable of that name
-holds. Signals UNKNOWN-NAME."
-  (symbol-value (find-body-name name)))
+(defun find-robot (name &optional (errorp t))
+  "Return the robot called NAME, a symbol or string: the one that the variable of that name holds;
+a robot is returned as it is. If there is none, signal UNKNOWN-NAME, or return NIL if ERRORP is
+NIL."
+  (if (robot-p name)
+      name
+      (let ((body (find-body name errorp)))
+        (and body (body-robot body)))))
 
 ;;; Making robots.
 
@@ -61,8 +66,23 @@ holds. Signals UNKNOWN-NAME."
         (make-parts robot #'make-storage-bin
                     (loop for capacity in (body-bins body) collect (list :capacity capacity)))))
 
+(defun start-trouble (map x y)
+  "Return in words why a robot cannot start at (X,Y) in MAP, or NIL."
+  (cond ((not (map-index map x y))
+         (format nil "(~F ~F) is outside the map, which is ~D by ~D metres"
+                 x y (map-width map) (map-height map)))
+        ((wall-at-p map x y) (format nil "(~F ~F) is inside a wall" x y))))
+
+(defun check-start (body map)
+  "Signal MISUSE unless a robot made by BODY fits into MAP."
+  (let ((trouble (start-trouble map (body-x body) (body-y body))))
+    (when trouble
+      (reject-use "~(~A~) no longer fits into ~(~A~): ~A. Define the robot anew."
+                  (body-name body) (map-name map) trouble))))
+
 (defun make-robot (body world)
-  "Return a robot made by BODY, at its start in WORLD."
+  "Return a robot made by BODY, at its start in WORLD. Signals MISUSE if that is in a wall."
+  (check-start body (world-map world))
   (let ((robot (%make-robot :name (body-name body) :body body :world world)))
     (outfit robot body)
     (set-robot-pose robot (body-x body) (body-y body) (body-angle body))
@@ -106,14 +126,74 @@ holds. Signals UNKNOWN-NAME."
   (setf (storage-bin-contents bin) '()
         (storage-bin-closed-p bin) nil))
 
+;;; Retiring robots.
+
+(defun retire-robot (robot reason)
+  "Let ROBOT take no more commands, for REASON, a sentence without its full stop."
+  (setf (robot-retired robot) reason))
+
+(defun check-in-run (resource operator)
+  "Signal MISUSE if the robot that is RESOURCE, or has it as a part, is retired."
+  (let ((robot (if (robot-p resource) resource (part-robot resource))))
+    (when (robot-retired robot)
+      (reject-use "~(~A~): the run of this ~(~A~) is over: ~A. Command the robot that the variable ~
+                   ~(~A~) holds now."
+                  operator (robot-name robot) (robot-retired robot) (robot-name robot)))))
+
+(defun robot-in-world (name world)
+  "Return the robot in WORLD called NAME, or NIL."
+  (find name (world-robots world) :key #'robot-name :test #'same-name-p))
+
+(defun resident-robots (name)
+  "Return the robots called NAME in the worlds that top-level code works in."
+  (loop for map in (all-maps)
+        for robot = (and (map-resident map) (robot-in-world name (map-resident map)))
+        when robot collect robot))
+
+(defun take-out (robot reason)
+  "Retire ROBOT and take it out of its world."
+  (let ((world (robot-world robot)))
+    (retire-robot robot reason)
+    (setf (world-robots world) (remove robot (world-robots world)))))
+
+(defun ask-owner (world function)
+  "Call FUNCTION where WORLD stands still."
+  (if (world-simulation world)
+      (ask (world-simulation world) function)
+      (funcall function)))
+
+(defun settle (body)
+  "Put a robot made by BODY into the resident world of its map, instead of any that was made by an
+earlier definition of its name, and return it."
+  (let* ((world (map-resident-world (find-map (body-map body))))
+         (robot nil))
+    (check-start body (world-map world))
+    (dolist (old (resident-robots (body-name body)))
+      (ask-owner (robot-world old)
+                 (lambda () (take-out old "it has been defined anew"))))
+    (ask-owner world (lambda () (setf robot (make-robot body world))))
+    robot))
+
+(defmethod take-back ((body body))
+  (dolist (robot (resident-robots (body-name body)))
+    (ask-owner (robot-world robot)
+               (lambda () (take-out robot "its definition has been taken back")))))
+
+(defmethod reinstate ((body body))
+  (let ((robot (body-robot body)))
+    (when (robot-p robot)
+      (setf (robot-retired robot) nil)
+      (pushnew robot (world-robots (robot-world robot)))))
+  body)
+
 ;;; The defining form.
 
 (defun parse-camera (specification reject)
   (unless (and (listp specification) (= (length specification) 2)
                (realp (first specification)) (< 0 (first specification) (+ 2pi 1d-9))
                (typep (second specification) '(integer 1)))
-    (funcall reject specification "(field-of-view resolution): radians above 0 and at most 2 pi, ~
-                                   and a number of pixels"))
+    (funcall reject specification
+             "(field-of-view resolution): radians above 0, at most 2 pi, and a number of pixels"))
   (list (double (first specification)) (second specification)))
 
 (defun parse-amount (amount reject)
@@ -123,18 +203,24 @@ holds. Signals UNKNOWN-NAME."
 
 (defun parse-place (environment position angle reject)
   "Return the map, and where in it the robot starts."
-  (let ((map (find-map environment)))
+  (unless (typep environment '(or map symbol string))
+    (funcall reject environment "a map or its name"))
+  (let ((map (or (find-map environment nil)
+                 (funcall reject environment
+                          (format nil "a map: ~{~(~A~)~^, ~}"
+                                  (mapcar #'map-name (all-maps)))))))
     (destructuring-bind (x y) position
-      (unless (and (realp x) (realp y) (not (wall-at-p map x y)))
-        (funcall reject position
-                 (format nil "a position in the open: ~D x ~D cells, and that one is a wall"
-                         (map-width map) (map-height map))))
+      (unless (and (realp x) (realp y)) (funcall reject position "a position (x y), two numbers"))
+      (let ((trouble (start-trouble map x y)))
+        (when trouble
+          (funcall reject position (format nil "a position in the open of ~(~A~), and ~A"
+                                           (map-name map) trouble))))
       (unless (realp angle) (funcall reject angle "a heading in radians"))
       map)))
 
 (defun make-body-from (name environment position angle cameras hands bins)
-  (flet ((reject (clause control)
-           (reject-clause (format nil "defrobot ~(~A~)" name) clause (format nil control))))
+  (flet ((reject (clause expected)
+           (reject-clause (format nil "defrobot ~(~A~)" name) clause expected)))
     (let ((map (parse-place environment position angle #'reject)))
       (make-body :name name :map (map-name map)
                  :x (double (first position)) :y (double (second position))
@@ -143,55 +229,70 @@ holds. Signals UNKNOWN-NAME."
                  :hands (loop for hand in hands collect (parse-amount hand #'reject))
                  :bins (loop for bin in bins collect (parse-amount bin #'reject))))))
 
-(defun register-body (body)
-  (setf *bodies* (append (remove (body-name body) *bodies*
-                                 :key #'body-name :test #'same-name-p)
-                         (list body))))
-
 (addition define-robot)
 (defun define-robot (name environment position angle &key cameras hands bins)
   "Do as DEFROBOT does, with values: ENVIRONMENT is a map or its name, POSITION a list (x y),
 CAMERAS a list of lists (fov resolution). Return the robot."
+  (check-robot-name (format nil "defrobot ~(~A~)" name) name)
   (let* ((body (make-body-from name environment position angle cameras hands bins))
-         (world (map-resident-world (find-map (body-map body))))
-         (old (find name (world-robots world) :key #'robot-name :test #'same-name-p)))
-    (register-body body)
-    (flet ((settle ()
-             (setf (world-robots world) (remove old (world-robots world)))
-             (setf (symbol-value name) (make-robot body world))))
-      (if (world-simulation world)
-          (asking ((world-simulation world)) (settle))
-          (settle)))))
+         (robot (settle body)))
+    (register *robots* name body :variable t :value robot)
+    robot))
 
-(defun check-robot-form (name start options)
-  (flet ((reject (clause expected)
-           (reject-clause (format nil "defrobot ~(~A~)" name) clause expected)))
-    (unless (and name (symbolp name)) (reject name "a symbol as the robot's name"))
-    (unless (and (consp start) (= (length start) 3)
-                 (listp (second start)) (= (length (second start)) 2))
+(defun check-robot-name (definition name)
+  (unless (and name (symbolp name)) (reject-clause definition name "a symbol as the robot's name"))
+  (unless (variable-name-p name)
+    (reject-clause definition name
+                   (format nil "a symbol that can be a variable, as a robot is the value of one, ~
+                                and ~A belongs to ~A. Call it my-~(~A~), or shadow the symbol in ~
+                                your package: (:shadow #:~(~A~))"
+                           name (package-name (symbol-package name)) name name))))
+
+(defun check-robot-form (definition name start options)
+  (flet ((reject (clause expected) (reject-clause definition clause expected)))
+    (check-robot-name definition name)
+    (unless (and (proper-list-p start) (= (length start) 3)
+                 (proper-list-p (second start)) (= (length (second start)) 2))
       (reject start "(environment (x y) angle)"))
-    (loop for (key value . more) on options by #'cddr
-          do (unless (member key '(:cameras :hands :bins))
-               (reject (list key value)
-                       ":cameras ((fov res) ...), :hands (strength ...) or :bins (capacity ...)"))
-             (unless (listp value) (reject (list key value) "a list after the keyword")))
-    (when (oddp (length options)) (reject options "pairs of a keyword and a list"))))
+    (check-options definition options '(:cameras :hands :bins))
+    (loop for (key value) on options by #'cddr
+          do (unless (proper-list-p value) (reject (list key value) "a list after the keyword")))))
+
+(defun value-form (definition form clause expected)
+  "Return a form for the value of FORM, which stands in CLAUSE; that it has none is DEFINITION's."
+  (if (constantp form)
+      form
+      `(call-for-value (lambda () ,form) ,definition ',clause ,expected)))
+
+(defun robot-forms (definition name start options lisp-environment)
+  "Return the forms that DEFROBOT expands to."
+  (destructuring-bind (environment (x y) angle) start
+    (destructuring-bind (&key cameras hands bins) options
+      (flet ((number-of (form clause)
+               (value-form definition form clause "a form that has a value")))
+        `((define-robot ',name
+            ,(value-form definition (map-form environment lisp-environment) start
+                         "a map, its name, or a form whose value is one")
+            (list ,(number-of x (second start)) ,(number-of y (second start)))
+            ,(number-of angle start)
+            :cameras (list ,@(loop for camera in cameras
+                                   collect (if (proper-list-p camera)
+                                               `(list ,@(loop for form in camera
+                                                              collect (number-of form camera)))
+                                               (number-of camera camera))))
+            :hands (list ,@(loop for hand in hands collect (number-of hand hands)))
+            :bins (list ,@(loop for bin in bins collect (number-of bin bins)))))))))
 
 (public defrobot)
-(defmacro defrobot (name (&rest start) &rest options)
+(defmacro defrobot (&whole form name start &rest options &environment environment)
   "Define a robot: (defrobot NAME (ENVIRONMENT (X Y) ANGLE) [:cameras ((FOV RESOLUTION) ...)]
 [:hands (STRENGTH ...)] [:bins (CAPACITY ...)]). NAME becomes a special variable bound to the
 robot, which stands in the resident world of the map ENVIRONMENT (its variable or name) at (X,Y),
-in metres, heading ANGLE, in radians. Numbers are evaluated. Signals MALFORMED-DEFINITION
-(manual 5.2)."
-  (check-robot-form name start options)
-  (destructuring-bind (environment (x y) angle) start
-    (destructuring-bind (&key cameras hands bins) options
-      `(progn
-         (defvar ,name)
-         (define-robot ',name ',environment (list ,x ,y) ,angle
-           :cameras (list ,@(loop for camera in cameras
-                                  collect (if (listp camera) `(list ,@camera) camera)))
-           :hands (list ,@hands)
-           :bins (list ,@bins))
-         ',name))))
+in metres, heading ANGLE, in radians. Numbers are evaluated. A robot that was called NAME before
+takes no more commands. Signals MALFORMED-DEFINITION (manual 5.2)."
+  (let ((definition (format nil "defrobot ~(~A~)" name)))
+    (expand-definition form
+                       (lambda ()
+                         (check-robot-form definition name start options)
+                         (values (robot-forms definition name start options environment)
+                                 (variable-forms name))))))

@@ -16,9 +16,14 @@ are NIL, if it is one of CHOICES."
   (high nil :type (or null real) :read-only t)
   (choices '() :type list :read-only t))
 
-(defun range-p (value)
+(defun numbers-p (value)
+  "True if VALUE is a list of two numbers."
   (and (consp value) (consp (rest value)) (null (cddr value))
        (realp (first value)) (realp (second value))))
+
+(defun range-p (value)
+  "True if VALUE is a range: a list of two numbers, the lower one first."
+  (and (numbers-p value) (<= (first value) (second value))))
 
 (defun numeric-demand (key attribute value threshold)
   (let ((threshold (or threshold standard-match-threshold*)))
@@ -29,7 +34,7 @@ are NIL, if it is one of CHOICES."
 
 (defun parse-demand (specification)
   (destructuring-bind (name value &optional threshold) specification
-    (let* ((key (attribute-key name)) (attribute (find-attribute key)))
+    (let* ((key (attribute-key name)) (attribute (attribute-of key)))
       (if (and (or (realp value) (range-p value))
                (not (and attribute (eq (attribute-kind attribute) :discrete))))
           (numeric-demand key attribute value threshold)
@@ -51,17 +56,22 @@ are NIL, if it is one of CHOICES."
         ((eq (attribute-name attribute) :substance) (or (realp value) (symbolp value)))
         (t (realp value))))
 
+(defun takes-range-p (attribute value)
+  "True if VALUE, a list, must be a range for ATTRIBUTE (NIL: an undefined one)."
+  (cond ((null attribute) (numbers-p value))
+        ((eq (attribute-kind attribute) :discrete) nil)
+        ((eq (attribute-name attribute) :substance) (numbers-p value))
+        (t t)))
+
 (defun demand-form-p (form)
   (and (consp form) (first form) (symbolp (first form))
        (consp (rest form)) (listp (cddr form)) (null (cdddr form))
        (typep (third form) '(or null (real 0)))
-       (let ((attribute (find-attribute (first form))) (value (second form)))
+       (let ((attribute (attribute-of (first form))) (value (second form)))
          (if (consp value)
              (and (null (cdr (last value)))
-                  (or (null attribute)
-                      (not (eq (attribute-kind attribute) :numeric))
-                      (range-p value)
-                      (eq (attribute-name attribute) :substance))
+                  (or (range-p value)
+                      (not (takes-range-p attribute value)))
                   (every (lambda (value) (possible-value-p attribute value)) value))
              (possible-value-p attribute value)))))
 
@@ -89,6 +99,15 @@ are NIL, if it is one of CHOICES."
                     reading)
                 (demand-choices demand) :test #'value-equal))))
 
+(defun as-asked (demand reading)
+  "Return READING, which fits DEMAND, with the symbol that was asked for."
+  (flet ((asked (value)
+           (or (find value (demand-choices demand) :test #'value-equal) value)))
+    (cond ((null (demand-choices demand)) reading)
+          ((and (consp reading) (eq :substance (demand-key demand)))
+           (cons (asked (first reading)) (rest reading)))
+          (t (asked reading)))))
+
 (declaim (inline thing-value))
 (defun thing-value (thing key)
   (second (assoc key (thing-attributes thing) :test #'eq)))
@@ -107,9 +126,9 @@ as an object descriptor."
       (let* ((key (demand-key demand)) (attribute (demand-attribute demand))
              (value (thing-value thing key)))
         (when (says-nothing-p attribute value) (return nil))
-        (let ((reading (read-attribute attribute value distance dice)))
+        (let ((reading (read-attribute attribute value distance dice (author-package thing))))
           (unless (fits-p demand reading) (return nil))
-          (push (list key reading) readings))))))
+          (push (list key (as-asked demand reading)) readings))))))
 
 ;;; What is noticed besides.
 
@@ -120,21 +139,39 @@ as an object descriptor."
          (given (count-if (lambda (key) (member key supporters :test #'eq)) keys)))
     (- 1d0 (expt (- 1d0 (attribute-noticed attribute)) (1+ given)))))
 
-(defun notice-attributes (keys value-of distance dice)
-  "Return readings of attributes not among KEYS that happen to be noticed. VALUE-OF, a function of
-an attribute, returns its value, and secondly whether there is one."
+(defun noticeable-p (attribute value map)
+  "True if there is something to be noticed when a thing of MAP has VALUE for ATTRIBUTE. A thing
+that says nothing of a boolean has it false; but of one that the manual does not know only where any
+thing of MAP starts with it."
+  (or value
+      (and (member nil (attribute-domain attribute))
+           (or (built-in-attribute-p attribute)
+               (member (attribute-name attribute) (map-attribute-names map) :test #'eq)))))
+
+(defun thing-map (thing)
+  (world-map (thing-world thing)))
+
+(defun author-package (thing)
+  "Return the name of the package in which the author of THING's map writes, or NIL."
+  (and (thing-world thing) (map-package (thing-map thing))))
+
+(defun notice-attributes (map keys value-of distance dice)
+  "Return readings of attributes not among KEYS that happen to be noticed in MAP. VALUE-OF, a
+function of an attribute, returns its value, and secondly whether there is anything that has one."
   (loop for attribute in (all-attributes)
         for key = (attribute-name attribute)
         unless (member key keys :test #'eq)
           append (multiple-value-bind (value present) (funcall value-of attribute)
-                   (when (and present (chance (notice-probability attribute keys) dice))
-                     (list (list key (read-attribute attribute value distance dice)))))))
+                   (when (and present
+                              (noticeable-p attribute value map)
+                              (chance (notice-probability attribute keys) dice))
+                     (list (list key (read-attribute attribute value distance dice
+                                                     (map-package map))))))))
 
 (defun describe-thing (thing readings distance dice)
   "Return the description of THING that a search reports: what is noticed, then READINGS."
-  (append (notice-attributes (mapcar #'first readings)
+  (append (notice-attributes (thing-map thing) (mapcar #'first readings)
                              (lambda (attribute)
-                               (let ((value (thing-value thing (attribute-name attribute))))
-                                 (values value (not (says-nothing-p attribute value)))))
+                               (values (thing-value thing (attribute-name attribute)) t))
                              distance dice)
           readings))

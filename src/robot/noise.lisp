@@ -27,29 +27,41 @@ CONTINUOUS-NOISE-FACTOR* (manual 3.4.2)."
 (defun noisy-number (attribute value distance dice)
   (roll-gaussian value (reading-deviation attribute distance) dice))
 
-(defun noisy-choice (attribute value domain distance dice)
+(defun own-symbol (value package)
+  "Return VALUE, or if it is a symbol, the one of the same name that somebody writes in PACKAGE, the
+name of a package; so that what is misread is still a word of the world's author. NIL: any will do."
+  (let ((package (and package (find-package package))))
+    (if (and value (symbolp value) (not (keywordp value)) (not (eq value t))
+             package
+             (or (find-symbol (symbol-name value) package)
+                 (not (sb-ext:package-locked-p package))))
+        (values (intern (symbol-name value) package))
+        value)))
+
+(defun noisy-choice (attribute value domain distance package dice)
   (if (chance (reading-reliability attribute distance) dice)
       value
-      (roll-element domain dice)))
+      (own-symbol (roll-element domain dice) package)))
 
-(defun noisy-substance (attribute value distance dice)
+(defun noisy-substance (attribute value distance package dice)
   "Return a reading of VALUE of the :substance ATTRIBUTE: a number, a type, or a list of both."
   (flet ((read-type (type)
            (noisy-choice attribute type (mapcar #'substance-name (all-substances))
-                         distance dice)))
+                         distance package dice)))
     (cond ((realp value) (noisy-number attribute value distance dice))
           ((symbolp value) (read-type value))
           (t (list (read-type (first value))
                    (noisy-number attribute (second value) distance dice))))))
 
-(defun read-attribute (attribute value distance dice)
+(defun read-attribute (attribute value distance dice &optional package)
   "Return a reading of VALUE, which a thing has for ATTRIBUTE (NIL: an undefined one), from DISTANCE
-metres away, its error drawn from DICE."
+metres away, its error drawn from DICE. A symbol that is misread is one of PACKAGE, if that is given
+by name."
   (cond ((or no-sensor-error* (null attribute)) value)
         ((eq (attribute-kind attribute) :discrete)
-         (noisy-choice attribute value (attribute-domain attribute) distance dice))
+         (noisy-choice attribute value (attribute-domain attribute) distance package dice))
         ((eq (attribute-name attribute) :substance)
-         (noisy-substance attribute value distance dice))
+         (noisy-substance attribute value distance package dice))
         ((realp value) (noisy-number attribute value distance dice))
         (t value)))
 

@@ -7,11 +7,12 @@ of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
   (:shadowing-import-from :cl #:equal)
   (:shadowing-import-from :ars-magna.world #:map)
   ;; parts
-  (:export #:robot #:robot-p #:robot-name #:robot-body #:robot-world #:robot-simulation
+  (:export #:robot #:robot-p #:robot-name #:robot-body #:robot-world #:robot-retired #:check-in-run
+           #:headless-p #:all-bodies #:find-body #:robot-simulation
            #:robot-x #:robot-y #:robot-angle #:robot-cos #:robot-sin #:robot-position
            #:robot-speed #:robot-turn-angle #:robot-cameras #:robot-hands #:robot-bins
            #:robot-last-place #:robot-drove-tick #:robot-designators
-           #:robot-camera #:robot-hand #:robot-storage-bin
+           #:robot-camera #:robot-hand #:robot-storage-bin #:robot-parts
            #:part #:part-p #:part-robot #:part-index #:part-location
            #:camera #:camera-p #:camera-robot #:camera-index #:camera-field-of-view
            #:camera-resolution #:camera-angle #:camera-location #:camera-last-view
@@ -42,7 +43,7 @@ of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
            #:camera-tracks #:tracking-p #:tracking-cameras #:tracked-p #:end-track
            #:drop-designator #:part-moved #:add-designator)
   ;; noise, matching, scanning, views, tending
-  (:export #:reading-reliability #:reading-deviation #:read-attribute #:angle-error
+  (:export #:own-symbol #:reading-reliability #:reading-deviation #:read-attribute #:angle-error
            #:specification-p #:notice-probability #:sighting #:designate #:look-for-things
            #:look-for-places #:camera-heading #:take-view #:start-track #:trackable-p
            #:in-same-cell-p)

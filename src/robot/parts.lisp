@@ -12,6 +12,8 @@
   (name nil :type symbol)
   (body nil)
   (world nil :type (or null world))
+  ;; Why its run is over, a string; NIL as long as it is not.
+  (retired nil :type (or null string))
   (x 0d0 :type double-float)
   (y 0d0 :type double-float)
   (angle 0d0 :type double-float)
@@ -96,6 +98,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   robot-name "Return the symbol that the robot was defined by."
   robot-body "Return the definition from which the robot was made."
   robot-world "Return the world that the robot is in."
+  robot-retired "Return why the robot's run is over, a string, or NIL as long as it is not."
   robot-x "Return the robot's true x coordinate, in metres."
   robot-y "Return the robot's true y coordinate, in metres."
   robot-angle "Return the robot's true heading, in radians, never normalised."
@@ -130,6 +133,11 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
 (defun robot-position (robot)
   "Return the true position of ROBOT, x and y as two values, in metres."
   (values (robot-x robot) (robot-y robot)))
+
+(addition robot-parts)
+(defun robot-parts (robot)
+  "Return a list of ROBOT's cameras, hands and storage bins."
+  (concatenate 'list (robot-cameras robot) (robot-hands robot) (robot-bins robot)))
 
 (addition hand-holding)
 (defun hand-holding (hand)

@@ -26,7 +26,7 @@
       (call-with-simulation (lambda ()
                               (replay-entries journal (current-simulation))
                               (funcall function))
-                            (mapcar #'find-body-name robots)
+                            (mapcar (lambda (name) (body-name (find-body name))) robots)
                             :seed seed :parameters (full-settings parameters) :journal t))))
 
 (addition with-replay)

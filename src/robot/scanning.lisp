@@ -135,12 +135,18 @@ for what DEMANDS describe."
       (make-sighting type thing x y
                      (describe-thing thing readings (seen-from camera thing) dice)))))
 
+(defun note-strange-demands (demands world)
+  "Warn of DEMANDS for attributes that nothing in WORLD has. Return DEMANDS."
+  (dolist (demand demands demands)
+    (unless (demand-attribute demand)
+      (note-strange-name (demand-key demand) world))))
+
 (defun look-for-things (camera type specification &key all)
   "Return sightings by CAMERA of things of TYPE that fit SPECIFICATION: of one, or of ALL that it
 finds. What is not there may be among them."
   (let* ((world (robot-world (camera-robot camera)))
          (dice (world-dice world :looking))
-         (demands (parse-specification specification))
+         (demands (note-strange-demands (parse-specification specification) world))
          (finds (matching-things camera type demands dice))
          (phantoms (if (and (camera-location camera) (eq type :non-local))
                        0
@@ -162,14 +168,15 @@ finds. What is not there may be among them."
               collect (multiple-value-bind (y x) (floor index (map-width map))
                         (cell-type (map-cell map x y)))))))
 
-(defun place-sighting (place)
+(defun place-sighting (place name)
   (let ((cell (place-cell place)))
     (make-sighting :non-local place (+ 0.5d0 (cell-x cell)) (+ 0.5d0 (cell-y cell))
-                   (list (place-type-name (place-type place))))))
+                   (list name))))
 
-(defun look-for-places (camera type &key all)
+(defun look-for-places (camera type &key all (name (place-type-name type)))
   "Return sightings by CAMERA, in the open, of places of the place type TYPE: of one, or of ALL
-that it finds. What is not there may be among them."
+that it finds. What is not there may be among them. They are described by NAME, the symbol by which
+somebody has asked for TYPE."
   (let* ((dice (world-dice (robot-world (camera-robot camera)) :looking))
          (missing (sensing-chance miss-place-prob*))
          (finds (remove-if (lambda (place) (declare (ignore place)) (chance missing dice))
@@ -177,5 +184,5 @@ that it finds. What is not there may be among them."
          (phantoms (phantom-count (place-type-confusion type) all dice)))
     (loop for place in (some-of (append finds (make-list phantoms)) all dice)
           collect (if place
-                      (place-sighting place)
-                      (imagine camera :non-local (list (place-type-name type)) dice)))))
+                      (place-sighting place name)
+                      (imagine camera :non-local (list name) dice)))))

@@ -90,14 +90,12 @@ cell, with the chance PROB-STOP* at each, or at the edge of the map."
 in WORLD, each attribute of another."
   (let ((readings (loop for demand in demands
                         collect (list (demand-key demand) (imagined-reading demand dice)))))
-    (append (notice-attributes (mapcar #'first readings)
+    (append (notice-attributes (world-map world) (mapcar #'first readings)
                                (lambda (attribute)
-                                 (let* ((thing (random-thing world dice))
-                                        (value (and thing
-                                                    (thing-value thing
-                                                                 (attribute-name attribute)))))
-                                   (values value (and thing
-                                                      (not (says-nothing-p attribute value))))))
+                                 (let ((thing (random-thing world dice)))
+                                   (values (and thing
+                                                (thing-value thing (attribute-name attribute)))
+                                           thing)))
                                0d0 dice)
             readings)))
 

@@ -76,7 +76,7 @@ ends with it and simulations side by side do not meet.")
   "Return a simulation, at tick 0, of a fresh world that holds the things of its map and fresh
 ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
   (let* ((bodies (mapcar #'body-of robots))
-         (maps (remove-duplicates (mapcar #'body-map bodies))))
+         (maps (remove-duplicates (mapcar #'body-map bodies) :test #'same-name-p)))
     (unless (= (length maps) 1)
       (reject-use "One simulation has one map, and these robots are defined in ~
                    ~:[none~;~:*~{~A~^, ~}~]."
@@ -93,22 +93,40 @@ ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
    (lambda ()
      (when clean (clean-simulation))
      (let* ((*message-queue* (make-message-queue))
+            (names (variables-among robots))
             (simulation (fresh-simulation (ensure-list robots) :seed seed :journal journal))
             (*simulation* simulation)
             (*world* (simulation-world simulation))
             (robots (simulation-robots simulation)))
-       (progv (append (mapcar #'robot-name robots) *simulation-variables*)
-           (append robots (mapcar #'symbol-value *simulation-variables*))
-         (funcall function))))))
+       (progv (append names (mapcar #'robot-name robots) *simulation-variables*)
+           (append (robots-called names) robots (mapcar #'symbol-value *simulation-variables*))
+         (unwind-protect (funcall function)
+           (retire-robots robots "the headless simulation that it was in has ended")))))))
+
+(defun variables-among (names)
+  "Return the symbols among NAMES, a list or a single name, that can be variables."
+  (remove-if-not (lambda (name) (and (symbolp name) (variable-name-p name)))
+                 (ensure-list names)))
+
+(defun robots-called (names)
+  "Return the robots of the current simulation called NAMES."
+  (loop for name in names collect (robot-in-world name *world*)))
+
+(defun retire-robots (robots reason)
+  (dolist (robot robots) (retire-robot robot reason)))
 
 (addition with-simulation)
 (defmacro with-simulation ((robots &key (seed 0) parameters clean journal) &body body)
-  "Run BODY with ROBOTS, the name of a robot or a list of names, bound to fresh robots in a
-fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. The integer SEED
-decides all chance. Parameters are bound to what they are here, or as the list PARAMETERS of
-lists (name value) says; with CLEAN the simulation is clean. With JOURNAL it keeps a journal.
-Messages go to a queue of its own. Return the values of BODY."
-  `(call-with-simulation (lambda () ,@body) ',robots
+  "Run BODY with ROBOTS, the name of a robot or a list of names, of any package, bound to fresh
+robots in a fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. The
+integer SEED decides all chance. Parameters are bound to what they are here, or as the list
+PARAMETERS of lists (name value) says; with CLEAN the simulation is clean. With JOURNAL it keeps a
+journal. Messages go to a queue of its own. When BODY has ended, its robots take no more commands.
+Return the values of BODY."
+  `(call-with-simulation (lambda ()
+                           (declare (special ,@(variables-among robots)))
+                           ,@body)
+                         ',robots
                          :seed ,seed :parameters ,parameters :clean ,clean :journal ,journal))
 
 ;;; Live.
@@ -119,21 +137,57 @@ Messages go to a queue of its own. Return the values of BODY."
   (mapc #'reset-robot (world-robots world))
   (simulation-of world seed t))
 
+(defun first-robot-in (map)
+  "Return the robot of MAP that was defined first. Signals MISUSE if there is none."
+  (let ((body (find (map-name map) (all-bodies) :key #'body-map :test #'same-name-p)))
+    (if body
+        (body-robot body)
+        (reject-use "Map ~(~A~) has no robot. Define one: (defrobot NAME (~:*~(~A~) (X Y) ANGLE))."
+                    (map-name map)))))
+
+(defun robot-to-start (designator)
+  "Return the robot to run that DESIGNATOR means: a robot, a map with robots, or the name of either.
+One whose map or definition has been replaced means the robot that is called so now."
+  (let ((robot (cond ((map-p designator) (first-robot-in designator))
+                     ((find-robot designator nil))
+                     ((find-map designator nil) (first-robot-in (find-map designator)))
+                     (t (reject-name "robot or map" designator
+                                     (append (mapcar #'body-name (all-bodies))
+                                             (mapcar #'map-name (all-maps))))))))
+    (if (robot-retired robot)
+        (find-again (robot-name robot))
+        robot)))
+
+(defun find-again (name)
+  "Return the robot called NAME now, made anew if that has not been possible before."
+  (let* ((body (find-body name))
+         (robot (body-robot body)))
+    (if (or (null robot) (robot-retired robot))
+        (setf (sb-ext:symbol-global-value (body-name body)) (settle body))
+        robot)))
+
 (public simulator)
 (defun simulator (robot &rest options &key (rate *default-rate*) (seed nil) &allow-other-keys)
-  "Run the world of ROBOT (a robot or its name) live, in a thread of its own, at RATE ticks per
-second or :FREE, and make it the current simulation. A world that has run before starts
-anew, with SEED if that is given. Return ROBOT (manual A). STOP-SIMULATOR stops it."
-  (let* ((robot (if (robot-p robot) robot (find-robot robot)))
+  "Run the world of ROBOT live, in a thread of its own, at RATE ticks per second or :FREE, and make
+it the current simulation. ROBOT is a robot or a map with a robot in it, or the name of either. A
+world that has run before starts anew, with SEED if that is given. Return the robot (manual A).
+STOP-SIMULATOR stops it. Signals UNKNOWN-NAME, and MISUSE if the robot no longer fits into its map."
+  (let* ((robot (robot-to-start robot))
          (world (robot-world robot))
          (simulation (ensure-simulation world)))
     (stop-clock simulation)
     (when (or seed (plusp (simulation-tick simulation)))
       (setf simulation (restart-world world (or seed (simulation-seed simulation)))))
-    (setf *simulation* simulation)
+    (setf *simulation* simulation
+          *world* world)
     (start-clock simulation :rate rate)
     (dolist (hook *simulator-hooks*) (funcall hook robot options))
     robot))
+
+(defun headless-p (simulation)
+  "True if SIMULATION is one of WITH-SIMULATION: not of the world that top-level code works in."
+  (let ((world (simulation-world simulation)))
+    (not (eq world (map-resident (world-map world))))))
 
 (addition stop-simulator)
 (defun stop-simulator (&optional (simulation (current-simulation)))
@@ -153,3 +207,47 @@ nothing."
 
 (defmethod apply-entry ((operation (eql :seed)) arguments simulation)
   (set-seed (first arguments) simulation))
+
+;;; A map that is replaced.
+
+(defun end-simulation (simulation reason)
+  "Stop SIMULATION for good, for REASON: its robots take no more commands, and what they were doing
+is interrupted."
+  (let ((robots (simulation-robots simulation)))
+    (stop-clock simulation)
+    (retire-robots robots reason)
+    (abandon simulation (loop for robot in robots append (cons robot (robot-parts robot))))))
+
+(defun say-stopped (map simulation)
+  (when (or (live-p simulation) (plusp (simulation-tick simulation)))
+    (warn-of-definition "Map ~(~A~) has been replaced. Its simulation has ended at tick ~D; what ~
+                         is started from now on is in the new one."
+                        (map-name map) (simulation-tick simulation))))
+
+(defun move-robots (map)
+  "Put robots made by the bodies of MAP's name into MAP, which is new."
+  (dolist (body (all-bodies))
+    (when (same-name-p (map-name map) (body-map body))
+      (let ((trouble (start-trouble map (body-x body) (body-y body))))
+        (if trouble
+            (warn-of-definition "The robot ~(~A~) no longer fits into the new map ~(~A~): ~A. ~
+                                 Define it anew."
+                                (body-name body) (map-name map) trouble)
+            (setf (sb-ext:symbol-global-value (body-name body)) (settle body)))))))
+
+(defmethod map-replaced ((old map) new)
+  (let* ((world (map-resident old))
+         (simulation (and world (world-simulation world)))
+         (reason (if new "its map has been defined anew" "its map has been taken back")))
+    (when world
+      (retire-robots (world-robots world) reason))
+    (when simulation
+      (say-stopped old simulation)
+      (end-simulation simulation reason))
+    (when new (move-robots new))))
+
+(defmethod reinstate ((map map))
+  (let ((world (map-resident map)))
+    (when world
+      (dolist (robot (world-robots world)) (setf (robot-retired robot) nil))))
+  map)

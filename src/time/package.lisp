@@ -18,7 +18,7 @@ thread; the journal; the live clock. Knows nothing of worlds and robots.")
   ;; inbox
   (:export #:post #:ask #:asking #:change-from-outside #:simulation-inbox)
   ;; schedule
-  (:export #:schedule #:call-scheduled #:grab-resource #:release-resource)
+  (:export #:schedule #:call-scheduled #:abandon #:grab-resource #:release-resource)
   ;; journal
   (:export #:journal #:make-journal #:journal-p #:journal-header #:journal-entries
            #:journal-end #:journal-length #:note #:externalize #:internalize #:make-reference

@@ -82,6 +82,12 @@ start of the next tick. Returns nothing (manual, figure D.3)."
                      (note simulation :grab resource)
                      (release-resource resource simulation))))
 
+(defun abandon (simulation resources)
+  "Interrupt all that occupies RESOURCES, in order, and let those know who asked for it. For the end
+of SIMULATION, when its clock has stopped."
+  (dolist (resource resources) (release-resource resource simulation))
+  (deliver-notifications simulation))
+
 (defmethod apply-entry ((operation (eql :schedule)) arguments simulation)
   (declare (ignore simulation))
   (funcall (first arguments)))

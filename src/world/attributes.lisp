@@ -30,45 +30,69 @@
  attribute-noticed "Return the base probability that the attribute is sensed unasked."
  attribute-supporters "Return the keywords of the attributes that support this one.")
 
-(defvar *attributes* '() "All attributes, in order of definition.")
+(define-registry attribute "attribute" :object-p attribute-p)
 
 (declaim (inline attribute-key))
 (defun attribute-key (name)
   "Return the keyword that stands for the attribute called NAME, a symbol."
   (if (keywordp name) name (make-keyword (name-string name))))
 
-(addition find-attribute)
-(defun find-attribute (name)
+(defun attribute-of (name)
   "Return the attribute called NAME, a symbol, or NIL if nobody has defined it."
-  (find (attribute-key name) *attributes* :key #'attribute-name :test #'eq))
+  (find (attribute-key name) (the list (registry-objects *attributes*))
+        :key #'attribute-name :test #'eq))
 
-(addition all-attributes)
-(defun all-attributes ()
-  "Return a list of all attributes, in order of definition."
-  (copy-list *attributes*))
+(defun declared-name-like (name)
+  "Return the name of a defined attribute for which NAME, of no attribute, may be a slip; or NIL."
+  (let ((key (attribute-key name)))
+    (unless (attribute-of key)
+      (find-if (lambda (other) (resembles-p key other)) (defined-names *attributes*)))))
 
-(defun register-attribute (attribute)
-  (let ((old (find-attribute (attribute-name attribute))))
-    (setf *attributes* (if old
-                           (substitute attribute old *attributes*)
-                           (append *attributes* (list attribute))))))
+;;; Defining.
+
+(defun check-domain (definition domain)
+  (cond ((and (consp domain) (eq 'quote (first domain)))
+         (reject-clause definition domain
+                        "the values in a list that is not quoted, as it is not evaluated"))
+        ((and (consp domain) (null (rest domain)) (symbolp (first domain))
+              (same-name-p (first domain) 'numeric))
+         (reject-clause definition domain "NUMERIC without parentheses"))
+        ((not (or (and (symbolp domain) domain (same-name-p domain 'numeric))
+                  (and (consp domain) (proper-list-p domain))))
+         (reject-clause definition domain "NUMERIC or a list of the possible values"))))
 
 (defun check-attribute-clauses (definition domain base max-mult supported-by)
-  (unless (or (and (symbolp domain) domain (same-name-p domain 'numeric))
-              (and (consp domain) (proper-list-p domain)))
-    (reject-clause definition domain "NUMERIC or a list of the possible values"))
+  (check-domain definition domain)
   (loop for (option value) in `((:base ,base) (:max-mult ,max-mult))
         unless (typep value '(real 0))
           do (reject-clause definition (list option value) "a number not below 0"))
   (unless (and (proper-list-p supported-by) (every #'symbolp supported-by))
     (reject-clause definition (list :supported-by supported-by) "a list of attribute names")))
 
+(defvar *built-in-attributes* '()
+  "The names of the attributes of table 3.3, which anything has without its author's saying so.")
+
+(defun built-in-attribute-p (attribute)
+  "True if ATTRIBUTE is one of the manual's, which each thing has, if only by default."
+  (member (attribute-name attribute) *built-in-attributes* :test #'eq))
+
+(defun check-kind-of-built-in (definition name domain)
+  "Signal MALFORMED-DEFINITION if the simulator could not compute with NAME any more."
+  (let ((old (attribute-of name)))
+    (when (and old (built-in-attribute-p old)
+               (not (eq (attribute-kind old) (if (consp domain) :discrete :numeric))))
+      (reject-clause definition domain
+                     (format nil "a ~(~A~) attribute, as the simulator computes with ~(~S~)"
+                             (attribute-kind old) (attribute-name old))))))
+
 (defun define-attribute (name domain &key (success 1) (base 0) (max-mult 1) (noticed 0)
                                        supported-by)
   "Define or redefine the attribute NAME; what DEFATTRIBUTE expands to. Return NAME."
   (let ((definition (format nil "defattribute ~(~S~)" name)))
     (check-attribute-clauses definition domain base max-mult supported-by)
-    (register-attribute
+    (check-kind-of-built-in definition name domain)
+    (register
+     *attributes* (attribute-key name)
      (make-attribute :name (attribute-key name)
                      :kind (if (consp domain) :discrete :numeric)
                      :domain (if (consp domain) domain '())
@@ -78,8 +102,22 @@
                      :supporters (mapcar #'attribute-key supported-by)))
     name))
 
+(defun attribute-forms (name domain options)
+  "Return the forms that DEFATTRIBUTE expands to."
+  (let ((definition (format nil "defattribute ~(~S~)" name)))
+    (unless (and name (symbolp name))
+      (reject-clause definition name "a symbol as the name of the attribute"))
+    (check-domain definition domain)
+    (check-options definition options
+                   '(:success :base :max-mult :noticed :support :supported-by))
+    (destructuring-bind (&key (success 1) (base 0) (max-mult 1) (support 0) (noticed support)
+                           supported-by)
+        options
+      `((define-attribute ',name ',domain :success ,success :base ,base :max-mult ,max-mult
+                                          :noticed ,noticed :supported-by ',supported-by)))))
+
 (public defattribute numeric)
-(defmacro defattribute (name domain &rest options)
+(defmacro defattribute (&whole form name domain &rest options)
   "Define the attribute NAME, a keyword by convention (manual 5.4). DOMAIN is NUMERIC or a list
 of the possible values, unevaluated. Options, in any order:
   :success p -- base probability that a discrete reading is correct; default 1
@@ -88,35 +126,4 @@ of the possible values, unevaluated. Options, in any order:
   :noticed p (or :support p) -- base probability of being sensed unasked; default 0
   :supported-by (name...) -- attributes that raise that chance when asked for; unevaluated
 Signals MALFORMED-DEFINITION. Return the name."
-  (let ((definition (format nil "defattribute ~(~S~)" name)))
-    (unless (and name (symbolp name))
-      (reject-clause definition name "a symbol as the name of the attribute"))
-    (check-options definition options
-                   '(:success :base :max-mult :noticed :support :supported-by))
-    (destructuring-bind (&key (success 1) (base 0) (max-mult 1) (support 0) (noticed support)
-                           supported-by)
-        options
-      `(define-attribute ',name ',domain :success ,success :base ,base :max-mult ,max-mult
-                                         :noticed ,noticed :supported-by ',supported-by))))
-
-;;; The built-in attributes (manual, table 3.3). The manual gives the sensing parameters of
-;;; :color and :size and the supporters of :capacity. The rest are our choice: what blocks the
-;;; way or the view, or is closed, is plain to see if one looks for it; weight and capacity are
-;;; guesses from afar; a substance that is a symbol is read right in :success of all cases.
-
-(defattribute :obsmove (t nil)
-  :success .95 :noticed .3 :supported-by (:size :weight))
-(defattribute :obsview (t nil)
-  :success .95 :noticed .5 :supported-by (:size))
-(defattribute :closed (t nil)
-  :success .9 :noticed .3 :supported-by (:capacity))
-(defattribute :color (red green blue violet lightred lightblue lightgreen lightviolet)
-  :success .4 :noticed .4 :supported-by (:substance))
-(defattribute :size numeric
-  :base .8 :max-mult 4 :noticed .7 :supported-by (:capacity :obsview :weight))
-(defattribute :weight numeric
-  :base .5 :max-mult 4 :noticed .2 :supported-by (:size :substance))
-(defattribute :capacity numeric
-  :base .6 :max-mult 4 :noticed .3 :supported-by (:size :weight))
-(defattribute :substance numeric
-  :success .8 :base 1 :max-mult 3 :noticed .5 :supported-by (:color))
+  (expand-definition form (lambda () (attribute-forms name domain options))))

@@ -3,6 +3,7 @@
 (in-package :ars-magna.world)
 
 (defun proper-list-p (object)
+  "True if OBJECT is a list that ends, in NIL."
   (and (listp object) (ignore-errors (list-length object)) (null (cdr (last object)))))
 
 (defun check-options (definition options known)
@@ -28,3 +29,41 @@
   "True if FORM is a list of two real numbers."
   (and (proper-list-p form) (= 2 (length form)) (every #'realp form)))
 
+(defun check-name (definition name what)
+  "Signal MALFORMED-DEFINITION unless the WHAT that is defined can be called NAME."
+  (unless (and name (symbolp name) (not (eq name t)) (not (keywordp name)))
+    (reject-clause definition name (format nil "a symbol as the name of the ~A" what))))
+
+(defun call-for-value (function definition clause expected)
+  "Return the value of FUNCTION, a form of CLAUSE that its author wrote. Errors are DEFINITION's,
+which expected EXPECTED there."
+  (handler-case (funcall function)
+    (malformed-definition (condition) (error condition))
+    (error (condition)
+      (reject-clause definition clause
+                     (format nil "~A (~A)" expected
+                             (string-right-trim "." (princ-to-string condition)))))))
+
+;;; Clauses one by one.
+
+(defun clause-again (index)
+  "Return the clause INDEX of the definition at hand as it stands in its file now."
+  (destructuring-bind (source operator name) *definition*
+    (nth (+ 3 index) (read-definition-again (source-file source) operator name))))
+
+(defun call-with-clause (function clause index)
+  "Call FUNCTION with CLAUSE, the one number INDEX of the definition at hand. A user who chooses so
+leaves it out (then return NIL), or has FUNCTION called with another: read again, or typed."
+  (restart-case (funcall function clause)
+    (skip-clause ()
+      :report (lambda (stream) (format stream "Leave the clause ~S out." clause))
+      nil)
+    (read-again ()
+      :test (lambda (condition) (declare (ignore condition)) (source-file (current-source)))
+      :report (lambda (stream)
+                (format stream "Read the clause again from ~A." (source-file (current-source))))
+      (call-with-clause function (clause-again index) index))
+    (use-value (other)
+      :report "Use another clause."
+      :interactive (lambda () (read-value "A clause to use"))
+      (call-with-clause function other index))))

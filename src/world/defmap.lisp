@@ -25,20 +25,72 @@ rewrite its cache. Worlds of MAP see the change at once. Return the map."
       (write-cache map (cache-path (map-cache map)) (cache-key map)))
     map))
 
-(defun define-map (name width height &key cache clauses things)
-  "Define or redefine the map NAME; what DEFMAP expands to. CLAUSES are walls, rects and circles,
-THINGS functions that return recipes. Return the map."
-  (unless (typep cache '(or null string pathname))
-    (reject-clause (format nil "defmap ~(~A~)" name) (list :cache cache) "the name of a file"))
-  (register-map
-   (build-map (%make-map :name name :width width :height height :clauses clauses :cache cache
-                         :things (loop for thing in things collect (funcall thing))))))
+(defun define-map (name width height &key cache clauses things (package *package*))
+  "Define or redefine the map NAME; what DEFMAP expands to. CLAUSES are walls, rects and circles;
+THINGS is a list of lists (function clause index), each for a thing: FUNCTION returns its recipe.
+PACKAGE is the one that the author writes in. Return the map."
+  (let ((definition (format nil "defmap ~(~A~)" name)))
+    (unless (typep cache '(or null string pathname))
+      (reject-clause definition (list :cache cache) "the name of a file"))
+    (let* ((recipes (loop for (function clause index) in things
+                          for recipe = (recipe-for-clause function clause index
+                                                          definition width height)
+                          when recipe collect recipe))
+           (map (build-map
+                 (%make-map :name name :width width :height height :clauses clauses :cache cache
+                            :package (package-name (find-package package)) :things recipes
+                            :attribute-names (attribute-names recipes)))))
+      (warn-of-outside map)
+      (warn-of-things-in-walls map)
+      (register-map map))))
+
+(defun recipe-for-clause (function clause index definition width height)
+  "Return what FUNCTION, compiled for CLAUSE, number INDEX of DEFINITION, returns. If that signals,
+the user may replace the clause."
+  (call-with-clause (lambda (chosen)
+                      (if (eq chosen clause)
+                          (funcall function)
+                          (eval (object-form definition chosen width height))))
+                    clause index))
+
+;;; What is doubtful.
+
+(defun outside-p (map point)
+  (destructuring-bind (x y) point
+    (not (and (<= 0 x (map-width map)) (<= 0 y (map-height map))))))
+
+(defun clause-outside-p (map clause)
+  "True if CLAUSE, a wall, rect or circle, goes beyond MAP."
+  (destructuring-bind (kind start end &rest others) clause
+    (declare (ignore others))
+    (if (same-name-p kind "CIRCLE")
+        (destructuring-bind (x y) start
+          (or (outside-p map (list (- x end) (- y end)))
+              (outside-p map (list (+ x end) (+ y end)))))
+        (or (outside-p map start) (outside-p map end)))))
+
+(defun warn-of-outside (map)
+  (dolist (clause (map-clauses map))
+    (when (clause-outside-p map clause)
+      (warn-of-definition "defmap ~(~A~)~@[ (~A)~]: ~S goes beyond the map, which is ~D by ~D ~
+                           metres; what is outside is pressed against its edge."
+                          (map-name map) (clause-place clause) clause
+                          (map-width map) (map-height map)))))
+
+(defun warn-of-things-in-walls (map)
+  (dolist (recipe (map-things map))
+    (let ((x (recipe-x recipe)) (y (recipe-y recipe)))
+      (when (wall-at-p map x y)
+        (warn-of-definition "defmap ~(~A~): ~(~A~) at (~F ~F) is inside a wall, where no robot can ~
+                             see or reach it."
+                            (map-name map) (recipe-name recipe) x y)))))
 
 ;;; Things.
 
-(defun clause-recipe (definition clause &rest arguments)
+(defun clause-recipe (definition clause name descriptor &rest options)
   "Return the recipe for CLAUSE; trouble is the definition's."
-  (handler-case (apply #'write-recipe 'defmap arguments)
+  (warn-of-slips definition name descriptor)
+  (handler-case (apply #'write-recipe 'defmap name descriptor options)
     ((or wrong-argument unknown-name) (condition)
       (reject-clause definition clause
                      (format nil "a thing that can be made (~A)"
@@ -54,6 +106,12 @@ THINGS functions that return recipes. Return the map."
                  (every #'symbolp (getf (rest head) :kickers)))
       (reject-clause definition clause ":kickers (name ...)"))))
 
+(defun prototype-form (definition clause prototype)
+  "Return a form for the value of the form PROTOTYPE, which stands in CLAUSE."
+  (and prototype
+       `(call-for-value (lambda () ,prototype) ,definition ',clause
+                        "a prototype: a form whose value is a thing")))
+
 (defun recipe-form (definition clause head descriptor contents &optional x y)
   "Return a form that makes the recipe of a thing."
   (check-head definition clause head)
@@ -62,7 +120,8 @@ THINGS functions that return recipes. Return the map."
                    "an object descriptor ((attribute value) ...), each attribute once"))
   (destructuring-bind (name &key prototype kickers) (ensure-list head)
     `(clause-recipe ,definition ',clause ',name ',descriptor
-                    :prototype ,prototype :kickers ',kickers :x ,x :y ,y
+                    :prototype ,(prototype-form definition clause prototype)
+                    :kickers ',kickers :x ,x :y ,y
                     :contents (list ,@(loop for inside in contents
                                             collect (contents-form definition inside))))))
 
@@ -74,7 +133,7 @@ THINGS functions that return recipes. Return the map."
 
 (defun object-form (definition clause width height)
   "Return a form that makes the recipe for CLAUSE, an obj."
-  (unless (<= 4 (length clause))
+  (unless (and (eq :obj (clause-kind definition clause)) (<= 4 (length clause)))
     (reject-clause definition clause "(obj name (x y) descriptor contents...)"))
   (destructuring-bind (head position descriptor &rest contents) (rest clause)
     (unless (and (point-form-p position)
@@ -103,16 +162,42 @@ THINGS functions that return recipes. Return the map."
 
 (defun check-size (definition name size)
   "Return width, height and :cache form of the SIZE of a map."
-  (unless (and name (symbolp name) (not (constantp name)))
-    (reject-clause definition name "a symbol as the name of the map"))
+  (check-name definition name "map")
   (unless (and (proper-list-p size) (<= 2 (length size))
                (typep (first size) '(integer 1 32767)) (typep (second size) '(integer 1 32767)))
     (reject-clause definition size "(width height), integers from 1 to 32767, and perhaps :cache"))
   (check-options definition (cddr size) '(:cache))
   (values (first size) (second size) (getf (cddr size) :cache)))
 
+(defun parse-clause (definition clause index width height)
+  "Return a list (kind form) for CLAUSE, number INDEX of DEFINITION: of a thing, the form that makes
+its element of DEFINE-MAP's THINGS, of anything else the clause itself. NIL if it is to be left
+out."
+  (call-with-clause (lambda (clause)
+                      (let ((kind (clause-kind definition clause)))
+                        (list kind
+                              (if (eq kind :obj)
+                                  `(list (lambda () ,(object-form definition clause width height))
+                                         ',clause ,index)
+                                  (check-grid-clause definition clause kind)))))
+                    clause index))
+
+(defun map-forms (name size clauses)
+  "Return the forms that DEFMAP expands to."
+  (let ((definition (format nil "defmap ~(~A~)" name)))
+    (multiple-value-bind (width height cache) (check-size definition name size)
+      (loop for clause in clauses
+            for index from 0
+            for (kind form) = (parse-clause definition clause index width height)
+            if (eq kind :obj) collect form into things
+            else if kind collect form into walls
+            finally (return
+                      `((define-map ',name ,width ,height
+                          :cache ,cache :clauses ',walls :things (list ,@things)
+                          :package ,(package-name *package*))))))))
+
 (public defmap)
-(defmacro defmap (name size &body clauses)
+(defmacro defmap (&whole form name size &body clauses)
   "Define the map NAME (manual 5.1), a special variable bound to it. SIZE is (width height), in
 cells of a metre, and perhaps :cache with the name of a file to keep the built grid in. Clauses:
   (wall (x0 y0) (x1 y1) substance parameter [parameter1]) -- a line of walls
@@ -120,20 +205,9 @@ cells of a metre, and perhaps :cache with the name of a file to keep the built g
   (circle (x y) radius substance parameter) -- likewise
   (obj name (x y) descriptor contents...) -- a thing; contents: (name descriptor contents...)
 Instead of a thing's name: (name :prototype form) and, ours, (name :kickers (kicker...)). Later
-walls overwrite earlier ones. Redefinition makes a new map. Signals MALFORMED-DEFINITION. Return
-the name."
-  (let ((definition (format nil "defmap ~(~A~)" name)))
-    (multiple-value-bind (width height cache) (check-size definition name size)
-      (loop for clause in clauses
-            for kind = (clause-kind definition clause)
-            if (eq kind :obj)
-              collect `(lambda () ,(object-form definition clause width height)) into things
-            else
-              collect (check-grid-clause definition clause kind) into walls
-            finally (return
-                      `(progn
-                         (defvar ,name)
-                         (setf (symbol-value ',name)
-                               (define-map ',name ,width ,height
-                                 :cache ,cache :clauses ',walls :things (list ,@things)))
-                         ',name))))))
+walls overwrite earlier ones. A map called by a symbol of Common Lisp's, such as ROOM, or ours has
+no variable: write 'ROOM. Redefinition makes a new map, for what is started from then on; a live
+simulation of the old one stops. Signals MALFORMED-DEFINITION, with restarts for the clause.
+Return the name."
+  (expand-definition form
+                     (lambda () (values (map-forms name size clauses) (variable-forms name)))))

@@ -8,7 +8,7 @@
 
 (defstruct (kicker (:constructor make-kicker (name)) (:copier nil))
   "Code that is run with probability PROB on any tick on which TEST, if any, holds."
-  (name nil :type symbol :read-only t)
+  (name nil :type symbol)
   (prob 1d0 :type (double-float 0d0 1d0))
   (test nil :type (or null function))
   (body (constantly nil) :type function))
@@ -48,34 +48,17 @@
       (print-unreadable-object (attachment stream) (write-attachment attachment stream))
       (write-attachment attachment stream)))
 
-(defvar *kickers* '() "All kickers that have been defined by name, in order of definition.")
+(define-registry kicker "kicker" :object-p kicker-p)
+
 (defvar *kicker-generation* 0 "How many times a kicker has been redefined.")
 
 (public self)
 (defvar self nil
   "While a kicker's test or body runs: the kicker being run, for RUN-KICKER (manual 5.3.1).")
 
-(addition all-kickers)
-(defun all-kickers ()
-  "Return a list of all kickers that have been defined by name, in order of definition."
-  (copy-list *kickers*))
-
-(addition find-kicker)
-(defun find-kicker (name)
-  "Return the kicker called NAME, a symbol or string; a kicker is returned as it is. Signals
-UNKNOWN-NAME."
-  (cond ((kicker-p name) name)
-        ((and (typep name '(or symbol string))
-              (find name *kickers* :key #'kicker-name :test #'same-name-p)))
-        (t (reject-name "kicker" name (mapcar #'kicker-name *kickers*)))))
-
-(defun ensure-kicker (name)
-  (let ((old (find name *kickers* :key #'kicker-name :test #'same-name-p)))
-    (if old
-        (progn (incf *kicker-generation*) old)
-        (let ((new (make-kicker name)))
-          (setf *kickers* (append *kickers* (list new)))
-          new))))
+(defmethod reinstate ((kicker kicker))
+  (incf *kicker-generation*)
+  kicker)
 
 (defun fill-kicker (kicker definition prob test body)
   (setf (kicker-prob kicker) (check-probability definition :prob prob)
@@ -86,9 +69,10 @@ UNKNOWN-NAME."
 (defun define-kicker (name &key (prob 1) test (body (constantly nil)))
   "Define or redefine the kicker NAME; what DEFKICKER expands to. TEST and BODY are functions of
 a thing. Return the kicker."
-  (let ((definition (format nil "defkicker ~(~A~)" name)))
-    (check-probability definition :prob prob)
-    (fill-kicker (ensure-kicker name) definition prob test body)))
+  (let ((new (fill-kicker (make-kicker name) (format nil "defkicker ~(~A~)" name) prob test body))
+        (old (find-kicker name nil)))
+    (when old (incf *kicker-generation*))
+    (register *kickers* name (if old (become old new) new) :variable t)))
 
 (defun kicker-functions (definition variable options body)
   "Return the keyword arguments, as forms, for a kicker with OPTIONS and BODY."
@@ -104,22 +88,22 @@ a thing. Return the kicker."
       :body ,(thing-function body))))
 
 (defun check-kicker-name (definition name)
-  (unless (and name (symbolp name) (not (constantp name)))
-    (reject-clause definition name "a symbol as the name of the kicker")))
+  (check-name definition name "kicker"))
 
 (public defkicker)
-(defmacro defkicker (name lambda-list options &body body)
+(defmacro defkicker (&whole form name lambda-list options &body body)
   "Define the kicker NAME (manual 5.3.1), whose BODY runs with probability :prob (default 1) on
 any tick on which the form :test (default true) holds. LAMBDA-LIST is one variable, bound to the
-thing in both. NAME becomes a special variable bound to the kicker. Redefinition affects things
+thing in both. NAME becomes a special variable bound to the kicker, unless it is one of Common
+Lisp's symbols, such as OPEN, or ours: such kickers are called by name. Redefinition affects things
 that have it. Signals MALFORMED-DEFINITION. Return the name."
   (let ((definition (format nil "defkicker ~(~A~)" name)))
-    (check-kicker-name definition name)
-    (unless (and (proper-list-p lambda-list) (= 1 (length lambda-list)))
-      (reject-clause definition lambda-list "a list of one variable"))
-    `(progn
-       (defvar ,name)
-       (setf (symbol-value ',name)
-             (define-kicker ',name
-               ,@(kicker-functions definition (first lambda-list) options body)))
-       ',name)))
+    (expand-definition
+     form
+     (lambda ()
+       (check-kicker-name definition name)
+       (unless (and (proper-list-p lambda-list) (= 1 (length lambda-list)))
+         (reject-clause definition lambda-list "a list of one variable"))
+       (values `((define-kicker ',name
+                   ,@(kicker-functions definition (first lambda-list) options body)))
+               (variable-forms name))))))

@@ -19,7 +19,7 @@
   (digest-value
    (digest-add (make-digest)
                (list (map-width map) (map-height map) (map-clauses map)
-                     (loop for type in *place-types*
+                     (loop for type in (registry-objects *place-types*)
                            collect (list (place-type-name type) (place-type-key type)))))))
 
 (defun double-bits (number)

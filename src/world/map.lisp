@@ -38,6 +38,10 @@
   (least-parameter 0d0 :type double-float)
   (greatest-parameter 0d0 :type double-float)
   (things '() :type list)
+  ;; The names, keywords, of the attributes that its things say something of.
+  (attribute-names '() :type list :read-only t)
+  ;; The name of the package that its author wrote in.
+  (package nil :type (or null string) :read-only t)
   (clauses '() :type list)
   (cache nil :type (or null string pathname))
   (resident nil))
@@ -60,6 +64,9 @@
  map-place-types "Return a vector of the place types known to the map; element 0 is NIL."
  map-least-parameter "Return the least parameter of any wall in the map, 0 without walls."
  map-greatest-parameter "Return the greatest parameter of any wall in the map, 0 without walls."
+ map-resident "Return the world of the map that top-level code works in, NIL if nobody has asked."
+ map-attribute-names "Return the keywords of the attributes that the map's things start with."
+ map-package "Return the name of the package that the map's author wrote in, or NIL."
  map-things "Return the recipes of the things that a fresh world of the map starts with.")
 
 (defmethod print-object ((map map) stream)
@@ -70,28 +77,29 @@
 
 ;;; The registry.
 
-(defvar *maps* '() "All maps, in order of definition.")
+(define-registry map "map" :object-p map-p)
 
-(addition all-maps)
-(defun all-maps ()
-  "Return a list of all maps, in order of definition."
-  (copy-list *maps*))
-
-(addition find-map)
-(defun find-map (name)
-  "Return the map called NAME, a symbol or string; a map is returned as it is. Signals
-UNKNOWN-NAME."
-  (cond ((map-p name) name)
-        ((and (typep name '(or symbol string))
-              (find name *maps* :key #'map-name :test #'same-name-p)))
-        (t (reject-name "map" name (mapcar #'map-name *maps*)))))
+(defgeneric map-replaced (old new)
+  (:documentation "Called when the map NEW has taken the place of OLD; NEW is NIL if OLD was
+undefined. The layer above ends what goes on in OLD.")
+  (:method (old new) (declare (ignore old new)) nil))
 
 (defun register-map (map)
-  (let ((old (position (map-name map) *maps* :key #'map-name :test #'same-name-p)))
-    (setf *maps* (if old
-                     (substitute map (nth old *maps*) *maps*)
-                     (append *maps* (list map))))
+  "Let the name of MAP mean MAP."
+  (let ((old (find-map (map-name map) nil)))
+    (register *maps* (map-name map) map :variable t)
+    (when old (map-replaced old map))
     map))
+
+(defun map-form (form environment)
+  "Return a form for what FORM, given in ENVIRONMENT where a map is wanted, stands for: a symbol
+that is no variable there, such as ROOM, is the map's name."
+  (if (and (symbolp form) (not (known-variable-p form environment)))
+      `',form
+      form))
+
+(defmethod take-back ((map map))
+  (map-replaced map nil))
 
 ;;; Cells.
 

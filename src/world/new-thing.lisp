@@ -39,6 +39,9 @@ ours, a list of kickers or their names. Signals WRONG-ARGUMENT and UNKNOWN-NAME.
   (let ((recipe (write-recipe 'new-thing name descriptor :prototype prototype
                                                          :contents contents :kickers kickers)))
     (multiple-value-bind (world place x y) (resolve-location location)
+      (if world
+          (note-slips name descriptor world)
+          (warn-of-slips "new-thing" name descriptor))
       (with-world-access (world make-new-thing name location descriptor
                                 :prototype prototype :contents contents :kickers kickers)
         (let ((thing (follow-recipe recipe world)))
@@ -46,22 +49,25 @@ ours, a list of kickers or their names. Signals WRONG-ARGUMENT and UNKNOWN-NAME.
                 (place (place-thing thing place x y)))
           thing)))))
 
-(defun position-form-p (form)
-  "True if FORM, three elements long, means (map x y) rather than a call: it does unless it
-begins with the name of a global function that is not also that of a variable, or with MAP."
+(defun position-form-p (form environment)
+  "True if FORM, three elements long, means (map x y) rather than a call in ENVIRONMENT: it does if
+it begins with a variable or the name of a map, and unless it begins with that of a function."
   (and (proper-list-p form) (= 3 (length form))
        (let ((head (first form)))
          (or (consp head)
              (and (symbolp head)
-                  (or (not (fboundp head)) (boundp head) (same-name-p head 'map)))))))
+                  (or (known-variable-p head environment)
+                      (find-map head nil)
+                      (not (fboundp head))))))))
 
 (public new-thing)
-(defmacro new-thing (name location descriptor &key prototype)
+(defmacro new-thing (name location descriptor &key prototype &environment environment)
   "Make and return a thing NAME with the attributes of DESCRIPTOR, both unevaluated (manual 5.3).
 LOCATION is one of
   a form whose value is a container, hand or storage bin, or NIL for a prototype;
   (:with form) -- at the location of another thing;
-  (map x y) -- in a map, at coordinates in metres; all three are forms.
+  (map x y) -- in a map, at coordinates in metres; all three are forms, but a symbol that is no
+    variable is the name of a map.
 PROTOTYPE is a form whose value is a thing; its attributes and contents are copied first, its
 kickers are not. To compute name or descriptor use MAKE-NEW-THING. Signals WRONG-ARGUMENT."
   (unless (and name (symbolp name))
@@ -72,6 +78,7 @@ kickers are not. To compute name or descriptor use MAKE-NEW-THING. Signals WRONG
   `(make-new-thing ',name
                    ,(cond ((and (consp location) (eq :with (first location)))
                            `(list :with ,@(rest location)))
-                          ((position-form-p location) `(list ,@location))
+                          ((position-form-p location environment)
+                           `(list ,(map-form (first location) environment) ,@(rest location)))
                           (t location))
                    ',descriptor :prototype ,prototype))

@@ -6,22 +6,27 @@
   (:use :cl :ars-magna.base)
   (:shadow #:map)
   (:import-from :ars-magna.nisp #:matchvar-p)
+  ;; clauses
+  (:export #:proper-list-p #:check-options #:check-name #:call-for-value)
   ;; attributes
-  (:export #:attribute #:defattribute #:define-attribute #:find-attribute #:all-attributes
-           #:attribute-p #:attribute-key #:attribute-name #:attribute-kind #:attribute-domain
+  (:export #:attribute #:attribute-p #:defattribute #:define-attribute #:find-attribute
+           #:all-attributes #:attribute-of #:built-in-attribute-p #:attribute-key
+           #:attribute-name #:attribute-kind #:attribute-domain
            #:attribute-success #:attribute-base #:attribute-max-mult #:attribute-noticed
            #:attribute-supporters #:numeric
            #:red #:green #:blue #:violet #:lightred #:lightgreen #:lightblue #:lightviolet)
   ;; substances
-  (:export #:substance #:defsubstance #:define-substance #:find-substance #:all-substances
-           #:substance-p #:substance-name
-           #:substance-parameter #:substance-value-type #:substance-value-parameter
+  (:export #:substance #:substance-p #:defsubstance #:define-substance #:find-substance
+           #:all-substances #:substance-name #:substance-parameter #:substance-value-type
+           #:substance-value-parameter
            #:wood #:metal #:bricks #:slate #:stone #:plaster #:glass #:cloth #:paper #:plastic)
   ;; map
   (:export #:map #:map-p #:map-name #:map-width #:map-height #:map-flags #:map-parameters
            #:map-substances #:map-substance-types #:map-places #:map-directions
            #:map-place-types #:map-least-parameter #:map-greatest-parameter #:map-things
-           #:map-resident-world #:map-index #:find-map #:all-maps #:map-cell #:wall-at-p
+           #:map-resident-world #:map-resident #:map-attribute-names #:map-package #:map-replaced
+           #:map-form
+           #:map-index #:find-map #:all-maps #:map-cell #:wall-at-p
            #:+wall+ #:+obsmove+ #:+obsview+ #:+occupied+
            #:cell #:cell-p #:cell-map #:cell-x #:cell-y #:cell-filled? #:cell-type
            #:cell-substance-type #:cell-substance-parameter #:cell-occupancy-window
@@ -55,6 +60,8 @@
            #:find-thing #:find-things #:do-things #:world-live-count)
   ;; placing
   (:export #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing)
+  ;; undeclared
+  (:export #:note-strange-name #:warn-of-slips)
   ;; kickers
   (:export #:kicker #:kicker-p #:kicker-name #:kicker-prob #:defkicker #:define-kicker #:find-kicker
            #:all-kickers #:set-kicker #:put-kicker #:run-kicker #:run-kickers #:kick-thing

@@ -77,42 +77,85 @@ outside."
           (classify-cell map number (+ x (rule-dx rule)) (+ y (rule-dy rule))
                          (rule-direction rule)))))))
 
-(defun reject-checker (type cell got)
-  (reject-clause (format nil "def-place-type ~(~A~)" (place-type-name type))
-                 (list :checker got)
-                 (format nil "four values at ~A: a boolean, two integers, a direction" cell)))
+(defun blame-type (type clause expected)
+  "Signal MALFORMED-DEFINITION about CLAUSE of the definition of TYPE."
+  (let* ((name (place-type-name type))
+         (definition (lookup-definition name *place-types*))
+         (*definition* (or (and (eq 'def-place-type (second *definition*)) *definition*)
+                           (list (and definition (definition-source definition))
+                                 'def-place-type name))))
+    (reject-clause (format nil "def-place-type ~(~A~)" name) clause expected)))
+
+(defun missing-p (condition)
+  "True if CONDITION says that something is not defined, perhaps not yet."
+  (typep condition '(or undefined-function unbound-variable)))
+
+(defun call-for-cell (function cell type option)
+  "Return as a list the values of FUNCTION, the OPTION of TYPE, for CELL. Its errors are TYPE's."
+  (handler-bind ((error (lambda (condition)
+                          (unless (missing-p condition)
+                            (blame-type type (list option '|...|)
+                                        (format nil "code that runs; at ~A: ~A" cell condition))))))
+    (multiple-value-list (funcall (the function function) cell))))
 
 (defun classify-by-checker (map type number)
   (let ((cell (make-cell map 0 0)) (checker (place-type-checker type)))
-    (declare (type function checker))
     (dotimes (y (map-height map))
       (setf (cell-y cell) y)
       (dotimes (x (map-width map))
         (setf (cell-x cell) x)
-        (multiple-value-bind (found dx dy direction)
-            (handler-case (funcall checker cell)
-              (error (condition) (reject-checker type cell (princ-to-string condition))))
+        (destructuring-bind (&optional found dx dy direction &rest more)
+            (call-for-cell checker cell type :checker)
+          (declare (ignore more))
           (when found
             (unless (and (typep dx '(signed-byte 16)) (typep dy '(signed-byte 16))
                          (realp direction))
-              (reject-checker type cell (list 'values found dx dy direction)))
+              (blame-type type (list :checker (list 'values found dx dy direction))
+                          (format nil "four values at ~A: a boolean, two integers, a direction"
+                                  cell)))
             (classify-cell map number (+ x dx) (+ y dy) (double direction))))))))
+
+(defun classify-by-type (map type number codes)
+  "Make places of TYPE, which has NUMBER in MAP, of the cells of MAP that are none yet."
+  (cond ((place-type-checker type) (classify-by-checker map type number))
+        ((place-type-table type) (classify-by-table map type number codes))
+        (t (classify-by-forms map type number))))
+
+(defun check-directions (map type number)
+  "Signal MALFORMED-DEFINITION unless the :directions of TYPE are two where it is first found."
+  (let ((index (position number (map-places map))))
+    (when (and index (place-type-directions type))
+      (multiple-value-bind (y x) (floor index (map-width map))
+        (let* ((cell (make-cell map x y))
+               (directions (call-for-cell (place-type-directions type) cell type :directions)))
+          (unless (and (= 2 (length directions)) (every #'realp directions))
+            (blame-type type (list :directions (cons 'values directions))
+                        (format nil "two values at ~A, both angles in radians" cell))))))))
 
 (defun clear-places (map)
   "Forget the places of MAP; number the place types known now."
   (let ((size (* (map-width map) (map-height map))))
     (setf (map-places map) (make-octets size)
           (map-directions map) (make-doubles size)
-          (map-place-types map) (coerce (cons nil *place-types*) 'simple-vector))))
+          (map-place-types map) (coerce (cons nil (registry-objects *place-types*))
+                                        'simple-vector))))
+
+(defun forget-places (map number)
+  "Let no cell of MAP be a place of the type NUMBER."
+  (setf (map-places map) (nsubstitute 0 number (map-places map))))
 
 (defun classify-places (map)
-  "Find the places of MAP anew, by the place types known now. Return MAP."
+  "Find the places of MAP anew, by the place types known now. A type whose code fails is left out,
+with a warning. Return MAP."
   (clear-places map)
   (let ((codes (neighbourhood-codes map)))
-    (loop for type in *place-types* for number from 1
-          do (cond ((place-type-checker type) (classify-by-checker map type number))
-                   ((place-type-table type) (classify-by-table map type number codes))
-                   (t (classify-by-forms map type number)))))
+    (loop for type in (registry-objects *place-types*) for number from 1
+          do (handler-case (progn (classify-by-type map type number codes)
+                                  (check-directions map type number))
+               (error (condition)
+                 (forget-places map number)
+                 (warn-of-definition "Map ~A has no places of type ~A: ~A"
+                                     (map-name map) (place-type-name type) condition)))))
   map)
 
 ;;; Reading.
@@ -147,11 +190,12 @@ outside."
 or its basic direction and the opposite. Trouble in the form is queued as an error message."
   (let* ((basic (place-canonical-dir place))
          (type (place-type place))
-         (function (place-type-directions type)))
+         (function (place-type-directions type))
+         (origin (list "the :directions of place type " (place-type-name type))))
     (multiple-value-bind (one other)
-        (and function
-             (call-user-code function (list "the :directions of place type " (place-type-name type))
-                             (place-cell place)))
-      (if (and (realp one) (realp other))
-          (values (double one) (double other))
-          (values basic (+ basic pi))))))
+        (and function (call-user-code function origin (place-cell place)))
+      (cond ((and (realp one) (realp other)) (values (double one) (double other)))
+            (t (when (and function (or one other))
+                 (apply #'error-set (append origin (list " are not two angles at "
+                                                         (place-cell place)))))
+               (values basic (+ basic pi)))))))

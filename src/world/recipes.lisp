@@ -49,6 +49,13 @@ DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMEN
     (dolist (kicker (recipe-kickers recipe)) (attach-kicker thing kicker))
     thing))
 
+(defun attribute-names (recipes)
+  "Return the names, keywords, of all attributes that things made by RECIPES say something of."
+  (remove-duplicates
+   (loop for recipe in recipes
+         append (mapcar #'first (recipe-attributes recipe))
+         append (attribute-names (recipe-contents recipe)))))
+
 ;;; Worlds.
 
 (defun empty-world (world)
@@ -67,7 +74,8 @@ DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMEN
           (world-kicker-groups world) '()
           (world-kicker-tick world) 0
           (world-kicker-generation world) *kicker-generation*
-          (world-due-kickers world) '())))
+          (world-due-kickers world) '()
+          (world-noted-names world) '())))
 
 (defun reset-world (world &key (seed (world-seed world)))
   "Make WORLD as it was when it was fresh, with the integer SEED: the things of its map's recipe,

@@ -29,12 +29,12 @@ of MAP, else MAP's resident world. A world is returned as it is."
 
 (defun worlds-in-view (world)
   "Return a list of worlds: WORLD (also given as a map or its name), or if it is NIL *WORLD*, or
-if there is none the resident worlds of all maps."
+if there is none yet the resident worlds of all maps."
   (cond (world (list (current-world world)))
         (*world* (list *world*))
-        (t (cl:map 'list #'map-resident-world *maps*))))
+        (t (mapcar #'map-resident-world (registry-objects *maps*)))))
 
-(defun called-p (thing name)
+(defun thing-called-p (thing name)
   "True if THING is called NAME: its symbol or string, with or without #serial, or its serial."
   (if (integerp name)
       (= name (thing-serial thing))
@@ -44,11 +44,11 @@ if there is none the resident worlds of all maps."
 (addition find-things)
 (defun find-things (name &optional world)
   "Return a list of the things called NAME (a symbol or string, perhaps \"PEN#2\", or a serial
-number) in WORLD, in order of creation. WORLD may be a map; by default it is *WORLD* or, at top
-level, the resident worlds of all maps."
+number) in WORLD, in order of creation. WORLD may be a map; by default it is that of the current
+simulation or, as long as there is none, the resident worlds of all maps."
   (loop for each in (worlds-in-view world)
         append (loop for thing across (world-things each)
-                     when (and thing (called-p thing name)) collect thing)))
+                     when (and thing (thing-called-p thing name)) collect thing)))
 
 (addition find-thing)
 (defun find-thing (name &optional world)

@@ -15,43 +15,32 @@
  substance-p "True of a substance."
  substance-name "Return the symbol that the substance is called.")
 
-(defvar *substances* '() "All substances, in order of definition.")
-
-(addition all-substances)
-(defun all-substances ()
-  "Return a list of all substances, in order of definition."
-  (copy-list *substances*))
-
-(addition find-substance)
-(defun find-substance (name)
-  "Return the substance called NAME, a symbol, or NIL."
-  (find name *substances* :key #'substance-name :test #'same-name-p))
+(define-registry substance "substance" :object-p substance-p)
 
 (defun define-substance (name parameter)
   "Define or redefine the substance NAME with PARAMETER; what DEFSUBSTANCE expands to. Return
 NAME."
-  (let ((definition (format nil "defsubstance ~(~A~)" name)))
-    (unless (realp parameter)
-      (reject-clause definition parameter "a number as the parameter of the substance"))
-    (let ((old (find-substance name))
-          (new (make-substance name (double parameter))))
-      (setf *substances* (if old
-                             (substitute new old *substances*)
-                             (append *substances* (list new))))
-      name)))
+  (unless (realp parameter)
+    (reject-clause (format nil "defsubstance ~(~A~)" name) parameter
+                   "a number as the parameter of the substance"))
+  (register *substances* name (make-substance name (double parameter)))
+  name)
 
 (addition defsubstance)
-(defmacro defsubstance (name parameter)
+(defmacro defsubstance (&whole form name parameter)
   "Define the type of substance NAME, a symbol: things whose :substance is NAME are viewed as
-PARAMETER, a number. Return the name."
-  (unless (and name (symbolp name) (not (keywordp name)))
-    (reject-clause "defsubstance" name "a symbol as the name of the substance"))
-  `(define-substance ',name ,parameter))
+PARAMETER, a number. Our addition to manual 2.1 and 3.3. Return the name."
+  (expand-definition form
+                     (lambda ()
+                       (unless (and name (symbolp name) (not (keywordp name)))
+                         (reject-clause "defsubstance" name
+                                        "a symbol as the name of the substance"))
+                       `((define-substance ',name ,parameter)))))
 
 (addition substance-parameter)
 (defun substance-parameter (substance)
   "Return the parameter of SUBSTANCE: a SUBSTANCE or its name. An unknown one has 0."
-  (let ((substance (if (substance-p substance) substance (find-substance substance))))
+  (let ((substance (find-substance substance nil)))
     (if substance (substance-%parameter substance) 0d0)))
 
 (defun substance-value-p (value)
@@ -76,10 +65,13 @@ PARAMETER, a number. Return the name."
 
 ;;; Our choice; the manual's session views the inside of a wooden box as about 120.
 
+(public wood metal bricks slate)
 (defsubstance wood 120)
 (defsubstance metal 80)
 (defsubstance bricks 20)
 (defsubstance slate 30)
+
+(addition stone plaster glass cloth paper plastic)
 (defsubstance stone 40)
 (defsubstance plaster 60)
 (defsubstance glass 5)

@@ -66,10 +66,15 @@
 (defun reject-value (operator name value expected)
   (error 'wrong-argument :operator operator :name name :value value :expected expected))
 
+(defun value-like (value domain)
+  "Return the symbol in DOMAIN that VALUE may be a slip for, or NIL."
+  (and (symbolp value)
+       (nearest-name value (remove-if-not #'symbolp (remove nil domain)))))
+
 (defun check-attribute-value (operator key value)
   "Signal WRONG-ARGUMENT unless a thing's attribute KEY can be VALUE. NIL, for unspecified or
 false, always can."
-  (let ((attribute (find-attribute key)))
+  (let ((attribute (attribute-of key)))
     (flet ((reject (expected) (reject-value operator key value expected)))
       (cond ((or (null value) (null attribute)))
             ((eq key :substance)
@@ -78,13 +83,15 @@ false, always can."
              (note-unknown-substance value))
             ((eq (attribute-kind attribute) :discrete)
              (unless (member value (attribute-domain attribute) :test #'value-equal)
-               (reject (format nil "one of ~(~{~A~^, ~}~)" (attribute-domain attribute)))))
+               (reject (format nil "one of ~(~{~A~^, ~}~)~@[; did you mean ~(~A~)?~]"
+                               (attribute-domain attribute)
+                               (value-like value (attribute-domain attribute))))))
             ((not (realp value)) (reject "a number"))
             ((and (member key '(:size :weight :capacity)) (minusp value))
              (reject "a number not below 0"))))))
 
 (defun note-unknown-substance (value)
-  (when (and (symbolp value) (null (find-substance value)))
+  (when (and (symbolp value) (null (find-substance value nil)))
     (warning-set "No substance is called " value ": its parameter counts as 0; see DEFSUBSTANCE.")))
 
 (defun refresh-physics (thing)

@@ -51,18 +51,30 @@ steps."
 
 (defun draw-circle (map center radius type parameter)
   "Draw the digitised outline (midpoint algorithm), pressed against the map's edges."
-  (let ((cx (floor (first center))) (cy (floor (second center)))
-        (substance (substance-number map type)) (parameter (double parameter)))
-    (loop with x = (round radius) and y = 0
-          with slack = (- 1 x)
-          while (<= y x)
-          do (loop for (dx dy) in `((,x ,y) (,y ,x))
-                   do (loop for (sx sy) in '((1 1) (1 -1) (-1 1) (-1 -1))
-                            do (fill-cell map (+ cx (* sx dx)) (+ cy (* sy dy))
-                                          substance parameter)))
-             (incf y)
-             (cond ((minusp slack) (incf slack (+ 1 (* 2 y))))
-                   (t (decf x) (incf slack (+ 1 (* 2 (- y x)))))))))
+  (let ((cx (floor (first center))) (cy (floor (second center))))
+    (if (encloses-map-p map cx cy radius)
+        (draw-rect map '(0 0) (list (map-width map) (map-height map)) type parameter)
+        (draw-octants map cx cy (round radius)
+                      (substance-number map type) (double parameter)))))
+
+(defun encloses-map-p (map cx cy radius)
+  "True if all of MAP is well inside the circle around CX, CY: then all that is left of it, pressed
+against the edges, is the edges."
+  (let ((dx (max (abs cx) (abs (- (map-width map) cx))))
+        (dy (max (abs cy) (abs (- (map-height map) cy)))))
+    (< (+ dx dy 2) radius)))
+
+(defun draw-octants (map cx cy radius substance parameter)
+  (loop with x = radius and y = 0
+        with slack = (- 1 x)
+        while (<= y x)
+        do (loop for (dx dy) in `((,x ,y) (,y ,x))
+                 do (loop for (sx sy) in '((1 1) (1 -1) (-1 1) (-1 -1))
+                          do (fill-cell map (+ cx (* sx dx)) (+ cy (* sy dy))
+                                        substance parameter)))
+           (incf y)
+           (cond ((minusp slack) (incf slack (+ 1 (* 2 y))))
+                 (t (decf x) (incf slack (+ 1 (* 2 (- y x))))))))
 
 ;;; Checking.
 

@@ -27,7 +27,9 @@
   (kicker-groups '() :type list)
   (kicker-tick 0 :type tick-count)
   (kicker-generation 0 :type fixnum)
-  (due-kickers '() :type list))
+  (due-kickers '() :type list)
+  ;; The names of attributes that somebody has been warned of.
+  (noted-names '() :type list))
 
 (addition world-p world-map world-seed world-robots world-simulation world-tick)
 (document-functions
@@ -72,8 +74,8 @@ after a thing has moved, been made or been destroyed. Can be set.")
 
 (addition *world*)
 (defvar *world* nil
-  "The world that code runs in, bound inside a headless simulation. NIL at top level, where
-each map's resident world counts.")
+  "The world that code runs in: that of the current simulation, headless or live. NIL as long as
+there is none; then each map's resident world counts.")
 
 ;;; Things.
 

@@ -1,0 +1,122 @@
+;;;; sources.lisp -- where in a file a definition stands, for its errors and for reading it again.
+
+(in-package :ars-magna.base)
+
+;;; A source is a list (file digest): the file that a definition was read from, and a number for
+;;; what was in it then. NIL stands for a definition that was typed. Definitions carry their
+;;; source through compiled files, so it is a plain list.
+;;;
+;;; A file is read here without regard to its packages: words are compared as words, and nothing
+;;; is interned in any package that a user has.
+
+(defun file-digest (file)
+  "Return a number for the text of FILE."
+  (digest-value (digest-add (make-digest) (read-file-into-string file))))
+
+(defun text-file (path)
+  "Return PATH if that is a file of Lisp text, not a compiled one."
+  (and path
+       (not (equalp "fasl" (pathname-type path)))
+       (probe-file path)))
+
+(defun source-here ()
+  "Return the source of the form that is being compiled or loaded, or NIL."
+  (let ((file (text-file (or *compile-file-truename* *load-truename*))))
+    (when file
+      (ignore-errors (list (namestring file) (file-digest file))))))
+
+(defun source-file (source)
+  "Return the name of the file of SOURCE, a string, or NIL."
+  (first source))
+
+;;; Finding a form in a text.
+
+(defmacro with-words ((text) &body body)
+  "Run BODY, in which READ-WORDS of a position reads the form of the string TEXT that begins there
+and returns it and where it ends, or NIL."
+  (with-gensyms (words)
+    `(let ((,words (make-package (gensym "WORDS") :use '())))
+       (unwind-protect
+            (flet ((read-words (position)
+                     (let ((*package* ,words) (*read-eval* nil))
+                       (ignore-errors (read-from-string ,text nil nil :start position)))))
+              ,@body)
+         (delete-package ,words)))))
+
+(defun same-words-p (a b)
+  "True if the forms A and B look the same, whatever packages their symbols are in."
+  (cond ((and (symbolp a) (symbolp b)) (string= a b))
+        ((and (consp a) (consp b))
+         (and (same-words-p (car a) (car b)) (same-words-p (cdr a) (cdr b))))
+        ((and (realp a) (realp b)) (= a b))
+        ((and (arrayp a) (arrayp b)) (equalp a b))
+        (t (or (eql a b)
+               (and (typep a 'structure-object) (eq (type-of a) (type-of b)))))))
+
+(defun openings (text start end)
+  "Return the positions of the opening parentheses in TEXT between START and END."
+  (loop for position = (position #\( text :start start :end end)
+          then (position #\( text :start (1+ position) :end end)
+        while position collect position))
+
+(defun word-at-p (text position word)
+  "True if TEXT has WORD at POSITION, perhaps behind the name of a package."
+  (let ((end (position-if (lambda (char) (find char '(#\Space #\Tab #\Newline #\Return)))
+                          text :start position))
+        (length (length (string word))))
+    (and end
+         (<= (+ position length) end)
+         (string-equal word text :start2 (- end length) :end2 end))))
+
+(defun definition-position (text operator name)
+  "Return where in TEXT the form (OPERATOR NAME ...) begins and where it ends, or NIL; the whole of
+TEXT if OPERATOR is NIL."
+  (if (null operator)
+      (values 0 (length text))
+      (with-words (text)
+        (dolist (position (openings text 0 (length text)))
+          (when (word-at-p text (1+ position) operator)
+            (multiple-value-bind (form end) (read-words position)
+              (when (and (consp form) (consp (rest form))
+                         (same-words-p (first form) operator)
+                         (same-words-p (second form) name))
+                (return (values position end)))))))))
+
+(defun form-position (text form start end)
+  "Return where FORM, a list, stands in TEXT between START and END, or NIL."
+  (with-words (text)
+    (find-if (lambda (position)
+               (let ((found (read-words position)))
+                 (and found (same-words-p found form))))
+             (openings text start end))))
+
+(defun word-position (text form start end)
+  "Return where the first word of FORM, or FORM itself, stands in TEXT, or NIL."
+  (let ((word (if (consp form) (first form) form)))
+    (and word
+         (or (symbolp word) (realp word))
+         (search (let ((*package* (find-package :keyword))) (prin1-to-string word))
+                 text :start2 start :end2 end :test #'char-equal))))
+
+(defun line-number (text position)
+  (1+ (count #\Newline text :end position)))
+
+(defun clause-line (file operator name clause)
+  "Return the line of FILE on which CLAUSE of the definition (OPERATOR NAME ...) begins, that of the
+definition itself if CLAUSE is not found in it, or NIL."
+  (ignore-errors
+   (let ((text (read-file-into-string file)))
+     (multiple-value-bind (start end) (definition-position text operator name)
+       (when start
+         (let ((position (or (and (consp clause) (form-position text clause start end))
+                            (and operator (or (word-position text clause (1+ start) end)
+                                              start)))))
+          (and position (line-number text position))))))))
+
+(defun read-definition-again (file operator name)
+  "Return the form (OPERATOR NAME ...) as it is in FILE now. Signals MISUSE if it is not there."
+  (let* ((text (read-file-into-string file))
+         (position (and operator (definition-position text operator name))))
+    (unless position
+      (reject-use "~A has no (~(~A ~A~) ...) that can be read." file operator name))
+    (values (read-from-string text t nil :start position))))

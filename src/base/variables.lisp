@@ -1,0 +1,21 @@
+;;;; variables.lisp -- which names can be variables, and which are.
+
+(in-package :ars-magna.base)
+
+;;; What a user defines by a name can often be had as the value of a variable of that name too.
+
+(defun variable-name-p (name)
+  "True if the symbol NAME can become a special variable: constants cannot, keywords neither, nor
+what belongs to a locked package, such as Common Lisp's or ours."
+  (and name
+       (symbol-package name)
+       (not (constantp name))
+       (not (sb-ext:package-locked-p (symbol-package name)))))
+
+(defun variable-forms (name)
+  "Return the forms, perhaps none, that declare NAME a special variable."
+  (when (variable-name-p name) `((defvar ,name))))
+
+(defun known-variable-p (symbol environment)
+  "True if SYMBOL, as a form in ENVIRONMENT, is a variable or constant that is known."
+  (and (sb-cltl2:variable-information symbol environment) t))

@@ -1,0 +1,111 @@
+;;;; def-place-type.lisp -- DEF-PLACE-TYPE: from its options to a place type (manual 5.1.1).
+
+(in-package :ars-magna.world)
+
+;;; The form is checked when it is expanded, the values of its options when it is evaluated; then
+;;; its code is tried on small maps.
+
+(defun check-place-type-options (definition name lambda-list options)
+  (unless (and name (symbolp name) (not (keywordp name)))
+    (reject-clause definition name "a symbol as the name of the place type"))
+  (unless (and (consp lambda-list) (null (cdr lambda-list))
+               (first lambda-list) (symbolp (first lambda-list)))
+    (reject-clause definition lambda-list "a list of one variable, to be bound to the cell"))
+  (check-options definition options
+                 '(:confusion :check-matchers :checker :directions :invisible :graphics :before))
+  (when (eq (null (getf options :check-matchers)) (null (getf options :checker)))
+    (reject-clause definition options "either :check-matchers or :checker, one of them")))
+
+(defun matcher-form (matcher definition)
+  "Return a form that makes the rule for MATCHER, an element of :check-matchers."
+  (unless (and (proper-list-p matcher) (<= 2 (length matcher) 4)
+               (every #'integerp (cddr matcher)))
+    (reject-clause definition matcher
+                   "(match-form direction), or (match-form direction dx dy) for a place beside it"))
+  (destructuring-bind (form direction &optional (dx 0) (dy 0)) matcher
+    `(make-rule ',(normal-form form definition) (double ,direction) ,dx ,dy)))
+
+(defun graphics-form (graphics definition)
+  (when graphics
+    (unless (and (proper-list-p graphics) (proper-list-p (first graphics))
+                 (= 3 (length (first graphics))) (every #'symbolp (first graphics)))
+      (reject-clause definition graphics "((window x y) body...), three variables and a body"))
+    `(lambda ,(first graphics) (declare (ignorable ,@(first graphics))) ,@(rest graphics))))
+
+(defun place-type-forms (name lambda-list options)
+  "Return the forms that DEF-PLACE-TYPE expands to."
+  (let ((definition (format nil "def-place-type ~(~A~)" name)))
+    (check-place-type-options definition name lambda-list options)
+    (destructuring-bind (&key confusion check-matchers checker directions invisible graphics before)
+        options
+      (flet ((cell-function (form)
+               (and form `(lambda ,lambda-list (declare (ignorable ,@lambda-list)) ,form))))
+        (unless (proper-list-p check-matchers)
+          (reject-clause definition check-matchers "a list of (match-form direction)"))
+        `((define-place-type ',name
+            :confusion ,(or confusion 0) :invisible ,invisible
+            :rules (list ,@(loop for matcher in check-matchers
+                                 collect (matcher-form matcher definition)))
+            :checker ,(cell-function checker)
+            :directions ,(cell-function directions)
+            :graphics ,(graphics-form graphics definition)
+            :before ',before
+            :key ,(digest-value (digest-add (make-digest) (cons name options)))))))))
+
+(public def-place-type)
+(defmacro def-place-type (&whole form name (&rest lambda-list) &rest options)
+  "Define the place type NAME (manual 5.1.1). LAMBDA-LIST is (CELL); options, in any order:
+  :confusion p -- probability of a false designator in a search for the type; default 0
+  :check-matchers ((match-form direction)...) -- wall patterns centred on the place
+  :checker form -- or a form of four values: true to classify, integers dx and dy to the place
+    from CELL, its basic canonical direction; CELL is one cursor that moves over the map
+  :directions form -- of two values, radians; default the basic direction and its opposite
+  :invisible true -- no designator can be acquired for it
+  :graphics ((window x y) body...) -- draws it (manual B.1)
+  :before name -- ours: where a cell could be of both, this type wins over the one called NAME,
+    or over all others if NAME is T; without it, a type that was defined earlier wins.
+A matcher may go on with integers dx dy, as a checker's values do: ours too. Checker and
+directions are tried once on a small map of their own. Maps built earlier learn of the type from
+REBUILD-MAP. Signals MALFORMED-DEFINITION. Return the name."
+  (expand-definition form (lambda () (place-type-forms name lambda-list options))))
+
+(defun check-place-type (definition confusion rules)
+  (unless (typep confusion '(real 0 1))
+    (reject-clause definition (list :confusion confusion) "a probability from 0 to 1"))
+  (when (> (length rules) 255)
+    (reject-clause definition (list :check-matchers '|...|) "at most 255 matchers")))
+
+(defun type-to-precede (definition before)
+  "Return the place type that BEFORE, the option of a definition, means, or NIL."
+  (cond ((null before) nil)
+        ((eq before t) (first (registry-objects *place-types*)))
+        ((find-place-type before nil))
+        (t (reject-clause definition (list :before before)
+                          (format nil "T or the name of a place type: ~{~(~A~)~^, ~}"
+                                  (defined-names *place-types*))))))
+
+(defun define-place-type (name &key (confusion 0) invisible rules checker directions graphics
+                                 before (key 0))
+  "Define the place type NAME; what DEF-PLACE-TYPE expands to, with functions of a cell for
+CHECKER and DIRECTIONS. KEY stands for the definition in the key of a map's cache. Return NAME."
+  (let* ((definition (format nil "def-place-type ~(~A~)" name))
+         (old (find-place-type name nil))
+         (next (type-to-precede definition before))
+         (new (%make-place-type name)))
+    (check-place-type definition confusion rules)
+    (when (and (null old) (= (length (registry-objects *place-types*)) 255))
+      (reject-clause definition name "at most 255 place types"))
+    (setf (place-type-confusion new) (double confusion)
+          (place-type-invisible-p new) (and invisible t)
+          (place-type-rules new) rules
+          (place-type-table new) (and rules
+                                      (every #'small-form-p (mapcar #'rule-form rules))
+                                      (rules-table rules))
+          (place-type-checker new) checker
+          (place-type-directions new) directions
+          (place-type-graphics new) graphics
+          (place-type-key new) key)
+    (try-place-type new)
+    (register *place-types* name (if old (become old new) new)
+              :before (and (not (eq next old)) next))
+    name))

@@ -1,0 +1,53 @@
+;;;; undeclared.lisp -- attributes that nobody has declared: legal, but perhaps slips of the pen.
+
+(in-package :ars-magna.world)
+
+;;; Things may have attributes that no DEFATTRIBUTE declares, and specifications may ask for them.
+;;; A name that looks like a declared one is remarked on where a thing is defined; one that no
+;;; thing of the world has, where it is asked for, once in a run.
+
+(defun slips-in (descriptor)
+  "Return a list of lists (name like): the names in the object DESCRIPTOR that are not declared, but
+may be slips for the declared name LIKE."
+  (loop for (name) in descriptor
+        for like = (declared-name-like name)
+        when like collect (list name like)))
+
+(defun slip-text (thing-name slip)
+  (destructuring-bind (name like) slip
+    (format nil "~(~A~) has ~(~S~), which is not declared; did you mean ~(~S~)?"
+            thing-name name like)))
+
+(defun warn-of-slips (definition name descriptor)
+  "Warn of what may be slips in DESCRIPTOR of the thing NAME in DEFINITION."
+  (dolist (slip (slips-in descriptor))
+    (warn-of-definition "~A~@[ (~A)~]: ~A" definition
+                        (clause-place (assoc (first slip) descriptor))
+                        (slip-text name slip))))
+
+(defun warn-once-of (key world text)
+  "Queue the warning TEXT, unless one about KEY has been queued in WORLD before."
+  (unless (member key (world-noted-names world) :test #'eq)
+    (push key (world-noted-names world))
+    (warning-set text)))
+
+(defun note-slips (name descriptor world)
+  "Warn, once, of what may be slips in DESCRIPTOR of the thing NAME, made on the fly in WORLD."
+  (dolist (slip (slips-in descriptor))
+    (warn-once-of (first slip) world (slip-text name slip))))
+
+(defun carried-p (key world)
+  "True if any thing of WORLD says something of the attribute KEY."
+  (do-things (thing world)
+    (when (assoc key (thing-attributes thing) :test #'eq)
+      (return-from carried-p t))))
+
+(defun note-strange-name (key world)
+  "Warn, once, if the attribute KEY of a specification is declared by nobody and had by nothing."
+  (unless (or (attribute-of key)
+              (member key (world-noted-names world) :test #'eq)
+              (carried-p key world))
+    (warn-once-of key world
+                  (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~
+                               ~(~S~)?~]"
+                          key (declared-name-like key)))))
