@@ -75,6 +75,11 @@
                  (:file "robot-runs")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
+  ;; The packages are locked once they are loaded.
+  :perform (prepare-op (operation system)
+             (declare (ignore operation system))
+             (when (find-package :ars-magna.faces)
+               (symbol-call :ars-magna.faces :unlock-packages)))
   :in-order-to ((test-op (test-op "ars-magna/tests"))))
 
 (defsystem "ars-magna/worlds"

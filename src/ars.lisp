@@ -14,5 +14,6 @@
   (:documentation "The package to work in: Common Lisp, ARS and NISP; XLIB is our canvas. What is
 defined in it is the user's."))
 
-;;; What is defined from here on is not the simulator's.
+;;; What is defined from here on is the users'.
 (seal-definitions)
+(lock-packages)

@@ -38,7 +38,7 @@
 
 (defun fill-face (face documentation)
   "Let the package FACE, with DOCUMENTATION, export what is marked for it."
-  (ensure-face face documentation)
+  (sb-ext:unlock-package (ensure-face face documentation))
   (dolist (symbol (public-symbols face))
     (show symbol face)))
 
@@ -46,6 +46,31 @@
   "Define the package FACE, :ARS or :NISP, which exports what is marked for it (see PUBLIC)."
   `(eval-when (:compile-toplevel :load-toplevel :execute)
      (fill-face ,face ,documentation)))
+
+;;; Locks. A user who by accident defines a function, type or variable called as one of ours is told
+;;; so, instead of changing the simulator.
+
+(defparameter *open-packages*
+  '("ARS-MAGNA.SLOTS" "ARS-MAGNA.BUILD" "ARS-MAGNA.TESTS" "ARS-MAGNA.CLI" "ARS-MAGNA.CLIM")
+  "Packages of the project that are not locked: nobody's names lead there.")
+
+(defun our-packages ()
+  "Return the faces and the layers' packages, but not that which slot accessors are interned in,
+nor those of tools."
+  (remove-if-not (lambda (package)
+                   (let ((name (package-name package)))
+                     (or (member name '("ARS" "NISP") :test #'string=)
+                         (and (starts-with-subseq "ARS-MAGNA." name)
+                              (not (member name *open-packages* :test #'string=))))))
+                 (list-all-packages)))
+
+(defun lock-packages ()
+  "Keep users from redefining what is ours."
+  (mapc #'sb-ext:lock-package (our-packages)))
+
+(defun unlock-packages ()
+  "Let what is ours be redefined, as when the system is loaded again."
+  (mapc #'sb-ext:unlock-package (our-packages)))
 
 ;;; The prompt is a system of its own, which nothing here depends on.
 

@@ -288,6 +288,6 @@
   (signals base:misuse (macroexpand-1 '(rpl:wait-for f))))
 
 (test compiler.names-of-ones-own-are-ones-own
-  (is (= 3 (plan-value (flet ((rpl:par (a b) (+ a b)))
+  (is (= 3 (plan-value (flet ((par (a b) (+ a b)))
                          (rpl:wait-time 1)
-                         (rpl:par 1 2))))))
+                         (par 1 2))))))

@@ -1,5 +1,9 @@
 ;;;; package.lisp -- the Nisp dialect, as far as the manual uses it (manual 3.1).
 
+(defpackage :ars-magna.slots
+  (:documentation "The accessors of slots by name, see slots.lisp: !_X for the slot x of any type.")
+  (:use))
+
 (defpackage :ars-magna.nisp
   (:documentation "Nisp's typed forms, slot access, matching and reader syntax, and the registries
 of types and slots that other layers fill. Shadows LET, LOOP and IF by forms that understand

@@ -2,9 +2,10 @@
 
 (in-package :ars-magna.nisp)
 
-;;; Slot `x' of any type is read by the generic function !_X of this package, and set by (SETF
+;;; Slot `x' of any type is read by the generic function ARS-MAGNA.SLOTS::!_X, and set by (SETF
 ;;; !_X): dispatch, subtypes and caching are CLOS's. The reader turns !_x and !>p.x into calls
-;;; of it, and a form with a type, !(PT x), into a call of that type's own reader.
+;;; of it, and a form with a type, !(PT x), into a call of that type's own reader. Structures and
+;;; classes that users define need not be registered: all of their slots can be reached.
 
 (defclass slot-accessor (standard-generic-function)
   ()
@@ -14,7 +15,7 @@
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun slot-accessor-name (slot)
     "Return the symbol that names the accessor of the slot called SLOT."
-    (intern (concatenate 'string "!_" (string slot)) :ars-magna.nisp)))
+    (intern (concatenate 'string "!_" (string slot)) :ars-magna.slots)))
 
 (defun ensure-slot-accessor (slot)
   "Return the name of the accessor of the slot called SLOT, defining it if need be."
@@ -42,20 +43,45 @@
         for type = (class-nisp-type class)
         when type append (nisp-type-slots type)))
 
+(defun users-class-p (class)
+  "True if CLASS is neither ours nor Lisp's: then its slots are open to programs."
+  (let ((package (symbol-package (class-name class))))
+    (and (typep class '(or structure-class standard-class))
+         package
+         (not (sb-ext:package-locked-p package))
+         (not (starts-with-subseq "ARS-MAGNA." (package-name package))))))
+
+(defun own-slots (object)
+  "Return the names, symbols, of the slots of OBJECT if its class is a user's."
+  (let ((class (class-of object)))
+    (when (users-class-p class)
+      (mapcar #'sb-mop:slot-definition-name (sb-mop:class-slots class)))))
+
 (defun slot-names (object)
   "Return the names of the slots of OBJECT that programs can reach, as strings."
-  (sort (remove-duplicates (mapcar #'car (class-slots (class-of object))) :test #'string=)
+  (sort (remove-duplicates (append (mapcar #'car (class-slots (class-of object)))
+                                   (mapcar #'symbol-name (own-slots object)))
+                           :test #'string=)
         #'string<))
+
+(defun reject-slot (object slot setter)
+  "Signal that OBJECT has no SLOT, a string, or none that can be set."
+  (let ((known (slot-names object)))
+    (when (and setter (member slot known :test #'string=))
+      (reject-use "Slot ~A of a ~A cannot be set." slot (type-of object)))
+    (reject-name (format nil "slot of a ~A" (let ((type (type-of object)))
+                                              (if (symbolp type) (symbol-name type) type)))
+                 slot known)))
 
 (defmethod no-applicable-method ((accessor slot-accessor) &rest arguments)
   (let* ((object (first (last arguments)))
          (name (sb-mop:generic-function-name accessor))
          (setter (consp name))
          (slot (subseq (symbol-name (if setter (second name) name)) 2))
-         (known (slot-names object)))
-    (when (and setter (member slot known :test #'string=))
-      (reject-use "Slot ~A of a ~A cannot be set." slot (type-of object)))
-    (reject-name (format nil "slot of a ~A" (type-of object)) slot known)))
+         (own (find slot (own-slots object) :test #'string=)))
+    (cond ((null own) (reject-slot object slot setter))
+          (setter (setf (slot-value object own) (first arguments)))
+          (t (slot-value object own)))))
 
 ;;; Registering them.
 
