@@ -105,7 +105,7 @@
                  (:file "session") (:file "line")
                  (:file "arguments") (:file "layout") (:file "errands") (:file "robot-lines")
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
-                 (:file "status-lines") (:file "running-lines") (:file "worlds")
+                 (:file "status-lines") (:file "running-lines") (:file "loading") (:file "worlds")
                  (:file "world-lines") (:file "plans") (:file "plan-lines")
                  (:file "picture-lines") (:file "prompt") (:file "options") (:file "main")))))
 
@@ -146,6 +146,8 @@
                  (:file "plans")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "user-package")
+                 (:file "definitions") (:file "definitions-names")
+                 (:file "definitions-mistakes") (:file "definitions-maps")
                  (:file "architecture") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))

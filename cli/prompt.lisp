@@ -72,8 +72,21 @@ comes of earlier lines if the session waits for that."
 
 ;;; Lines that go wrong.
 
+(defun lock-text (condition)
+  "Return what CONDITION, that a locked name was to be defined, means to a user."
+  (let ((symbol (ignore-errors (sb-ext:package-locked-error-symbol condition))))
+    (if symbol
+        (format nil "~A is a name of ~A. Call yours otherwise, or begin with (shadow '~A)."
+                symbol (package-name (symbol-package symbol)) symbol)
+        (remove #\Newline (princ-to-string condition)))))
+
 (defun condition-text (condition)
   "Return what CONDITION says, or what it is if it cannot say that."
+  (if (typep condition 'sb-ext:package-lock-violation)
+      (lock-text condition)
+      (plain-text condition)))
+
+(defun plain-text (condition)
   (let ((text (handler-case (princ-to-string condition) (error () ""))))
     (if (string= text "") (string-downcase (type-of condition)) text)))
 

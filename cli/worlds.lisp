@@ -9,7 +9,7 @@
   "Load the Lisp file at PATH as users write it: in the package ARS-USER unless it says otherwise."
   (let ((*package* (user-package))
         (*read-default-float-format* 'single-float))
-    (call-quietly (lambda () (load path)))))
+    (call-quietly (lambda () (load-forms path)))))
 
 (defun load-world (path)
   "Load the Lisp file at PATH. Return the names of the robots that it defines. Signals BAD-LINE if

@@ -48,6 +48,9 @@
   (:documentation "A defining form (DEFMAP, DEFROBOT ...) has a clause that makes no sense."))
 
 (addition definition-warning definition-warning-text)
+(setf (documentation 'malformed-definition-place 'function)
+      "Return the file and line of what makes no sense, a string, or NIL if it was typed.")
+
 (define-condition definition-warning (warning)
   ((text :initarg :text :reader definition-warning-text))
   (:report (lambda (condition stream)

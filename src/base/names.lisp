@@ -24,22 +24,28 @@
          (and (value-equal (car a) (car b)) (value-equal (cdr a) (cdr b))))))
 
 (defun edit-distance (a b)
-  "Return how many insertions, deletions and replacements turn the string A into B."
-  (let ((row (make-array (1+ (length b)))))
-    (dotimes (j (length row)) (setf (aref row j) j))
-    (loop for i from 1 to (length a)
-          for diagonal = (aref row 0)
-          do (setf (aref row 0) i)
-             (loop for j from 1 to (length b)
-                   for above = (aref row j)
-                   do (setf (aref row j)
-                            (min (1+ above)
-                                 (1+ (aref row (1- j)))
-                                 (if (char-equal (char a (1- i)) (char b (1- j)))
-                                     diagonal
-                                     (1+ diagonal)))
-                            diagonal above)))
-    (aref row (length b))))
+  "Return how many insertions, deletions, replacements and exchanges of neighbours turn the string A
+into B."
+  (let ((rows (make-array (list (1+ (length a)) (1+ (length b))))))
+    (dotimes (i (1+ (length a)) (aref rows (length a) (length b)))
+      (dotimes (j (1+ (length b)))
+        (setf (aref rows i j)
+              (if (or (zerop i) (zerop j))
+                  (+ i j)
+                  (min (1+ (aref rows (1- i) j))
+                       (1+ (aref rows i (1- j)))
+                       (if (char-equal (char a (1- i)) (char b (1- j)))
+                           (aref rows (1- i) (1- j))
+                           (1+ (aref rows (1- i) (1- j))))
+                       (if (exchanged-p a i b j)
+                           (1+ (aref rows (- i 2) (- j 2)))
+                           (+ i j)))))))))
+
+(defun exchanged-p (a i b j)
+  "True if the two characters before I in A are those before J in B the other way round."
+  (and (< 1 i) (< 1 j)
+       (char-equal (char a (- i 1)) (char b (- j 2)))
+       (char-equal (char a (- i 2)) (char b (- j 1)))))
 
 (defun nearest-name (name names)
   "Return the one of NAMES most like NAME, or NIL if none is at all like it."
@@ -52,13 +58,9 @@
 
 (defun resembles-p (a b)
   "True if the name A is so much like the different name B that one may be a slip for the other:
-one letter apart, or two if they are long or only exchanged."
-  (let* ((a (string-upcase a)) (b (string-upcase b))
-         (distance (edit-distance a b)))
-    (or (= distance 1)
-        (and (= distance 2)
-             (or (<= 8 (min (length a) (length b)))
-                 (string= (sort (copy-seq a) #'char<) (sort (copy-seq b) #'char<)))))))
+one letter apart, or two if they are long."
+  (let ((a (string a)) (b (string b)))
+    (<= 1 (edit-distance a b) (if (<= 8 (min (length a) (length b))) 2 1))))
 
 (defun reject-name (kind name known)
   "Signal UNKNOWN-NAME: nothing of KIND (a string) among the names KNOWN is called NAME."

@@ -18,6 +18,7 @@ and bordeaux-threads so that no other layer has to.")
   (:export #:public #:addition #:addition-p #:public-symbols)
   ;; conditions
   (:export #:ars-magna-error #:wrong-argument #:check-argument #:malformed-definition
+           #:malformed-definition-place
            #:definition-warning #:definition-warning-text #:warn-of-definition
            #:unknown-name #:plain-name #:misuse #:reject-use)
   ;; threads

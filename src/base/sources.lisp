@@ -31,11 +31,18 @@
 
 ;;; Finding a form in a text.
 
+(defun package-for-words ()
+  "Return an empty package in which those packages go by nicknames that do so in the current one."
+  (let ((package (make-package (gensym "WORDS") :use '())))
+    (loop for (nickname . other) in (sb-ext:package-local-nicknames *package*)
+          do (sb-ext:add-package-local-nickname nickname other package))
+    package))
+
 (defmacro with-words ((text) &body body)
   "Run BODY, in which READ-WORDS of a position reads the form of the string TEXT that begins there
 and returns it and where it ends, or NIL."
   (with-gensyms (words)
-    `(let ((,words (make-package (gensym "WORDS") :use '())))
+    `(let ((,words (package-for-words)))
        (unwind-protect
             (flet ((read-words (position)
                      (let ((*package* ,words) (*read-eval* nil))

@@ -144,6 +144,8 @@ parameter list, BODY a function of as many arguments. Return NAME."
                                                  "a probability from 0 to 1"))
                   :delay (check-option definition :delay delay 'tick-count
                                        "a number of ticks, 0 or more"))))
+    (dolist (pattern (parameter-list-patterns (method-parameters method)))
+      (warn-of-slips definition "a pattern" pattern))
     (say-if-shared name (manipulation-methods manipulation) method)
     (setf (manipulation-methods manipulation)
           (with-method (manipulation-methods manipulation) method))

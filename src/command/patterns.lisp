@@ -21,10 +21,8 @@
        (> (first value) (second value))))
 
 (defun check-clause (definition clause)
-  (let ((key (attribute-key (first clause))))
-    (when (reversed-p key (second clause))
-      (reject-clause definition clause "a range with the lower end first"))
-    (warn-of-slips definition "a pattern" (list clause))))
+  (when (reversed-p (attribute-key (first clause)) (second clause))
+    (reject-clause definition clause "a range with the lower end first")))
 
 (defun parse-pattern (definition specification)
   "Return the pattern that SPECIFICATION, a list of lists (attribute value [threshold]), stands

@@ -136,9 +136,15 @@ NIL."
   "Signal MISUSE if the robot that is RESOURCE, or has it as a part, is retired."
   (let ((robot (if (robot-p resource) resource (part-robot resource))))
     (when (robot-retired robot)
-      (reject-use "~(~A~): the run of this ~(~A~) is over: ~A. Command the robot that the variable ~
-                   ~(~A~) holds now."
-                  operator (robot-name robot) (robot-retired robot) (robot-name robot)))))
+      (reject-use "~(~A~): the run of this ~(~A~) is over: ~A.~@[ Command the robot that the ~
+                   variable ~(~A~) holds now.~]"
+                  operator (robot-name robot) (robot-retired robot)
+                  (and (successor robot) (robot-name robot))))))
+
+(defun successor (robot)
+  "Return the robot that is called as ROBOT, which is retired, and takes commands, or NIL."
+  (let ((other (find-robot (robot-name robot) nil)))
+    (and other (null (robot-retired other)) other)))
 
 (defun robot-in-world (name world)
   "Return the robot in WORLD called NAME, or NIL."

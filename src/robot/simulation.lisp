@@ -218,11 +218,19 @@ is interrupted."
     (retire-robots robots reason)
     (abandon simulation (loop for robot in robots append (cons robot (robot-parts robot))))))
 
-(defun say-stopped (map simulation)
+(defun say-stopped (map simulation new)
+  "Say that SIMULATION of MAP has ended, if it had begun: the map is NEW now, or NIL."
   (when (or (live-p simulation) (plusp (simulation-tick simulation)))
-    (warn-of-definition "Map ~(~A~) has been replaced. Its simulation has ended at tick ~D; what ~
-                         is started from now on is in the new one."
-                        (map-name map) (simulation-tick simulation))))
+    (warn-of-definition "Map ~(~A~) is ~:[no longer defined~;defined anew~]. Its simulation has ~
+                         ended at tick ~D~@[; what is started from now on is in the new ~(~A~)~]."
+                        (map-name map) new (simulation-tick simulation)
+                        (and new (map-name new)))))
+
+(defun leave-out (body reason)
+  "Let there be no robot of BODY in its new map, for REASON."
+  (warn-of-definition "The robot ~(~A~) takes no more commands: ~A." (body-name body) reason)
+  (let ((robot (body-robot body)))
+    (when robot (retire-robot robot reason))))
 
 (defun move-robots (map)
   "Put robots made by the bodies of MAP's name into MAP, which is new."
@@ -230,9 +238,9 @@ is interrupted."
     (when (same-name-p (map-name map) (body-map body))
       (let ((trouble (start-trouble map (body-x body) (body-y body))))
         (if trouble
-            (warn-of-definition "The robot ~(~A~) no longer fits into the new map ~(~A~): ~A. ~
-                                 Define it anew."
-                                (body-name body) (map-name map) trouble)
+            (leave-out body (format nil "it does not fit into the new map ~(~A~), as ~A; define it ~
+                                         anew"
+                                    (map-name map) trouble))
             (setf (sb-ext:symbol-global-value (body-name body)) (settle body)))))))
 
 (defmethod map-replaced ((old map) new)
@@ -242,7 +250,7 @@ is interrupted."
     (when world
       (retire-robots (world-robots world) reason))
     (when simulation
-      (say-stopped old simulation)
+      (say-stopped old simulation new)
       (end-simulation simulation reason))
     (when new (move-robots new))))
 

@@ -1,0 +1,60 @@
+;;;; loading.lisp -- loading a user's file form by form, to tell on which line something is wrong.
+
+(in-package :ars-magna.cli)
+
+(define-condition file-trouble (ars-magna-error)
+  ((file  :initarg :file  :reader file-trouble-file)
+   (line  :initarg :line  :reader file-trouble-line)
+   (cause :initarg :cause :reader file-trouble-cause))
+  (:report (lambda (condition stream)
+             (format stream "~A, line ~D: ~A"
+                     (file-trouble-file condition) (file-trouble-line condition)
+                     (condition-text (file-trouble-cause condition)))))
+  (:documentation "A form in a file that is being loaded has failed; those before it have not."))
+
+(defun comment-end (text start)
+  "Return where the comment that begins in TEXT at START ends, or NIL if none does."
+  (cond ((char= #\; (char text start))
+         (or (position #\Newline text :start start) (length text)))
+        ((eql start (search "#|" text :start2 start :end2 (min (+ start 2) (length text))))
+         (let ((end (search "|#" text :start2 (+ start 2))))
+           (if end (+ end 2) (length text))))))
+
+(defun form-start (text start)
+  "Return where, from START, the next form in TEXT begins; its length if there is none."
+  (loop for position = (or (position-if-not #'blank-p text :start start) (length text))
+        for end = (and (< position (length text)) (comment-end text position))
+        while end
+        do (setf start end)
+        finally (return position)))
+
+(defun placed-p (condition)
+  "True if CONDITION says itself where the trouble is."
+  (or (typep condition 'file-trouble)
+      (and (typep condition 'malformed-definition)
+           (malformed-definition-place condition))))
+
+(defun call-on-line (function file text position)
+  "Call FUNCTION, which deals with the form of FILE's TEXT at POSITION."
+  (handler-bind ((error (lambda (condition)
+                          (unless (placed-p condition)
+                            (error 'file-trouble
+                                   :file file :cause condition
+                                   :line (1+ (count #\Newline text :end position)))))))
+    (funcall function)))
+
+(defun load-forms (path)
+  "Do as LOAD does with the Lisp file at PATH. Signals FILE-TROUBLE."
+  (let* ((text (read-file-into-string path))
+         (file (uiop:native-namestring path))
+         (*package* *package*) (*readtable* *readtable*)
+         (*load-pathname* path) (*load-truename* (truename path)))
+    (loop with start = 0
+          for position = (form-start text start)
+          while (< position (length text))
+          do (call-on-line (lambda ()
+                             (multiple-value-bind (form end)
+                                 (read-from-string text t nil :start position)
+                               (setf start end)
+                               (eval-quietly form)))
+                           file text position))))

@@ -1,0 +1,122 @@
+;;;; definitions-maps.lisp -- what becomes of runs and robots when maps and robots are defined anew.
+
+(in-package :ars-magna.tests)
+
+(in-suite definitions)
+
+(defun define-shed (width &rest clauses)
+  "Define the map SHED, WIDTH by 9, with CLAUSES. Return the warnings."
+  (warnings-of (lambda () (eval `(world:defmap shed (,width 9) ,@clauses)))))
+
+(defun mole () (robot:find-robot 'mole))
+
+(defmacro with-mole-in-shed (&body body)
+  `(with-own-definitions
+     (define-shed 9)
+     (eval '(robot:defrobot mole (shed (6 6) 0) :hands (5)))
+     (unwind-protect (progn ,@body)
+       (when (and time:*simulation* (time:live-p time:*simulation*))
+         (robot:stop-simulator)))))
+
+(test map-redefined.takes-effect-at-the-next-start
+  (with-mole-in-shed
+    (let ((old (mole)))
+      (robot:with-simulation (mole)
+        (is (null (define-shed 9 '(wall (2 2) (2 2) bricks 1))))
+        (is (not (world:wall-at-p (world:world-map world:*world*) 2 2)) "under way"))
+      (robot:with-simulation (mole)
+        (is (world:wall-at-p (world:world-map world:*world*) 2 2)))
+      (is (not (eq old (mole))))
+      (is (eq (world:find-map 'shed) (world:world-map (robot:robot-world (mole)))))
+      (robot:simulator (mole) :display nil)
+      (is (eq (world:find-map 'shed)
+              (world:world-map (time:simulation-world (time:current-simulation))))))))
+
+(test map-redefined.stops-what-it-replaces
+  "The old thread ends, pending commands are interrupted, and it is said so."
+  (with-mole-in-shed
+    (let ((answers '()) (robot (mole)))
+      (robot:simulator 'mole :display nil :rate :free)
+      (let ((simulation time:*simulation*))
+        (time:pause)
+        (time:asking (simulation)
+          (command:robot-go-forward robot 1000 (lambda (code &rest more)
+                                                 (declare (ignore more))
+                                                 (push code answers))))
+        (time:step-ticks 3)
+        (loop until (= 3 (time:simulation-tick simulation)) do (sb-thread:thread-yield))
+        (let ((warnings (define-shed 9)))
+          (is (= 1 (length warnings)))
+          (is (search "has ended at tick 3" (first warnings))))
+        (is (not (time:live-p simulation)))
+        (is (equal '(:interrupt) answers))
+        (signals base:misuse (command:robot-turn robot 1))
+        (signals base:misuse (command:hand-ungrasp (robot:robot-hand robot 0)))
+        (handler-case (command:robot-turn robot 1)
+          (base:misuse (condition)
+            (is (search "the variable mole holds now" (princ-to-string condition)))))))))
+
+(defun simulator-threads ()
+  (count "simulator of" (sb-thread:list-all-threads)
+         :test (lambda (start thread)
+                 (eql 0 (search start (sb-thread:thread-name thread))))))
+
+(test map-redefined.leaves-no-threads
+  (with-mole-in-shed
+    (let ((before (simulator-threads)))
+      (dotimes (round 3)
+        (define-shed 9)
+        (robot:simulator (mole) :display nil))
+      (is (= (1+ before) (simulator-threads))))))
+
+(test map-redefined.rejects-what-no-longer-fits
+  (with-mole-in-shed
+    (let ((warnings (define-shed 5)))
+      (is (= 1 (length warnings)))
+      (is (search "outside the map, which is 5 by 9" (first warnings))))
+    (dolist (function (list (lambda () (robot:simulator 'mole))
+                            (lambda () (robot:call-with-simulation (constantly nil) '(mole)))
+                            (lambda () (command:robot-turn (mole) 1))))
+      (signals base:misuse (funcall function)))
+    (is (search "inside a wall" (first (define-shed 9 '(wall (6 6) (6 6) bricks 1)))))
+    (is (null (define-shed 9)))
+    (is (eq (mole) (robot:simulator 'mole :display nil)) "it fits again")))
+
+(test map-redefined.is-not-if-it-makes-no-sense
+  (with-mole-in-shed
+    (let ((map (world:find-map 'shed)) (robot (mole)))
+      (signals base:malformed-definition (define-shed 9 '(obj box (99 9) ())))
+      (is (eq map (world:find-map 'shed)))
+      (is (eq robot (mole)))
+      (finishes (command:robot-turn robot 1)))))
+
+(test robot-redefined.takes-over-from-the-old-one
+  (with-mole-in-shed
+    (let ((old (mole)))
+      (eval '(world:defmap annexe (9 9)))
+      (robot:simulator 'mole :display nil)
+      (eval '(robot:defrobot mole (annexe (2 2) 0)))
+      (is (null (robot:simulation-robots time:*simulation*)) "it has left the shed")
+      (signals base:misuse (command:robot-turn old 1))
+      (is (eq (world:find-map 'annexe) (world:world-map (robot:robot-world (mole)))))
+      (finishes (command:robot-turn (mole) 1)))))
+
+(test run-over.robots-take-no-more-commands
+  (with-mole-in-shed
+    (let ((robot (robot:with-simulation (mole) (mole))))
+      (handler-case (progn (command:robot-turn robot 1) (fail "no error"))
+        (base:misuse (condition)
+          (is (search "headless simulation" (princ-to-string condition))))))))
+
+(test find-thing.looks-in-the-current-simulation
+  (with-mole-in-shed
+    (define-shed 9 '(obj box (3 3) ((:size 1))))
+    (eval '(world:defmap annexe (9 9) (obj box (3 3) ((:size 2)))))
+    (eval '(robot:defrobot vole (annexe (2 2) 0)))
+    (dolist (entry '((mole 1) (vole 2) (mole 1)))
+      (destructuring-bind (name size) entry
+        (robot:simulator name :display nil)
+        (is (= 1 (length (world:find-things 'box))))
+        (is (= size (world:get-attribute (world:find-thing 'box) :size)))))
+    (robot:with-simulation (vole)
+      (is (= 2 (world:get-attribute (world:find-thing 'box) :size))))))

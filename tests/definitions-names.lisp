@@ -1,0 +1,193 @@
+;;;; definitions-names.lisp -- names that Common Lisp has, words of one's own, and locks.
+
+(in-package :ars-magna.tests)
+
+(in-suite definitions)
+
+;;; Names of Common Lisp's.
+
+(test names.of-common-lisp-need-no-variable
+  (with-own-definitions
+    (mapc #'eval
+          '((world:defkicker open (box) () (world:set-attribute box :closed nil))
+            (world:defkicker step (thing) (:prob 1) (world:kick-thing thing .1 0 nil))
+            (world:defmap room (10 10)
+              (rect (0 0) (10 10) bricks 1)
+              (obj (box :kickers (open step)) (5.5 5.5) ((:closed t) (:capacity 3))))
+            (robot:defrobot resident (room (2 2) 0) :hands (5))))
+    (is (eq 'room (world:map-name (world:find-map 'room))))
+    (is (not (boundp 'room)))
+    (robot:with-simulation (resident :seed 1)
+      (let ((box (world:find-thing 'box)))
+        (time:run-ticks 3)
+        (is (null (world:get-attribute box :closed)))
+        (is (< 5.79 (world:thing-x box) 5.81))
+        (eval '(world:new-thing pin (room 3 4) ()))
+        (is (= 3 (world:thing-x (world:find-thing 'pin))))))))
+
+(test names.of-maps-are-no-variables-unless-they-are
+  "A lexical variable called as a map, or as a symbol of Common Lisp's, is a variable."
+  (with-own-definitions
+    (eval '(world:defmap room (10 10)))
+    (eval '(world:defmap floor (5 5)))
+    (eval '(let ((room (world:find-map 'floor)))
+            (world:new-thing pin (room 3 4) ())))
+    (is (eq (world:find-map 'floor)
+            (world:world-map (world:thing-world (world:find-thing 'pin (world:find-map 'floor))))))
+    (is (null (world:find-thing 'pin (world:find-map 'room))))))
+
+(test names.of-robots-must-be-variables
+  (with-own-definitions
+    (eval '(world:defmap room (10 10)))
+    (let ((text (complaint-about '(robot:defrobot max (room (2 2) 0)))))
+      (is (search "MAX belongs to COMMON-LISP" text))
+      (is (search "(:shadow #:max)" text)))
+    (is (search "ROBOT belongs to" (complaint-about '(robot:defrobot robot:robot
+                                                      (room (2 2) 0)))))))
+
+(test simulator.takes-the-name-of-a-map
+  (with-own-definitions
+    (eval '(world:defmap room (10 10)))
+    (signals base:misuse (robot:simulator 'room))
+    (signals base:unknown-name (robot:simulator 'rom))
+    (eval '(robot:defrobot resident (room (2 2) 0)))
+    (unwind-protect
+         (dolist (designator (list 'room "ROOM" (world:find-map 'room) 'resident))
+           (is (eq (robot:find-robot 'resident) (robot:simulator designator :display nil)))
+           (is (time:live-p (time:current-simulation))))
+      (robot:stop-simulator))))
+
+(test names.are-known-from-any-package
+  "A robot, map or kicker is asked for by the symbol of whoever asks."
+  (with-own-definitions
+    (eval '(world:defmap shed (10 10)))
+    (eval '(robot:defrobot cl-user::mole (cl-user::shed (2 2) 0)))
+    (is (eql 9 (eval '(robot:with-simulation (mole :seed 9)
+                        (and (eq mole (robot:find-robot 'mole))
+                             (eq mole cl-user::mole)
+                             (world:world-seed world:*world*))))))))
+
+;;; What is ours cannot be redefined by accident.
+
+(test names.of-ours-are-locked
+  (dolist (form '((defun geo:add (a b) (list a b)) (defvar rpl:state 1)
+                  (defstruct rpl:task x) (defmacro nisp:out (x) x)))
+    (signals sb-ext:package-lock-violation
+      (let ((*package* (find-package :ars-user))) (eval form)))))
+
+;;; Words. Whoever wrote the world, or asks, gets back a symbol of his own.
+
+(defmacro with-packages ((author asker) &body body)
+  "Run BODY with two packages that know nothing of ours."
+  `(let ((,author (make-package "ARS-TEST-AUTHOR" :use '(:cl)))
+         (,asker (make-package "ARS-TEST-ASKER" :use '(:cl))))
+     (unwind-protect (progn ,@body)
+       (delete-package ,asker)
+       (delete-package ,author))))
+
+(defun form-in (package text)
+  (let ((*package* package)) (read-from-string text)))
+
+(defun eval-in (package text)
+  (let ((*package* package)) (eval (read-from-string text))))
+
+(defparameter *gaudy-world*
+  "(progn
+     (ars:defmap gaudy (12 12)
+       (rect (0 0) (12 12) bricks 1)
+       (obj ball (6 8) ((:color red) (:substance (wood 3)) (:size 2)))
+       (obj bell (8 6) ((:color green) (:substance metal) (:size 2))))
+     (ars:defrobot seer (gaudy (6 6) 0) :cameras ((6.28 5))))")
+
+(defun words-in (data)
+  "Return the symbols in the description DATA that are neither keywords nor truth values."
+  (loop for (nil value) in data
+        append (remove-if (lambda (word)
+                            (or (not (symbolp word)) (keywordp word) (member word '(t nil))))
+                          (if (consp value) value (list value)))))
+
+(defun descriptions (specification)
+  "Return what the camera of SEER reports in 300 searches of a noisy world."
+  (loop repeat 150
+        append (mapcar #'robot::sighting-data
+                       (append (robot:look-for-things (camera 0) :non-local specification :all t)
+                               (robot:look-for-things (camera 0) :local specification :all t)))))
+
+(defun camera-of (name)
+  (robot:robot-camera (robot:find-robot name) 0))
+
+(test words.are-those-of-the-worlds-author
+  (with-own-definitions
+    (with-packages (author asker)
+      (eval-in author *gaudy-world*)
+      (robot:call-with-simulation
+       (lambda ()
+         (let ((words (loop repeat 200
+                            append (loop for sighting
+                                           in (robot:look-for-things (camera-of 'seer) :non-local
+                                                                     '() :all t)
+                                         append (words-in (robot::sighting-data sighting))))))
+           (is (< 100 (length words)))
+           (is (< 6 (length (remove-duplicates words))) "some are misread")
+           (is (null (remove author words :key #'symbol-package)))))
+       "SEER" :seed 5))))
+
+(test words.are-those-of-who-asks
+  (with-own-definitions
+    (with-packages (author asker)
+      (eval-in author *gaudy-world*)
+      (robot:call-with-simulation
+       (lambda ()
+         (loop for text in '("((:color (red green violet)))" "((:substance (wood metal glass)))")
+               for specification = (form-in asker text)
+               for key = (first (first specification))
+               do (let ((values (loop repeat 100
+                                      append (loop for sighting
+                                                     in (robot:look-for-things
+                                                         (camera-of 'seer) :non-local
+                                                         specification :all t)
+                                                   collect (assoc key (robot::sighting-data
+                                                                       sighting))))))
+                    (is (< 20 (length values)))
+                    (is (null (remove asker (words-in values) :key #'symbol-package))))))
+       "SEER" :seed 6))))
+
+(test words.of-places-too
+  (with-own-definitions
+    (with-packages (author asker)
+      (eval-in author *gaudy-world*)
+      (eval-in author "(ars:defmap gaudy (12 12) (rect (0 0) (12 12) bricks 1)
+                                                 (rect (8 8) (9 9) bricks 1))")
+      (robot:call-with-simulation
+       (lambda ()
+         (let ((sightings (robot:look-for-places (camera-of 'seer) (world:find-place-type 'convex)
+                                                 :all t
+                                                 :name (form-in asker "convex"))))
+           (is (equal (list (form-in asker "convex"))
+                      (robot::sighting-data (first sightings)))))
+         (let ((seer (robot:find-robot 'seer)) (names '()))
+           (robot:place-robot seer 1.5 1.5 0)
+           (command:robot-place seer (lambda (code robot name)
+                                       (declare (ignore code robot))
+                                       (push name names)))
+           (time:run-ticks 3)
+           (is (equal (list (form-in author "concave")) names))))
+       "SEER" :seed 1 :clean t))))
+
+;;; Attributes.
+
+(test attributes.stay-in-the-worlds-that-have-them
+  "A declared boolean is noticed only where some thing starts with it, or of what has it."
+  (with-own-definitions
+    (eval '(world:defattribute :lit (t nil) :noticed 1))
+    (eval '(world:defmap dark (9 9) (obj crate (5 5) ((:size 2)))))
+    (eval '(world:defmap bright (9 9) (obj crate (5 5) ((:size 2))) (obj lamp (5 5) ((:lit t)))))
+    (loop for (map . expected) in '((dark) (bright t))
+          do (eval `(robot:defrobot seer (,map (4 4) 0) :cameras ((6.28 5))))
+             (robot:call-with-simulation
+              (lambda ()
+                (let ((data (robot::sighting-data
+                             (first (robot:look-for-things (camera-of 'seer) :non-local
+                                                           '((:size 2)))))))
+                  (is (eq (first expected) (and (assoc :lit data) t)) "in ~A" map)))
+              '(seer) :clean t))))
