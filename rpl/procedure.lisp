@@ -99,7 +99,7 @@ this one."
           (procedure-stub procedure) (procedure-stub-for name)
           (documentation name 'function) documentation)
     (reinstate procedure)
-    (let ((*definition* (list source 'def-interp-proc name)))
+    (let ((*definition* (list source "def-interp-proc" name)))
       (register *procedures* name procedure))
     name))
 

@@ -17,12 +17,12 @@
 (defmacro with-only ((registry &rest names) &body body)
   "Run BODY where REGISTRY knows what is called NAMES, forms, and nothing else."
   `(base:with-own-definitions ()
-     (base::set-definitions
+     (base::set-entries
       ,registry
       (remove-if-not (lambda (definition)
-                       (member (base:definition-name definition) (list ,@names)
+                       (member (base:entry-name definition) (list ,@names)
                                :test #'base:same-name-p))
-                     (base::registry-definitions ,registry)))
+                     (base::registry-entries ,registry)))
      ,@body))
 
 (defun map-of (width height &rest clauses)

@@ -7,7 +7,8 @@
 ;;; leave the definition out, read it again from its file, or take another form instead.
 
 (defvar *definition* nil
-  "The definition that is being expanded or carried out: a list (source operator name), or NIL.")
+  "The definition that is being expanded or carried out: a list (source operator name), or NIL. The
+operator is a symbol or string.")
 
 (defun current-source ()
   "Return the source of the definition that is being carried out, or NIL if it was typed."

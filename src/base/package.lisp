@@ -36,8 +36,8 @@ and bordeaux-threads so that no other layer has to.")
            #:read-definition-again #:reject-clause #:expand-definition #:call-as-definition
            #:read-value #:clause-place #:skip-definition #:skip-clause #:read-again)
   ;; registry
-  (:export #:registry #:define-registry #:registry-objects #:register #:seal-definitions #:lookup
-           #:lookup-definition #:definition-name #:definition-object #:definition-source
+  (:export #:registry #:define-registry #:registry-objects #:register #:seal-definitions
+           #:lookup-entry #:entry-name #:entry-object #:entry-source
            #:defined-names #:find-definition #:undefine #:take-back #:reinstate #:become
            #:with-own-definitions #:call-with-own-definitions)
   ;; messages

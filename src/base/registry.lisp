@@ -9,8 +9,7 @@
 ;;; The lists are replaced, never altered, so that any thread may read them at any time. All
 ;;; writing is done under one lock.
 
-(defstruct (definition (:constructor make-definition (name object source variable))
-                       (:copier nil))
+(defstruct (entry (:constructor make-entry (name object source variable)) (:copier nil))
   "That NAME means OBJECT, by a definition in SOURCE; VARIABLE, if any, holds what it stands for."
   (name nil :type symbol :read-only t)
   (object nil :read-only t)
@@ -18,10 +17,10 @@
   (variable nil :type symbol :read-only t))
 
 (defstruct (registry (:constructor %make-registry (kind text)) (:copier nil))
-  "All definitions of one KIND, called TEXT in messages, in order, and their objects."
+  "All definitions of one KIND, called TEXT in messages: entries in order, and their objects."
   (kind nil :type symbol :read-only t)
   (text "" :type string :read-only t)
-  (definitions '() :type list)
+  (entries '() :type list)
   (objects '() :type list)
   ;; True if names that are different symbols mean different things.
   (by-symbol-p nil :type boolean)
@@ -31,10 +30,10 @@
   (aliases (constantly '()) :type function))
 
 (document-functions
-  definition-name "Return the symbol that is defined."
-  definition-object "Return what the definition's name means."
-  definition-source "Return the source of the definition; see sources.lisp."
-  registry-objects "Return what REGISTRY has objects of, in order of definition; do not alter it.")
+  entry-name "Return the symbol that is defined."
+  entry-object "Return what the name of the entry means."
+  entry-source "Return the source of the entry's definition; see sources.lisp."
+  registry-objects "Return what REGISTRY has, in order of definition; do not alter it.")
 
 (defmethod print-object ((registry registry) stream)
   (print-unreadable-object (registry stream :type t)
@@ -43,9 +42,8 @@
 (defvar *registries* '() "All registries, in order of definition.")
 (defvar *registries-lock* (make-lock "registries"))
 
-(defun ensure-registry (kind text &rest options &key by-symbol fixed aliases)
+(defun ensure-registry (kind text &key by-symbol fixed aliases)
   "Return the registry of KIND, made if there is none, with these properties."
-  (declare (ignore options))
   (let ((registry (or (find kind *registries* :key #'registry-kind)
                       (let ((new (%make-registry kind text)))
                         (setf *registries* (append *registries* (list new)))
@@ -57,34 +55,28 @@
 
 ;;; Finding.
 
-(defun called-p (definition name registry)
-  (or (same-name-p name (definition-name definition))
-      (member name (funcall (registry-aliases registry) (definition-object definition))
+(defun called-p (entry name registry)
+  (or (same-name-p name (entry-name entry))
+      (member name (funcall (registry-aliases registry) (entry-object entry))
               :test #'same-name-p)))
 
-(defun lookup-definition (name registry)
-  "Return the definition in REGISTRY of NAME, a symbol or string, or NIL."
+(defun lookup-entry (name registry)
+  "Return the entry of REGISTRY for NAME, a symbol or string, or NIL."
   (when (typep name '(or symbol string))
-    (let ((definitions (registry-definitions registry)))
-      (or (find name definitions :key #'definition-name :test #'eq)
-          (find-if (lambda (definition) (called-p definition name registry))
-                   definitions :from-end t)))))
-
-(defun lookup (name registry)
-  "Return the object in REGISTRY that is called NAME, or NIL."
-  (let ((definition (lookup-definition name registry)))
-    (and definition (definition-object definition))))
+    (let ((entries (registry-entries registry)))
+      (or (find name entries :key #'entry-name :test #'eq)
+          (find-if (lambda (entry) (called-p entry name registry)) entries :from-end t)))))
 
 (defun defined-names (registry)
   "Return the names defined in REGISTRY, in order."
-  (mapcar #'definition-name (registry-definitions registry)))
+  (mapcar #'entry-name (registry-entries registry)))
 
 (defun find-definition (name registry errorp)
   "Return the object in REGISTRY that is called NAME. If there is none, return NIL, or signal
 UNKNOWN-NAME if ERRORP is true."
-  (or (lookup name registry)
-      (and errorp
-           (reject-name (registry-text registry) name (defined-names registry)))))
+  (let ((entry (lookup-entry name registry)))
+    (cond (entry (entry-object entry))
+          (errorp (reject-name (registry-text registry) name (defined-names registry))))))
 
 ;;; Defining.
 
@@ -96,64 +88,61 @@ UNKNOWN-NAME if ERRORP is true."
   (:documentation "Do again what TAKE-BACK may have undone: OBJECT is defined as it was before.")
   (:method (object) object))
 
-(defun set-definitions (registry definitions)
-  (setf (registry-definitions registry) definitions
-        (registry-objects registry) (mapcar #'definition-object definitions)))
+(defun set-entries (registry entries)
+  (setf (registry-entries registry) entries
+        (registry-objects registry) (mapcar #'entry-object entries)))
 
 (defun seal-definitions ()
   "Let all that is defined so far count as the simulator's own."
   (dolist (registry *registries*)
-    (set-definitions registry
-                     (loop for definition in (registry-definitions registry)
-                           collect (make-definition (definition-name definition)
-                                                    (definition-object definition)
-                                                    '("the simulator itself")
-                                                    (definition-variable definition))))))
+    (set-entries registry
+                 (loop for entry in (registry-entries registry)
+                       collect (make-entry (entry-name entry) (entry-object entry)
+                                           '("the simulator itself")
+                                           (entry-variable entry))))))
 
-(defun same-definition-p (definition name registry)
+(defun same-entry-p (entry name registry)
   (if (registry-by-symbol-p registry)
-      (eq name (definition-name definition))
-      (same-name-p name (definition-name definition))))
+      (eq name (entry-name entry))
+      (same-name-p name (entry-name entry))))
 
-(defun say-if-replaced (old new registry)
-  "Warn that the definition NEW replaces OLD if OLD was in another file."
-  (let ((file (source-file (definition-source old)))
-        (other (source-file (definition-source new))))
-    (when (and file (not (equal file other)))
-      (warn-of-definition "The ~A ~A is defined anew~@[ in ~A~]; so far it was as ~A says."
-                          (registry-text registry) (definition-name new) other file))))
+(defun entries-with (new old before registry)
+  "Return the entries of REGISTRY with NEW: directly before the object BEFORE, in the place of OLD,
+or last. Where symbols count the newest is always last, for those who ask by name alone."
+  (let ((others (remove old (registry-entries registry))))
+    (cond (before (let ((tail (member before others :key #'entry-object)))
+                    (append (ldiff others tail) (list new) tail)))
+          ((and old (not (registry-by-symbol-p registry)))
+           (substitute new old (registry-entries registry)))
+          (t (append others (list new))))))
 
 (defun set-variables (old new value)
-  "Let the variable of the definition NEW have VALUE, and that of OLD, which it replaces."
-  (dolist (variable (list (and old (definition-variable old)) (definition-variable new)))
+  "Let the variable of the entry NEW have VALUE, and that of OLD, which it replaces."
+  (dolist (variable (list (and old (entry-variable old)) (entry-variable new)))
     (when variable (setf (sb-ext:symbol-global-value variable) value))))
+
+(defun say-if-replaced (old new registry)
+  "Warn that the entry NEW replaces OLD if OLD was defined in another file."
+  (let ((file (source-file (entry-source old)))
+        (other (source-file (entry-source new))))
+    (when (and file (not (equal file other)))
+      (warn-of-definition "The ~A ~(~A~) is defined anew~@[ in ~A~]; so far it was as ~A says."
+                          (registry-text registry) (entry-name new) other file))))
 
 (defun register (registry name object &key variable (value object) before)
   "Let NAME mean OBJECT in REGISTRY, from now on; it takes the place of what it meant before. With
 VARIABLE, the special variable NAME, if it can be one, has VALUE from now on. BEFORE is an object of
 the registry to come directly before, instead of last. Return OBJECT."
-  (let ((new (make-definition name object (current-source)
-                              (and variable (variable-name-p name) name)))
+  (let ((new (make-entry name object (current-source)
+                         (and variable (variable-name-p name) name)))
         (old nil))
     (with-lock (*registries-lock*)
-      (let ((definitions (registry-definitions registry)))
-        (setf old (find-if (lambda (definition) (same-definition-p definition name registry))
-                           definitions))
-        (set-definitions registry
-                         (cond (before
-                                (insert-before new before (remove old definitions)))
-                               ((null old) (append definitions (list new)))
-                               ((registry-by-symbol-p registry)
-                                (append (remove old definitions) (list new)))
-                               (t (substitute new old definitions))))
-        (set-variables old new value)))
+      (setf old (find-if (lambda (entry) (same-entry-p entry name registry))
+                         (registry-entries registry)))
+      (set-entries registry (entries-with new old before registry))
+      (set-variables old new value))
     (when old (say-if-replaced old new registry))
     object))
-
-(defun insert-before (new object definitions)
-  "Return DEFINITIONS with NEW before that of OBJECT."
-  (let ((tail (member object definitions :key #'definition-object)))
-    (append (ldiff definitions tail) (list new) tail)))
 
 ;;; Undefining.
 
@@ -161,10 +150,10 @@ the registry to come directly before, instead of last. Return OBJECT."
   (or (find kind *registries* :key #'registry-kind :test #'same-name-p)
       (reject-name "kind of definition" kind (mapcar #'registry-kind *registries*))))
 
-(defun forget-definition (definition)
-  "Undo what DEFINITION, no longer in its registry, has done."
-  (let ((variable (definition-variable definition)))
-    (take-back (definition-object definition))
+(defun forget-entry (entry)
+  "Undo what the definition of ENTRY, no longer in its registry, has done."
+  (let ((variable (entry-variable entry)))
+    (take-back (entry-object entry))
     (when (and variable (boundp variable))
       (makunbound variable))))
 
@@ -178,10 +167,10 @@ no user's to define."
     (when (registry-fixed-p registry)
       (reject-use "A ~A cannot be undefined: the simulator needs it." (registry-text registry)))
     (find-definition name registry t)
-    (let ((definition (lookup-definition name registry)))
+    (let ((entry (lookup-entry name registry)))
       (with-lock (*registries-lock*)
-        (set-definitions registry (remove definition (registry-definitions registry))))
-      (forget-definition definition)
+        (set-entries registry (remove entry (registry-entries registry))))
+      (forget-entry entry)
       name)))
 
 ;;; Keeping definitions.
@@ -193,34 +182,36 @@ no user's to define."
       (unless (eql (slot-value object name) (slot-value model name))
         (setf (slot-value object name) (slot-value model name))))))
 
-(defun keep-definition (definition)
-  (let ((variable (definition-variable definition)))
-    (list definition
-          (copy-structure (definition-object definition))
-          (and variable (boundp variable) (list (symbol-value variable))))))
+(defun keep-entry (entry)
+  "Return ENTRY with what RESTORE-ENTRY needs besides: a copy of its object, and a list of the value
+of its variable if there is one."
+  (let ((variable (entry-variable entry)))
+    (list entry
+          (copy-structure (entry-object entry))
+          (and variable (boundp variable) (list (sb-ext:symbol-global-value variable))))))
 
-(defun restore-definition (kept)
-  (destructuring-bind (definition copy value) kept
-    (become (definition-object definition) copy)
-    (when value (setf (symbol-value (definition-variable definition)) (first value)))))
+(defun restore-entry (kept)
+  (destructuring-bind (entry copy value) kept
+    (become (entry-object entry) copy)
+    (when value
+      (setf (sb-ext:symbol-global-value (entry-variable entry)) (first value)))))
 
 (defun restore-registry (registry kept)
-  "Make REGISTRY as it was when KEPT, a list made by KEEP-DEFINITION, was made."
-  (let* ((now (registry-definitions registry))
-         (then (mapcar #'first kept)))
-    (with-lock (*registries-lock*) (set-definitions registry then))
-    (mapc #'forget-definition (set-difference now then))
-    (mapc #'restore-definition kept)
+  "Make REGISTRY as it was when KEPT, a list made by KEEP-ENTRY, was made."
+  (let ((now (registry-entries registry))
+        (then (mapcar #'first kept)))
+    (with-lock (*registries-lock*) (set-entries registry then))
+    (mapc #'forget-entry (set-difference now then))
+    (mapc #'restore-entry kept)
     (mapc #'reinstate (registry-objects registry))))
 
 (defun call-with-own-definitions (function)
   "Call FUNCTION; see WITH-OWN-DEFINITIONS."
   (let ((kept (loop for registry in *registries*
-                    collect (cons registry (mapcar #'keep-definition
-                                                   (registry-definitions registry))))))
+                    collect (cons registry (mapcar #'keep-entry (registry-entries registry))))))
     (unwind-protect (funcall function)
-      (loop for (registry . definitions) in kept
-            do (restore-registry registry definitions)))))
+      (loop for (registry . entries) in kept
+            do (restore-registry registry entries)))))
 
 (addition with-own-definitions)
 (defmacro with-own-definitions (() &body body)

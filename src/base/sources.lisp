@@ -84,8 +84,8 @@ TEXT if OPERATOR is NIL."
         (dolist (position (openings text 0 (length text)))
           (when (word-at-p text (1+ position) operator)
             (multiple-value-bind (form end) (read-words position)
-              (when (and (consp form) (consp (rest form))
-                         (same-words-p (first form) operator)
+              (when (and (consp form) (symbolp (first form)) (consp (rest form))
+                         (same-name-p (first form) operator)
                          (same-words-p (second form) name))
                 (return (values position end)))))))))
 

@@ -77,14 +77,18 @@ outside."
           (classify-cell map number (+ x (rule-dx rule)) (+ y (rule-dy rule))
                          (rule-direction rule)))))))
 
+(defun definition-of (type)
+  "Return the definition of TYPE, for *DEFINITION*: the one at hand, or the one that is registered."
+  (let ((operator "def-place-type")
+        (entry (lookup-entry (place-type-name type) *place-types*)))
+    (if (and (second *definition*) (same-name-p operator (second *definition*)))
+        *definition*
+        (list (and entry (entry-source entry)) operator (place-type-name type)))))
+
 (defun blame-type (type clause expected)
   "Signal MALFORMED-DEFINITION about CLAUSE of the definition of TYPE."
-  (let* ((name (place-type-name type))
-         (definition (lookup-definition name *place-types*))
-         (*definition* (or (and (eq 'def-place-type (second *definition*)) *definition*)
-                           (list (and definition (definition-source definition))
-                                 'def-place-type name))))
-    (reject-clause (format nil "def-place-type ~(~A~)" name) clause expected)))
+  (let ((*definition* (definition-of type)))
+    (reject-clause (format nil "def-place-type ~(~A~)" (place-type-name type)) clause expected)))
 
 (defun missing-p (condition)
   "True if CONDITION says that something is not defined, perhaps not yet."
