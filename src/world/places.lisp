@@ -90,34 +90,35 @@ outside."
   (let ((*definition* (definition-of type)))
     (reject-clause (format nil "def-place-type ~(~A~)" (place-type-name type)) clause expected)))
 
-(defun missing-p (condition)
-  "True if CONDITION says that something is not defined, perhaps not yet."
-  (typep condition '(or undefined-function unbound-variable)))
-
-(defun call-for-cell (function cell type option)
-  "Return as a list the values of FUNCTION, the OPTION of TYPE, for CELL. Its errors are TYPE's."
+(defun call-blaming-type (function cell type option)
+  "Call FUNCTION, which runs the OPTION of TYPE for CELL, a cursor. Errors in it are TYPE's."
   (handler-bind ((error (lambda (condition)
-                          (unless (missing-p condition)
+                          (unless (typep condition '(or malformed-definition undefined-function
+                                                     unbound-variable))
                             (blame-type type (list option '|...|)
                                         (format nil "code that runs; at ~A: ~A" cell condition))))))
-    (multiple-value-list (funcall (the function function) cell))))
+    (funcall function)))
+
+(defun check-checked (type cell values)
+  "Signal unless VALUES, which the checker of TYPE returned for CELL, say where a place is."
+  (destructuring-bind (dx dy direction) values
+    (unless (and (typep dx '(signed-byte 16)) (typep dy '(signed-byte 16)) (realp direction))
+      (blame-type type (list :checker (list* 'values t values))
+                  (format nil "four values at ~A: a boolean, two integers, a direction" cell)))))
 
 (defun classify-by-checker (map type number)
   (let ((cell (make-cell map 0 0)) (checker (place-type-checker type)))
-    (dotimes (y (map-height map))
-      (setf (cell-y cell) y)
-      (dotimes (x (map-width map))
-        (setf (cell-x cell) x)
-        (destructuring-bind (&optional found dx dy direction &rest more)
-            (call-for-cell checker cell type :checker)
-          (declare (ignore more))
-          (when found
-            (unless (and (typep dx '(signed-byte 16)) (typep dy '(signed-byte 16))
-                         (realp direction))
-              (blame-type type (list :checker (list 'values found dx dy direction))
-                          (format nil "four values at ~A: a boolean, two integers, a direction"
-                                  cell)))
-            (classify-cell map number (+ x dx) (+ y dy) (double direction))))))))
+    (declare (type function checker))
+    (flet ((classify ()
+             (dotimes (y (map-height map))
+               (setf (cell-y cell) y)
+               (dotimes (x (map-width map))
+                 (setf (cell-x cell) x)
+                 (multiple-value-bind (found dx dy direction) (funcall checker cell)
+                   (when found
+                     (check-checked type cell (list dx dy direction))
+                     (classify-cell map number (+ x dx) (+ y dy) (double direction))))))))
+      (call-blaming-type #'classify cell type :checker))))
 
 (defun classify-by-type (map type number codes)
   "Make places of TYPE, which has NUMBER in MAP, of the cells of MAP that are none yet."
@@ -127,11 +128,14 @@ outside."
 
 (defun check-directions (map type number)
   "Signal MALFORMED-DEFINITION unless the :directions of TYPE are two where it is first found."
-  (let ((index (position number (map-places map))))
-    (when (and index (place-type-directions type))
+  (let ((index (position number (map-places map)))
+        (function (place-type-directions type)))
+    (when (and index function)
       (multiple-value-bind (y x) (floor index (map-width map))
         (let* ((cell (make-cell map x y))
-               (directions (call-for-cell (place-type-directions type) cell type :directions)))
+               (directions (call-blaming-type
+                            (lambda () (multiple-value-list (funcall function cell)))
+                            cell type :directions)))
           (unless (and (= 2 (length directions)) (every #'realp directions))
             (blame-type type (list :directions (cons 'values directions))
                         (format nil "two values at ~A, both angles in radians" cell))))))))
