@@ -141,6 +141,7 @@
                  (:file "plans")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "user-package")
+                 (:file "listings")
                  (:file "architecture") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
