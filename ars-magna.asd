@@ -141,7 +141,7 @@
                  (:file "plans")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "user-package")
-                 (:file "listings") (:file "listings-places")
+                 (:file "listings") (:file "listings-places") (:file "listings-sensing")
                  (:file "architecture") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
