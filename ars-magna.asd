@@ -142,7 +142,7 @@
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "user-package")
                  (:file "listings") (:file "listings-places") (:file "listings-sensing")
-                 (:file "listings-programs")
+                 (:file "listings-programs") (:file "listings-plans")
                  (:file "architecture") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
