@@ -148,6 +148,8 @@
                  (:file "cli-plans") (:file "cli-robots") (:file "user-package")
                  (:file "definitions") (:file "definitions-names")
                  (:file "definitions-mistakes") (:file "definitions-maps")
+                 (:file "listings") (:file "listings-places") (:file "listings-sensing")
+                 (:file "listings-programs") (:file "listings-plans")
                  (:file "architecture") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))

@@ -128,7 +128,7 @@
       (is (equal '(nil 2) (poke)))
       (is (equal '(poke) (mapcar #'command:manipulation-name (command:all-manipulations)))))))
 
-(test defmanipulation.takes-the-manual's-example
+(test defmanipulation.takes-the-example-of-the-manual
   (with-own-manipulations
     (let ((form (let ((*package* (find-package :ars-magna.tests))
                       (*readtable* (named-readtables:find-readtable :nisp)))

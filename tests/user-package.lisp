@@ -6,9 +6,14 @@
 
 ;;; Packages.
 
+(defun define-home (options)
+  "Define a user's package with OPTIONS, from where no layer goes by a nickname. Return it."
+  (let ((*package* (find-package :ars-user)))
+    (eval `(ars:define-user-package :ars-test-home ,@options))))
+
 (defmacro with-user-package ((package &rest options) &body body)
   "Run BODY with PACKAGE bound to one that DEFINE-USER-PACKAGE makes by OPTIONS."
-  `(let ((,package (eval '(ars:define-user-package :ars-test-home ,@options))))
+  `(let ((,package (define-home '(,@options))))
      (unwind-protect (progn ,@body)
        (delete-package ,package))))
 
@@ -60,11 +65,9 @@
 (test user-package.can-be-defined-again
   (with-user-package (package (:export #:kitchen) (:use :cl :ars :nisp))
     (handler-bind ((warning (lambda (warning) (fail "~A" warning))))
-      (is (eq package (eval '(ars:define-user-package :ars-test-home
-                              (:export #:kitchen) (:use :cl :ars :nisp)))))
+      (is (eq package (define-home '((:export #:kitchen) (:use :cl :ars :nisp)))))
       (import 'ars-worlds:robbie package)
-      (is (eq package (eval '(ars:define-user-package :ars-test-home
-                              (:export #:kitchen) (:use :cl :ars :nisp))))))))
+      (is (eq package (define-home '((:export #:kitchen) (:use :cl :ars :nisp))))))))
 
 (test user-package.says-what-makes-no-sense
   (signals base:malformed-definition
