@@ -17,9 +17,9 @@
 ;;; Running.
 
 (defun run-test (test)
-  "Run TEST. Return what came of its checks, a list."
+  "Run TEST, a name. Return what came of its checks, a list."
   (let ((*test-dribble* (make-broadcast-stream)))
-    (run test)))
+    (call-isolated (lambda () (run test)))))
 
 (defun run-suite (suite)
   "Run the tests of SUITE in order. Return what came of their checks."

@@ -25,8 +25,8 @@ nicknames: geo:add, nisp:matchq, robot::%look.")
   (loop for name being the hash-keys of (fiveam::tests (get-test 'ars-magna)) collect name))
 
 (defun suite-tests (suite)
-  "Return a list of the tests in SUITE, a name, in order of definition; RUN takes each."
-  (loop for test being the hash-values of (fiveam::tests (get-test suite)) collect test))
+  "Return a list of the names of the tests in SUITE, a name, in order of definition."
+  (loop for name being the hash-keys of (fiveam::tests (get-test suite)) collect name))
 
 (defun test-name (result)
   "Return the name of the test that RESULT, a check's, belongs to."

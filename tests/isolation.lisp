@@ -1,0 +1,66 @@
+;;;; isolation.lisp -- each test finds everything as it was when the tests were loaded.
+
+(in-package :ars-magna.tests)
+
+;;; A test has a message queue of its own. What it defines, sets, runs and moves is afterwards as it
+;;; was. Variables are set back, not bound: threads that a test starts see their global values.
+
+;;; Variables.
+
+(defun layers ()
+  "Return the list of the project's packages, the tests' left out."
+  (remove-if-not (lambda (package)
+                   (and (eql 0 (search "ARS-MAGNA." (package-name package)))
+                        (not (eq package (find-package :ars-magna.tests)))))
+                 (list-all-packages)))
+
+(defun settable-variables ()
+  "Return the variables that others than their own layer may set, and those that a run binds."
+  (append '(base::*noise-before-cleaning*)
+          robot::*simulation-variables*
+          (loop for package in (layers)
+                append (loop for symbol being the external-symbols of package
+                             when (and (eq package (symbol-package symbol))
+                                       (eq :special (sb-cltl2:variable-information symbol)))
+                               collect symbol))))
+
+(defun call-keeping-variables (function)
+  "Call FUNCTION and set back the variables that it has set."
+  (let* ((variables (remove-if-not #'boundp (settable-variables)))
+         (values (mapcar #'symbol-value variables)))
+    (unwind-protect (funcall function)
+      (loop for variable in variables
+            for value in values
+            unless (eq value (symbol-value variable))
+              do (setf (symbol-value variable) value)))))
+
+;;; Worlds.
+
+(defun resident-worlds ()
+  (loop for map in (world:all-maps)
+        when (world:map-resident map) collect it))
+
+(defun stop-all ()
+  "End what runs live in resident worlds, and its plans."
+  (when driver::*interface* (driver::close-interface driver::*interface*))
+  (dolist (world (resident-worlds))
+    (when (world:world-simulation world) (time:stop-clock (world:world-simulation world)))))
+
+(defun renew-world (world)
+  "Make the resident WORLD as if nothing had ever happened in it."
+  (world:reset-world world :seed 0)
+  (mapc #'robot::reset-robot (world:world-robots world))
+  (setf (world:world-simulation world) nil
+        (world:world-move-watchers world) '()))
+
+;;; All of it.
+
+(defun call-isolated (function)
+  "Call FUNCTION, a test, so that it leaves nothing to the next one. Return its value."
+  (let ((base:*message-queue* (base:make-message-queue)))
+    (call-keeping-variables
+     (lambda ()
+       (unwind-protect (base:with-own-definitions ()
+                         (unwind-protect (funcall function)
+                           (stop-all)))
+         (mapc #'renew-world (resident-worlds)))))))
