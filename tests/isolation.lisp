@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.tests)
 
-;;; A test has a message queue of its own. What it defines, sets, runs and moves is afterwards as it
-;;; was. Variables are set back, not bound: threads that a test starts see their global values.
+;;; A test has a message queue of its own. What it defines, sets, reads, runs and moves is
+;;; afterwards as before. Variables are set back, not bound: the threads of a test share them.
 
 ;;; Variables.
 
@@ -16,7 +16,7 @@
 
 (defun settable-variables ()
   "Return the variables that others than their own layer may set, and those that a run binds."
-  (append '(base::*noise-before-cleaning*)
+  (append '(base::*noise-before-cleaning* cli::*prompt-robot*)
           robot::*simulation-variables*
           (loop for package in (layers)
                 append (loop for symbol being the external-symbols of package
@@ -33,6 +33,19 @@
             for value in values
             unless (eq value (symbol-value variable))
               do (setf (symbol-value variable) value)))))
+
+;;; Names.
+
+(defun names-in (package)
+  "Return the list of the symbols present in PACKAGE."
+  (loop for symbol being the present-symbols of package collect symbol))
+
+(defun call-keeping-names (function package)
+  "Call FUNCTION and let PACKAGE know afterwards just the names that it knew before."
+  (let ((names (names-in package)))
+    (unwind-protect (funcall function)
+      (dolist (new (set-difference (names-in package) names)) (unintern new package))
+      (import (set-difference names (names-in package)) package))))
 
 ;;; Worlds.
 
@@ -55,12 +68,18 @@
 
 ;;; All of it.
 
+(defun call-in-own-worlds (function)
+  "Call FUNCTION. What it defines is forgotten, what it runs is stopped, and the worlds are new."
+  (unwind-protect (base:with-own-definitions ()
+                    (unwind-protect (funcall function)
+                      (stop-all)))
+    (mapc #'renew-world (resident-worlds))))
+
 (defun call-isolated (function)
   "Call FUNCTION, a test, so that it leaves nothing to the next one. Return its value."
   (let ((base:*message-queue* (base:make-message-queue)))
-    (call-keeping-variables
+    (call-keeping-names
      (lambda ()
-       (unwind-protect (base:with-own-definitions ()
-                         (unwind-protect (funcall function)
-                           (stop-all)))
-         (mapc #'renew-world (resident-worlds)))))))
+       (call-keeping-variables
+        (lambda () (call-in-own-worlds function))))
+     :ars-user)))
