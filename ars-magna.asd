@@ -150,7 +150,7 @@
                  (:file "definitions-mistakes") (:file "definitions-maps")
                  (:file "listings") (:file "listings-places") (:file "listings-sensing")
                  (:file "listings-programs") (:file "listings-plans")
-                 (:file "architecture") (:file "main"))))
+                 (:file "architecture") (:file "isolation") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
              (symbol-call :ars-magna.tests :run-all)))

@@ -115,7 +115,8 @@ defined twice, that a package has grown since it was defined."
 
 ;;; The tests.
 
-(defun run-tests (suites)
-  "Run the suites so named, or all; end this Lisp, with status 1 if a check fails."
+(defun run-tests (suites &optional seed)
+  "Run the suites so named, or all, shuffled if there is a SEED; end this Lisp, with status 1 if a
+check fails."
   (load-strictly "ars-magna/tests")
-  (uiop:quit (if (uiop:symbol-call :ars-magna.tests :run-suites suites) 0 1)))
+  (uiop:quit (if (uiop:symbol-call :ars-magna.tests :run-from-shell suites seed) 0 1)))

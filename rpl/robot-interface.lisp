@@ -79,11 +79,13 @@ plan may be waiting for the owner to answer it."
   "Let the plans react to what is posted for as long as there are any."
   (loop
     (with-plans (interface)
-      (call-user-code #'react-fully "running plans" interface)
-      (unless (and (plan-runner-tasks (interface-runner interface))
-                   (not (interface-closed-p interface)))
-        (setf (interface-thread interface) nil)
-        (return)))
+      ;; Looked at first: what is to end the plans has been posted by then, and is heard now.
+      (let ((closed-p (interface-closed-p interface)))
+        (call-user-code #'react-fully "running plans" interface)
+        (unless (and (plan-runner-tasks (interface-runner interface))
+                     (not closed-p))
+          (setf (interface-thread interface) nil)
+          (return))))
     (call-for-ticks interface)
     (wait-on-semaphore (interface-wake-up interface))))
 

@@ -24,6 +24,10 @@ nicknames: geo:add, nisp:matchq, robot::%look.")
   "Return a list of the names of the suites, in order of definition."
   (loop for name being the hash-keys of (fiveam::tests (get-test 'ars-magna)) collect name))
 
+(defun suite-tests (suite)
+  "Return a list of the names of the tests in SUITE, a name, in order of definition."
+  (loop for name being the hash-keys of (fiveam::tests (get-test suite)) collect name))
+
 (defun test-name (result)
   "Return the name of the test that RESULT, a check's, belongs to."
   (fiveam::name (fiveam::test-case result)))

@@ -1,0 +1,85 @@
+;;;; isolation.lisp -- each test finds everything as it was when the tests were loaded.
+
+(in-package :ars-magna.tests)
+
+;;; A test has a message queue of its own. What it defines, sets, reads, runs and moves is
+;;; afterwards as before. Variables are set back, not bound: the threads of a test share them.
+
+;;; Variables.
+
+(defun layers ()
+  "Return the list of the project's packages, the tests' left out."
+  (remove-if-not (lambda (package)
+                   (and (eql 0 (search "ARS-MAGNA." (package-name package)))
+                        (not (eq package (find-package :ars-magna.tests)))))
+                 (list-all-packages)))
+
+(defun settable-variables ()
+  "Return the variables that others than their own layer may set, and those that a run binds."
+  (append '(base::*noise-before-cleaning* cli::*prompt-robot*)
+          robot::*simulation-variables*
+          (loop for package in (layers)
+                append (loop for symbol being the external-symbols of package
+                             when (and (eq package (symbol-package symbol))
+                                       (eq :special (sb-cltl2:variable-information symbol)))
+                               collect symbol))))
+
+(defun call-keeping-variables (function)
+  "Call FUNCTION and set back the variables that it has set."
+  (let* ((variables (remove-if-not #'boundp (settable-variables)))
+         (values (mapcar #'symbol-value variables)))
+    (unwind-protect (funcall function)
+      (loop for variable in variables
+            for value in values
+            unless (eq value (symbol-value variable))
+              do (setf (symbol-value variable) value)))))
+
+;;; Names.
+
+(defun names-in (package)
+  "Return the list of the symbols present in PACKAGE."
+  (loop for symbol being the present-symbols of package collect symbol))
+
+(defun call-keeping-names (function package)
+  "Call FUNCTION and let PACKAGE know afterwards just the names that it knew before."
+  (let ((names (names-in package)))
+    (unwind-protect (funcall function)
+      (dolist (new (set-difference (names-in package) names)) (unintern new package))
+      (import (set-difference names (names-in package)) package))))
+
+;;; Worlds.
+
+(defun resident-worlds ()
+  (loop for map in (world:all-maps)
+        when (world:map-resident map) collect it))
+
+(defun stop-all ()
+  "End what runs live in resident worlds, and its plans."
+  (when driver::*interface* (driver::close-interface driver::*interface*))
+  (dolist (world (resident-worlds))
+    (when (world:world-simulation world) (time:stop-clock (world:world-simulation world)))))
+
+(defun renew-world (world)
+  "Make the resident WORLD as if nothing had ever happened in it."
+  (world:reset-world world :seed 0)
+  (mapc #'robot::reset-robot (world:world-robots world))
+  (setf (world:world-simulation world) nil
+        (world:world-move-watchers world) '()))
+
+;;; All of it.
+
+(defun call-in-own-worlds (function)
+  "Call FUNCTION. What it defines is forgotten, what it runs is stopped, and the worlds are new."
+  (unwind-protect (base:with-own-definitions ()
+                    (unwind-protect (funcall function)
+                      (stop-all)))
+    (mapc #'renew-world (resident-worlds))))
+
+(defun call-isolated (function)
+  "Call FUNCTION, a test, so that it leaves nothing to the next one. Return its value."
+  (let ((base:*message-queue* (base:make-message-queue)))
+    (call-keeping-names
+     (lambda ()
+       (call-keeping-variables
+        (lambda () (call-in-own-worlds function))))
+     :ars-user)))
