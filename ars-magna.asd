@@ -10,8 +10,8 @@
   ((:module "src/base" :serial t
     :components ((:file "package") (:file "policy") (:file "public")
                  (:file "conditions") (:file "threads") (:file "dice") (:file "names")
-                 (:file "variables")
-                 (:file "digest") (:file "sources") (:file "definitions") (:file "registry")
+                 (:file "digest") (:file "sources") (:file "definitions") (:file "variables")
+                 (:file "registry")
                  (:file "messages") (:file "user-code")
                  (:file "parameters") (:file "physics")))
    (:module "src/geometry" :serial t

@@ -39,15 +39,17 @@
       (asking (simulation)
         (add-observer #'look simulation)
         (look simulation))
-      (unwind-protect (wait-on-semaphore true)
-        (asking (simulation) (remove-observer #'look simulation))))))
+      (unwind-protect (loop until (or (wait-on-semaphore true 0.2)
+                                      (simulation-over simulation)))
+        (asking (simulation) (remove-observer #'look simulation)))))
+  (funcall test))
 
 (defun await (test)
   "Let time pass until TEST, a function of no arguments, returns true between two ticks. Return
 NIL if it does not in good time, when nothing but the waiting lets time pass."
-  (if (live-p *simulation*)
-      (await-live test *simulation*)
-      (run-until test :limit *patience* :simulation *simulation*)))
+  (cond ((simulation-over *simulation*) (funcall test))
+        ((live-p *simulation*) (await-live test *simulation*))
+        (t (run-until test :limit *patience* :simulation *simulation*))))
 
 (defgeneric await-errand (errand)
   (:documentation "Wait until ERRAND is done; signal BAD-LINE if it is not in good time.")
@@ -90,6 +92,7 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
 (defun waits-p (session)
   "True if SESSION reads on when what was issued has completed."
   (and *simulation*
+       (null (simulation-over *simulation*))
        (or (not (live-p *simulation*))
            (and (session-patient-p session) (not (paused-p *simulation*))))))
 

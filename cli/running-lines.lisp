@@ -4,6 +4,7 @@
 
 (defun live-simulation ()
   "Return the simulation, if it is live. Signals BAD-LINE."
+  (check-run)
   (let ((simulation (current-simulation)))
     (unless (live-p simulation)
       (reject-line "Here time passes only as commands need it. STEP lets more of it pass."))
@@ -11,7 +12,8 @@
 
 (defun time-text (simulation)
   (format nil "Tick ~D, ~A." (simulation-tick simulation)
-          (cond ((not (live-p simulation)) "headless")
+          (cond ((simulation-over simulation) (simulation-over simulation))
+                ((not (live-p simulation)) "headless")
                 ((paused-p simulation) "paused")
                 (t (rate-text (simulation-rate simulation))))))
 
@@ -33,6 +35,7 @@
 (define-line "STEP" (session (n integer "how many ticks; 1 if left out" :optional))
     (:running)
     "Let N ticks pass; a live simulator is paused after them."
+  (check-run)
   (let* ((simulation (current-simulation))
          (goal (+ (simulation-tick simulation) (or n 1))))
     (step-ticks (or n 1) simulation)

@@ -64,8 +64,17 @@ read; with ECHO, it shows what it reads."
   (%make-session :input input :console (make-console output) :batch-p (and batch t)
                  :patient-p (and patient t) :echo-p (and echo t) :lines lines))
 
+(defun check-run ()
+  "Signal BAD-LINE if the run that the prompt is in is over."
+  (when (and *simulation* (simulation-over *simulation*))
+    (let ((name (simulation-name *simulation*)))
+      (reject-line "The run in ~(~A~) is over: ~A. WORLD ~(~A~) starts it anew."
+                   name (simulation-over *simulation*) name))))
+
 (defun session-robot ()
-  "Return the robot that the prompt commands. Signals BAD-LINE when there is none."
+  "Return the robot that the prompt commands. Signals BAD-LINE when there is none, or its run is
+over."
+  (check-run)
   (let ((robots (and *simulation* (simulation-robots *simulation*))))
     (or (find *prompt-robot* robots :key #'robot-name)
         (first robots)

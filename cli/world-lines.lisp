@@ -11,7 +11,7 @@
 (defun start-live (session robot-name)
   (let ((rate (and *simulation* (simulation-rate *simulation*))))
     (when (plans) (format t "The plans under way end.~%"))
-    (when *simulation* (stop-simulator))
+    (when *simulation* (end-simulation *simulation* "the prompt has gone elsewhere"))
     (simulator robot-name :rate (or rate *default-rate*) :display (terminal-p session)))
   (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))
 

@@ -22,6 +22,7 @@
 type may follow each variable; BODY is plan text and may start with a documentation string. The
 value is that of its last form. Defining it anew takes effect at the next call, also in running
 plans (manual D.2)."
+  (check-function-name (format nil "def-interp-proc ~(~A~)" name) name)
   (let ((parameters (untyped-lambda-list parameters (format nil "def-interp-proc ~(~A~)" name)))
         (form (list* name parameters body)))
     (declare-procedure name)
@@ -90,6 +91,7 @@ of the variable and the word for each word that must be there literally."
 bound while TEMPLATE is evaluated; a pattern may end in a dot and ?x for all forms that are left.
 The value of TEMPLATE is the plan text to use. A documentation string may come before TEMPLATE
 (manual D.8)."
+  (check-function-name (format nil "def-interp-macro ~(~A~)" name) name)
   (multiple-value-bind (parameters literals) (pattern-parameters pattern)
     (multiple-value-bind (body documentation) (split-documentation template)
       (with-gensyms (form)

@@ -22,7 +22,7 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
       (documentation 'procedure-lambda-list 'function)
       "Return the lambda list of a plan procedure.")
 
-(define-registry procedure "plan procedure" :object-p procedure-p :by-symbol t
+(define-registry procedure "plan procedure" :object-p procedure-p :by-symbol t :synonyms (plan)
   :finder registered-procedure :lister registered-procedures :internal t)
 
 (defvar *cells* (make-hash-table :test 'eq :synchronized t)
@@ -99,7 +99,7 @@ this one."
           (procedure-stub procedure) (procedure-stub-for name)
           (documentation name 'function) documentation)
     (reinstate procedure)
-    (let ((*definition* (list source "def-interp-proc" name)))
+    (let ((*definition* (make-defining source (list "def-interp-proc" name))))
       (register *procedures* name procedure))
     name))
 

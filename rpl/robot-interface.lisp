@@ -154,7 +154,8 @@ not count: they tell plans nothing."
                                             (next-wake-time (interface-runner interface))))
     (asking (simulation)
       (add-observer (interface-observer interface) simulation)
-      (push (interface-busy-test interface) (simulation-busy-tests simulation)))))
+      (push (interface-busy-test interface) (simulation-busy-tests simulation))
+      (push (lambda () (close-interface interface)) (simulation-enders simulation)))))
 
 (public rpl-init-robot)
 (defun rpl-init-robot (robot)
@@ -182,6 +183,8 @@ simulation inside of a live one has only inherited is left alone."
   (let ((robot (interface-robot interface))
         (simulation (interface-simulation interface)))
     (and (not (interface-closed-p interface))
+         (null (simulation-over simulation))
+         (null (robot-retired robot))
          (eq simulation (robot-simulation robot))
          (member robot (simulation-robots simulation))
          t)))

@@ -8,7 +8,8 @@
                 #:*simulation* #:seconds-now #:current-simulation #:simulation-tick #:asking
                 #:add-observer #:remove-observer #:live-p #:run-ticks #:call-as-owner
                 #:grab-resource
-                #:simulation-seed #:simulation-agenda #:simulation-inbox #:simulation-thread
+                #:simulation-over #:simulation-enders #:simulation-seed
+                #:simulation-agenda #:simulation-inbox #:simulation-thread
                 #:simulation-busy-tests #:agenda-pending #:post #:*hog-seconds*)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:fluent-value #:post-batch #:react

@@ -30,14 +30,19 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
 (defun deadlocked-p (interface)
   (with-plans (interface) (plan-deadlocked-p (interface-runner interface))))
 
+(defun ended-by-itself-p (task)
+  "True if TASK is over, and nobody has made it evaporate."
+  (and (task-over-p task) (not (eq :evaporated (task-state task)))))
+
 (defun run-headless (interface task)
   "Pass ticks until TASK is over. Return its state, or how it came that it is not over."
   (let* ((simulation (interface-simulation interface))
          (last (+ (simulation-tick simulation) *plan-limit*)))
     (with-plans (interface) (react-fully interface))
     (loop
-      (cond ((task-over-p task) (return (task-state task)))
+      (cond ((ended-by-itself-p task) (return (task-state task)))
             ((not (interface-valid-p interface)) (return :stopped))
+            ((task-over-p task) (return (task-state task)))
             ((deadlocked-p interface) (return :deadlock))
             ((>= (simulation-tick simulation) last) (return :limit)))
       (run-ticks 1 simulation))))
@@ -51,9 +56,10 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
              (when (task-over-p task) (signal-semaphore over))))
       (asking (simulation) (add-observer #'look simulation))
       (unwind-protect
-           (loop (cond ((task-over-p task) (return (task-state task)))
+           (loop (cond ((ended-by-itself-p task) (return (task-state task)))
                        ((not (and (live-p simulation) (interface-valid-p interface)))
                         (return :stopped))
+                       ((task-over-p task) (return (task-state task)))
                        ((deadlocked-p interface) (return :deadlock)))
                  (wait-on-semaphore over 0.2))
         (asking (simulation) (remove-observer #'look simulation))))))

@@ -120,3 +120,93 @@
         (is (= size (world:get-attribute (world:find-thing 'box) :size)))))
     (robot:with-simulation (vole)
       (is (= 2 (world:get-attribute (world:find-thing 'box) :size))))))
+
+(test run-ended.tells-all-who-asked
+  "A run that is started anew, or whose world is left, interrupts what was asked of it."
+  (with-mole-in-shed
+    (let ((answers '()))
+      (flet ((hear (code &rest more)
+               (declare (ignore more))
+               (push code answers)))
+        (robot:simulator 'mole :display nil :rate :free)
+        (command:robot-go-forward (mole) 10 #'hear)
+        (time:await-idle)
+        (time:pause)
+        (command:hand-track (robot:robot-hand (mole) 0) #'hear)
+        (robot:stop-simulator)
+        (command:robot-turn (mole) 1 #'hear)
+        (let ((old time:*simulation*))
+          (robot:simulator 'mole :display nil)
+          (is (equal 3 (length answers)))
+          (is (= 1 (count :robot-blocked answers)))
+          (signals base:misuse (time:run-ticks 1 old))
+          (signals base:misuse (time:post old #'list)))
+        ;; Never started, and defined anew.
+        (robot:stop-simulator)
+        (define-shed 9)
+        (setf answers '())
+        (command:robot-turn (mole) 1 #'hear)
+        (define-shed 9)
+        (is (equal '(:interrupt) answers))))))
+
+(test run-ended.commands-from-threads-are-answered-once-or-refused
+  (with-mole-in-shed
+    (let* ((accepted 0) (answered 0) (stop nil) (lock (base:make-lock "count"))
+           (threads (loop repeat 3
+                          collect (base:start-thread
+                                   (lambda ()
+                                     (loop until stop
+                                           do (handler-case
+                                                  (progn
+                                                    (command:robot-turn
+                                                     (mole) .01
+                                                     (lambda (&rest answer)
+                                                       (declare (ignore answer))
+                                                       (base:with-lock (lock) (incf answered))))
+                                                    (base:with-lock (lock) (incf accepted)))
+                                                (base:misuse ()))))
+                                   "asking"))))
+      (dotimes (round 5)
+        (robot:simulator 'mole :display nil :rate :free)
+        (let ((goal (+ accepted 50)))
+          (loop until (< goal accepted) do (sb-thread:thread-yield)))
+        (define-shed 9))
+      (setf stop t)
+      (mapc #'base:join-thread threads)
+      (define-shed 9)
+      (is (plusp accepted))
+      (is (= accepted answered)))))
+
+(test robot-redefined.is-interrupted
+  (with-mole-in-shed
+    (let ((answers '()))
+      (robot:simulator 'mole :display nil)
+      (time:pause)
+      (command:robot-go-forward (mole) 100 (lambda (code &rest more)
+                                             (declare (ignore more))
+                                             (push code answers)))
+      (time:step-ticks 2)
+      (loop until (= 2 (time:simulation-tick)) do (sb-thread:thread-yield))
+      (eval '(robot:defrobot mole (shed (5 5) 0)))
+      (is (equal '(:interrupt) answers))
+      (is (equal (list (mole)) (robot:simulation-robots))))))
+
+(test own-definitions.end-runs-and-let-others-begin
+  (with-mole-in-shed
+    (robot:simulator 'mole :display nil)
+    (let ((simulation time:*simulation*))
+      (base:with-own-definitions ()
+        (define-shed 12)
+        (eval '(world:defmap annexe (9 9)))
+        (eval '(robot:defrobot vole (annexe (2 2) 0)))
+        (robot:simulator 'vole :display nil))
+      (is (eq simulation time:*simulation*))
+      (is (not (null (time:simulation-over simulation))))
+      (is (= 9 (world:map-width (world:find-map 'shed))))
+      (finishes (command:robot-turn (mole) 1))
+      (is (eq (mole) (robot:simulator 'mole :display nil)))
+      (is (zerop (simulator-threads-of 'annexe))))))
+
+(defun simulator-threads-of (map)
+  (count (format nil "simulator of ~A" map) (sb-thread:list-all-threads)
+         :test #'string-equal :key #'sb-thread:thread-name))

@@ -216,3 +216,92 @@
          (load-here path))
        (is (= 4 (robot:robot-x (robot:find-robot 'mole)))))
      "(robot:defrobot mole (shed (33 3) 0))")))
+
+(test mistakes.of-lisp-are-told-as-ours
+  "A variable or function that is not there is named, with the definition that wants it."
+  (loop for (form . expected)
+          in '(((world:defkicker k (x) (:prob no-such-prob) nil) . "NO-SUCH-PROB")
+               ((world:defattribute :t (a b) :success no-such) . "NO-SUCH")
+               ((world:defsubstance s no-such) . "NO-SUCH")
+               ((command:defmanipulation m (:by hand) (:delay (no-such-function)) nil)
+                . "NO-SUCH-FUNCTION")
+               ((world:def-place-type p (cell) :check-matchers ((((-)) north))) . "NORTH"))
+        do (let ((complaint (first (complaints form))))
+             (is (and complaint (search expected complaint)) "~S: ~A" form complaint))))
+
+(test mistakes.in-patterns
+  (loop for (clause . expected) in '(((:color rd) . "did you mean red?")
+                                     ((:color (red bleu)) . "did you mean blue?")
+                                     ((:size (1 2 3)) . "a range")
+                                     ((:size small) . "a number"))
+        do (let ((complaint (first (complaints `(command:defmanipulation m (it - (,clause) :by hand)
+                                                 () nil)))))
+             (is (and complaint (search expected complaint)) "~S: ~A" clause complaint)))
+  (is (equal '(nil) (complaints '(command:defmanipulation m
+                                  (it - ((:color (red blue)) (:closed nil) (:size 3)) :by hand)
+                                  () nil)))))
+
+(test mistakes.in-specifications-name-the-part
+  (with-own-definitions
+    (eval '(world:defmap shed (9 9)))
+    (eval '(robot:defrobot seer (shed (4 4) 0) :cameras ((1 5))))
+    (handler-case (command:camera-get-object-designator (camera-of 'seer) :local
+                                                        '((:size 3) (:color rd)))
+      (base:wrong-argument (condition)
+        (is (search "not (:color rd)" (princ-to-string condition)))
+        (is (search "did you mean red?" (princ-to-string condition))))
+      (:no-error (&rest values) (fail "accepted: ~S" values)))))
+
+(test mistakes.of-slips-are-no-other-words
+  (is (null (doubts '(world:defmap m (9 9) (obj box (4 4) ((:height 3) (:side 2) (:lock 1)))))))
+  (is (= 1 (length (doubts '(world:defmap m (9 9) (obj box (4 4) ((:weihgt 3)))))))))
+
+(test mistakes.attributes-that-no-longer-fit-are-told
+  (with-own-definitions
+    (eval '(world:defattribute :mood (good bad)))
+    (eval '(world:defmap shed (9 9) (obj crate (4 4) () (imp ((:mood good))))))
+    (let ((warnings (warnings-of (lambda () (eval '(world:defattribute :mood (happy sad)))))))
+      (is (= 1 (length warnings)))
+      (is (search "imp" (first warnings))))
+    (is (null (warnings-of (lambda () (eval '(world:defattribute :mood (good sad)))))))))
+
+(test mistakes.in-the-second-of-a-name-are-told-with-its-line
+  (is (search "line 3)" (file-complaint "(world:defmap m (9 9))
+(robot:defrobot fred (m (5 5) 0))
+(robot:defrobot fred (m (6 6) 0) :hnds (10))"))))
+
+(test restarts.read-the-right-one-of-a-name-again
+  (with-own-definitions
+    (call-with-file
+     (lambda (path)
+       (handler-bind ((base:malformed-definition
+                        (lambda (condition)
+                          (rewrite path "(world:defmap m (9 9))
+(robot:defrobot fred (m (5 5) 0))
+(robot:defrobot fred (m (6 6) 0) :hands (10))")
+                          (invoke-restart (find-restart 'base:read-again condition)))))
+         (load-here path)))
+     "(world:defmap m (9 9))
+(robot:defrobot fred (m (5 5) 0))
+(robot:defrobot fred (m (6 6) 0) :hnds (10))")
+    (is (= 6 (robot:robot-x (robot:find-robot 'fred))))))
+
+(test restarts.take-just-the-clause
+  (with-own-definitions
+    (eval '(world:defmap m (9 9)))
+    (call-choosing 'use-value (lambda () (eval '(robot:defrobot fred (m (50 5) 0)))) '(5 5))
+    (is (= 5 (robot:robot-x (robot:find-robot 'fred))))))
+
+(test restarts.leave-out-contents-alone
+  (with-own-definitions
+    (call-choosing 'base:skip-clause
+                   (lambda () (eval '(world:defmap m (9 9)
+                                      (obj box (5 5) ((:size 9)) (can ((:color rd)))
+                                       (pan ((:size 1))))))))
+    (is (equal '("PAN#1" "BOX#2")
+               (mapcar #'princ-to-string
+                       (world:world-thing-list (world:make-world (world:find-map 'm))))))))
+
+(test restarts.are-public
+  (dolist (name '("SKIP-CLAUSE" "SKIP-DEFINITION" "READ-AGAIN"))
+    (is (eq :external (nth-value 1 (find-symbol name :ars))))))

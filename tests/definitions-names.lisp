@@ -191,3 +191,65 @@
                                                            '((:size 2)))))))
                   (is (eq (first expected) (and (assoc :lit data) t)) "in ~A" map)))
               '(seer) :clean t))))
+
+;;; Several packages, and several kinds, of one name.
+
+(test names.live-side-by-side-in-packages
+  "Maps, robots and kickers of the same name do not disturb each other."
+  (with-own-definitions
+    (with-packages (one other)
+      (loop for (package width) in (list (list one 9) (list other 12))
+            do (eval-in package (format nil "(progn
+                 (ars:defkicker hop (x) () (ars:set-attribute x :size ~A))
+                 (ars:defmap den (~:*~A 9) (obj (box :kickers (hop)) (5 5) ((:size 1))))
+                 (ars:defrobot rex (den (2 2) 0)))" width)))
+      (flet ((in (package name) (find-symbol name package)))
+        (is (= 9 (world:map-width (symbol-value (in one "DEN")))))
+        (is (= 12 (world:map-width (symbol-value (in other "DEN")))))
+        (is (= 12 (world:map-width (world:find-map 'den))) "the newest, for anybody else")
+        (is (eq (symbol-value (in one "REX")) (robot:find-robot "ARS-TEST-AUTHOR:REX")))
+        (loop for (package size) in (list (list one 9) (list other 12))
+              do (robot:call-with-simulation
+                  (lambda ()
+                    (time:run-ticks 2)
+                    (is (= size (world:get-attribute (world:find-thing 'box) :size))))
+                  (in package "REX")))))))
+
+(test names.of-different-kinds-do-not-meet
+  (with-own-definitions
+    (eval '(world:defmap shed (9 9)))
+    (eval '(robot:defrobot mole (shed (2 2) 0)))
+    (is (search "called by its name"
+                (first (warnings-of (lambda () (eval '(world:defkicker mole (x) () x)))))))
+    (is (robot:robot-p (robot:find-robot 'mole)))
+    (is (eq (robot:find-robot 'mole) (symbol-value 'mole)))
+    (warnings-of (lambda () (eval '(world:defkicker shed (x) () x))))
+    (finishes (eval '(robot:defrobot vole (shed (3 3) 0))))
+    (is (search "a name whose variable is free"
+                (complaint-about '(progn (defparameter *taken* 3)
+                                   (world:defmap den (9 9))
+                                   (robot:defrobot *taken* (den (2 2) 0))))))))
+
+(test kickers.defined-again-after-all-are-used
+  (with-own-definitions
+    (flet ((define-hop (size)
+             (world:define-kicker 'hop :body (lambda (x) (world:set-attribute x :size size))))
+           (size-after-a-tick ()
+             (robot:with-simulation (mole)
+               (time:run-ticks 2)
+               (list (world:get-attribute (world:find-thing 'box) :size)
+                     (mapcar #'base:message-text (base:take-messages))))))
+      (define-hop 5)
+      (eval '(world:defmap shed (9 9) (obj (box :kickers (hop)) (5 5) ((:size 1)))))
+      (eval '(robot:defrobot mole (shed (2 2) 0)))
+      (base:undefine 'kicker 'hop)
+      (destructuring-bind (size messages) (size-after-a-tick)
+        (is (= 1 size))
+        (is (search "goes without the kicker" (first messages))))
+      (define-hop 7)
+      (is (equal '(7 ()) (size-after-a-tick))))))
+
+(test names.of-plans-must-be-free
+  (let ((text (complaint-about '(rpl:def-interp-proc open (x) x))))
+    (is (search "(:shadow #:open)" text)))
+  (is (search "belongs to" (complaint-about '(rpl:def-interp-macro (rpl:seq ?x) nil)))))

@@ -135,7 +135,8 @@
     (funcall function path)))
 
 (defun rewrite (path text)
-  (with-open-file (out path :direction :output :if-exists :supersede)
+  "Let the file PATH hold TEXT, as an editor does it: whoever is reading the old one still does."
+  (with-open-file (out path :direction :output :if-exists :rename-and-delete)
     (write-string text out)))
 
 (defun load-here (path)

@@ -80,7 +80,7 @@
     (eval '(world:defsubstance wool 33))
     (is (= 33 (world:substance-value-parameter 'wool)))
     (world:make-new-thing 'sheep nil '((:substance phlogiston)))
-    (is (search "PHLOGISTON" (first (message-texts))))))
+    (is (search "phlogiston" (first (message-texts))))))
 
 (test attributes.are-set-and-merged
   (with-own-definitions

@@ -4,29 +4,55 @@
 
 ;;; A defining form is checked when it is expanded and carried out when that is evaluated. In
 ;;; both, *DEFINITION* says which one it is, so that an error names file and line, and restarts
-;;; leave the definition out, read it again from its file, or take another form instead.
+;;; leave the definition out, read it again from its file, or take something else instead.
+
+(defstruct (defining-form (:conc-name defining-) (:constructor make-defining (source form))
+                          (:copier nil))
+  "The definition FORM, from SOURCE, that is being expanded or carried out."
+  (source '() :type list :read-only t)
+  (form '() :type list :read-only t)
+  ;; Which of the forms of that operator and name in its file it is, from 0, once looked up.
+  (ordinal nil)
+  ;; The part of it that was rejected last.
+  (clause nil))
+
+(document-functions
+  make-defining "Return that FORM, from SOURCE, is being expanded or carried out."
+  defining-form "Return the form that is being expanded or carried out.")
 
 (defvar *definition* nil
-  "The definition that is being expanded or carried out: a list (source operator name), or NIL. The
-operator is a symbol or string.")
+  "The definition that is being expanded or carried out, or NIL.")
 
 (defun current-source ()
   "Return the source of the definition that is being carried out, or NIL if it was typed."
-  (first *definition*))
+  (and *definition* (defining-source *definition*)))
+
+(defun definition-text (definition)
+  "Return what DEFINITION is called in messages, such as \"defmap yard\"."
+  (let ((*print-case* :downcase))
+    (destructuring-bind (operator &optional name &rest clauses) (defining-form definition)
+      (declare (ignore clauses))
+      (format nil "~A ~A" operator (if (keywordp name) (prin1-to-string name) name)))))
 
 (defun clause-place (clause)
   "Return where CLAUSE of the definition at hand stands, such as \"yard.lisp, line 7\", or NIL."
-  (destructuring-bind (&optional (source (source-here)) operator name) *definition*
+  (let ((source (if *definition* (current-source) (source-here))))
     (when source
-      (format nil "~A~@[, line ~D~]" (source-file source)
-              (clause-line (source-file source) operator name clause)))))
+      (multiple-value-bind (line ordinal)
+          (clause-line (source-file source)
+                       (and *definition* (defining-form *definition*)) clause)
+        (when *definition* (setf (defining-ordinal *definition*) ordinal))
+        (format nil "~A~@[, line ~D~]" (source-file source) line)))))
 
 (defun reject-clause (definition clause expected)
   "Signal MALFORMED-DEFINITION about CLAUSE of DEFINITION (a string such as \"defmap watson\")."
+  (when *definition* (setf (defining-clause *definition*) clause))
   (error 'malformed-definition :definition definition :clause clause :expected expected
                                :place (clause-place clause)))
 
 ;;; Restarts.
+
+(addition skip-definition skip-clause read-again)
 
 (defun read-value (what)
   "Ask the user for WHAT, a form; return a list of it."
@@ -34,43 +60,84 @@ operator is a symbol or string.")
   (finish-output *query-io*)
   (list (read *query-io*)))
 
+(defun in-file-p (condition)
+  "True if what CONDITION is about was read from a file, and could be read again."
+  (declare (ignore condition))
+  (and (current-source) t))
+
+(defun definition-again (definition)
+  "Return the form of DEFINITION as it stands in its file now."
+  (read-definition-again (source-file (defining-source definition))
+                         (defining-form definition) (defining-ordinal definition)))
+
+(defun definition-with (definition value)
+  "Return the form of DEFINITION with VALUE for the clause that was rejected; VALUE itself if that
+is such a form."
+  (let* ((form (defining-form definition))
+         (clause (defining-clause definition))
+         (new (subst value clause form :test #'equal)))
+    (cond ((and (consp value) (symbolp (first value)) (same-name-p (first value) (first form)))
+           value)
+          ((and clause (not (equal new form))) new)
+          (t (reject-use "~S can stand for no part of ~A. Give a whole form for it."
+                         value (definition-text definition))))))
+
 (defun call-with-definition-restarts (function replace)
   "Call FUNCTION. A user who chooses so leaves the definition at hand out, or has REPLACE called
-with another form for it: read again from its file, or typed."
-  (destructuring-bind (source operator name) *definition*
+with another form for it: read again from its file, or with another clause."
+  (let ((definition *definition*))
     (restart-case (funcall function)
       (skip-definition ()
-        :report (lambda (stream) (format stream "Leave (~(~A ~A~) ...) out." operator name))
+        :report (lambda (stream) (format stream "Leave ~A out." (definition-text definition)))
         nil)
       (read-again ()
-        :test (lambda (condition) (declare (ignore condition)) (source-file source))
+        :test in-file-p
         :report (lambda (stream)
-                  (format stream "Read (~(~A ~A~) ...) again from ~A."
-                          operator name (source-file source)))
-        (funcall replace (read-definition-again (source-file source) operator name)))
-      (use-value (form)
-        :report (lambda (stream) (format stream "Use another form for (~(~A ~A~) ...)."
-                                         operator name))
-        :interactive (lambda () (read-value "A form to define it by"))
-        (funcall replace form)))))
+                  (format stream "Read ~A again from its file." (definition-text definition)))
+        (funcall replace (definition-again definition)))
+      (use-value (value)
+        :report (lambda (stream)
+                  (format stream "Use another clause of ~A, or another form for it."
+                          (definition-text definition)))
+        :interactive (lambda () (read-value "A clause to use, or a whole form"))
+        (funcall replace (definition-with definition value))))))
 
-(defun call-as-definition (source operator name function)
-  "Call FUNCTION, which carries out the definition (OPERATOR NAME ...) from SOURCE."
-  (let ((*definition* (list source operator name)))
-    (call-with-definition-restarts function #'eval)))
+;;; Mistakes that Lisp finds.
+
+(defun missing-name (condition)
+  "Return the name of the variable or function that CONDITION says is not defined, or NIL."
+  (and (typep condition '(or unbound-variable undefined-function))
+       (cell-error-name condition)))
+
+(defun reject-value (condition)
+  "Signal MALFORMED-DEFINITION because of CONDITION, an error in a form that an author wrote."
+  (reject-clause (definition-text *definition*)
+                 (or (missing-name condition) (second (defining-form *definition*)))
+                 (format nil "forms that have values (~A)"
+                         (string-right-trim "." (princ-to-string condition)))))
+
+(defun call-blaming-author (function)
+  "Call FUNCTION, which carries out the definition at hand. Errors that are not ours are mistakes in
+the definition."
+  (handler-bind ((error (lambda (condition)
+                          (unless (typep condition 'ars-magna-error)
+                            (reject-value condition)))))
+    (funcall function)))
+
+(defun call-as-definition (source form function)
+  "Call FUNCTION, which carries out the definition FORM from SOURCE."
+  (let ((*definition* (make-defining source form)))
+    (call-with-definition-restarts (lambda () (call-blaming-author function)) #'eval)))
 
 (defun expand-definition (form function)
   "Return the expansion of FORM, (operator name ...): what FUNCTION returns, a list of forms that
 carry it out and as second value a list of forms to come before. The whole returns the name."
-  (destructuring-bind (operator &optional name &rest clauses) form
-    (declare (ignore clauses))
-    (let ((*definition* (list (source-here) operator name)))
-      (call-with-definition-restarts
-       (lambda ()
-         (multiple-value-bind (forms before) (funcall function)
-           `(progn
-              ,@before
-              (call-as-definition ',(current-source) ',operator ',name
-                                  (lambda () ,@forms))
-              ',name)))
-       #'identity))))
+  (let ((*definition* (make-defining (source-here) form)))
+    (call-with-definition-restarts
+     (lambda ()
+       (multiple-value-bind (forms before) (funcall function)
+         `(progn
+            ,@before
+            (call-as-definition ',(current-source) ',form (lambda () ,@forms))
+            ',(second form))))
+     #'identity)))

@@ -30,15 +30,18 @@ and bordeaux-threads so that no other layer has to.")
   ;; names
   (:export #:same-name-p #:name-string #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables
-  (:export #:variable-name-p #:variable-forms #:known-variable-p)
+  (:export #:variable-name-p #:variable-forms #:known-variable-p #:local-variable-p
+           #:check-function-name)
   ;; sources, definitions
-  (:export #:source-here #:source-file #:text-file #:current-source #:*definition*
-           #:read-definition-again #:reject-clause #:expand-definition #:call-as-definition
-           #:read-value #:clause-place #:skip-definition #:skip-clause #:read-again)
+  (:export #:source-here #:source-file #:current-source #:*definition* #:definition-again
+           #:make-defining #:defining-form #:reject-clause #:expand-definition #:call-as-definition
+           #:in-file-p #:missing-name #:read-value #:clause-place #:skip-definition #:skip-clause
+           #:read-again)
   ;; registry
   (:export #:registry #:define-registry #:registry-objects #:register #:seal-definitions
            #:lookup-entry #:entry-name #:entry-object #:entry-source
-           #:defined-names #:find-definition #:undefine #:take-back #:reinstate #:become
+           #:defined-names #:find-definition #:definition-to-replace #:variable-in-use-p
+           #:*kept-variables* #:undefine #:take-back #:reinstate #:become
            #:with-own-definitions #:call-with-own-definitions)
   ;; messages
   (:export #:error-set #:warning-set #:message-set #:error-display #:flush-all-errors*

@@ -24,8 +24,11 @@
   (objects '() :type list)
   ;; True if names that are different symbols mean different things.
   (by-symbol-p nil :type boolean)
-  ;; True if users cannot take definitions back.
+  ;; True if users cannot take back any definitions, or those that they find.
   (fixed-p nil :type boolean)
+  (sealed-p nil :type boolean)
+  ;; What else UNDEFINE may call the kind.
+  (synonyms '() :type list)
   ;; Returns what else an object may be called, a list of strings and symbols.
   (aliases (constantly '()) :type function))
 
@@ -42,7 +45,7 @@
 (defvar *registries* '() "All registries, in order of definition.")
 (defvar *registries-lock* (make-lock "registries"))
 
-(defun ensure-registry (kind text &key by-symbol fixed aliases)
+(defun ensure-registry (kind text &key by-symbol fixed sealed synonyms aliases)
   "Return the registry of KIND, made if there is none, with these properties."
   (let ((registry (or (find kind *registries* :key #'registry-kind)
                       (let ((new (%make-registry kind text)))
@@ -50,6 +53,8 @@
                         new))))
     (setf (registry-by-symbol-p registry) (and by-symbol t)
           (registry-fixed-p registry) (and fixed t)
+          (registry-sealed-p registry) (and sealed t)
+          (registry-synonyms registry) synonyms
           (registry-aliases registry) (or aliases (constantly '())))
     registry))
 
@@ -60,10 +65,19 @@
       (member name (funcall (registry-aliases registry) (entry-object entry))
               :test #'same-name-p)))
 
+(defun qualified-symbol (name)
+  "Return the symbol that NAME, a string such as \"PACKAGE:NAME\", stands for, or NIL."
+  (let ((colon (and (stringp name) (position #\: name))))
+    (when (and colon (plusp colon))
+      (let ((package (find-package (string-upcase (subseq name 0 colon)))))
+        (and package
+             (find-symbol (string-upcase (string-left-trim ":" (subseq name colon))) package))))))
+
 (defun lookup-entry (name registry)
-  "Return the entry of REGISTRY for NAME, a symbol or string, or NIL."
+  "Return the entry of REGISTRY for NAME, a symbol or string, perhaps PACKAGE:NAME, or NIL."
   (when (typep name '(or symbol string))
-    (let ((entries (registry-entries registry)))
+    (let ((entries (registry-entries registry))
+          (name (or (qualified-symbol name) name)))
       (or (find name entries :key #'entry-name :test #'eq)
           (find-if (lambda (entry) (called-p entry name registry)) entries :from-end t)))))
 
@@ -88,9 +102,17 @@ UNKNOWN-NAME if ERRORP is true."
   (:documentation "Do again what TAKE-BACK may have undone: OBJECT is defined as it was before.")
   (:method (object) object))
 
+(defun definition-to-replace (name registry)
+  "Return the object in REGISTRY whose place a definition of NAME would take, or NIL."
+  (let ((entry (find-if (lambda (entry) (same-entry-p entry name registry))
+                        (registry-entries registry))))
+    (and entry (entry-object entry))))
+
 (defun set-entries (registry entries)
   (setf (registry-entries registry) entries
         (registry-objects registry) (mapcar #'entry-object entries)))
+
+(defparameter *own-source* '("the simulator itself") "The source of what a user finds defined.")
 
 (defun seal-definitions ()
   "Let all that is defined so far count as the simulator's own."
@@ -98,8 +120,7 @@ UNKNOWN-NAME if ERRORP is true."
     (set-entries registry
                  (loop for entry in (registry-entries registry)
                        collect (make-entry (entry-name entry) (entry-object entry)
-                                           '("the simulator itself")
-                                           (entry-variable entry))))))
+                                           *own-source* (entry-variable entry))))))
 
 (defun same-entry-p (entry name registry)
   (if (registry-by-symbol-p registry)
@@ -108,18 +129,28 @@ UNKNOWN-NAME if ERRORP is true."
 
 (defun entries-with (new old before registry)
   "Return the entries of REGISTRY with NEW: directly before the object BEFORE, in the place of OLD,
-or last. Where symbols count the newest is always last, for those who ask by name alone."
+or last. Of several that are called the same the newest comes last, for those who ask by name."
   (let ((others (remove old (registry-entries registry))))
     (cond (before (let ((tail (member before others :key #'entry-object)))
                     (append (ldiff others tail) (list new) tail)))
-          ((and old (not (registry-by-symbol-p registry)))
+          ((and old (not (find (entry-name new) others
+                               :key #'entry-name :test #'same-name-p)))
            (substitute new old (registry-entries registry)))
           (t (append others (list new))))))
 
-(defun set-variables (old new value)
-  "Let the variable of the entry NEW have VALUE, and that of OLD, which it replaces."
-  (dolist (variable (list (and old (entry-variable old)) (entry-variable new)))
-    (when variable (setf (sb-ext:symbol-global-value variable) value))))
+(defun variable-in-use-p (name)
+  "True if the variable NAME has a value at top level that something else would lose."
+  (ignore-errors (sb-ext:symbol-global-value name)))
+
+(defun free-variable (name kind)
+  "Return NAME if it can be a variable, and is not in use, for a definition of KIND, called so; else
+NIL, with a warning in the latter case."
+  (when (variable-name-p name)
+    (if (variable-in-use-p name)
+        (warn-of-definition "The variable ~(~A~) already has a value: the ~A is to be called by ~
+                             its name, '~(~A~)."
+                            name kind name)
+        name)))
 
 (defun say-if-replaced (old new registry)
   "Warn that the entry NEW replaces OLD if OLD was defined in another file."
@@ -129,45 +160,61 @@ or last. Where symbols count the newest is always last, for those who ask by nam
       (warn-of-definition "The ~A ~(~A~) is defined anew~@[ in ~A~]; so far it was as ~A says."
                           (registry-text registry) (entry-name new) other file))))
 
+(defun variable-for (name old registry)
+  "Return the variable of a definition of NAME, which replaces the entry OLD, or NIL: the one that
+OLD had, or NAME if it is free."
+  (cond ((and old (entry-variable old) (boundp (entry-variable old))) (entry-variable old))
+        (t (free-variable name (registry-text registry)))))
+
 (defun register (registry name object &key variable (value object) before)
   "Let NAME mean OBJECT in REGISTRY, from now on; it takes the place of what it meant before. With
-VARIABLE, the special variable NAME, if it can be one, has VALUE from now on. BEFORE is an object of
-the registry to come directly before, instead of last. Return OBJECT."
-  (let ((new (make-entry name object (current-source)
-                         (and variable (variable-name-p name) name)))
-        (old nil))
+VARIABLE, the special variable NAME, if it can be one and is not in use, has VALUE from now on.
+BEFORE is an object of the registry to come directly before, instead of last. Return OBJECT."
+  (let* ((old (find-if (lambda (entry) (same-entry-p entry name registry))
+                       (registry-entries registry)))
+         (variable (and variable (variable-for name old registry)))
+         (new (make-entry name object (current-source) variable)))
     (with-lock (*registries-lock*)
-      (setf old (find-if (lambda (entry) (same-entry-p entry name registry))
-                         (registry-entries registry)))
       (set-entries registry (entries-with new old before registry))
-      (set-variables old new value))
+      (when variable (setf (sb-ext:symbol-global-value variable) value)))
     (when old (say-if-replaced old new registry))
     object))
 
 ;;; Undefining.
 
 (defun find-registry (kind)
-  (or (find kind *registries* :key #'registry-kind :test #'same-name-p)
+  (or (find-if (lambda (registry)
+                 (or (same-name-p kind (registry-kind registry))
+                     (member kind (registry-synonyms registry) :test #'same-name-p)))
+               *registries*)
       (reject-name "kind of definition" kind (mapcar #'registry-kind *registries*))))
+
+(defun forget-value (variable)
+  "Let VARIABLE have no value at top level: what a headless run has bound it to here, it keeps."
+  (join-thread (start-thread (lambda () (makunbound variable)) "forgetting")))
 
 (defun forget-entry (entry)
   "Undo what the definition of ENTRY, no longer in its registry, has done."
-  (let ((variable (entry-variable entry)))
-    (take-back (entry-object entry))
-    (when (and variable (boundp variable))
-      (makunbound variable))))
+  (take-back (entry-object entry))
+  (when (entry-variable entry) (forget-value (entry-variable entry))))
+
+(defun check-undefinable (registry entry)
+  (when (or (registry-fixed-p registry)
+            (and (registry-sealed-p registry)
+                 (equal *own-source* (entry-source entry))))
+    (reject-use "~(~A~), a ~A, cannot be undefined: the simulator needs it."
+                (entry-name entry) (registry-text registry))))
 
 (addition undefine)
 (defun undefine (kind name)
   "Take back the definition of NAME, of KIND: MAP, PLACE-TYPE, ATTRIBUTE, SUBSTANCE, KICKER,
-MANIPULATION, ROBOT or PROCEDURE, a symbol of any package. Its variable becomes unbound; worlds
-that are under way keep what they have. Return NAME. Signals UNKNOWN-NAME, and MISUSE for what is
-no user's to define."
+MANIPULATION, ROBOT or PLAN, a symbol of any package. Its variable becomes unbound; worlds that are
+under way keep what they have. Return NAME. Signals UNKNOWN-NAME, and MISUSE for what is no user's
+to define."
   (let ((registry (find-registry kind)))
-    (when (registry-fixed-p registry)
-      (reject-use "A ~A cannot be undefined: the simulator needs it." (registry-text registry)))
     (find-definition name registry t)
     (let ((entry (lookup-entry name registry)))
+      (check-undefinable registry entry)
       (with-lock (*registries-lock*)
         (set-entries registry (remove entry (registry-entries registry))))
       (forget-entry entry)
@@ -205,24 +252,42 @@ of its variable if there is one."
     (mapc #'restore-entry kept)
     (mapc #'reinstate (registry-objects registry))))
 
+(defvar *own-definitions-thread* nil "The thread that is inside WITH-OWN-DEFINITIONS, or NIL.")
+
+(defun claim-definitions ()
+  "Let this thread be the one inside WITH-OWN-DEFINITIONS. Return what to set back afterwards."
+  (let ((other (sb-ext:compare-and-swap (symbol-value '*own-definitions-thread*) nil
+                                        (current-thread))))
+    (unless (member other (list nil (current-thread)))
+      (reject-use "Another thread is inside with-own-definitions: only one at a time may be."))
+    other))
+
+(defvar *kept-variables* '()
+  "Symbols of the variables that say what is current, for WITH-OWN-DEFINITIONS. Layers add them.")
+
 (defun call-with-own-definitions (function)
   "Call FUNCTION; see WITH-OWN-DEFINITIONS."
-  (let ((kept (loop for registry in *registries*
+  (let ((outer (claim-definitions))
+        (values (mapcar #'symbol-value *kept-variables*))
+        (kept (loop for registry in *registries*
                     collect (cons registry (mapcar #'keep-entry (registry-entries registry))))))
     (unwind-protect (funcall function)
       (loop for (registry . entries) in kept
-            do (restore-registry registry entries)))))
+            do (restore-registry registry entries))
+      (mapc #'set *kept-variables* values)
+      (setf *own-definitions-thread* outer))))
 
 (addition with-own-definitions)
 (defmacro with-own-definitions (() &body body)
   "Run BODY. Maps, robots, kickers and whatever else it defines, redefines or undefines is
 afterwards, however BODY ends, as it was before: for tests, and suites of users. Return the values
-of BODY. Definitions are shared by all threads, so only one thread at a time may do this."
+of BODY. A run of a map that BODY redefines ends all the same; SIMULATOR starts another. Definitions
+are shared by all threads, so only one thread at a time may do this; else it signals MISUSE."
   `(call-with-own-definitions (lambda () ,@body)))
 
 ;;; Making registries.
 
-(defmacro define-registry (kind text &key object-p by-symbol fixed aliases internal
+(defmacro define-registry (kind text &key object-p by-symbol fixed sealed synonyms aliases internal
                                        (finder (symbolicate 'find- kind))
                                        (lister (symbolicate 'all- kind 's)))
   "Define the registry of KIND, a symbol, in the variable *KINDs*, and the functions FIND-KIND and
@@ -232,7 +297,8 @@ are slots of REGISTRY."
   (let ((variable (symbolicate '* kind 's*)))
     `(progn
        (defparameter ,variable
-         (ensure-registry ',kind ,text :by-symbol ,by-symbol :fixed ,fixed :aliases ,aliases)
+         (ensure-registry ',kind ,text :by-symbol ,by-symbol :fixed ,fixed :sealed ,sealed
+                                       :synonyms ',synonyms :aliases ,aliases)
          ,(format nil "The registry of each ~A." text))
        ,@(unless internal `((addition ,finder ,lister)))
        (defun ,finder (name &optional (errorp t))

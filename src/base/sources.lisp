@@ -75,19 +75,27 @@ and returns it and where it ends, or NIL."
          (<= (+ position length) end)
          (string-equal word text :start2 (- end length) :end2 end))))
 
-(defun definition-position (text operator name)
-  "Return where in TEXT the form (OPERATOR NAME ...) begins and where it ends, or NIL; the whole of
-TEXT if OPERATOR is NIL."
-  (if (null operator)
-      (values 0 (length text))
-      (with-words (text)
-        (dolist (position (openings text 0 (length text)))
-          (when (word-at-p text (1+ position) operator)
-            (multiple-value-bind (form end) (read-words position)
-              (when (and (consp form) (symbolp (first form)) (consp (rest form))
-                         (same-name-p (first form) operator)
-                         (same-words-p (second form) name))
-                (return (values position end)))))))))
+(defun definition-positions (text form)
+  "Return a list of lists (start end same) for the forms in TEXT that have operator and name of
+FORM; SAME is true if it is FORM, word by word."
+  (destructuring-bind (operator &optional name &rest clauses) form
+    (declare (ignore clauses))
+    (with-words (text)
+      (loop for position in (openings text 0 (length text))
+            when (word-at-p text (1+ position) operator)
+              append (multiple-value-bind (found end) (read-words position)
+                       (when (and (consp found) (symbolp (first found)) (consp (rest found))
+                                  (same-name-p (first found) operator)
+                                  (same-words-p (second found) name))
+                         (list (list position end (same-words-p found form)))))))))
+
+(defun position-of-definition (positions ordinal)
+  "Return the element of POSITIONS that is the same as it was, or has the number ORDINAL, or is the
+first, and its number."
+  (let ((number (or (position-if #'third positions)
+                    (and ordinal (< ordinal (length positions)) ordinal)
+                    0)))
+    (values (nth number positions) number)))
 
 (defun form-position (text form start end)
   "Return where FORM, a list, stands in TEXT between START and END, or NIL."
@@ -102,28 +110,35 @@ TEXT if OPERATOR is NIL."
   (let ((word (if (consp form) (first form) form)))
     (and word
          (or (symbolp word) (realp word))
-         (search (let ((*package* (find-package :keyword))) (prin1-to-string word))
+         (search (if (and (symbolp word) (not (keywordp word)))
+                     (symbol-name word)
+                     (prin1-to-string word))
                  text :start2 start :end2 end :test #'char-equal))))
 
 (defun line-number (text position)
   (1+ (count #\Newline text :end position)))
 
-(defun clause-line (file operator name clause)
-  "Return the line of FILE on which CLAUSE of the definition (OPERATOR NAME ...) begins, that of the
-definition itself if CLAUSE is not found in it, or NIL."
-  (ignore-errors
-   (let ((text (read-file-into-string file)))
-     (multiple-value-bind (start end) (definition-position text operator name)
-       (when start
-         (let ((position (or (and (consp clause) (form-position text clause start end))
-                            (and operator (or (word-position text clause (1+ start) end)
-                                              start)))))
-          (and position (line-number text position))))))))
+(defun line-of-clause (text form clause)
+  "Return the line in TEXT on which CLAUSE of the definition FORM begins, that of the definition if
+CLAUSE is not found in it, or NIL; and which of the definitions of that name it is."
+  (let ((positions (and form (definition-positions text form))))
+    (multiple-value-bind (place number) (position-of-definition positions nil)
+      (destructuring-bind (&optional (start 0) (end (length text)) same) place
+        (declare (ignore same))
+        (let ((position (or (and (consp clause) (form-position text clause start end))
+                            (and place (or (word-position text clause (1+ start) end) start)))))
+          (values (and position (line-number text position))
+                  (and place number)))))))
 
-(defun read-definition-again (file operator name)
-  "Return the form (OPERATOR NAME ...) as it is in FILE now. Signals MISUSE if it is not there."
+(defun clause-line (file form clause)
+  "Return what LINE-OF-CLAUSE does for the text in FILE; NIL if that cannot be read."
+  (ignore-errors (line-of-clause (read-file-into-string file) form clause)))
+
+(defun read-definition-again (file form ordinal)
+  "Return the definition that was FORM, number ORDINAL of its name, as it is in FILE now. Signals
+MISUSE if it is not there."
   (let* ((text (read-file-into-string file))
-         (position (and operator (definition-position text operator name))))
-    (unless position
-      (reject-use "~A has no (~(~A ~A~) ...) that can be read." file operator name))
-    (values (read-from-string text t nil :start position))))
+         (place (position-of-definition (definition-positions text form) ordinal)))
+    (unless place
+      (reject-use "~A has no (~(~A ~A~) ...) that can be read." file (first form) (second form)))
+    (values (read-from-string text t nil :start (first place)))))

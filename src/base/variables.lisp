@@ -16,6 +16,20 @@ what belongs to a locked package, such as Common Lisp's or ours."
   "Return the forms, perhaps none, that declare NAME a special variable."
   (when (variable-name-p name) `((defvar ,name))))
 
+(defun local-variable-p (symbol environment)
+  "True if SYMBOL is a local variable or symbol macro in ENVIRONMENT."
+  (nth-value 1 (sb-cltl2:variable-information symbol environment)))
+
 (defun known-variable-p (symbol environment)
   "True if SYMBOL, as a form in ENVIRONMENT, is a variable or constant that is known."
   (and (sb-cltl2:variable-information symbol environment) t))
+
+(defun check-function-name (definition name)
+  "Signal MALFORMED-DEFINITION if NAME, of DEFINITION, belongs to a package whose names users cannot
+define as functions."
+  (let ((package (and (symbolp name) (symbol-package name))))
+    (when (and package (sb-ext:package-locked-p package) (not (eq package *package*)))
+      (reject-clause definition name
+                     (format nil "a name that is free; ~A belongs to ~A. Call it my-~(~A~), or ~
+                                  shadow the symbol in your package: (:shadow #:~(~A~))"
+                             name (package-name package) name name)))))

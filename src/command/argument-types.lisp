@@ -2,26 +2,33 @@
 
 (in-package :ars-magna.command)
 
-(defstruct (argument-type (:constructor make-argument-type (name predicate words)) (:copier nil))
-  "A kind of argument: a test for it, and what it is in words."
+(defstruct (argument-type (:constructor make-argument-type (name predicate words trouble))
+                          (:copier nil))
+  "A kind of argument: a test for it, and what it is in words. TROUBLE, if any, is a function that
+returns in words what is wrong with a value that is none, or NIL."
   (name nil :type symbol :read-only t)
   (predicate nil :type function :read-only t)
-  (words "" :type string :read-only t))
+  (words "" :type string :read-only t)
+  (trouble nil :type (or null function) :read-only t))
 
 (define-registry argument-type "argument type" :object-p argument-type-p :fixed t :internal t)
 
-(defun define-argument-type (name predicate text)
-  "Let NAME be an argument type: what satisfies PREDICATE, which TEXT says in words."
-  (register *argument-types* name (make-argument-type name predicate text))
+(defun define-argument-type (name predicate text &optional trouble)
+  "Let NAME be an argument type: what satisfies PREDICATE, which TEXT says in words. TROUBLE is a
+function that returns in words what is wrong with a value, or NIL for no more than TEXT."
+  (register *argument-types* name (make-argument-type name predicate text trouble))
   name)
 
 (defun argument-of-type-p (value type)
   "True if VALUE can be an argument of the type named TYPE."
   (funcall (argument-type-predicate (find-argument-type type)) value))
 
-(defun argument-type-text (type)
-  "Return in words what an argument of the type named TYPE is."
-  (argument-type-words (find-argument-type type)))
+(defun argument-type-text (type &optional (value nil value-p))
+  "Return in words what an argument of the type named TYPE is, and what is wrong with VALUE."
+  (let* ((type (find-argument-type type))
+         (trouble (and value-p (argument-type-trouble type)
+                       (funcall (argument-type-trouble type) value))))
+    (format nil "~A~@[: ~A~]" (argument-type-words type) trouble)))
 
 (defun continuation-p (value)
   (or (functionp value) (symbolp value)))

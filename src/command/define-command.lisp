@@ -44,7 +44,7 @@ storage-bin- (manual E; the rule is inferred)."
 (defun check-command-argument (operator name value type)
   (unless (argument-of-type-p value type)
     (error 'wrong-argument :operator operator :name name :value value
-                           :expected (argument-type-text type))))
+                           :expected (argument-type-text type value))))
 
 (defmacro define-command (name (operation resource &rest parameters) (&rest results)
                           (&rest options) sentence &body body)

@@ -30,10 +30,6 @@
 
 ;;; Designators.
 
-(defun resource-robot (resource)
-  "Return RESOURCE if it is a robot, else the robot that it is a part of."
-  (if (robot-p resource) resource (part-robot resource)))
-
 (defun own-designator-p (resource designator)
   "True if DESIGNATOR is valid and of the robot that RESOURCE, perhaps as a part, belongs to."
   (and (designator-valid-p designator)

@@ -152,7 +152,7 @@
           (lambda ()
             (apply #'note simulation :manipulate
                    (string (manipulation-name manipulation)) arguments)
-            (begin operation)))))
+            (begin-unless-retired operation)))))
 
 (public run-manipulation)
 (defun run-manipulation (name &rest arguments)

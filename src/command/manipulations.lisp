@@ -9,7 +9,8 @@
 ;;;
 ;;; A method with the same parameter list is replaced where it stands. When a file is loaded that
 ;;; has changed since, the methods that it defined before are forgotten first: so a method whose
-;;; parameters were edited does not stay behind.
+;;; parameters were edited does not stay behind. Of those that are typed, one with the same
+;;; variables and attributes is taken for an earlier version unless no thing could be for both.
 
 (defstruct (parameter-list (:constructor make-parameter-list (objects patterns by others))
                            (:copier nil))
@@ -112,11 +113,20 @@ others, each a list (variable type), with NIL for no type."
          (equal (source-file old) (source-file source))
          (not (equal old source)))))
 
+(defun retyped-p (old method)
+  "True if OLD and METHOD were both typed, not read from files, and METHOD is OLD edited."
+  (let ((parameters (method-parameters old)) (others (method-parameters method)))
+    (and (null (method-source old)) (null (method-source method))
+         (equal (parameter-variables parameters) (parameter-variables others))
+         (every #'similar-patterns-p
+                (parameter-list-patterns parameters) (parameter-list-patterns others)))))
+
 (defun with-method (methods method)
-  "Return the list METHODS with METHOD: instead of one with the same parameter list, or before all
-others."
+  "Return the list METHODS with METHOD: instead of one with the same parameter list, or of which it
+is a new version, or before all others."
   (let* ((current (remove-if (lambda (old) (outdated-p old (method-source method))) methods))
-         (old (find (method-form method) current :key #'method-form :test #'value-equal)))
+         (old (or (find (method-form method) current :key #'method-form :test #'value-equal)
+                  (find-if (lambda (old) (retyped-p old method)) current))))
     (if old
         (substitute method old current)
         (cons method current))))

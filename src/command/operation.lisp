@@ -132,8 +132,18 @@ followed by (robot-go-forward ...) sets the speed."
           (operation-interrupt operation) (lambda () (finish operation :interrupt)))
     (queue-again agenda operation delay)))
 
+(defun begin-unless-retired (operation)
+  "Begin OPERATION, unless its robot has been retired since it was issued; then it is interrupted."
+  (if (robot-retired (resource-robot (operation-resource operation)))
+      (finish operation :interrupt)
+      (begin operation)))
+
+(defun resource-robot (resource)
+  "Return RESOURCE if it is a robot, else the robot that it is a part of."
+  (if (robot-p resource) resource (part-robot resource)))
+
 (defun resource-simulation (resource)
-  (robot-simulation (if (robot-p resource) resource (part-robot resource))))
+  (robot-simulation (resource-robot resource)))
 
 (defun issue (command resource arguments continuation)
   "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked; CONTINUATION may be NIL.
@@ -146,7 +156,7 @@ over."
           (lambda ()
             (when (simulation-journal simulation)
               (note-command simulation operation))
-            (begin operation))))
+            (begin-unless-retired operation))))
   (values))
 
 ;;; In the journal.

@@ -20,9 +20,32 @@
        (not (alternatives-p key value))
        (> (first value) (second value))))
 
+(defun impossible-value (attribute value)
+  "Return what of VALUE, in a pattern for ATTRIBUTE, no thing can have, and what was meant perhaps."
+  (let ((domain (attribute-domain attribute)))
+    (find-if-not (lambda (value)
+                   (or (matchvar-p value) (member value domain :test #'value-equal)))
+                 (if (member value domain :test #'value-equal) '() (ensure-list value)))))
+
+(defun check-discrete-clause (definition clause attribute)
+  (let ((value (impossible-value attribute (second clause))))
+    (when value
+      (reject-clause definition clause
+                     (format nil "of ~(~A~)~@[; did you mean ~(~A~)?~]"
+                             (attribute-domain attribute)
+                             (value-like value (attribute-domain attribute)))))))
+
 (defun check-clause (definition clause)
-  (when (reversed-p (attribute-key (first clause)) (second clause))
-    (reject-clause definition clause "a range with the lower end first")))
+  (let* ((key (attribute-key (first clause))) (attribute (attribute-of key))
+         (value (second clause)))
+    (when (reversed-p key value)
+      (reject-clause definition clause "a range with the lower end first"))
+    (cond ((null attribute))
+          ((eq :discrete (attribute-kind attribute))
+           (check-discrete-clause definition clause attribute))
+          ((eq :substance key))
+          ((not (or (matchvar-p value) (realp value) (null value) (range-p value)))
+           (reject-clause definition clause "a number, or a range: two numbers in a list")))))
 
 (defun parse-pattern (definition specification)
   "Return the pattern that SPECIFICATION, a list of lists (attribute value [threshold]), stands
@@ -107,3 +130,25 @@ parameter or its type."
         always (multiple-value-bind (fits after) (pattern-fits pattern thing bindings)
                  (setf bindings after)
                  fits)))
+
+;;; Versions of a pattern.
+
+(defun value-limits (value)
+  "Return the least and the greatest number that VALUE, in a pattern, stands for; NIL if none."
+  (cond ((realp value) (values value value))
+        ((range-p value) (values (first value) (second value)))))
+
+(defun exclusive-p (one other)
+  "True if nothing that is as ONE, a value in a pattern, can be as OTHER."
+  (multiple-value-bind (low high) (value-limits one)
+    (multiple-value-bind (other-low other-high) (value-limits other)
+      (cond ((or (matchvar-p one) (matchvar-p other)) nil)
+            ((and low other-low) (or (< high other-low) (< other-high low)))
+            (t (null (intersection (if (listp one) (or one '(nil)) (list one))
+                                   (if (listp other) (or other '(nil)) (list other))
+                                   :test #'value-equal)))))))
+
+(defun similar-patterns-p (pattern other)
+  "True if PATTERN and OTHER look at the same attributes, and a thing can be as both say."
+  (and (equal (mapcar #'first pattern) (mapcar #'first other))
+       (notany #'exclusive-p (mapcar #'second pattern) (mapcar #'second other))))

@@ -11,7 +11,8 @@
 
 (define-argument-type 'specification #'specification-p
   "a descriptor specification: a list such as ((:color (red blue)) (:size (3 5) .5)), with values
-that the attributes can have, and of a range the lower end first")
+that the attributes can have, and of a range the lower end first"
+  #'specification-trouble)
 
 (define-argument-type 'place-type
   (lambda (value) (and value (typep value '(or symbol string place-type))))

@@ -32,6 +32,7 @@ reports. Like LAMBDA, but types may follow the parameters and unused ones are no
 given, then the parameters and the body."
     (let ((definition (if (hyphen-p (first definition)) (cddr definition) definition))
           (operator (format nil "~(~A ~A~)" operator name)))
+      (check-function-name operator name)
       (when (or (null definition) (not (listp (first definition))))
         (reject-clause operator (first definition) "a list of parameters after the result type"))
       `(defun ,name ,(untyped-lambda-list (first definition) operator)

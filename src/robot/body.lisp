@@ -21,13 +21,22 @@
       (documentation 'body-name 'function) "Return the name of the robot."
       (documentation 'body-map 'function) "Return the name of the map that the robot starts in.")
 
-(define-registry robot "robot" :object-p body-p
+(define-registry robot "robot" :object-p body-p :by-symbol t
   :finder find-body :lister all-bodies :internal t)
 
+(defun robot-of-body (body world)
+  "Return the robot in WORLD that is called as BODY says, or NIL."
+  (find (body-name body) (world-robots world) :key #'robot-name :test #'eq))
+
+(defun resident-robot (body)
+  "Return the robot made by BODY, or by an earlier one of its name, that top-level code commands."
+  (let ((map (find-map (body-map body) nil)))
+    (and map (map-resident map) (robot-of-body body (map-resident map)))))
+
 (defun body-robot (body)
-  "Return the robot that the variable of BODY's name holds here and now."
-  (let ((name (body-name body)))
-    (and (boundp name) (symbol-value name))))
+  "Return the robot of BODY here and now: the value of its variable."
+  (let* ((name (body-name body)) (value (and (boundp name) (symbol-value name))))
+    (if (robot-p value) value (resident-robot body))))
 
 (addition all-robots)
 (defun all-robots ()
@@ -146,20 +155,24 @@ NIL."
   (let ((other (find-robot (robot-name robot) nil)))
     (and other (null (robot-retired other)) other)))
 
-(defun robot-in-world (name world)
-  "Return the robot in WORLD called NAME, or NIL."
-  (find name (world-robots world) :key #'robot-name :test #'same-name-p))
-
-(defun resident-robots (name)
-  "Return the robots called NAME in the worlds that top-level code works in."
+(defun robots-called (name)
+  "Return the robots whose name is the symbol NAME in the worlds that top-level code works in."
   (loop for map in (all-maps)
-        for robot = (and (map-resident map) (robot-in-world name (map-resident map)))
-        when robot collect robot))
+        append (and (map-resident map)
+                    (remove name (world-robots (map-resident map))
+                            :key #'robot-name :test-not #'eq))))
+
+(defun interrupt-robot (robot)
+  "Interrupt all that ROBOT and its parts are doing. Called by the owner of its world."
+  (let ((simulation (world-simulation (robot-world robot))))
+    (when simulation
+      (abandon simulation (cons robot (robot-parts robot))))))
 
 (defun take-out (robot reason)
-  "Retire ROBOT and take it out of its world."
+  "Retire ROBOT, interrupt what it is doing, and take it out of its world."
   (let ((world (robot-world robot)))
     (retire-robot robot reason)
+    (interrupt-robot robot)
     (setf (world-robots world) (remove robot (world-robots world)))))
 
 (defun ask-owner (world function)
@@ -168,28 +181,37 @@ NIL."
       (ask (world-simulation world) function)
       (funcall function)))
 
+(defun take-out-all (name reason)
+  "Take all robots called NAME out of the worlds that top-level code works in."
+  (dolist (robot (robots-called name))
+    (ask-owner (robot-world robot) (lambda () (take-out robot reason)))))
+
 (defun settle (body)
   "Put a robot made by BODY into the resident world of its map, instead of any that was made by an
 earlier definition of its name, and return it."
   (let* ((world (map-resident-world (find-map (body-map body))))
          (robot nil))
     (check-start body (world-map world))
-    (dolist (old (resident-robots (body-name body)))
-      (ask-owner (robot-world old)
-                 (lambda () (take-out old "it has been defined anew"))))
+    (take-out-all (body-name body) "it has been defined anew")
     (ask-owner world (lambda () (setf robot (make-robot body world))))
     robot))
 
 (defmethod take-back ((body body))
-  (dolist (robot (resident-robots (body-name body)))
-    (ask-owner (robot-world robot)
-               (lambda () (take-out robot "its definition has been taken back")))))
+  (take-out-all (body-name body) "its definition has been taken back"))
+
+(defun in-order-of-definition (robots)
+  "Return ROBOTS in the order in which they were defined."
+  (sort (copy-list robots) #'<
+        :key (lambda (robot)
+               (or (position (robot-name robot) (all-bodies) :key #'body-name) -1))))
 
 (defmethod reinstate ((body body))
   (let ((robot (body-robot body)))
     (when (robot-p robot)
-      (setf (robot-retired robot) nil)
-      (pushnew robot (world-robots (robot-world robot)))))
+      (let ((world (robot-world robot)))
+        (setf (robot-retired robot) nil
+              (world-robots world) (in-order-of-definition
+                                    (adjoin robot (world-robots world)))))))
   body)
 
 ;;; The defining form.
@@ -207,14 +229,20 @@ earlier definition of its name, and return it."
     (funcall reject amount "a number, 0 or more"))
   (double amount))
 
+(defun maps-to-choose (name)
+  "Return in words which maps there are, for somebody who has asked for NAME."
+  (let ((names (mapcar #'map-name (all-maps))))
+    (if names
+        (format nil "a map: ~{~(~A~)~^, ~}~@[; did you mean ~(~A~)?~]"
+                names (nearest-name name names))
+        "a map; there is none yet")))
+
 (defun parse-place (environment position angle reject)
   "Return the map, and where in it the robot starts."
   (unless (typep environment '(or map symbol string))
     (funcall reject environment "a map or its name"))
   (let ((map (or (find-map environment nil)
-                 (funcall reject environment
-                          (format nil "a map: ~{~(~A~)~^, ~}"
-                                  (mapcar #'map-name (all-maps)))))))
+                 (funcall reject environment (maps-to-choose environment)))))
     (destructuring-bind (x y) position
       (unless (and (realp x) (realp y)) (funcall reject position "a position (x y), two numbers"))
       (let ((trouble (start-trouble map x y)))
@@ -240,6 +268,7 @@ earlier definition of its name, and return it."
   "Do as DEFROBOT does, with values: ENVIRONMENT is a map or its name, POSITION a list (x y),
 CAMERAS a list of lists (fov resolution). Return the robot."
   (check-robot-name (format nil "defrobot ~(~A~)" name) name)
+  (check-robot-variable name)
   (let* ((body (make-body-from name environment position angle cameras hands bins))
          (robot (settle body)))
     (register *robots* name body :variable t :value robot)
@@ -253,6 +282,14 @@ CAMERAS a list of lists (fov resolution). Return the robot."
                                 and ~A belongs to ~A. Call it my-~(~A~), or shadow the symbol in ~
                                 your package: (:shadow #:~(~A~))"
                            name (package-name (symbol-package name)) name name))))
+
+(defun check-robot-variable (name)
+  "Signal MALFORMED-DEFINITION if the variable NAME is in use for something else than robots."
+  (when (and (null (definition-to-replace name *robots*))
+             (variable-in-use-p name))
+    (reject-clause (format nil "defrobot ~(~A~)" name) name
+                   (format nil "a name whose variable is free; ~A has the value ~S"
+                           name (symbol-value name)))))
 
 (defun check-robot-form (definition name start options)
   (flet ((reject (clause expected) (reject-clause definition clause expected)))

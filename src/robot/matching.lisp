@@ -81,6 +81,19 @@ are NIL, if it is one of CHOICES."
   (and (listp object) (null (cdr (last object)))
        (every #'demand-form-p object)))
 
+(defun specification-trouble (object)
+  "Return in words what of OBJECT, which is no descriptor specification, cannot be used, or NIL."
+  (let* ((form (and (listp object) (null (cdr (last object)))
+                    (find-if-not #'demand-form-p object)))
+         (attribute (and (consp form) (symbolp (first form)) (attribute-of (first form))))
+         (domain (and attribute (attribute-domain attribute)))
+         (value (and domain (consp (rest form))
+                     (find-if-not (lambda (value) (member value domain :test #'value-equal))
+                                  (ensure-list (second form))))))
+    (when form
+      (format nil "not ~(~S~)~@[, as the values are ~(~A~)~]~@[; did you mean ~(~A~)?~]"
+              form domain (and value (value-like value domain))))))
+
 ;;; Fitting.
 
 (defun number-of-reading (key reading)

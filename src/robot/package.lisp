@@ -44,7 +44,8 @@ of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
            #:drop-designator #:part-moved #:add-designator)
   ;; noise, matching, scanning, views, tending
   (:export #:own-symbol #:reading-reliability #:reading-deviation #:read-attribute #:angle-error
-           #:specification-p #:notice-probability #:sighting #:designate #:look-for-things
+           #:specification-p #:specification-trouble #:notice-probability #:sighting
+           #:designate #:look-for-things
            #:look-for-places #:camera-heading #:take-view #:start-track #:trackable-p
            #:in-same-cell-p)
   ;; inside
@@ -56,7 +57,8 @@ of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
   (:export #:defrobot #:define-robot #:find-robot #:all-robots
            #:body-name #:body-map)
   ;; references, simulation, replay, state
-  (:export #:with-simulation #:call-with-simulation #:simulator #:stop-simulator #:set-seed
+  (:export #:with-simulation #:call-with-simulation #:simulator #:stop-simulator
+           #:end-simulation #:set-seed
            #:resident-simulation #:fresh-simulation #:simulation-robots #:replay
            #:state-digest #:save-journal #:load-journal #:*simulator-hooks*
            #:*tick-phases* #:*busy-tests* #:*simulation-variables* #:place-robot

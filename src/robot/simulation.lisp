@@ -32,11 +32,17 @@ ends with it and simulations side by side do not meet.")
 (defun kickers-busy-p (simulation)
   (world-has-kickers-p (simulation-world simulation)))
 
+(defun qualified-name (symbol)
+  "Return a string that names SYMBOL with its package, for FIND-ROBOT and kin."
+  (format nil "~@[~A::~]~A" (and (symbol-package symbol) (package-name (symbol-package symbol)))
+          symbol))
+
 (defun robot-names (simulation)
-  (mapcar (lambda (robot) (string (robot-name robot))) (simulation-robots simulation)))
+  (mapcar (lambda (robot) (qualified-name (robot-name robot))) (simulation-robots simulation)))
 
 (defun begin-journal (simulation)
-  (make-journal (list :map (string (map-name (world-map (simulation-world simulation))))
+  (make-journal (list :map (qualified-name
+                            (map-name (world-map (simulation-world simulation))))
                       :robots (robot-names simulation)
                       :seed (simulation-seed simulation)
                       :parameters (parameter-settings))))
@@ -54,10 +60,14 @@ ends with it and simulations side by side do not meet.")
 
 ;;; Resident and fresh.
 
+(defvar *simulations-lock* (make-lock "simulations"))
+
 (defun ensure-simulation (world)
   "Return the simulation of WORLD; that of a resident world is made when it is first needed."
   (or (world-simulation world)
-      (simulation-of world (world-seed world) t)))
+      (with-lock (*simulations-lock*)
+        (or (world-simulation world)
+            (simulation-of world (world-seed world) t)))))
 
 (defun resident-simulation (map)
   "Return the simulation of the resident world of MAP, or of the map so named."
@@ -76,12 +86,12 @@ ends with it and simulations side by side do not meet.")
   "Return a simulation, at tick 0, of a fresh world that holds the things of its map and fresh
 ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
   (let* ((bodies (mapcar #'body-of robots))
-         (maps (remove-duplicates (mapcar #'body-map bodies) :test #'same-name-p)))
+         (maps (remove-duplicates (mapcar #'find-map (mapcar #'body-map bodies)))))
     (unless (= (length maps) 1)
       (reject-use "One simulation has one map, and these robots are defined in ~
                    ~:[none~;~:*~{~A~^, ~}~]."
                   maps))
-    (let ((world (make-world (find-map (first maps)) :seed seed)))
+    (let ((world (make-world (first maps) :seed seed)))
       (dolist (body bodies) (make-robot body world))
       (simulation-of world seed journal))))
 
@@ -99,7 +109,7 @@ ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
             (*world* (simulation-world simulation))
             (robots (simulation-robots simulation)))
        (progv (append names (mapcar #'robot-name robots) *simulation-variables*)
-           (append (robots-called names) robots (mapcar #'symbol-value *simulation-variables*))
+           (append (robots-meant names) robots (mapcar #'symbol-value *simulation-variables*))
          (unwind-protect (funcall function)
            (retire-robots robots "the headless simulation that it was in has ended")))))))
 
@@ -108,9 +118,9 @@ ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
   (remove-if-not (lambda (name) (and (symbolp name) (variable-name-p name)))
                  (ensure-list names)))
 
-(defun robots-called (names)
-  "Return the robots of the current simulation called NAMES."
-  (loop for name in names collect (robot-in-world name *world*)))
+(defun robots-meant (names)
+  "Return the robots of the current simulation that NAMES, of any package, mean."
+  (loop for name in names collect (robot-of-body (find-body name) *world*)))
 
 (defun retire-robots (robots reason)
   (dolist (robot robots) (retire-robot robot reason)))
@@ -131,15 +141,25 @@ Return the values of BODY."
 
 ;;; Live.
 
+(defun end-simulation (simulation reason)
+  "End the run of SIMULATION for good, for REASON: what its robots were doing is interrupted."
+  (end-run simulation reason
+           (loop for robot in (simulation-robots simulation)
+                 append (cons robot (robot-parts robot)))))
+
 (defun restart-world (world seed)
   "Make WORLD and its robots what they were at the start."
   (reset-world world :seed seed)
   (mapc #'reset-robot (world-robots world))
   (simulation-of world seed t))
 
+(defun bodies-in (map)
+  "Return the bodies of the robots that are defined in MAP."
+  (remove map (all-bodies) :test-not #'eq :key (lambda (body) (find-map (body-map body) nil))))
+
 (defun first-robot-in (map)
   "Return the robot of MAP that was defined first. Signals MISUSE if there is none."
-  (let ((body (find (map-name map) (all-bodies) :key #'body-map :test #'same-name-p)))
+  (let ((body (first (bodies-in map))))
     (if body
         (body-robot body)
         (reject-use "Map ~(~A~) has no robot. Define one: (defrobot NAME (~:*~(~A~) (X Y) ANGLE))."
@@ -163,7 +183,7 @@ One whose map or definition has been replaced means the robot that is called so 
   (let* ((body (find-body name))
          (robot (body-robot body)))
     (if (or (null robot) (robot-retired robot))
-        (setf (sb-ext:symbol-global-value (body-name body)) (settle body))
+        (set-robot body (settle body))
         robot)))
 
 (public simulator)
@@ -176,7 +196,8 @@ STOP-SIMULATOR stops it. Signals UNKNOWN-NAME, and MISUSE if the robot no longer
          (world (robot-world robot))
          (simulation (ensure-simulation world)))
     (stop-clock simulation)
-    (when (or seed (plusp (simulation-tick simulation)))
+    (when (or seed (plusp (simulation-tick simulation)) (simulation-over simulation))
+      (end-simulation simulation "it has been started anew")
       (setf simulation (restart-world world (or seed (simulation-seed simulation)))))
     (setf *simulation* simulation
           *world* world)
@@ -210,14 +231,6 @@ nothing."
 
 ;;; A map that is replaced.
 
-(defun end-simulation (simulation reason)
-  "Stop SIMULATION for good, for REASON: its robots take no more commands, and what they were doing
-is interrupted."
-  (let ((robots (simulation-robots simulation)))
-    (stop-clock simulation)
-    (retire-robots robots reason)
-    (abandon simulation (loop for robot in robots append (cons robot (robot-parts robot))))))
-
 (defun say-stopped (map simulation new)
   "Say that SIMULATION of MAP has ended, if it had begun: the map is NEW now, or NIL."
   (when (or (live-p simulation) (plusp (simulation-tick simulation)))
@@ -226,36 +239,55 @@ is interrupted."
                         (map-name map) new (simulation-tick simulation)
                         (and new (map-name new)))))
 
+(defun defined-here-p (body)
+  "True if BODY is from the file that is being loaded, which will perhaps define it anew."
+  (let ((entry (lookup-entry (body-name body) *robots*))
+        (file (source-file (current-source))))
+    (and entry file (equal file (source-file (entry-source entry))))))
+
 (defun leave-out (body reason)
   "Let there be no robot of BODY in its new map, for REASON."
-  (warn-of-definition "The robot ~(~A~) takes no more commands: ~A." (body-name body) reason)
+  (unless (defined-here-p body)
+    (warn-of-definition "The robot ~(~A~) takes no more commands: ~A." (body-name body) reason))
   (let ((robot (body-robot body)))
     (when robot (retire-robot robot reason))))
 
+(defun set-robot (body robot)
+  "Let the variable of BODY's name hold ROBOT at top level."
+  (setf (sb-ext:symbol-global-value (body-name body)) robot))
+
 (defun move-robots (map)
-  "Put robots made by the bodies of MAP's name into MAP, which is new."
-  (dolist (body (all-bodies))
-    (when (same-name-p (map-name map) (body-map body))
-      (let ((trouble (start-trouble map (body-x body) (body-y body))))
-        (if trouble
-            (leave-out body (format nil "it does not fit into the new map ~(~A~), as ~A; define it ~
-                                         anew"
-                                    (map-name map) trouble))
-            (setf (sb-ext:symbol-global-value (body-name body)) (settle body)))))))
+  "Put robots made by the bodies that are defined in MAP, which is new, into it."
+  (dolist (body (bodies-in map))
+    (let ((trouble (start-trouble map (body-x body) (body-y body))))
+      (if trouble
+          (leave-out body (format nil "it does not fit into the new map ~(~A~), as ~A; define it ~
+                                       anew"
+                                  (map-name map) trouble))
+          (set-robot body (settle body))))))
 
 (defmethod map-replaced ((old map) new)
   (let* ((world (map-resident old))
-         (simulation (and world (world-simulation world)))
+         ;; Also where there was none: somebody may be asking for it at this moment.
+         (simulation (and world (ensure-simulation world)))
          (reason (if new "its map has been defined anew" "its map has been taken back")))
     (when world
-      (retire-robots (world-robots world) reason))
-    (when simulation
+      (retire-robots (world-robots world) reason)
       (say-stopped old simulation new)
       (end-simulation simulation reason))
     (when new (move-robots new))))
 
+(defmethod map-replaced ((old null) (new map))
+  ;; Robots may have been left over by a map that was undefined.
+  (move-robots new))
+
 (defmethod reinstate ((map map))
-  (let ((world (map-resident map)))
+  (let* ((world (map-resident map))
+         (simulation (and world (world-simulation world))))
     (when world
-      (dolist (robot (world-robots world)) (setf (robot-retired robot) nil))))
+      (dolist (robot (world-robots world)) (setf (robot-retired robot) nil)))
+    (when (and simulation (simulation-over simulation))
+      (restart-world world (simulation-seed simulation))))
   map)
+
+(setf *kept-variables* (union *kept-variables* '(*simulation* *world*)))

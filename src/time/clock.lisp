@@ -110,6 +110,7 @@
   "Run SIMULATION live, in a thread of its own, at RATE. Return SIMULATION. Signals MISUSE if it
 runs live already, WRONG-ARGUMENT for a rate that is neither a positive number nor :FREE."
   (check-rate rate)
+  (check-not-over simulation 'start-clock)
   (when (live-p simulation) (reject-use "~A runs live already." simulation))
   (check-parameters)
   (setf (simulation-rate simulation) rate
@@ -136,6 +137,17 @@ way stay as they are; START-CLOCK goes on with them. Return SIMULATION."
       (setf (simulation-thread simulation) nil)
       (answer-questions simulation)))
   simulation)
+
+(defun end-run (simulation reason resources)
+  "Stop SIMULATION for good, for REASON, a sentence without its full stop. Whatever was asked of it
+and occupies RESOURCES, or has not even begun, is interrupted; nothing can be asked of it any more."
+  (unless (simulation-over simulation)
+    (setf (simulation-over simulation) reason)
+    (stop-clock simulation)
+    (let ((*message-queue* (simulation-messages simulation)))
+      (mapc #'funcall (shiftf (simulation-enders simulation) '()))
+      (open-inbox simulation)
+      (abandon simulation resources))))
 
 ;;; Steering.
 

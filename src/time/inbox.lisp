@@ -12,10 +12,22 @@
 
 (defun post (simulation function)
   "Have FUNCTION called, with no arguments, at the start of the next tick of SIMULATION, after
-those posted before. Any thread may post. Return nothing."
+those posted before. Any thread may post. Return nothing. Signals MISUSE if the run is over."
+  (check-not-over simulation 'post)
   (sb-ext:atomic-push function (simulation-inbox simulation))
+  ;; It may have ended just now, and its inbox may have been emptied for the last time.
+  (when (and (simulation-over simulation) (withdraw simulation function))
+    (check-not-over simulation 'post))
   (wake simulation)
   (values))
+
+(defun withdraw (simulation function)
+  "Take FUNCTION out of the inbox of SIMULATION again. True unless somebody else has taken it."
+  (loop for inbox = (simulation-inbox simulation)
+        unless (member function inbox) return nil
+        when (eq inbox (sb-ext:compare-and-swap (simulation-inbox simulation)
+                                                inbox (remove function inbox)))
+          return t))
 
 (defun take-inbox (simulation)
   (loop for inbox = (simulation-inbox simulation)

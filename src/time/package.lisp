@@ -12,7 +12,8 @@ thread; the journal; the live clock. Knows nothing of worlds and robots.")
   (:export #:simulation #:make-simulation #:simulation-p #:simulation-name #:simulation-world
            #:simulation-tick #:simulation-seed #:simulation-agenda #:simulation-phases
            #:simulation-busy-tests #:simulation-observers #:simulation-journal
-           #:simulation-messages #:simulation-thread #:simulation-ticking-p #:simulation-rate
+           #:simulation-messages #:simulation-over #:simulation-enders #:check-not-over
+           #:simulation-thread #:simulation-ticking-p #:simulation-rate
            #:*simulation* #:current-simulation #:tick #:run-ticks #:run-until #:idle-p
            #:notify-later #:add-observer #:remove-observer)
   ;; inbox
@@ -25,6 +26,6 @@ thread; the journal; the live clock. Knows nothing of worlds and robots.")
            #:internalize-reference #:write-journal #:read-journal #:apply-entry
            #:damaged-journal #:truncated-journal)
   ;; clock
-  (:export #:start-clock #:stop-clock #:live-p #:pause #:resume #:step-ticks #:set-rate
+  (:export #:start-clock #:stop-clock #:end-run #:live-p #:pause #:resume #:step-ticks #:set-rate
            #:paused-p #:*default-rate* #:*hog-seconds* #:await-idle #:call-watched #:call-as-owner
            #:seconds-now))

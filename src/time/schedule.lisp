@@ -83,8 +83,8 @@ start of the next tick. Returns nothing (manual, figure D.3)."
                      (release-resource resource simulation))))
 
 (defun abandon (simulation resources)
-  "Interrupt all that occupies RESOURCES, in order, and let those know who asked for it. For the end
-of SIMULATION, when its clock has stopped."
+  "Interrupt all that occupies RESOURCES, in order, and let those know who asked for it. Called by
+the owner of SIMULATION, between ticks."
   (dolist (resource resources) (release-resource resource simulation))
   (deliver-notifications simulation))
 

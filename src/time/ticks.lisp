@@ -79,6 +79,7 @@
 WRONG-ARGUMENT, and MISUSE if SIMULATION runs live or is inside a tick."
   (check-argument run-ticks count (typep count '(integer 0)) "a number of ticks, 0 or more")
   (check-headless simulation 'run-ticks)
+  (check-not-over simulation 'run-ticks)
   (when (simulation-ticking-p simulation)
     (reject-use "run-ticks: a tick is under way; time cannot pass inside it."))
   (let ((*simulation* simulation)
@@ -92,6 +93,7 @@ WRONG-ARGUMENT, and MISUSE if SIMULATION runs live or is inside a tick."
 true, but at most LIMIT. Return what it returned and the tick reached; NIL means the limit."
   (check-argument run-until limit (typep limit '(integer 0)) "a number of ticks, 0 or more")
   (check-headless simulation 'run-until)
+  (check-not-over simulation 'run-until)
   (let ((answer (loop for left downfrom limit
                       thereis (funcall predicate)
                       until (zerop left)

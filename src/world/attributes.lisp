@@ -30,7 +30,7 @@
  attribute-noticed "Return the base probability that the attribute is sensed unasked."
  attribute-supporters "Return the keywords of the attributes that support this one.")
 
-(define-registry attribute "attribute" :object-p attribute-p)
+(define-registry attribute "attribute" :object-p attribute-p :sealed t)
 
 (declaim (inline attribute-key))
 (defun attribute-key (name)
@@ -85,12 +85,22 @@
                      (format nil "a ~(~A~) attribute, as the simulator computes with ~(~S~)"
                              (attribute-kind old) (attribute-name old))))))
 
+(defgeneric attribute-redefined (old new)
+  (:documentation "Called when the attribute NEW has taken the place of OLD, which may be NIL.")
+  (:method (old new) (declare (ignore old new)) nil))
+
 (defun define-attribute (name domain &key (success 1) (base 0) (max-mult 1) (noticed 0)
                                        supported-by)
   "Define or redefine the attribute NAME; what DEFATTRIBUTE expands to. Return NAME."
-  (let ((definition (format nil "defattribute ~(~S~)" name)))
+  (let ((definition (format nil "defattribute ~(~S~)" name))
+        (old (attribute-of name)))
     (check-attribute-clauses definition domain base max-mult supported-by)
     (check-kind-of-built-in definition name domain)
+    (dolist (supporter supported-by)
+      (let ((like (declared-name-like supporter)))
+        (when like
+          (warn-of-definition "~A: no attribute is called ~(~S~); did you mean ~(~S~)?"
+                              definition supporter like))))
     (register
      *attributes* (attribute-key name)
      (make-attribute :name (attribute-key name)
@@ -100,6 +110,7 @@
                      :base (double base) :max-mult (double max-mult)
                      :noticed (check-probability definition :noticed noticed)
                      :supporters (mapcar #'attribute-key supported-by)))
+    (attribute-redefined old (attribute-of name))
     name))
 
 (defun attribute-forms (name domain options)

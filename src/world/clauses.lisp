@@ -15,7 +15,9 @@
         for seen = '() then (cons last seen) for last = key
         do (unless (member key known)
              (reject-clause definition (list key value)
-                            (format nil "one of the options ~(~{~S~^ ~}~)" known)))
+                            (format nil "one of the options ~(~{~S~^ ~}~)~@[; did you mean ~
+                                         ~(~S~)?~]"
+                                    known (and (symbolp key) (nearest-name key known)))))
            (when (member key seen)
              (reject-clause definition (list key value) "each option only once"))))
 
@@ -32,7 +34,8 @@
 (defun check-name (definition name what)
   "Signal MALFORMED-DEFINITION unless the WHAT that is defined can be called NAME."
   (unless (and name (symbolp name) (not (eq name t)) (not (keywordp name)))
-    (reject-clause definition name (format nil "a symbol as the name of the ~A" what))))
+    (reject-clause definition name
+                   (format nil "a symbol, but no keyword, as the name of the ~A" what))))
 
 (defun call-for-value (function definition clause expected)
   "Return the value of FUNCTION, a form of CLAUSE that its author wrote. Errors are DEFINITION's,
@@ -41,29 +44,40 @@ which expected EXPECTED there."
     (malformed-definition (condition) (error condition))
     (error (condition)
       (reject-clause definition clause
-                     (format nil "~A (~A)" expected
-                             (string-right-trim "." (princ-to-string condition)))))))
+                     (format nil "~A (~A~@[; there is ~A~])" expected
+                             (string-right-trim "." (princ-to-string condition))
+                             (namesake (missing-name condition)))))))
 
-;;; Clauses one by one.
+(defun namesake (name)
+  "Return in words a variable called NAME that another package exports, or NIL."
+  (let ((other (and (symbolp name) name
+                    (find-if (lambda (symbol)
+                               (and (boundp symbol)
+                                    (eq :external (nth-value 1 (find-symbol
+                                                                (symbol-name symbol)
+                                                                (symbol-package symbol))))))
+                             (remove-if-not #'symbol-package (find-all-symbols name))))))
+    (and other (format nil "~A:~A" (package-name (symbol-package other)) other))))
 
-(defun clause-again (index)
-  "Return the clause INDEX of the definition at hand as it stands in its file now."
-  (destructuring-bind (source operator name) *definition*
-    (nth (+ 3 index) (read-definition-again (source-file source) operator name))))
+;;; Clauses one by one. A path is a list of positions that leads to a clause from the definition.
 
-(defun call-with-clause (function clause index)
-  "Call FUNCTION with CLAUSE, the one number INDEX of the definition at hand. A user who chooses so
+(defun clause-again (path)
+  "Return the clause at PATH of the definition at hand as it stands in its file now."
+  (reduce (lambda (form position) (nth position form)) path
+          :initial-value (definition-again *definition*)))
+
+(defun call-with-clause (function clause path)
+  "Call FUNCTION with CLAUSE, the one at PATH of the definition at hand. A user who chooses so
 leaves it out (then return NIL), or has FUNCTION called with another: read again, or typed."
   (restart-case (funcall function clause)
     (skip-clause ()
       :report (lambda (stream) (format stream "Leave the clause ~S out." clause))
       nil)
     (read-again ()
-      :test (lambda (condition) (declare (ignore condition)) (source-file (current-source)))
-      :report (lambda (stream)
-                (format stream "Read the clause again from ~A." (source-file (current-source))))
-      (call-with-clause function (clause-again index) index))
+      :test in-file-p
+      :report "Read the clause again from its file."
+      (call-with-clause function (clause-again path) path))
     (use-value (other)
       :report "Use another clause."
       :interactive (lambda () (read-value "A clause to use"))
-      (call-with-clause function other index))))
+      (call-with-clause function other path))))

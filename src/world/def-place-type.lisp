@@ -89,7 +89,7 @@ REBUILD-MAP. Signals MALFORMED-DEFINITION. Return the name."
   "Define the place type NAME; what DEF-PLACE-TYPE expands to, with functions of a cell for
 CHECKER and DIRECTIONS. KEY stands for the definition in the key of a map's cache. Return NAME."
   (let* ((definition (format nil "def-place-type ~(~A~)" name))
-         (old (find-place-type name nil))
+         (old (definition-to-replace name *place-types*))
          (next (type-to-precede definition before))
          (new (%make-place-type name)))
     (check-place-type definition confusion rules)

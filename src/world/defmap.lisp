@@ -27,31 +27,27 @@ rewrite its cache. Worlds of MAP see the change at once. Return the map."
 
 (defun define-map (name width height &key cache clauses things (package *package*))
   "Define or redefine the map NAME; what DEFMAP expands to. CLAUSES are walls, rects and circles;
-THINGS is a list of lists (function clause index), each for a thing: FUNCTION returns its recipe.
-PACKAGE is the one that the author writes in. Return the map."
-  (let ((definition (format nil "defmap ~(~A~)" name)))
-    (unless (typep cache '(or null string pathname))
-      (reject-clause definition (list :cache cache) "the name of a file"))
-    (let* ((recipes (loop for (function clause index) in things
-                          for recipe = (recipe-for-clause function clause index
-                                                          definition width height)
-                          when recipe collect recipe))
-           (map (build-map
-                 (%make-map :name name :width width :height height :clauses clauses :cache cache
-                            :package (package-name (find-package package)) :things recipes
-                            :attribute-names (attribute-names recipes)))))
-      (warn-of-outside map)
-      (warn-of-things-in-walls map)
-      (register-map map))))
+THINGS is a list of recipes, and of NIL for those that are left out. PACKAGE is the one that the
+author writes in. Return the map."
+  (unless (typep cache '(or null string pathname))
+    (reject-clause (format nil "defmap ~(~A~)" name) (list :cache cache) "the name of a file"))
+  (let* ((recipes (remove nil things))
+         (map (build-map
+               (%make-map :name name :width width :height height :clauses clauses :cache cache
+                          :package (package-name (find-package package)) :things recipes
+                          :attribute-names (attribute-names recipes)))))
+    (warn-of-outside map)
+    (warn-of-things-in-walls map)
+    (register-map map)))
 
-(defun recipe-for-clause (function clause index definition width height)
-  "Return what FUNCTION, compiled for CLAUSE, number INDEX of DEFINITION, returns. If that signals,
-the user may replace the clause."
+(defun recipe-for-clause (function clause path compiler)
+  "Return what FUNCTION, compiled for CLAUSE at PATH of the definition, returns: a recipe. If that
+signals, the user may replace the clause by another, of which COMPILER makes a form."
   (call-with-clause (lambda (chosen)
                       (if (eq chosen clause)
                           (funcall function)
-                          (eval (object-form definition chosen width height))))
-                    clause index))
+                          (eval (funcall compiler chosen))))
+                    clause path))
 
 ;;; What is doubtful.
 
@@ -79,11 +75,11 @@ the user may replace the clause."
 
 (defun warn-of-things-in-walls (map)
   (dolist (recipe (map-things map))
-    (let ((x (recipe-x recipe)) (y (recipe-y recipe)))
+    (let ((x (recipe-x recipe)) (y (recipe-y recipe)) (name (recipe-name recipe)))
       (when (wall-at-p map x y)
-        (warn-of-definition "defmap ~(~A~): ~(~A~) at (~F ~F) is inside a wall, where no robot can ~
-                             see or reach it."
-                            (map-name map) (recipe-name recipe) x y)))))
+        (warn-of-definition "defmap ~(~A~)~@[ (~A)~]: ~(~A~) at (~F ~F) is inside a wall, where no ~
+                             robot can see or reach it."
+                            (map-name map) (clause-place name) name x y)))))
 
 ;;; Things.
 
@@ -112,27 +108,35 @@ the user may replace the clause."
        `(call-for-value (lambda () ,prototype) ,definition ',clause
                         "a prototype: a form whose value is a thing")))
 
-(defun recipe-form (definition clause head descriptor contents &optional x y)
-  "Return a form that makes the recipe of a thing."
+(defun recipe-form (definition clause path head descriptor contents &optional x y)
+  "Return a form that makes the recipe of a thing, from CLAUSE at PATH, which ends in CONTENTS."
   (check-head definition clause head)
   (unless (descriptor-p descriptor)
     (reject-clause definition clause
                    "an object descriptor ((attribute value) ...), each attribute once"))
   (destructuring-bind (name &key prototype kickers) (ensure-list head)
-    `(clause-recipe ,definition ',clause ',name ',descriptor
-                    :prototype ,(prototype-form definition clause prototype)
-                    :kickers ',kickers :x ,x :y ,y
-                    :contents (list ,@(loop for inside in contents
-                                            collect (contents-form definition inside))))))
+    (let ((first (- (length clause) (length contents))))
+      `(clause-recipe ,definition ',clause ',name ',descriptor
+                      :prototype ,(prototype-form definition clause prototype)
+                      :kickers ',kickers :x ,x :y ,y
+                      :contents (remove nil (list ,@(contents-forms definition contents path
+                                                                    first)))))))
 
-(defun contents-form (definition clause)
+(defun contents-forms (definition clauses path first)
+  "Return forms that make the recipes for CLAUSES, which begin at the position FIRST of what is at
+PATH."
+  (loop for clause in clauses
+        for position from first
+        collect (thing-form definition clause (append path (list position)) 'contents-form)))
+
+(defun contents-form (definition clause path)
   (unless (and (proper-list-p clause) (<= 2 (length clause)))
     (reject-clause definition clause "contents: (name descriptor contents...)"))
   (destructuring-bind (head descriptor &rest contents) clause
-    (recipe-form definition clause head descriptor contents)))
+    (recipe-form definition clause path head descriptor contents)))
 
-(defun object-form (definition clause width height)
-  "Return a form that makes the recipe for CLAUSE, an obj."
+(defun object-form (definition clause path width height)
+  "Return a form that makes the recipe for CLAUSE, an obj, at PATH."
   (unless (and (eq :obj (clause-kind definition clause)) (<= 4 (length clause)))
     (reject-clause definition clause "(obj name (x y) descriptor contents...)"))
   (destructuring-bind (head position descriptor &rest contents) (rest clause)
@@ -142,8 +146,18 @@ the user may replace the clause."
       (reject-clause definition clause
                      (format nil "a position (x y) in the map, from 0 to below ~D and ~D"
                              width height)))
-    (recipe-form definition clause head descriptor contents
+    (recipe-form definition clause path head descriptor contents
                  (first position) (second position))))
+
+(defun thing-form (definition clause path compiler &rest arguments)
+  "Return a form for the recipe of CLAUSE at PATH, which COMPILER, the name of a function of these
+and of ARGUMENTS, makes. The user may replace the clause, now and when the form is evaluated."
+  (call-with-clause (lambda (clause)
+                      `(recipe-for-clause
+                        (lambda () ,(apply compiler definition clause path arguments))
+                        ',clause ',path
+                        (lambda (clause) (,compiler ,definition clause ',path ,@arguments))))
+                    clause path))
 
 ;;; The clauses.
 
@@ -169,26 +183,24 @@ the user may replace the clause."
   (check-options definition (cddr size) '(:cache))
   (values (first size) (second size) (getf (cddr size) :cache)))
 
-(defun parse-clause (definition clause index width height)
-  "Return a list (kind form) for CLAUSE, number INDEX of DEFINITION: of a thing, the form that makes
-its element of DEFINE-MAP's THINGS, of anything else the clause itself. NIL if it is to be left
-out."
+(defun parse-clause (definition clause path width height)
+  "Return a list (kind form) for CLAUSE, at PATH of DEFINITION: of a thing, the form that makes its
+recipe, of anything else the clause itself. NIL if it is to be left out."
   (call-with-clause (lambda (clause)
                       (let ((kind (clause-kind definition clause)))
                         (list kind
                               (if (eq kind :obj)
-                                  `(list (lambda () ,(object-form definition clause width height))
-                                         ',clause ,index)
+                                  (thing-form definition clause path 'object-form width height)
                                   (check-grid-clause definition clause kind)))))
-                    clause index))
+                    clause path))
 
 (defun map-forms (name size clauses)
   "Return the forms that DEFMAP expands to."
   (let ((definition (format nil "defmap ~(~A~)" name)))
     (multiple-value-bind (width height cache) (check-size definition name size)
       (loop for clause in clauses
-            for index from 0
-            for (kind form) = (parse-clause definition clause index width height)
+            for position from 3
+            for (kind form) = (parse-clause definition clause (list position) width height)
             if (eq kind :obj) collect form into things
             else if kind collect form into walls
             finally (return

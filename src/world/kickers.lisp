@@ -48,7 +48,7 @@
       (print-unreadable-object (attachment stream) (write-attachment attachment stream))
       (write-attachment attachment stream)))
 
-(define-registry kicker "kicker" :object-p kicker-p)
+(define-registry kicker "kicker" :object-p kicker-p :by-symbol t)
 
 (defvar *kicker-generation* 0 "How many times a kicker has been redefined.")
 
@@ -70,7 +70,7 @@
   "Define or redefine the kicker NAME; what DEFKICKER expands to. TEST and BODY are functions of
 a thing. Return the kicker."
   (let ((new (fill-kicker (make-kicker name) (format nil "defkicker ~(~A~)" name) prob test body))
-        (old (find-kicker name nil)))
+        (old (definition-to-replace name *kickers*)))
     (when old (incf *kicker-generation*))
     (register *kickers* name (if old (become old new) new) :variable t)))
 
@@ -95,8 +95,10 @@ a thing. Return the kicker."
   "Define the kicker NAME (manual 5.3.1), whose BODY runs with probability :prob (default 1) on
 any tick on which the form :test (default true) holds. LAMBDA-LIST is one variable, bound to the
 thing in both. NAME becomes a special variable bound to the kicker, unless it is one of Common
-Lisp's symbols, such as OPEN, or ours: such kickers are called by name. Redefinition affects things
-that have it. Signals MALFORMED-DEFINITION. Return the name."
+Lisp's symbols, such as OPEN, or ours, or already has a value: such kickers are called by name.
+Redefinition affects things that have it. For chance use the dice of the world, as in (roll-between
+0 1 (world-dice *world* :user)): what CL:RANDOM says is not repeated by the same seed. Signals
+MALFORMED-DEFINITION. Return the name."
   (let ((definition (format nil "defkicker ~(~A~)" name)))
     (expand-definition
      form

@@ -77,26 +77,37 @@
 
 ;;; The registry.
 
-(define-registry map "map" :object-p map-p)
+(define-registry map "map" :object-p map-p :by-symbol t)
 
 (defgeneric map-replaced (old new)
-  (:documentation "Called when the map NEW has taken the place of OLD; NEW is NIL if OLD was
-undefined. The layer above ends what goes on in OLD.")
+  (:documentation "Called when the map NEW has taken the place of OLD; OLD is NIL if there was none,
+NEW if OLD was undefined. The layer above ends what goes on in OLD.")
   (:method (old new) (declare (ignore old new)) nil))
 
 (defun register-map (map)
   "Let the name of MAP mean MAP."
-  (let ((old (find-map (map-name map) nil)))
+  (let ((old (definition-to-replace (map-name map) *maps*)))
     (register *maps* (map-name map) map :variable t)
-    (when old (map-replaced old map))
+    (map-replaced old map)
     map))
 
 (defun map-form (form environment)
-  "Return a form for what FORM, given in ENVIRONMENT where a map is wanted, stands for: a symbol
-that is no variable there, such as ROOM, is the map's name."
-  (if (and (symbolp form) (not (known-variable-p form environment)))
-      `',form
-      form))
+  "Return a form for what FORM, given in ENVIRONMENT where a map is wanted, stands for: its value,
+or if it is a symbol that has none, such as ROOM, or one that is no map, the map of that name."
+  (cond ((or (null form) (not (symbolp form))) form)
+        ((local-variable-p form environment) form)
+        ((known-variable-p form environment) `(map-meant ',form))
+        (t `',form)))
+
+(defun map-meant (name)
+  "Return what the variable NAME holds, if that can be a map, or NAME, the map's."
+  (let ((value (and (boundp name) (symbol-value name))))
+    (if (or (map-p value)
+            (stringp value)
+            (and value (symbolp value))
+            (and (typep value 'structure-object) (not (find-map name nil))))
+        value
+        name)))
 
 (defmethod take-back ((map map))
   (map-replaced map nil))

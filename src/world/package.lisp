@@ -61,7 +61,7 @@
   ;; placing
   (:export #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing)
   ;; undeclared
-  (:export #:note-strange-name #:warn-of-slips)
+  (:export #:note-strange-name #:warn-of-slips #:value-like)
   ;; kickers
   (:export #:kicker #:kicker-p #:kicker-name #:kicker-prob #:defkicker #:define-kicker #:find-kicker
            #:all-kickers #:set-kicker #:put-kicker #:run-kicker #:run-kickers #:kick-thing

@@ -78,24 +78,32 @@ outside."
                          (rule-direction rule)))))))
 
 (defun definition-of (type)
-  "Return the definition of TYPE, for *DEFINITION*: the one at hand, or the one that is registered."
+  "Return the definition of TYPE, for *DEFINITION*: the one at hand, or else what is known of it."
   (let ((operator "def-place-type")
         (entry (lookup-entry (place-type-name type) *place-types*)))
-    (if (and (second *definition*) (same-name-p operator (second *definition*)))
+    (if (and *definition* (same-name-p operator (first (defining-form *definition*))))
         *definition*
-        (list (and entry (entry-source entry)) operator (place-type-name type)))))
+        (make-defining (and entry (entry-source entry))
+                       (list operator (place-type-name type))))))
+
+(defun option-clause (option)
+  "Return the clause for OPTION in the definition at hand, or that alone if it is not known."
+  (let ((rest (member option (defining-form *definition*))))
+    (if rest (subseq rest 0 2) option)))
 
 (defun blame-type (type clause expected)
-  "Signal MALFORMED-DEFINITION about CLAUSE of the definition of TYPE."
+  "Signal MALFORMED-DEFINITION about CLAUSE, or an option, of the definition of TYPE."
   (let ((*definition* (definition-of type)))
-    (reject-clause (format nil "def-place-type ~(~A~)" (place-type-name type)) clause expected)))
+    (reject-clause (format nil "def-place-type ~(~A~)" (place-type-name type))
+                   (if (keywordp clause) (option-clause clause) clause)
+                   expected)))
 
 (defun call-blaming-type (function cell type option)
   "Call FUNCTION, which runs the OPTION of TYPE for CELL, a cursor. Errors in it are TYPE's."
   (handler-bind ((error (lambda (condition)
                           (unless (typep condition '(or malformed-definition undefined-function
                                                      unbound-variable))
-                            (blame-type type (list option '|...|)
+                            (blame-type type option
                                         (format nil "code that runs; at ~A: ~A" cell condition))))))
     (funcall function)))
 
@@ -103,8 +111,10 @@ outside."
   "Signal unless VALUES, which the checker of TYPE returned for CELL, say where a place is."
   (destructuring-bind (dx dy direction) values
     (unless (and (typep dx '(signed-byte 16)) (typep dy '(signed-byte 16)) (realp direction))
-      (blame-type type (list :checker (list* 'values t values))
-                  (format nil "four values at ~A: a boolean, two integers, a direction" cell)))))
+      (blame-type type :checker
+                  (format nil "four values at ~A: a boolean, two integers, a direction (after the ~
+                               first came~{ ~S~})"
+                          cell values)))))
 
 (defun classify-by-checker (map type number)
   (let ((cell (make-cell map 0 0)) (checker (place-type-checker type)))
@@ -137,8 +147,9 @@ outside."
                             (lambda () (multiple-value-list (funcall function cell)))
                             cell type :directions)))
           (unless (and (= 2 (length directions)) (every #'realp directions))
-            (blame-type type (list :directions (cons 'values directions))
-                        (format nil "two values at ~A, both angles in radians" cell))))))))
+            (blame-type type :directions
+                        (format nil "two values at ~A, both angles in radians, not~{ ~S~}"
+                                cell directions))))))))
 
 (defun clear-places (map)
   "Forget the places of MAP; number the place types known now."

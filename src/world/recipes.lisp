@@ -33,8 +33,20 @@ DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMEN
                  (merge-descriptors own (and prototype (thing-attributes prototype)))
                  (append (and prototype (mapcar #'thing-recipe (thing-contents prototype)))
                          contents)
-                 :kickers (mapcar #'find-kicker kickers)
+                 :kickers (mapcar #'known-kicker kickers)
                  :x (and x (double x)) :y (and y (double y)))))
+
+(defun known-kicker (kicker)
+  "Return KICKER, a kicker or the name of one, for a recipe. Signals UNKNOWN-NAME."
+  (let ((found (find-kicker kicker)))
+    (if (kicker-p kicker) kicker (kicker-name found))))
+
+(defun attach-by-recipe (thing kicker)
+  "Put on THING the KICKER, which a recipe may know by name; say so if there no longer is one."
+  (let ((found (find-kicker kicker nil)))
+    (if found
+        (attach-kicker thing found)
+        (warning-set thing " goes without the kicker " kicker ", which is no longer defined."))))
 
 (defun follow-recipe (recipe world)
   "Return a new thing made by RECIPE, nowhere yet, in WORLD, or a prototype if WORLD is NIL."
@@ -46,7 +58,7 @@ DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMEN
     (dolist (inside contents) (setf (thing-location inside) thing))
     (refresh-physics thing)
     (when world (add-thing thing world))
-    (dolist (kicker (recipe-kickers recipe)) (attach-kicker thing kicker))
+    (dolist (kicker (recipe-kickers recipe)) (attach-by-recipe thing kicker))
     thing))
 
 (defun attribute-names (recipes)

@@ -91,8 +91,15 @@ false, always can."
              (reject "a number not below 0"))))))
 
 (defun note-unknown-substance (value)
-  (when (and (symbolp value) (null (find-substance value nil)))
-    (warning-set "No substance is called " value ": its parameter counts as 0; see DEFSUBSTANCE.")))
+  "Warn if VALUE of a :substance names none: where that is defined, or else by a message."
+  (let ((type (substance-value-type value)))
+    (when (and type (null (find-substance type nil)))
+      (let ((text (format nil "No substance is called ~(~A~): its parameter counts as 0; see ~
+                               DEFSUBSTANCE.~@[ Did you mean ~(~A~)?~]"
+                          type (nearest-name type (defined-names *substances*)))))
+        (if *definition*
+            (warn-of-definition "~@[~A: ~]~A" (clause-place type) text)
+            (warning-set text))))))
 
 (defun refresh-physics (thing)
   "Make the cached slots of THING agree with its attributes."

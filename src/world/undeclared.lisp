@@ -51,3 +51,35 @@ may be slips for the declared name LIKE."
                   (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~
                                ~(~S~)?~]"
                           key (declared-name-like key)))))
+
+;;; An attribute that is declared anew may no longer have the values that things have.
+
+(defun value-trouble (key value)
+  "Return what is wrong with VALUE for the attribute KEY, a string, or NIL."
+  (handler-case (progn (check-attribute-value 'defattribute key value) nil)
+    (wrong-argument (condition) (princ-to-string condition))))
+
+(defun unfit-recipe (recipes key)
+  "Return the first of RECIPES, or of those in them, whose things have a value that KEY cannot have;
+and what is wrong with it."
+  (dolist (recipe recipes)
+    (let* ((value (second (assoc key (recipe-attributes recipe) :test #'eq)))
+           (trouble (value-trouble key value)))
+      (when trouble (return (values recipe trouble))))
+    (multiple-value-bind (inside trouble) (unfit-recipe (recipe-contents recipe) key)
+      (when inside (return (values inside trouble))))))
+
+(defun from-this-file-p (map)
+  "True if MAP was defined in the file that is being loaded, which will perhaps define it anew."
+  (let ((entry (lookup-entry (map-name map) *maps*))
+        (file (source-file (current-source))))
+    (and entry file (equal file (source-file (entry-source entry))))))
+
+(defmethod attribute-redefined ((old attribute) new)
+  (dolist (map (all-maps))
+    (multiple-value-bind (recipe trouble)
+        (unfit-recipe (map-things map) (attribute-name new))
+      (when (and recipe (not (from-this-file-p map)))
+        (warn-of-definition "In map ~(~A~), ~(~A~) has a value that it could not be given any ~
+                             more: ~A"
+                            (map-name map) (recipe-name recipe) trouble)))))
