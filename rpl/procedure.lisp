@@ -22,7 +22,7 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
       (documentation 'procedure-lambda-list 'function)
       "Return the lambda list of a plan procedure.")
 
-(define-registry procedure "plan procedure" :object-p procedure-p :by-symbol t :synonyms (plan)
+(define-registry procedure "plan procedure" :object-p procedure-p :by-symbol t :synonyms ("PLAN")
   :finder registered-procedure :lister registered-procedures :internal t)
 
 (defvar *cells* (make-hash-table :test 'eq :synchronized t)

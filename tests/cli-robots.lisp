@@ -93,3 +93,40 @@
                                 "BEETLE" "(robot-turn beetle 1 nil)")))
     (base:undefine 'robot "BEETLE"))
   (delete-package :ars-test-house))
+
+;;; A run that is over.
+
+(defun type-live-to (robot &rest lines)
+  "Type LINES at a live prompt that commands ROBOT, a name. Return what it writes."
+  (let ((output (make-string-output-stream)) (*standard-output* (make-broadcast-stream)))
+    (unwind-protect
+         (progn (robot:simulator robot :rate :free :display nil)
+                (cli:run-session
+                 (cli:make-session :input (make-string-input-stream (joined lines))
+                                   :output output :batch t :patient nil)))
+      (unless (time:simulation-over time:*simulation*) (robot:stop-simulator)))
+    (get-output-stream-string output)))
+
+(test run.that-is-over-is-told-at-the-prompt
+  "Its commands are interrupted, nothing goes on in it, and WORLD starts the new one."
+  (with-own-definitions
+    (eval '(world:defmap shed (30 9)))
+    (eval '(robot:defrobot mole (shed (6 6) 0)))
+    (let ((text (type-live-to 'mole
+                              "pause" "go-forward 1000" "(defmap ars-magna.tests::shed (20 9))"
+                              "status" "step 3" "go-forward 1" "resume")))
+      (dolist (words '("has ended at tick" "robot-go-forward was interrupted"))
+        (is (search words text) "~A~%~A" words text))
+      (is (= 4 (loop with start = 0
+                     for found = (search "The run in shed is over" text :start2 start)
+                     while found count t
+                     do (setf start (1+ found))))
+          "~A" text))))
+
+(test world.left-interrupts-what-was-asked-there
+  (with-own-definitions
+    (eval '(world:defmap shed (30 9)))
+    (eval '(robot:defrobot mole (shed (6 6) 0)))
+    (let ((text (type-live-to 'mole "pause" "go-forward 1000" "world tiny" "step 2")))
+      (is (search "robot-go-forward was interrupted" text))
+      (is (search "Tick 2" text) "~A" text))))
