@@ -112,11 +112,20 @@ are NIL, if it is one of CHOICES."
                     reading)
                 (demand-choices demand) :test #'value-equal))))
 
-(defun as-asked (demand reading)
-  "Return READING, which fits DEMAND, with the symbol that was asked for."
+(defun thing-map (thing)
+  (world-map (thing-world thing)))
+
+(defun author-package (thing)
+  "Return the name of the package in which the author of THING's map writes, or NIL."
+  (and (thing-world thing) (map-package (thing-map thing))))
+
+(defun as-asked (demand reading thing)
+  "Return READING of THING, which fits DEMAND, with the symbol that was asked for; if a number was
+asked for, the one that the world's author writes."
   (flet ((asked (value)
-           (or (find value (demand-choices demand) :test #'value-equal) value)))
-    (cond ((null (demand-choices demand)) reading)
+           (or (find value (demand-choices demand) :test #'value-equal)
+               (own-symbol value (author-package thing)))))
+    (cond ((realp reading) reading)
           ((and (consp reading) (eq :substance (demand-key demand)))
            (cons (asked (first reading)) (rest reading)))
           (t (asked reading)))))
@@ -139,9 +148,9 @@ as an object descriptor."
       (let* ((key (demand-key demand)) (attribute (demand-attribute demand))
              (value (thing-value thing key)))
         (when (says-nothing-p attribute value) (return nil))
-        (let ((reading (read-attribute attribute value distance dice (author-package thing))))
+        (let ((reading (read-attribute attribute value distance dice)))
           (unless (fits-p demand reading) (return nil))
-          (push (list key (as-asked demand reading)) readings))))))
+          (push (list key (as-asked demand reading thing)) readings))))))
 
 ;;; What is noticed besides.
 
@@ -160,13 +169,6 @@ thing of MAP starts with it."
       (and (member nil (attribute-domain attribute))
            (or (built-in-attribute-p attribute)
                (member (attribute-name attribute) (map-attribute-names map) :test #'eq)))))
-
-(defun thing-map (thing)
-  (world-map (thing-world thing)))
-
-(defun author-package (thing)
-  "Return the name of the package in which the author of THING's map writes, or NIL."
-  (and (thing-world thing) (map-package (thing-map thing))))
 
 (defun notice-attributes (map keys value-of distance dice)
   "Return readings of attributes not among KEYS that happen to be noticed in MAP. VALUE-OF, a
