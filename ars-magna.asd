@@ -11,7 +11,7 @@
     :components ((:file "package") (:file "policy") (:file "public")
                  (:file "conditions") (:file "threads") (:file "dice") (:file "names")
                  (:file "digest") (:file "sources") (:file "definitions") (:file "variables")
-                 (:file "registry")
+                 (:file "registry") (:file "own-definitions")
                  (:file "messages") (:file "user-code")
                  (:file "parameters") (:file "physics")))
    (:module "src/geometry" :serial t
@@ -39,7 +39,8 @@
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "parts") (:file "odometer") (:file "motion")
                  (:file "designator") (:file "place-sense") (:file "body")
-                 (:file "simulation") (:file "references")
+                 (:file "retiring") (:file "defrobot") (:file "simulation")
+                 (:file "replaced-maps") (:file "references")
                  (:file "own-odometers") (:file "sight") (:file "tracks")
                  (:file "inside") (:file "state") (:file "replay")
                  (:file "rays") (:file "noise") (:file "matching") (:file "sightings")

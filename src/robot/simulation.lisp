@@ -178,6 +178,10 @@ One whose map or definition has been replaced means the robot that is called so 
         (find-again (robot-name robot))
         robot)))
 
+(defun set-robot (body robot)
+  "Let the variable of BODY's name hold ROBOT at top level."
+  (setf (sb-ext:symbol-global-value (body-name body)) robot))
+
 (defun find-again (name)
   "Return the robot called NAME now, made anew if that has not been possible before."
   (let* ((body (find-body name))
@@ -228,66 +232,3 @@ nothing."
 
 (defmethod apply-entry ((operation (eql :seed)) arguments simulation)
   (set-seed (first arguments) simulation))
-
-;;; A map that is replaced.
-
-(defun say-stopped (map simulation new)
-  "Say that SIMULATION of MAP has ended, if it had begun: the map is NEW now, or NIL."
-  (when (or (live-p simulation) (plusp (simulation-tick simulation)))
-    (warn-of-definition "Map ~(~A~) is ~:[no longer defined~;defined anew~]. Its simulation has ~
-                         ended at tick ~D~@[; what is started from now on is in the new ~(~A~)~]."
-                        (map-name map) new (simulation-tick simulation)
-                        (and new (map-name new)))))
-
-(defun defined-here-p (body)
-  "True if BODY is from the file that is being loaded, which will perhaps define it anew."
-  (let ((entry (lookup-entry (body-name body) *robots*))
-        (file (source-file (current-source))))
-    (and entry file (equal file (source-file (entry-source entry))))))
-
-(defun leave-out (body reason)
-  "Let there be no robot of BODY in its new map, for REASON."
-  (unless (defined-here-p body)
-    (warn-of-definition "The robot ~(~A~) takes no more commands: ~A." (body-name body) reason))
-  (let ((robot (body-robot body)))
-    (when robot (retire-robot robot reason))))
-
-(defun set-robot (body robot)
-  "Let the variable of BODY's name hold ROBOT at top level."
-  (setf (sb-ext:symbol-global-value (body-name body)) robot))
-
-(defun move-robots (map)
-  "Put robots made by the bodies that are defined in MAP, which is new, into it."
-  (dolist (body (bodies-in map))
-    (let ((trouble (start-trouble map (body-x body) (body-y body))))
-      (if trouble
-          (leave-out body (format nil "it does not fit into the new map ~(~A~), as ~A; define it ~
-                                       anew"
-                                  (map-name map) trouble))
-          (set-robot body (settle body))))))
-
-(defmethod map-replaced ((old map) new)
-  (let* ((world (map-resident old))
-         ;; Also where there was none: somebody may be asking for it at this moment.
-         (simulation (and world (ensure-simulation world)))
-         (reason (if new "its map has been defined anew" "its map has been taken back")))
-    (when world
-      (retire-robots (world-robots world) reason)
-      (say-stopped old simulation new)
-      (end-simulation simulation reason))
-    (when new (move-robots new))))
-
-(defmethod map-replaced ((old null) (new map))
-  ;; Robots may have been left over by a map that was undefined.
-  (move-robots new))
-
-(defmethod reinstate ((map map))
-  (let* ((world (map-resident map))
-         (simulation (and world (world-simulation world))))
-    (when world
-      (dolist (robot (world-robots world)) (setf (robot-retired robot) nil)))
-    (when (and simulation (simulation-over simulation))
-      (restart-world world (simulation-seed simulation))))
-  map)
-
-(setf *kept-variables* (union *kept-variables* '(*simulation* *world*)))

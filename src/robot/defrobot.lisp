@@ -1,0 +1,127 @@
+;;;; defrobot.lisp -- DEFROBOT: from its form to a robot (manual 5.2).
+
+(in-package :ars-magna.robot)
+
+(defun parse-camera (specification reject)
+  (unless (and (listp specification) (= (length specification) 2)
+               (realp (first specification)) (< 0 (first specification) (+ 2pi 1d-9))
+               (typep (second specification) '(integer 1)))
+    (funcall reject specification
+             "(field-of-view resolution): radians above 0, at most 2 pi, and a number of pixels"))
+  (list (double (first specification)) (second specification)))
+
+(defun parse-amount (amount reject)
+  (unless (and (realp amount) (not (minusp amount)))
+    (funcall reject amount "a number, 0 or more"))
+  (double amount))
+
+(defun maps-to-choose (name)
+  "Return in words which maps there are, for somebody who has asked for NAME."
+  (let ((names (mapcar #'map-name (all-maps))))
+    (if names
+        (format nil "a map: ~{~(~A~)~^, ~}~@[; did you mean ~(~A~)?~]"
+                names (nearest-name name names))
+        "a map; there is none yet")))
+
+(defun parse-place (environment position angle reject)
+  "Return the map, and where in it the robot starts."
+  (unless (typep environment '(or map symbol string))
+    (funcall reject environment "a map or its name"))
+  (let ((map (or (find-map environment nil)
+                 (funcall reject environment (maps-to-choose environment)))))
+    (destructuring-bind (x y) position
+      (unless (and (realp x) (realp y)) (funcall reject position "a position (x y), two numbers"))
+      (let ((trouble (start-trouble map x y)))
+        (when trouble
+          (funcall reject position (format nil "a position in the open of ~(~A~), and ~A"
+                                           (map-name map) trouble))))
+      (unless (realp angle) (funcall reject angle "a heading in radians"))
+      map)))
+
+(defun make-body-from (name environment position angle cameras hands bins)
+  (flet ((reject (clause expected)
+           (reject-clause (format nil "defrobot ~(~A~)" name) clause expected)))
+    (let ((map (parse-place environment position angle #'reject)))
+      (make-body :name name :map (map-name map)
+                 :x (double (first position)) :y (double (second position))
+                 :angle (double angle)
+                 :cameras (loop for camera in cameras collect (parse-camera camera #'reject))
+                 :hands (loop for hand in hands collect (parse-amount hand #'reject))
+                 :bins (loop for bin in bins collect (parse-amount bin #'reject))))))
+
+(addition define-robot)
+(defun define-robot (name environment position angle &key cameras hands bins)
+  "Do as DEFROBOT does, with values: ENVIRONMENT is a map or its name, POSITION a list (x y),
+CAMERAS a list of lists (fov resolution). Return the robot."
+  (check-robot-name (format nil "defrobot ~(~A~)" name) name)
+  (check-robot-variable name)
+  (let* ((body (make-body-from name environment position angle cameras hands bins))
+         (robot (settle body)))
+    (register *robots* name body :variable t :value robot)
+    robot))
+
+(defun check-robot-name (definition name)
+  (unless (and name (symbolp name)) (reject-clause definition name "a symbol as the robot's name"))
+  (unless (variable-name-p name)
+    (reject-clause definition name
+                   (format nil "a symbol that can be a variable, as a robot is the value of one, ~
+                                and ~A belongs to ~A. Call it my-~(~A~), or shadow the symbol in ~
+                                your package: (:shadow #:~(~A~))"
+                           name (package-name (symbol-package name)) name name))))
+
+(defun check-robot-variable (name)
+  "Signal MALFORMED-DEFINITION if the variable NAME is in use for something else than robots."
+  (when (and (null (definition-to-replace name *robots*))
+             (variable-in-use-p name))
+    (reject-clause (format nil "defrobot ~(~A~)" name) name
+                   (format nil "a name whose variable is free; ~A has the value ~S"
+                           name (symbol-value name)))))
+
+(defun check-robot-form (definition name start options)
+  (flet ((reject (clause expected) (reject-clause definition clause expected)))
+    (check-robot-name definition name)
+    (unless (and (proper-list-p start) (= (length start) 3)
+                 (proper-list-p (second start)) (= (length (second start)) 2))
+      (reject start "(environment (x y) angle)"))
+    (check-options definition options '(:cameras :hands :bins))
+    (loop for (key value) on options by #'cddr
+          do (unless (proper-list-p value) (reject (list key value) "a list after the keyword")))))
+
+(defun value-form (definition form clause expected)
+  "Return a form for the value of FORM, which stands in CLAUSE; that it has none is DEFINITION's."
+  (if (constantp form)
+      form
+      `(call-for-value (lambda () ,form) ,definition ',clause ,expected)))
+
+(defun robot-forms (definition name start options lisp-environment)
+  "Return the forms that DEFROBOT expands to."
+  (destructuring-bind (environment (x y) angle) start
+    (destructuring-bind (&key cameras hands bins) options
+      (flet ((number-of (form clause)
+               (value-form definition form clause "a form that has a value")))
+        `((define-robot ',name
+            ,(value-form definition (map-form environment lisp-environment) start
+                         "a map, its name, or a form whose value is one")
+            (list ,(number-of x (second start)) ,(number-of y (second start)))
+            ,(number-of angle start)
+            :cameras (list ,@(loop for camera in cameras
+                                   collect (if (proper-list-p camera)
+                                               `(list ,@(loop for form in camera
+                                                              collect (number-of form camera)))
+                                               (number-of camera camera))))
+            :hands (list ,@(loop for hand in hands collect (number-of hand hands)))
+            :bins (list ,@(loop for bin in bins collect (number-of bin bins)))))))))
+
+(public defrobot)
+(defmacro defrobot (&whole form name start &rest options &environment environment)
+  "Define a robot: (defrobot NAME (ENVIRONMENT (X Y) ANGLE) [:cameras ((FOV RESOLUTION) ...)]
+[:hands (STRENGTH ...)] [:bins (CAPACITY ...)]). NAME becomes a special variable bound to the
+robot, which stands in the resident world of the map ENVIRONMENT (its variable or name) at (X,Y),
+in metres, heading ANGLE, in radians. Numbers are evaluated. A robot that was called NAME before
+takes no more commands. Signals MALFORMED-DEFINITION (manual 5.2)."
+  (let ((definition (format nil "defrobot ~(~A~)" name)))
+    (expand-definition form
+                       (lambda ()
+                         (check-robot-form definition name start options)
+                         (values (robot-forms definition name start options environment)
+                                 (variable-forms name))))))

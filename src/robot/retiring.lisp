@@ -1,0 +1,83 @@
+;;;; retiring.lisp -- robots that take no more commands, and those that take their places.
+
+(in-package :ars-magna.robot)
+
+;;; A robot is retired when its definition, its map or its run is replaced. What it was doing is
+;;; interrupted; whoever still holds it and commands it is told so.
+
+(defun retire-robot (robot reason)
+  "Let ROBOT take no more commands, for REASON, a sentence without its full stop."
+  (setf (robot-retired robot) reason))
+
+(defun check-in-run (resource operator)
+  "Signal MISUSE if the robot that is RESOURCE, or has it as a part, is retired."
+  (let ((robot (if (robot-p resource) resource (part-robot resource))))
+    (when (robot-retired robot)
+      (reject-use "~(~A~): the run of this ~(~A~) is over: ~A.~@[ Command the robot that the ~
+                   variable ~(~A~) holds now.~]"
+                  operator (robot-name robot) (robot-retired robot)
+                  (and (successor robot) (robot-name robot))))))
+
+(defun successor (robot)
+  "Return the robot that is called as ROBOT, which is retired, and takes commands, or NIL."
+  (let ((other (find-robot (robot-name robot) nil)))
+    (and other (null (robot-retired other)) other)))
+
+(defun robots-called (name)
+  "Return the robots whose name is the symbol NAME in the worlds that top-level code works in."
+  (loop for map in (all-maps)
+        append (and (map-resident map)
+                    (remove name (world-robots (map-resident map))
+                            :key #'robot-name :test-not #'eq))))
+
+(defun interrupt-robot (robot)
+  "Interrupt all that ROBOT and its parts are doing. Called by the owner of its world."
+  (let ((simulation (world-simulation (robot-world robot))))
+    (when simulation
+      (abandon simulation (cons robot (robot-parts robot))))))
+
+(defun take-out (robot reason)
+  "Retire ROBOT, interrupt what it is doing, and take it out of its world."
+  (let ((world (robot-world robot)))
+    (retire-robot robot reason)
+    (interrupt-robot robot)
+    (setf (world-robots world) (remove robot (world-robots world)))))
+
+(defun ask-owner (world function)
+  "Call FUNCTION where WORLD stands still."
+  (if (world-simulation world)
+      (ask (world-simulation world) function)
+      (funcall function)))
+
+(defun take-out-all (name reason)
+  "Take all robots called NAME out of the worlds that top-level code works in."
+  (dolist (robot (robots-called name))
+    (ask-owner (robot-world robot) (lambda () (take-out robot reason)))))
+
+(defun settle (body)
+  "Put a robot made by BODY into the resident world of its map, instead of any that was made by an
+earlier definition of its name, and return it."
+  (let* ((world (map-resident-world (find-map (body-map body))))
+         (robot nil))
+    (check-start body (world-map world))
+    (take-out-all (body-name body) "it has been defined anew")
+    (ask-owner world (lambda () (setf robot (make-robot body world))))
+    robot))
+
+(defmethod take-back ((body body))
+  (take-out-all (body-name body) "its definition has been taken back"))
+
+(defun in-order-of-definition (robots)
+  "Return ROBOTS in the order in which they were defined."
+  (sort (copy-list robots) #'<
+        :key (lambda (robot)
+               (or (position (robot-name robot) (all-bodies) :key #'body-name) -1))))
+
+(defmethod reinstate ((body body))
+  (let ((robot (body-robot body)))
+    (when (robot-p robot)
+      (let ((world (robot-world robot)))
+        (setf (robot-retired robot) nil
+              (world-robots world) (in-order-of-definition
+                                    (adjoin robot (world-robots world)))))))
+  body)
