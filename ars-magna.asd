@@ -4,7 +4,7 @@
   :description "An abstract robot simulator for people who build reactive planners."
   :version "1.0.0"
   :license "MIT"
-  :depends-on ("alexandria" "bordeaux-threads" "named-readtables" "sb-cltl2")
+  :depends-on ("alexandria" "bordeaux-threads" "named-readtables" "sb-cltl2" "sb-posix")
   :serial t
   :components
   ((:module "src/base" :serial t

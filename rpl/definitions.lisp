@@ -16,15 +16,11 @@
       (values (rest body) (first body))
       (values body nil)))
 
-(public def-interp-proc)
-(defmacro def-interp-proc (name (&rest parameters) &body body &environment environment)
-  "Define NAME as a plan procedure with PARAMETERS, an ordinary lambda list in which a hyphen and a
-type may follow each variable; BODY is plan text and may start with a documentation string. The
-value is that of its last form. Defining it anew takes effect at the next call, also in running
-plans (manual D.2)."
-  (check-function-name (format nil "def-interp-proc ~(~A~)" name) name)
-  (let ((parameters (untyped-lambda-list parameters (format nil "def-interp-proc ~(~A~)" name)))
-        (form (list* name parameters body)))
+(defun procedure-form (name parameters body environment)
+  "Return the form that defines the plan procedure NAME in ENVIRONMENT."
+  (let* ((definition (format nil "def-interp-proc ~(~A~)" name))
+         (parameters (untyped-lambda-list parameters definition))
+         (form (list* name parameters body)))
     (declare-procedure name)
     (with-own-text (form)
       (multiple-value-bind (body documentation) (split-documentation body)
@@ -36,6 +32,15 @@ plans (manual D.2)."
              (install-procedure ',name ',parameters ,documentation
                                 ,entry ,(procedure-body-code name form body scope)
                                 ',(source-here))))))))
+
+(public def-interp-proc)
+(defmacro def-interp-proc (&whole form name parameters &body body &environment environment)
+  "Define NAME as a plan procedure with PARAMETERS, an ordinary lambda list in which a hyphen and a
+type may follow each variable; BODY is plan text and may start with a documentation string. The
+value is that of its last form. Defining it anew takes effect at the next call, also in running
+plans (manual D.2)."
+  (check-function-name (format nil "def-interp-proc ~(~A~)" name) name)
+  (call-with-definition form (lambda () (procedure-form name parameters body environment))))
 
 (addition interp-lambda)
 (defmacro interp-lambda ((&rest parameters) &body body &environment environment)

@@ -84,23 +84,27 @@ is such a form."
 
 (defun call-with-definition-restarts (function replace)
   "Call FUNCTION. A user who chooses so leaves the definition at hand out, or has REPLACE called
-with another form for it: read again from its file, or with another clause."
+with another form for it: read again from its file, or with another clause. If that is no better,
+the user is asked again."
   (let ((definition *definition*))
-    (restart-case (funcall function)
-      (skip-definition ()
-        :report (lambda (stream) (format stream "Leave ~A out." (definition-text definition)))
-        nil)
-      (read-again ()
-        :test in-file-p
-        :report (lambda (stream)
-                  (format stream "Read ~A again from its file." (definition-text definition)))
-        (funcall replace (definition-again definition)))
-      (use-value (value)
-        :report (lambda (stream)
-                  (format stream "Use another clause of ~A, or another form for it."
-                          (definition-text definition)))
-        :interactive (lambda () (read-value "A clause to use, or a whole form"))
-        (funcall replace (definition-with definition value))))))
+    (flet ((instead (choose)
+             (call-with-definition-restarts
+              (lambda () (funcall replace (funcall choose definition))) replace)))
+      (restart-case (funcall function)
+        (skip-definition ()
+          :report (lambda (stream) (format stream "Leave ~A out." (definition-text definition)))
+          nil)
+        (read-again ()
+          :test in-file-p
+          :report (lambda (stream)
+                    (format stream "Read ~A again from its file." (definition-text definition)))
+          (instead #'definition-again))
+        (use-value (value)
+          :report (lambda (stream)
+                    (format stream "Use another clause of ~A, or another form for it."
+                            (definition-text definition)))
+          :interactive (lambda () (read-value "A clause to use, or a whole form"))
+          (instead (lambda (definition) (definition-with definition value))))))))
 
 ;;; Mistakes that Lisp finds.
 
@@ -129,15 +133,48 @@ the definition."
   (let ((*definition* (make-defining source form)))
     (call-with-definition-restarts (lambda () (call-blaming-author function)) #'eval)))
 
-(defun expand-definition (form function)
-  "Return the expansion of FORM, (operator name ...): what FUNCTION returns, a list of forms that
-carry it out and as second value a list of forms to come before. The whole returns the name."
+(defun endless-p (form)
+  "True if FORM has more conses than anybody writes, as circular lists do."
+  (let ((left 1000000) (stack (list form)))
+    (loop while stack
+          do (let ((part (pop stack)))
+               (when (consp part)
+                 (when (minusp (decf left)) (return t))
+                 (push (cdr part) stack)
+                 (push (car part) stack))))))
+
+(defun rejected-form (condition)
+  "Return a form that signals again, where it is evaluated, what CONDITION says."
+  (when *compile-file-truename* (warn-of-definition "~A" condition))
+  `(reject-clause ,(malformed-definition-definition condition)
+                  ',(malformed-definition-clause condition)
+                  ,(malformed-definition-expected condition)))
+
+(defun forms-or-rejection (function nested)
+  "Return what FUNCTION returns. If it signals MALFORMED-DEFINITION and the form is NESTED in
+others, where the compiler would make another error of that, return a form that signals it later."
+  (if nested
+      (handler-case (funcall function)
+        (malformed-definition (condition) (list (rejected-form condition))))
+      (funcall function)))
+
+(defun call-with-definition (form function)
+  "Call FUNCTION, which expands the definition FORM, and return what it returns."
+  (when (endless-p form)
+    (reject-clause "a definition" (list (first form) '|...|) "a form that ends"))
   (let ((*definition* (make-defining (source-here) form)))
-    (call-with-definition-restarts
-     (lambda ()
-       (multiple-value-bind (forms before) (funcall function)
-         `(progn
-            ,@before
-            (call-as-definition ',(current-source) ',form (lambda () ,@forms))
-            ',(second form))))
-     #'identity)))
+    (call-with-definition-restarts function #'identity)))
+
+(defun expand-definition (form environment function)
+  "Return the expansion of FORM, (operator name ...), in ENVIRONMENT: what FUNCTION returns, a list
+of forms that carry it out and as second value a list of forms to come before. The whole returns
+the name."
+  (call-with-definition
+   form
+   (lambda ()
+     (multiple-value-bind (forms before)
+         (forms-or-rejection function (nested-p environment))
+       `(progn
+          ,@before
+          (call-as-definition ',(current-source) ',form (lambda () ,@forms))
+          ',(second form))))))

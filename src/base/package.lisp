@@ -13,7 +13,7 @@ and bordeaux-threads so that no other layer has to.")
            #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
            #:read-file-into-string #:starts-with-subseq #:define-constant)
   ;; policy
-  (:export #:*hot* #:double #:cell-index #:tick-count #:document-functions)
+  (:export #:*hot* #:double #:finite-p #:cell-index #:tick-count #:document-functions)
   ;; public
   (:export #:public #:addition #:addition-p #:public-symbols)
   ;; conditions
@@ -31,10 +31,11 @@ and bordeaux-threads so that no other layer has to.")
   (:export #:same-name-p #:name-string #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables
   (:export #:variable-name-p #:variable-forms #:known-variable-p #:local-variable-p
-           #:check-function-name)
+           #:nested-p #:check-function-name)
   ;; sources, definitions
   (:export #:source-here #:source-file #:current-source #:*definition* #:definition-again
-           #:make-defining #:defining-form #:reject-clause #:expand-definition #:call-as-definition
+           #:make-defining #:defining-form #:reject-clause
+           #:call-with-definition #:expand-definition #:call-as-definition
            #:in-file-p #:missing-name #:read-value #:clause-place #:skip-definition #:skip-clause
            #:read-again)
   ;; registry

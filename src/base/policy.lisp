@@ -33,3 +33,9 @@
 which have no place of their own for it."
   `(setf ,@(loop for (name text) on names-and-texts by #'cddr
                  append `((documentation ',name 'function) ,text))))
+
+(defun finite-p (object)
+  "True of real numbers other than the infinities and what is no number."
+  (and (realp object)
+       (not (and (floatp object)
+                 (or (sb-ext:float-infinity-p object) (sb-ext:float-nan-p object))))))

@@ -60,11 +60,43 @@ and returns it and where it ends, or NIL."
         (t (or (eql a b)
                (and (typep a 'structure-object) (eq (type-of a) (type-of b)))))))
 
+(defun skip-quoted (text start)
+  "Return where the string or |word| that begins in TEXT at START ends."
+  (loop with quote = (char text start)
+        for i from (1+ start) below (length text)
+        for char = (char text i)
+        when (char= char #\\) do (incf i)
+        when (char= char quote) return (1+ i)
+        finally (return (length text))))
+
+(defun skip-block-comment (text start)
+  "Return where the comment, perhaps with others in it, that begins in TEXT at START ends."
+  (loop with depth = 0
+        for i from start below (1- (length text))
+        do (cond ((string= "#|" text :start2 i :end2 (+ i 2)) (incf depth) (incf i))
+                 ((string= "|#" text :start2 i :end2 (+ i 2))
+                  (incf i)
+                  (when (zerop (decf depth)) (return (1+ i)))))
+        finally (return (length text))))
+
+(defun skip-text (text i)
+  "Return where in TEXT what begins at I and is no code, or an escaped character, ends; NIL if it is
+code."
+  (let ((char (char text i))
+        (next (if (< (1+ i) (length text)) (char text (1+ i)) #\Space)))
+    (cond ((char= char #\;) (or (position #\Newline text :start i) (length text)))
+          ((find char "\"|") (skip-quoted text i))
+          ((and (char= char #\#) (char= next #\|)) (skip-block-comment text i))
+          ((and (char= char #\#) (char= next #\\)) (+ i 3))
+          ((char= char #\\) (+ i 2)))))
+
 (defun openings (text start end)
-  "Return the positions of the opening parentheses in TEXT between START and END."
-  (loop for position = (position #\( text :start start :end end)
-          then (position #\( text :start (1+ position) :end end)
-        while position collect position))
+  "Return the positions of the opening parentheses of code in TEXT between START and END."
+  (let ((positions '()) (i start))
+    (loop while (< i end)
+          do (when (char= #\( (char text i)) (push i positions))
+             (setf i (or (skip-text text i) (1+ i))))
+    (nreverse positions)))
 
 (defun word-at-p (text position word)
   "True if TEXT has WORD at POSITION, perhaps behind the name of a package."

@@ -24,6 +24,10 @@ what belongs to a locked package, such as Common Lisp's or ours."
   "True if SYMBOL, as a form in ENVIRONMENT, is a variable or constant that is known."
   (and (sb-cltl2:variable-information symbol environment) t))
 
+(defun nested-p (environment)
+  "True if a form in ENVIRONMENT stands inside others that are compiled with it."
+  (and environment (uiop:symbol-call :sb-c '#:lexenv-lambda environment) t))
+
 (defun check-function-name (definition name)
   "Signal MALFORMED-DEFINITION if NAME, of DEFINITION, belongs to a package whose names users cannot
 define as functions."

@@ -173,7 +173,7 @@ parameter list, BODY a function of as many arguments. Return NAME."
         ,@options))))
 
 (public defmanipulation)
-(defmacro defmanipulation (&whole form name parameters options &body body)
+(defmacro defmanipulation (&whole form name parameters options &body body &environment environment)
   "Define a method of the manipulation NAME (manual 5.5.1). PARAMETERS is
   (variable - descriptor ... :by resource other ...)
 where each object's variable will be bound to a thing that is exactly as the descriptor
@@ -185,5 +185,6 @@ Of several methods that fit, the one defined last is used. One with the same par
 replaced, and so are those that an earlier version of the same file defined. Signals
 MALFORMED-DEFINITION. Return NAME."
   (let ((definition (format nil "defmanipulation ~(~A~)" name)))
-    (expand-definition form (lambda ()
-                              (manipulation-forms definition name parameters options body)))))
+    (expand-definition form environment
+                       (lambda ()
+                         (manipulation-forms definition name parameters options body)))))

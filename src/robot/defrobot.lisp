@@ -4,14 +4,14 @@
 
 (defun parse-camera (specification reject)
   (unless (and (listp specification) (= (length specification) 2)
-               (realp (first specification)) (< 0 (first specification) (+ 2pi 1d-9))
-               (typep (second specification) '(integer 1)))
+               (finite-p (first specification)) (< 0 (first specification) (+ 2pi 1d-9))
+               (typep (second specification) '(integer 1 32767)))
     (funcall reject specification
-             "(field-of-view resolution): radians above 0, at most 2 pi, and a number of pixels"))
+             "(field-of-view resolution): radians above 0, at most 2 pi, and 1 to 32767 pixels"))
   (list (double (first specification)) (second specification)))
 
 (defun parse-amount (amount reject)
-  (unless (and (realp amount) (not (minusp amount)))
+  (unless (and (finite-p amount) (not (minusp amount)))
     (funcall reject amount "a number, 0 or more"))
   (double amount))
 
@@ -30,12 +30,14 @@
   (let ((map (or (find-map environment nil)
                  (funcall reject environment (maps-to-choose environment)))))
     (destructuring-bind (x y) position
-      (unless (and (realp x) (realp y)) (funcall reject position "a position (x y), two numbers"))
+      (unless (and (finite-p x) (finite-p y))
+        (funcall reject position "a position (x y), two numbers"))
       (let ((trouble (start-trouble map x y)))
         (when trouble
           (funcall reject position (format nil "a position in the open of ~(~A~), and ~A"
                                            (map-name map) trouble))))
-      (unless (realp angle) (funcall reject angle "a heading in radians"))
+      (unless (and (finite-p angle) (< -1d9 angle 1d9))
+        (funcall reject angle "a heading in radians, between -1e9 and 1e9"))
       map)))
 
 (defun make-body-from (name environment position angle cameras hands bins)
@@ -120,7 +122,7 @@ robot, which stands in the resident world of the map ENVIRONMENT (its variable o
 in metres, heading ANGLE, in radians. Numbers are evaluated. A robot that was called NAME before
 takes no more commands. Signals MALFORMED-DEFINITION (manual 5.2)."
   (let ((definition (format nil "defrobot ~(~A~)" name)))
-    (expand-definition form
+    (expand-definition form environment
                        (lambda ()
                          (check-robot-form definition name start options)
                          (values (robot-forms definition name start options environment)

@@ -128,7 +128,7 @@
                                           :noticed ,noticed :supported-by ',supported-by)))))
 
 (public defattribute numeric)
-(defmacro defattribute (&whole form name domain &rest options)
+(defmacro defattribute (&whole form name domain &rest options &environment environment)
   "Define the attribute NAME, a keyword by convention (manual 5.4). DOMAIN is NUMERIC or a list
 of the possible values, unevaluated. Options, in any order:
   :success p -- base probability that a discrete reading is correct; default 1
@@ -137,4 +137,4 @@ of the possible values, unevaluated. Options, in any order:
   :noticed p (or :support p) -- base probability of being sensed unasked; default 0
   :supported-by (name...) -- attributes that raise that chance when asked for; unevaluated
 Signals MALFORMED-DEFINITION. Return the name."
-  (expand-definition form (lambda () (attribute-forms name domain options))))
+  (expand-definition form environment (lambda () (attribute-forms name domain options))))

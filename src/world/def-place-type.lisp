@@ -53,7 +53,8 @@
             :key ,(digest-value (digest-add (make-digest) (cons name options)))))))))
 
 (public def-place-type)
-(defmacro def-place-type (&whole form name (&rest lambda-list) &rest options)
+(defmacro def-place-type (&whole form name (&rest lambda-list) &rest options
+                          &environment environment)
   "Define the place type NAME (manual 5.1.1). LAMBDA-LIST is (CELL); options, in any order:
   :confusion p -- probability of a false designator in a search for the type; default 0
   :check-matchers ((match-form direction)...) -- wall patterns centred on the place
@@ -67,7 +68,8 @@
 A matcher may go on with integers dx dy, as a checker's values do: ours too. Checker and
 directions are tried once on a small map of their own. Maps built earlier learn of the type from
 REBUILD-MAP. Signals MALFORMED-DEFINITION. Return the name."
-  (expand-definition form (lambda () (place-type-forms name lambda-list options))))
+  (expand-definition form environment
+                     (lambda () (place-type-forms name lambda-list options))))
 
 (defun check-place-type (definition confusion rules)
   (unless (typep confusion '(real 0 1))

@@ -7,7 +7,7 @@
 
 (defun build-map (map)
   "Fill the grid of MAP from its clauses, or from its cache if that holds them."
-  (let* ((path (and (map-cache map) (cache-path (map-cache map))))
+  (let* ((path (usable-cache-path map))
          (key (and path (cache-key map))))
     (unless (and path (restore-from-cache map path key))
       (draw-walls map)
@@ -21,8 +21,8 @@
 rewrite its cache. Worlds of MAP see the change at once. Return the map."
   (let ((map (find-map map)))
     (classify-places map)
-    (when (map-cache map)
-      (write-cache map (cache-path (map-cache map)) (cache-key map)))
+    (let ((path (usable-cache-path map)))
+      (when path (write-cache map path (cache-key map))))
     map))
 
 (defun define-map (name width height &key cache clauses things (package *package*))
@@ -209,7 +209,7 @@ recipe, of anything else the clause itself. NIL if it is to be left out."
                           :package ,(package-name *package*))))))))
 
 (public defmap)
-(defmacro defmap (&whole form name size &body clauses)
+(defmacro defmap (&whole form name size &body clauses &environment environment)
   "Define the map NAME (manual 5.1), a special variable bound to it. SIZE is (width height), in
 cells of a metre, and perhaps :cache with the name of a file to keep the built grid in. Clauses:
   (wall (x0 y0) (x1 y1) substance parameter [parameter1]) -- a line of walls
@@ -221,5 +221,5 @@ walls overwrite earlier ones. A map called by a symbol of Common Lisp's, such as
 no variable: write 'ROOM. Redefinition makes a new map, for what is started from then on; a live
 simulation of the old one stops. Signals MALFORMED-DEFINITION, with restarts for the clause.
 Return the name."
-  (expand-definition form
+  (expand-definition form environment
                      (lambda () (values (map-forms name size clauses) (variable-forms name)))))

@@ -91,7 +91,7 @@ a thing. Return the kicker."
   (check-name definition name "kicker"))
 
 (public defkicker)
-(defmacro defkicker (&whole form name lambda-list options &body body)
+(defmacro defkicker (&whole form name lambda-list options &body body &environment environment)
   "Define the kicker NAME (manual 5.3.1), whose BODY runs with probability :prob (default 1) on
 any tick on which the form :test (default true) holds. LAMBDA-LIST is one variable, bound to the
 thing in both. NAME becomes a special variable bound to the kicker, unless it is one of Common
@@ -101,7 +101,7 @@ Redefinition affects things that have it. For chance use the dice of the world, 
 MALFORMED-DEFINITION. Return the name."
   (let ((definition (format nil "defkicker ~(~A~)" name)))
     (expand-definition
-     form
+     form environment
      (lambda ()
        (check-kicker-name definition name)
        (unless (and (proper-list-p lambda-list) (= 1 (length lambda-list)))

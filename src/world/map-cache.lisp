@@ -6,7 +6,8 @@
 ;;; for each wall (index + substance * 2^32, parameter) and for each place (index + type * 2^32,
 ;;; direction), floats as their bits. The key stands for the map's size and clauses and for the
 ;;; definitions of all place types. A file with another key is stale, one whose words do not
-;;; add up is damaged; neither is ever used. Only the grid is kept, never things.
+;;; add up is damaged; neither is ever used. Only the grid is kept, never things. A file that is
+;;; no cache, by its first word, or that is no file of bytes, is never written to.
 
 (define-constant +cache-magic+ #x4152534D41503031
   :documentation "ARSMAP01 in ASCII; changes when the file's layout does.")
@@ -107,6 +108,25 @@
   (note-parameter-range map)
   map)
 
+(defun regular-file-p (path)
+  "True if PATH is a file of bytes: no directory, device or pipe."
+  (= sb-posix:s-ifreg
+     (logand sb-posix:s-ifmt
+             (sb-posix:stat-mode (sb-posix:stat (sb-ext:native-namestring path))))))
+
+(defun begins-as-cache-p (path)
+  "True if the file PATH is empty or begins as caches do."
+  (let ((words (make-array 1 :element-type '(unsigned-byte 64))))
+    (with-open-file (in path :element-type '(unsigned-byte 64))
+      (or (zerop (file-length in))
+          (and (= 1 (read-sequence words in))
+               (= +cache-magic+ (aref words 0)))))))
+
+(defun foreign-p (path)
+  "True if there is something at PATH that is not a map's cache, whole or damaged."
+  (and (or (probe-file path) (uiop:directory-exists-p path))
+       (not (and (regular-file-p path) (begins-as-cache-p path)))))
+
 (defun cache-path (name)
   "Return the file that NAME, a string or pathname, stands for; ~/ is the home directory."
   (cond ((pathnamep name) name)
@@ -137,3 +157,14 @@
     (error (condition)
       (warning-set "The cache " (sb-ext:native-namestring path) " of map " (map-name map)
                    " cannot be written: " (princ-to-string condition)))))
+
+(defun usable-cache-path (map)
+  "Return the file that MAP is to be kept in, if any; not one that holds something else."
+  (let ((path (and (map-cache map) (cache-path (map-cache map)))))
+    (cond ((null path) nil)
+          ((handler-case (foreign-p path) (error () nil))
+           (warning-set "The file " (sb-ext:native-namestring path)
+                        " is no cache of a map; it is left as it is, and " (map-name map)
+                        " is not kept. Give :cache another name.")
+           nil)
+          (t (or (probe-file path) path)))))

@@ -27,10 +27,10 @@ NAME."
   name)
 
 (addition defsubstance)
-(defmacro defsubstance (&whole form name parameter)
+(defmacro defsubstance (&whole form name parameter &environment environment)
   "Define the type of substance NAME, a symbol: things whose :substance is NAME are viewed as
 PARAMETER, a number. Our addition to manual 2.1 and 3.3. Return the name."
-  (expand-definition form
+  (expand-definition form environment
                      (lambda ()
                        (unless (and name (symbolp name) (not (keywordp name)))
                          (reject-clause "defsubstance" name

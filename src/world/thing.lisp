@@ -86,7 +86,7 @@ false, always can."
                (reject (format nil "one of ~(~{~A~^, ~}~)~@[; did you mean ~(~A~)?~]"
                                (attribute-domain attribute)
                                (value-like value (attribute-domain attribute))))))
-            ((not (realp value)) (reject "a number"))
+            ((not (finite-p value)) (reject "a number"))
             ((and (member key '(:size :weight :capacity)) (minusp value))
              (reject "a number not below 0"))))))
 
