@@ -149,6 +149,7 @@
                  (:file "cli-plans") (:file "cli-robots") (:file "user-package")
                  (:file "definitions") (:file "definitions-names")
                  (:file "definitions-mistakes") (:file "definitions-maps")
+                 (:file "homes")
                  (:file "listings") (:file "listings-places") (:file "listings-sensing")
                  (:file "listings-programs") (:file "listings-plans")
                  (:file "architecture") (:file "isolation") (:file "main"))))

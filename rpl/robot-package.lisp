@@ -8,9 +8,10 @@
                 #:*simulation* #:seconds-now #:current-simulation #:simulation-tick #:asking
                 #:add-observer #:remove-observer #:live-p #:run-ticks #:call-as-owner
                 #:grab-resource
-                #:simulation-over #:simulation-enders #:simulation-seed
+                #:simulation-over #:simulation-seed
                 #:simulation-agenda #:simulation-inbox #:simulation-thread
                 #:simulation-busy-tests #:agenda-pending #:post #:*hog-seconds*)
+  (:import-from :ars-magna.robot #:robot-enders)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:fluent-value #:post-batch #:react
                 #:apply-next-batch #:advance-timers #:next-wake-time #:make-plan-runner

@@ -12,9 +12,12 @@
 
 (defun used-packages (definition names)
   "Return the packages called NAMES, which DEFINITION is to use."
-  (loop for name in names
-        collect (or (find-package name)
-                    (reject-clause definition (cons :use names) "packages that there are"))))
+  (let ((missing (remove-if #'find-package names)))
+    (when missing
+      (reject-clause definition (cons :use names)
+                     (format nil "packages that there are; load what defines ~{~A~^, ~} first"
+                             missing))))
+  (mapcar #'find-package names))
 
 (defun standard-named (name)
   "Return the symbol of Common Lisp called NAME, or NIL."
@@ -43,11 +46,39 @@ if there are several of a name; not those under the names SETTLED."
           (loop for (key nil . names) in options
                 when (eq key :shadowing-import-from) append names)))
 
+(defun clashes (packages settled)
+  "Return the names that mean different symbols in some of PACKAGES, but for the names SETTLED."
+  (let ((symbols (make-hash-table :test #'equal)))
+    (dolist (package packages)
+      (do-external-symbols (symbol package)
+        (pushnew symbol (gethash (symbol-name symbol) symbols))))
+    (sort (loop for name being the hash-keys of symbols using (hash-value called-so)
+                when (and (rest called-so) (not (member name settled :test #'string=)))
+                  collect name)
+          #'string<)))
+
+(defun package-exporting (name packages)
+  "Return the first of PACKAGES that exports a symbol called NAME."
+  (find-if (lambda (package) (eq :external (nth-value 1 (find-symbol name package)))) packages))
+
+(defun check-clashes (definition packages settled)
+  "Signal MALFORMED-DEFINITION if names outside of SETTLED mean different symbols in PACKAGES."
+  (let ((names (clashes packages settled)))
+    (when names
+      (let ((package (package-exporting (first names) packages)))
+        (reject-clause definition (cons :use (mapcar #'package-name packages))
+                       (format nil "an option that says whose ~{~A~^, ~} you mean, such as ~
+                                    (:shadowing-import-from :~(~A #:~A~))"
+                               names (package-name package) (first names)))))))
+
 (defun clash-options (definition options)
   "Return options of DEFPACKAGE that settle the clashes of what OPTIONS use with Common Lisp."
-  (let ((packages (used-packages definition (option-values :use options))))
-    (when (member (find-package :cl) packages)
-      (shadowing-options packages (settled-names options)))))
+  (let* ((packages (used-packages definition (option-values :use options)))
+         (settled (settled-names options))
+         (added (when (member (find-package :cl) packages)
+                  (shadowing-options packages settled))))
+    (check-clashes definition packages (append settled (settled-names added)))
+    added))
 
 (defun user-package-options (definition options)
   "Return the options of DEFPACKAGE for OPTIONS of DEFINE-USER-PACKAGE."

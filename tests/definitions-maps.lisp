@@ -108,6 +108,28 @@
         (base:misuse (condition)
           (is (search "headless simulation" (princ-to-string condition))))))))
 
+(test run-over.is-told-to-those-who-asked
+  "What a headless run had under way when it ended is interrupted, and no tick passes any more."
+  (with-mole-in-shed
+    (let ((codes '()) (simulation nil))
+      (robot:with-simulation (mole)
+        (setf simulation (time:current-simulation))
+        (command:robot-turn (mole) 1 (lambda (code &rest more)
+                                       (declare (ignore more))
+                                       (push code codes)))
+        (time:run-ticks 1))
+      (is (equal '(:interrupt) codes))
+      (signals base:misuse (time:run-ticks 1 simulation)))))
+
+(test map-redefined.says-what-it-ends
+  "Not for a run with nothing under way, unless it is live."
+  (with-mole-in-shed
+    (robot:simulator 'mole :display nil)
+    (robot:stop-simulator)
+    (is (null (define-shed 9)))
+    (robot:simulator 'mole :display nil)
+    (is (search "has ended" (first (define-shed 9))))))
+
 (test find-thing.looks-in-the-current-simulation
   (with-mole-in-shed
     (define-shed 9 '(obj box (3 3) ((:size 1))))

@@ -32,7 +32,12 @@
                  :directions (values 1 'up)) . "two values")
                ((world:def-place-type p (cell) :check-matchers ((((-)) 1))
                  :directions (car cell)) . "code that runs")
-               ((command:defmanipulation m (it - ((:size (5 3))) :by hand) ()) . "lower end first"))
+               ((command:defmanipulation m (it - ((:size (5 3))) :by hand) ()) . "lower end first")
+               ((rpl:def-interp-proc "p" () 1) . "a symbol")
+               ((world:defmap m (9 9) . #1=((wall (1 1) (2 2) bricks 1) . #1#)) . "that ends")
+               ((world:defmap m (9 9)
+                 (obj box (1 1) ((:size #.sb-ext:double-float-positive-infinity))))
+                . "a number"))
         do (let ((complaint (first (complaints form))))
              (is (and complaint (search expected complaint)) "~S: ~A" form complaint))))
 
@@ -233,7 +238,8 @@
   (loop for (clause . expected) in '(((:color rd) . "did you mean red?")
                                      ((:color (red bleu)) . "did you mean blue?")
                                      ((:size (1 2 3)) . "a range")
-                                     ((:size small) . "a number"))
+                                     ((:size small) . "a number")
+                                     ((:color ?color) . "(in-readtable :nisp)"))
         do (let ((complaint (first (complaints `(command:defmanipulation m (it - (,clause) :by hand)
                                                  () nil)))))
              (is (and complaint (search expected complaint)) "~S: ~A" clause complaint)))
@@ -252,9 +258,38 @@
         (is (search "did you mean red?" (princ-to-string condition))))
       (:no-error (&rest values) (fail "accepted: ~S" values)))))
 
+(test mistakes.inside-other-forms-are-told-as-ours
+  (loop for form in '((progn (world:defmap m (9 9) (wal (1 1) (2 2) bricks 1)))
+                      (let ((x 1)) (world:defmap m (9 9) (wal (1 1) (2 2) bricks 1)) x)
+                      (funcall (lambda () (world:defmap m (9 9) (wal (1 1) (2 2) bricks 1)))))
+        do (is (search "a clause: wall" (first (complaints form))) "~S" form)))
+
+(test mistakes.in-use-value-are-asked-about-again
+  (with-own-definitions
+    (let ((values '((wal (1 1) (2 2) bricks 1) (wall (1 1) (2 2) bricks 1))))
+      (handler-bind ((base:malformed-definition
+                       (lambda (condition)
+                         (invoke-restart (find-restart 'use-value condition) (pop values)))))
+        (eval '(world:defmap m (9 9) (oops))))
+      (is (null values))
+      (is (= 1 (length (world::map-clauses (world:find-map 'm))))))))
+
 (test mistakes.of-slips-are-no-other-words
   (is (null (doubts '(world:defmap m (9 9) (obj box (4 4) ((:height 3) (:side 2) (:lock 1)))))))
-  (is (= 1 (length (doubts '(world:defmap m (9 9) (obj box (4 4) ((:weihgt 3)))))))))
+  (is (= 1 (length (doubts '(world:defmap m (9 9) (obj box (4 4) ((:weihgt 3))))))))
+  (is (= 1 (length (doubts '(world:defmap m (9 9) (obj box (4 4) ((:ize 3))))))))
+  (let ((doubts (doubts '(world:defsubstance limestone 5)
+                        '(world:defmap m (9 9) (wall (1 1) (2 2) limstone 1)
+                          (wall (3 3) (4 4) ivory 1)))))
+    (is (= 1 (length doubts)))
+    (is (search "did you mean limestone?" (first doubts)))))
+
+(test mistakes.are-where-code-is-not-where-words-are
+  "A definition that a comment or a string shows is not the one that is wrong."
+  (is (search "line 4)" (file-complaint "; (world:defmap m (9 9) (wal (1 1)))
+#| (world:defmap m (9 9)) |#
+(defparameter *ars-test-text* \"(world:defmap m (9 9)\")
+(world:defmap m (9 9) (wal (1 1)))"))))
 
 (test mistakes.attributes-that-no-longer-fit-are-told
   (with-own-definitions

@@ -45,6 +45,17 @@
     (is (search "ROBOT belongs to" (complaint-about '(robot:defrobot robot:robot
                                                       (room (2 2) 0)))))))
 
+(defconstant +ars-test-limit+ 5)
+(define-symbol-macro ars-test-alias (car '(1)))
+
+(test names.of-robots-are-no-constants-nor-macros
+  (with-own-definitions
+    (eval '(world:defmap room (10 10)))
+    (flet ((complaint (name) (complaint-about `(robot:defrobot ,name (room (2 2) 0)))))
+      (is (search "is a constant" (complaint '+ars-test-limit+)))
+      (is (search "is a symbol macro" (complaint 'ars-test-alias)))
+      (is (search "a symbol of a package" (complaint (make-symbol "NOBODY")))))))
+
 (test simulator.takes-the-name-of-a-map
   (with-own-definitions
     (eval '(world:defmap room (10 10)))

@@ -123,10 +123,21 @@
     (flet ((poke () (outcome-of 'poke (designate 'apple) (hand 0))))
       (is (equal '(nil 1) (poke)) "the last defined that applies")
       (define-way 'poke '(it - ((:size 1)) :by hand) '(nil 3))
-      (is (equal '(nil 3) (poke)) "replaced where it was")
+      (is (equal '(nil 3) (poke)) "replaced")
       (world:set-attribute (thing 'apple) :size 2)
       (is (equal '(nil 2) (poke)))
+      (define-way 'poke '(it - () :by hand) '(nil 4))
+      (world:set-attribute (thing 'apple) :size 1)
+      (is (equal '(nil 4) (poke)) "the last defined, also when it is defined again")
       (is (equal '(poke) (mapcar #'command:manipulation-name (command:all-manipulations)))))))
+
+(test defmanipulation.keeps-methods-of-other-types
+  "What was typed is no earlier version of a method with other types."
+  (with-own-manipulations
+    (define-way 'poke '(it - ((:size 1)) :by hand - robot:hand) '(nil :hand))
+    (define-way 'poke '(it - ((:size 1)) :by hand - robot:robot) '(nil :robot))
+    (is (equal '(nil :hand) (outcome-of 'poke (designate 'apple) (hand 0))))
+    (is (equal '(nil :robot) (outcome-of 'poke (designate 'apple) (robot:find-robot 'cook))))))
 
 (test defmanipulation.takes-the-example-of-the-manual
   (with-own-manipulations

@@ -75,6 +75,21 @@
   (signals base:malformed-definition
     (macroexpand-1 '(ars:define-user-package :ars-test-home (:use :no-such-package)))))
 
+(test user-package.says-which-names-clash
+  (unwind-protect
+       (progn
+         (intern "FAIL" (make-package :ars-test-other :use '()))
+         (export (find-symbol "FAIL" :ars-test-other) :ars-test-other)
+         (handler-case (define-home '((:use :cl :ars-test-other :nisp)))
+           (base:malformed-definition (condition)
+             (is (search "(:shadowing-import-from :ars-test-other #:fail)"
+                         (princ-to-string condition))))
+           (:no-error (package) (delete-package package) (fail "no clash")))
+         (with-user-package (package (:use :cl :ars-test-other :nisp)
+                                     (:shadowing-import-from :nisp #:fail))
+           (is (eq 'rpl:fail (find-symbol "FAIL" package)))))
+    (delete-package :ars-test-other)))
+
 ;;; What the system itself brings.
 
 (defparameter *what-is-defined*

@@ -32,6 +32,10 @@
   "Signal WRONG-ARGUMENT unless TEST holds; EXPECTED says in words what PLACE should be."
   `(unless ,test (reject-argument ',operator ',place ,place ,expected)))
 
+(defun sentence (text)
+  "Return TEXT with a full stop, unless it ends in a question."
+  (if (ends-with #\? text) text (format nil "~A." text)))
+
 (addition malformed-definition)
 (define-condition malformed-definition (ars-magna-error)
   ((definition :initarg :definition :reader malformed-definition-definition)
@@ -40,17 +44,17 @@
    (place      :initarg :place      :initform nil :reader malformed-definition-place))
   (:report (lambda (condition stream)
              (let ((*print-case* :downcase))
-               (format stream "~A~@[ (~A)~]: cannot use the clause~%  ~S~%Expected ~A."
+               (format stream "~A~@[ (~A)~]: cannot use the clause~%  ~S~%Expected ~A"
                        (malformed-definition-definition condition)
                        (malformed-definition-place condition)
                        (malformed-definition-clause condition)
-                       (malformed-definition-expected condition)))))
+                       (sentence (malformed-definition-expected condition))))))
   (:documentation "A defining form (DEFMAP, DEFROBOT ...) has a clause that makes no sense."))
 
-(addition definition-warning definition-warning-text)
 (setf (documentation 'malformed-definition-place 'function)
       "Return the file and line of what makes no sense, a string, or NIL if it was typed.")
 
+(addition definition-warning definition-warning-text)
 (define-condition definition-warning (warning)
   ((text :initarg :text :reader definition-warning-text))
   (:report (lambda (condition stream)
@@ -69,13 +73,13 @@
   "Return NAME as people write it: a symbol in lower case, without its package."
   (if (symbolp name) (string-downcase name) name))
 
-(addition unknown-name)
 (defun names-to-show (names)
   "Return NAMES as people write them, the first dozen of them if there are more."
   (let ((more (- (length names) 12)))
     (append (mapcar #'plain-name (subseq names 0 (min 12 (length names))))
             (when (plusp more) (list (format nil "and ~D more" more))))))
 
+(addition unknown-name)
 (define-condition unknown-name (ars-magna-error)
   ((kind    :initarg :kind    :reader unknown-name-kind)
    (name    :initarg :name    :reader unknown-name-name)

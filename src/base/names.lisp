@@ -59,10 +59,11 @@ into B."
 (defun resembles-p (a b)
   "True if the name A is so much like the different name B that one may be a slip for the other:
 one letter apart, or two if they are long. In short names, and at their beginning, another letter
-makes another word."
+instead makes another word."
   (let* ((a (string a)) (b (string b)) (shorter (min (length a) (length b))))
     (and (plusp shorter)
-         (char-equal (char a 0) (char b 0))
+         (or (char-equal (char a 0) (char b 0))
+             (and (/= (length a) (length b)) (<= 3 shorter)))
          (<= 1 (edit-distance a b) (if (<= 8 shorter) 2 1))
          (not (and (= (length a) (length b)) (< shorter 6)
                    (= 1 (count nil (map 'list #'char-equal a b))))))))

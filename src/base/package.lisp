@@ -7,7 +7,7 @@ and bordeaux-threads so that no other layer has to.")
   (:import-from :alexandria
                 #:clamp #:ensure-list #:once-only #:parse-body #:removef #:when-let #:if-let
                 #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
-                #:read-file-into-string #:starts-with-subseq #:define-constant)
+                #:read-file-into-string #:starts-with-subseq #:ends-with #:define-constant)
   ;; alexandria
   (:export #:clamp #:ensure-list #:once-only #:parse-body #:removef #:when-let #:if-let
            #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
@@ -31,7 +31,8 @@ and bordeaux-threads so that no other layer has to.")
   (:export #:same-name-p #:name-string #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables
   (:export #:variable-name-p #:variable-forms #:known-variable-p #:local-variable-p
-           #:nested-p #:check-function-name)
+           #:nested-p #:check-function-name
+           #:variable-name-trouble)
   ;; sources, definitions
   (:export #:source-here #:source-file #:current-source #:*definition* #:definition-again
            #:make-defining #:defining-form #:reject-clause

@@ -187,7 +187,8 @@ BEFORE is an object of the registry to come directly before, instead of last. Re
                  (or (same-name-p kind (registry-kind registry))
                      (member kind (registry-synonyms registry) :test #'same-name-p)))
                *registries*)
-      (reject-name "kind of definition" kind (mapcar #'registry-kind *registries*))))
+      (reject-name "kind of definition" kind
+                   (mapcar #'registry-kind (remove-if #'registry-fixed-p *registries*)))))
 
 (defun forget-value (variable)
   "Let VARIABLE have no value at top level: what a headless run has bound it to here, it keeps."
@@ -202,8 +203,8 @@ BEFORE is an object of the registry to come directly before, instead of last. Re
   (when (or (registry-fixed-p registry)
             (and (registry-sealed-p registry)
                  (equal *own-source* (entry-source entry))))
-    (reject-use "~(~A~), a ~A, cannot be undefined: the simulator needs it."
-                (entry-name entry) (registry-text registry))))
+    (reject-use "The ~A ~(~A~) cannot be undefined: the simulator needs it."
+                (registry-text registry) (entry-name entry))))
 
 (addition undefine)
 (defun undefine (kind name)

@@ -4,13 +4,20 @@
 
 ;;; What a user defines by a name can often be had as the value of a variable of that name too.
 
+(defun variable-name-trouble (name)
+  "Return in words why the symbol NAME, of a package, cannot become a special variable, or NIL."
+  (let ((package (symbol-package name)))
+    (cond ((sb-ext:package-locked-p package) (format nil "belongs to ~A" (package-name package)))
+          ((constantp name) "is a constant")
+          ((not (member (sb-cltl2:variable-information name) '(nil :special)))
+           "is a symbol macro or a global variable"))))
+
 (defun variable-name-p (name)
-  "True if the symbol NAME can become a special variable: constants cannot, keywords neither, nor
-what belongs to a locked package, such as Common Lisp's or ours."
+  "True if the symbol NAME can become a special variable: constants cannot, nor what belongs to a
+locked package, such as Common Lisp's or ours."
   (and name
        (symbol-package name)
-       (not (constantp name))
-       (not (sb-ext:package-locked-p (symbol-package name)))))
+       (null (variable-name-trouble name))))
 
 (defun variable-forms (name)
   "Return the forms, perhaps none, that declare NAME a special variable."
@@ -30,7 +37,9 @@ what belongs to a locked package, such as Common Lisp's or ours."
 
 (defun check-function-name (definition name)
   "Signal MALFORMED-DEFINITION if NAME, of DEFINITION, belongs to a package whose names users cannot
-define as functions."
+define as functions, or is no name of a function."
+  (unless (or (symbolp name) (and (consp name) (eq 'setf (first name))))
+    (reject-clause definition name "a symbol as the name"))
   (let ((package (and (symbolp name) (symbol-package name))))
     (when (and package (sb-ext:package-locked-p package) (not (eq package *package*)))
       (reject-clause definition name

@@ -7,10 +7,10 @@
 ;;; for them when its delay has passed. What happens then is a command's operation on the value of
 ;;; the method's :BY parameter.
 ;;;
-;;; A method with the same parameter list is replaced where it stands. When a file is loaded that
-;;; has changed since, the methods that it defined before are forgotten first: so a method whose
-;;; parameters were edited does not stay behind. Of those that are typed, one with the same
-;;; variables and attributes is taken for an earlier version unless no thing could be for both.
+;;; A method replaces one with the same parameter list. When a file is loaded that has changed
+;;; since, the methods that it defined before are forgotten first: so a method whose parameters were
+;;; edited does not stay behind. Of those that are typed, one with the same variables, types and
+;;; attributes is taken for an earlier version unless no thing could be for both.
 
 (defstruct (parameter-list (:constructor make-parameter-list (objects patterns by others))
                            (:copier nil))
@@ -118,18 +118,18 @@ others, each a list (variable type), with NIL for no type."
   (let ((parameters (method-parameters old)) (others (method-parameters method)))
     (and (null (method-source old)) (null (method-source method))
          (equal (parameter-variables parameters) (parameter-variables others))
+         (equal (parameter-list-by parameters) (parameter-list-by others))
+         (equal (parameter-list-others parameters) (parameter-list-others others))
          (every #'similar-patterns-p
                 (parameter-list-patterns parameters) (parameter-list-patterns others)))))
 
 (defun with-method (methods method)
-  "Return the list METHODS with METHOD: instead of one with the same parameter list, or of which it
-is a new version, or before all others."
+  "Return the list METHODS with METHOD before them, without one that has the same parameter list or
+of which it is a new version."
   (let* ((current (remove-if (lambda (old) (outdated-p old (method-source method))) methods))
          (old (or (find (method-form method) current :key #'method-form :test #'value-equal)
                   (find-if (lambda (old) (retyped-p old method)) current))))
-    (if old
-        (substitute method old current)
-        (cons method current))))
+    (cons method (remove old current))))
 
 (defun say-if-shared (name methods method)
   "Warn if METHOD is the first from its file, and METHODS of NAME are from others."

@@ -38,6 +38,9 @@
 (defun check-clause (definition clause)
   (let* ((key (attribute-key (first clause))) (attribute (attribute-of key))
          (value (second clause)))
+    (when (and value (symbolp value) (starts-with-subseq "?" (symbol-name value)))
+      (reject-clause definition clause
+                     "a value; after (in-readtable :nisp), which goes before it, ?x is a matchvar"))
     (when (reversed-p key value)
       (reject-clause definition clause "a range with the lower end first"))
     (cond ((null attribute))

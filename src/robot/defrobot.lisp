@@ -63,13 +63,15 @@ CAMERAS a list of lists (fov resolution). Return the robot."
     robot))
 
 (defun check-robot-name (definition name)
-  (unless (and name (symbolp name)) (reject-clause definition name "a symbol as the robot's name"))
-  (unless (variable-name-p name)
-    (reject-clause definition name
-                   (format nil "a symbol that can be a variable, as a robot is the value of one, ~
-                                and ~A belongs to ~A. Call it my-~(~A~), or shadow the symbol in ~
-                                your package: (:shadow #:~(~A~))"
-                           name (package-name (symbol-package name)) name name))))
+  (unless (and name (symbolp name) (symbol-package name))
+    (reject-clause definition name "a symbol of a package as the robot's name"))
+  (let ((trouble (variable-name-trouble name)))
+    (when trouble
+      (reject-clause definition name
+                     (format nil "a symbol that can be a special variable, as a robot is the value ~
+                                  of one, and ~A ~A. Call it my-~(~A~), or shadow the symbol in ~
+                                  your package: (:shadow #:~(~A~))"
+                             name trouble name name)))))
 
 (defun check-robot-variable (name)
   "Signal MALFORMED-DEFINITION if the variable NAME is in use for something else than robots."

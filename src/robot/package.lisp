@@ -8,6 +8,7 @@ of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
   (:shadowing-import-from :ars-magna.world #:map)
   ;; parts
   (:export #:robot #:robot-p #:robot-name #:robot-body #:robot-world #:robot-retired #:check-in-run
+           #:robot-enders
            #:headless-p #:all-bodies #:find-body #:robot-simulation
            #:robot-x #:robot-y #:robot-angle #:robot-cos #:robot-sin #:robot-position
            #:robot-speed #:robot-turn-angle #:robot-cameras #:robot-hands #:robot-bins

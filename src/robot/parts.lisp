@@ -14,6 +14,8 @@
   (world nil :type (or null world))
   ;; Why its run is over, a string; NIL as long as it is not.
   (retired nil :type (or null string))
+  ;; Functions of no arguments to call then.
+  (enders '() :type list)
   (x 0d0 :type double-float)
   (y 0d0 :type double-float)
   (angle 0d0 :type double-float)
@@ -99,6 +101,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   robot-body "Return the definition from which the robot was made."
   robot-world "Return the world that the robot is in."
   robot-retired "Return why the robot's run is over, a string, or NIL as long as it is not."
+  robot-enders "Return the functions that are called when the robot's run is over. Can be set."
   robot-x "Return the robot's true x coordinate, in metres."
   robot-y "Return the robot's true y coordinate, in metres."
   robot-angle "Return the robot's true heading, in radians, never normalised."

@@ -6,8 +6,9 @@
 ;;; new one, as far as they fit. Headless runs under way have worlds of their own and go on.
 
 (defun say-stopped (map simulation new)
-  "Say that SIMULATION of MAP has ended, if it had begun: the map is NEW now, or NIL."
-  (when (or (live-p simulation) (plusp (simulation-tick simulation)))
+  "Say that SIMULATION of MAP has ended, if it was under way: the map is NEW now, or NIL."
+  (when (or (live-p simulation)
+            (and (plusp (simulation-tick simulation)) (not (idle-p simulation))))
     (warn-of-definition "Map ~(~A~) is ~:[no longer defined~;defined anew~]. Its simulation has ~
                          ended at tick ~D~@[; what is started from now on is in the new ~(~A~)~]."
                         (map-name map) new (simulation-tick simulation)

@@ -9,6 +9,10 @@
   "Let ROBOT take no more commands, for REASON, a sentence without its full stop."
   (setf (robot-retired robot) reason))
 
+(defun close-robot (robot)
+  "Tell those who asked for it that the run of ROBOT is over."
+  (mapc #'funcall (shiftf (robot-enders robot) '())))
+
 (defun check-in-run (resource operator)
   "Signal MISUSE if the robot that is RESOURCE, or has it as a part, is retired."
   (let ((robot (if (robot-p resource) resource (part-robot resource))))
@@ -40,6 +44,7 @@
   "Retire ROBOT, interrupt what it is doing, and take it out of its world."
   (let ((world (robot-world robot)))
     (retire-robot robot reason)
+    (close-robot robot)
     (interrupt-robot robot)
     (setf (world-robots world) (remove robot (world-robots world)))))
 

@@ -111,7 +111,12 @@ ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
        (progv (append names (mapcar #'robot-name robots) *simulation-variables*)
            (append (robots-meant names) robots (mapcar #'symbol-value *simulation-variables*))
          (unwind-protect (funcall function)
-           (retire-robots robots "the headless simulation that it was in has ended")))))))
+           (end-headless simulation)))))))
+
+(defun end-headless (simulation)
+  (let ((reason "the headless simulation that it was in has ended"))
+    (retire-robots (simulation-robots simulation) reason)
+    (end-simulation simulation reason)))
 
 (defun variables-among (names)
   "Return the symbols among NAMES, a list or a single name, that can be variables."
@@ -131,8 +136,8 @@ ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
 robots in a fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. The
 integer SEED decides all chance. Parameters are bound to what they are here, or as the list
 PARAMETERS of lists (name value) says; with CLEAN the simulation is clean. With JOURNAL it keeps a
-journal. Messages go to a queue of its own. When BODY has ended, its robots take no more commands.
-Return the values of BODY."
+journal. Messages go to a queue of its own. When BODY has ended, the run is over: what the robots
+are doing is interrupted, and they take no more commands. Return the values of BODY."
   `(call-with-simulation (lambda ()
                            (declare (special ,@(variables-among robots)))
                            ,@body)
@@ -143,9 +148,10 @@ Return the values of BODY."
 
 (defun end-simulation (simulation reason)
   "End the run of SIMULATION for good, for REASON: what its robots were doing is interrupted."
-  (end-run simulation reason
-           (loop for robot in (simulation-robots simulation)
-                 append (cons robot (robot-parts robot)))))
+  (let ((robots (simulation-robots simulation)))
+    (end-run simulation reason
+             (loop for robot in robots append (cons robot (robot-parts robot)))
+             (lambda () (mapc #'close-robot robots)))))
 
 (defun restart-world (world seed)
   "Make WORLD and its robots what they were at the start."

@@ -138,14 +138,15 @@ way stay as they are; START-CLOCK goes on with them. Return SIMULATION."
       (answer-questions simulation)))
   simulation)
 
-(defun end-run (simulation reason resources)
-  "Stop SIMULATION for good, for REASON, a sentence without its full stop. Whatever was asked of it
-and occupies RESOURCES, or has not even begun, is interrupted; nothing can be asked of it any more."
+(defun end-run (simulation reason resources function)
+  "Stop SIMULATION for good, for REASON, a sentence without its full stop, and call FUNCTION. Then
+whatever was asked of SIMULATION and occupies RESOURCES, or has not even begun, is interrupted;
+nothing can be asked of it any more."
   (unless (simulation-over simulation)
     (setf (simulation-over simulation) reason)
     (stop-clock simulation)
     (let ((*message-queue* (simulation-messages simulation)))
-      (mapc #'funcall (shiftf (simulation-enders simulation) '()))
+      (funcall function)
       (open-inbox simulation)
       (abandon simulation resources))))
 
@@ -203,5 +204,5 @@ WRONG-ARGUMENT."
       (asking (simulation)
         (add-observer #'look simulation)
         (look simulation))
-      (unwind-protect (wait-on-semaphore idle seconds)
+      (unwind-protect (and (wait-on-semaphore idle seconds) t)
         (asking (simulation) (remove-observer #'look simulation))))))

@@ -13,11 +13,11 @@
 (defun post (simulation function)
   "Have FUNCTION called, with no arguments, at the start of the next tick of SIMULATION, after
 those posted before. Any thread may post. Return nothing. Signals MISUSE if the run is over."
-  (check-not-over simulation 'post)
+  (check-not-over simulation)
   (sb-ext:atomic-push function (simulation-inbox simulation))
   ;; It may have ended just now, and its inbox may have been emptied for the last time.
   (when (and (simulation-over simulation) (withdraw simulation function))
-    (check-not-over simulation 'post))
+    (check-not-over simulation))
   (wake simulation)
   (values))
 

@@ -12,7 +12,7 @@ thread; the journal; the live clock. Knows nothing of worlds and robots.")
   (:export #:simulation #:make-simulation #:simulation-p #:simulation-name #:simulation-world
            #:simulation-tick #:simulation-seed #:simulation-agenda #:simulation-phases
            #:simulation-busy-tests #:simulation-observers #:simulation-journal
-           #:simulation-messages #:simulation-over #:simulation-enders #:check-not-over
+           #:simulation-messages #:simulation-over #:check-not-over
            #:simulation-thread #:simulation-ticking-p #:simulation-rate
            #:*simulation* #:current-simulation #:tick #:run-ticks #:run-until #:idle-p
            #:notify-later #:add-observer #:remove-observer)

@@ -25,8 +25,6 @@
   (ticking-p nil :type boolean)
   ;; Why the run is over, a sentence without its full stop; then nothing can be asked of it.
   (over nil :type (or null string))
-  ;; Functions of no arguments, to be called when it is over.
-  (enders '() :type list)
   ;; The live clock; see clock.lisp.
   (thread nil)
   (wake-up (make-semaphore "simulation") :read-only t)
@@ -52,7 +50,6 @@
   simulation-messages "Return the message queue that the simulation reports to."
   simulation-thread "Return the thread that runs the ticks, or NIL when headless."
   simulation-over "Return why the run is over, a string, or NIL as long as it is not."
-  simulation-enders "Return the functions that are called when the run is over. Can be set."
   simulation-ticking-p "True inside a tick, while the world changes."
   simulation-rate "Return the pace of the live clock: ticks per second, or :FREE.")
 
@@ -80,10 +77,10 @@ given to SIMULATOR.")
   "Return how many ticks of SIMULATION have passed; inside a tick, its number."
   (agenda-tick (simulation-agenda simulation)))
 
-(defun check-not-over (simulation operator)
-  "Signal MISUSE if the run of SIMULATION is over."
+(defun check-not-over (simulation &optional operator)
+  "Signal MISUSE, by OPERATOR if that is one that users call, if the run of SIMULATION is over."
   (when (simulation-over simulation)
-    (reject-use "~(~A~): the run in ~(~A~) is over, at tick ~D: ~A. (simulator ROBOT) starts ~
+    (reject-use "~@[~(~A~): ~]The run in ~(~A~) is over, at tick ~D: ~A. (simulator ROBOT) starts ~
                  another."
                 operator (simulation-name simulation) (simulation-tick simulation)
                 (simulation-over simulation))))

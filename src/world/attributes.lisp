@@ -30,6 +30,10 @@
  attribute-noticed "Return the base probability that the attribute is sensed unasked."
  attribute-supporters "Return the keywords of the attributes that support this one.")
 
+(defmethod print-object ((attribute attribute) stream)
+  (print-unreadable-object (attribute stream :type t)
+    (format stream "~(~S~)" (attribute-name attribute))))
+
 (define-registry attribute "attribute" :object-p attribute-p :sealed t)
 
 (declaim (inline attribute-key))

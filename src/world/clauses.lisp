@@ -48,15 +48,18 @@ which expected EXPECTED there."
                              (string-right-trim "." (princ-to-string condition))
                              (namesake (missing-name condition)))))))
 
+(defun public-variable-p (symbol)
+  "True if SYMBOL is a variable with a value that its package exports."
+  (let ((package (symbol-package symbol)))
+    (and package
+         (boundp symbol)
+         (not (keywordp symbol))
+         (eq :external (nth-value 1 (find-symbol (symbol-name symbol) package))))))
+
 (defun namesake (name)
   "Return in words a variable called NAME that another package exports, or NIL."
   (let ((other (and (symbolp name) name
-                    (find-if (lambda (symbol)
-                               (and (boundp symbol)
-                                    (eq :external (nth-value 1 (find-symbol
-                                                                (symbol-name symbol)
-                                                                (symbol-package symbol))))))
-                             (remove-if-not #'symbol-package (find-all-symbols name))))))
+                    (find-if #'public-variable-p (find-all-symbols name)))))
     (and other (format nil "~A:~A" (package-name (symbol-package other)) other))))
 
 ;;; Clauses one by one. A path is a list of positions that leads to a clause from the definition.

@@ -168,10 +168,21 @@ and of ARGUMENTS, makes. The user may replace the clause, now and when the form 
              (find kind '(:wall :rect :circle :obj) :test #'same-name-p))
         (reject-clause definition clause "a clause: wall, rect, circle or obj"))))
 
+(defun warn-of-substance (definition clause)
+  "Warn if the substance of CLAUSE may be a slip for one that is defined."
+  (let* ((name (clause-substance clause))
+         (like (unless (find-substance name nil)
+                 (find-if (lambda (other) (resembles-p name other))
+                          (defined-names *substances*)))))
+    (when like
+      (warn-of-definition "~A~@[ (~A)~]: the substance ~(~A~) is not defined; did you mean ~(~A~)?"
+                          definition (clause-place clause) name like))))
+
 (defun check-grid-clause (definition clause kind)
   (if (eq kind :circle)
       (check-circle-clause definition clause)
       (check-wall-clause definition clause kind))
+  (warn-of-substance definition clause)
   clause)
 
 (defun check-size (definition name size)

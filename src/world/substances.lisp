@@ -15,6 +15,10 @@
  substance-p "True of a substance."
  substance-name "Return the symbol that the substance is called.")
 
+(defmethod print-object ((substance substance) stream)
+  (print-unreadable-object (substance stream :type t)
+    (format stream "~(~A~) ~A" (substance-name substance) (substance-%parameter substance))))
+
 (define-registry substance "substance" :object-p substance-p)
 
 (defun define-substance (name parameter)
