@@ -10,7 +10,7 @@
   ((:module "src/base" :serial t
     :components ((:file "package") (:file "policy") (:file "public")
                  (:file "conditions") (:file "threads") (:file "dice") (:file "names")
-                 (:file "digest") (:file "sources") (:file "definitions") (:file "variables")
+                 (:file "digest") (:file "sources") (:file "variables") (:file "definitions")
                  (:file "registry") (:file "own-definitions")
                  (:file "messages") (:file "user-code")
                  (:file "parameters") (:file "physics")))

@@ -50,6 +50,18 @@
   (error 'malformed-definition :definition definition :clause clause :expected expected
                                :place (clause-place clause)))
 
+(defun check-function-name (definition name)
+  "Signal MALFORMED-DEFINITION if NAME, of DEFINITION, belongs to a package whose names users cannot
+define as functions, or is no name of a function."
+  (unless (or (symbolp name) (and (consp name) (eq 'setf (first name))))
+    (reject-clause definition name "a symbol as the name"))
+  (let ((package (and (symbolp name) (symbol-package name))))
+    (when (and package (sb-ext:package-locked-p package) (not (eq package *package*)))
+      (reject-clause definition name
+                     (format nil "a name that is free; ~A belongs to ~A. Call it my-~(~A~), or ~
+                                  shadow the symbol in your package: (:shadow #:~(~A~))"
+                             name (package-name package) name name)))))
+
 ;;; Restarts.
 
 (addition skip-definition skip-clause read-again)

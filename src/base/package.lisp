@@ -31,14 +31,13 @@ and bordeaux-threads so that no other layer has to.")
   (:export #:same-name-p #:name-string #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables
   (:export #:variable-name-p #:variable-forms #:known-variable-p #:local-variable-p
-           #:nested-p #:check-function-name
-           #:variable-name-trouble)
+           #:nested-p #:variable-name-trouble)
   ;; sources, definitions
   (:export #:source-here #:source-file #:current-source #:*definition* #:definition-again
            #:make-defining #:defining-form #:reject-clause
            #:call-with-definition #:expand-definition #:call-as-definition
-           #:in-file-p #:missing-name #:read-value #:clause-place #:skip-definition #:skip-clause
-           #:read-again)
+           #:check-function-name #:in-file-p #:missing-name #:read-value #:clause-place
+           #:skip-definition #:skip-clause #:read-again)
   ;; registry
   (:export #:registry #:define-registry #:registry-objects #:register #:seal-definitions
            #:lookup-entry #:entry-name #:entry-object #:entry-source

@@ -1,4 +1,4 @@
-;;;; variables.lisp -- which names can be variables, and which are.
+;;;; variables.lisp -- which names can be variables, and what is known where a form stands.
 
 (in-package :ars-magna.base)
 
@@ -34,15 +34,3 @@ locked package, such as Common Lisp's or ours."
 (defun nested-p (environment)
   "True if a form in ENVIRONMENT stands inside others that are compiled with it."
   (and environment (uiop:symbol-call :sb-c '#:lexenv-lambda environment) t))
-
-(defun check-function-name (definition name)
-  "Signal MALFORMED-DEFINITION if NAME, of DEFINITION, belongs to a package whose names users cannot
-define as functions, or is no name of a function."
-  (unless (or (symbolp name) (and (consp name) (eq 'setf (first name))))
-    (reject-clause definition name "a symbol as the name"))
-  (let ((package (and (symbolp name) (symbol-package name))))
-    (when (and package (sb-ext:package-locked-p package) (not (eq package *package*)))
-      (reject-clause definition name
-                     (format nil "a name that is free; ~A belongs to ~A. Call it my-~(~A~), or ~
-                                  shadow the symbol in your package: (:shadow #:~(~A~))"
-                             name (package-name package) name name)))))
