@@ -18,35 +18,14 @@
   (with-open-file (in path :external-format :utf-8)
     (loop for line = (read-line in nil) while line collect line)))
 
-(defun skip-string (text start)
-  "Return where the string or |symbol| that begins in TEXT at START ends."
-  (loop with quote = (char text start)
-        for i from (1+ start) below (length text)
-        for char = (char text i)
-        when (char= char #\\) do (incf i)
-        when (char= char quote) return (1+ i)
-        finally (return (length text))))
-
-(defun skip-comment (text start)
-  "Return where the comment that begins in TEXT at START ends."
-  (or (if (char= #\; (char text start))
-          (position #\Newline text :start start)
-          (let ((end (search "|#" text :start2 start))) (and end (+ end 2))))
-      (length text)))
-
 (defun bare-code (text)
   "Return the Lisp code in TEXT, in lower case, without comments, strings and characters."
   (with-output-to-string (out)
     (loop with i = 0
           while (< i (length text))
-          do (let ((char (char text i))
-                   (next (if (< (1+ i) (length text)) (char text (1+ i)) #\Space)))
-               (cond ((char= char #\;) (setf i (skip-comment text i)))
-                     ((and (char= char #\#) (char= next #\|)) (setf i (skip-comment text i)))
-                     ((and (char= char #\#) (char= next #\\)) (incf i 3))
-                     ((find char "\"|") (setf i (skip-string text i)))
-                     ((char= char #\\) (incf i 2))
-                     (t (write-char (char-downcase char) out)
+          do (let ((end (base::skip-text text i)))
+               (cond (end (setf i end))
+                     (t (write-char (char-downcase (char text i)) out)
                         (incf i)))))))
 
 (defun code-in (path)
