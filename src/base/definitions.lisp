@@ -147,7 +147,7 @@ the definition."
 
 (defun endless-p (form)
   "True if FORM has more conses than anybody writes, as circular lists do."
-  (let ((left 1000000) (stack (list form)))
+  (let ((left 10000000) (stack (list form)))
     (loop while stack
           do (let ((part (pop stack)))
                (when (consp part)
