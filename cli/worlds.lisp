@@ -49,7 +49,7 @@ a world. Signals BAD-LINE."
     (cond (map (robots-of map))
           (file (load-world file))
           ((find-map name nil)
-           (reject-line "No robot is defined in ~(~A~) any more. Define one: (defrobot NAME ~
+           (reject-line "No robot is defined in ~(~A~). Define one: (defrobot NAME ~
                          (~:*~(~A~) (X Y) ANGLE))."
                         name))
           (t (reject-line "There is no world ~A, nor a file of that name. Known: ~{~(~A~)~^, ~}."

@@ -31,7 +31,7 @@
   (let ((value (impossible-value attribute (second clause))))
     (when value
       (reject-clause definition clause
-                     (format nil "of ~(~A~)~@[; did you mean ~(~A~)?~]"
+                     (format nil "one of ~(~A~)~@[; did you mean ~(~A~)?~]"
                              (attribute-domain attribute)
                              (value-like value (attribute-domain attribute)))))))
 

@@ -123,6 +123,10 @@ ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
   (remove-if-not (lambda (name) (and (symbolp name) (variable-name-p name)))
                  (ensure-list names)))
 
+(defun unquoted (form)
+  "Return FORM without the quote that people put before names elsewhere."
+  (if (and (consp form) (eq 'quote (first form))) (second form) form))
+
 (defun robots-meant (names)
   "Return the robots of the current simulation that NAMES, of any package, mean."
   (loop for name in names collect (robot-of-body (find-body name) *world*)))
@@ -138,11 +142,12 @@ integer SEED decides all chance. Parameters are bound to what they are here, or 
 PARAMETERS of lists (name value) says; with CLEAN the simulation is clean. With JOURNAL it keeps a
 journal. Messages go to a queue of its own. When BODY has ended, the run is over: what the robots
 are doing is interrupted, and they take no more commands. Return the values of BODY."
-  `(call-with-simulation (lambda ()
-                           (declare (special ,@(variables-among robots)))
-                           ,@body)
-                         ',robots
-                         :seed ,seed :parameters ,parameters :clean ,clean :journal ,journal))
+  (let ((robots (unquoted robots)))
+    `(call-with-simulation (lambda ()
+                             (declare (special ,@(variables-among robots)))
+                             ,@body)
+                           ',robots
+                           :seed ,seed :parameters ,parameters :clean ,clean :journal ,journal)))
 
 ;;; Live.
 
