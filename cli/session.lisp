@@ -68,8 +68,8 @@ read; with ECHO, it shows what it reads."
   "Signal BAD-LINE if the run that the prompt is in is over."
   (when (and *simulation* (simulation-over *simulation*))
     (let ((name (simulation-name *simulation*)))
-      (reject-line "The run in ~(~A~) is over: ~A. ~:[WORLD shows where you can go~;WORLD ~:*~(~A~) ~
-                    starts it anew~]."
+      (reject-line "The run in ~(~A~) is over: ~A. ~:[WORLD shows where you can go~;~
+                    WORLD ~:*~(~A~) starts it anew~]."
                    name (simulation-over *simulation*)
                    (and (find-map name nil) name)))))
 

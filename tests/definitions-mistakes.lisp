@@ -34,6 +34,12 @@
                  :directions (car cell)) . "code that runs")
                ((command:defmanipulation m (it - ((:size (5 3))) :by hand) ()) . "lower end first")
                ((rpl:def-interp-proc "p" () 1) . "a symbol")
+               ((world:defmap yard) . "(width height)")
+               ((robot:defrobot nobody) . "(environment (x y) angle)")
+               ((world:defattribute :q) . "NUMERIC or a list")
+               ((world:defsubstance jelly) . "a number as the parameter")
+               ((world:defsubstance aether #.sb-ext:double-float-positive-infinity) . "a number")
+               ((world:defkicker k (x) (set-attribute x :size 3)) . "(set-attribute x :size 3)")
                ((world:defmap m (9 9) . #1=((wall (1 1) (2 2) bricks 1) . #1#)) . "that ends")
                ((world:defmap m (9 9)
                  (obj box (1 1) ((:size #.sb-ext:double-float-positive-infinity))))
@@ -326,6 +332,19 @@
     (eval '(world:defmap m (9 9)))
     (call-choosing 'use-value (lambda () (eval '(robot:defrobot fred (m (50 5) 0)))) '(5 5))
     (is (= 5 (robot:robot-x (robot:find-robot 'fred))))))
+
+(test restarts.take-whole-definitions-for-clauses
+  (with-own-definitions
+    (call-choosing 'use-value (lambda () (eval '(world:defmap m (9 9) (wal (1 1) (2 2) bricks 1))))
+                   '(world:defmap m (5 5)))
+    (is (= 5 (world:map-width (world:find-map 'm))))))
+
+(test restarts.do-not-mistake-the-name-for-the-clause
+  "An error of the author's is not the name's."
+  (with-own-definitions
+    (signals base:misuse
+      (call-choosing 'use-value (lambda () (eval '(world:defsubstance s1 (error "oops")))) 4))
+    (is (null (world:find-substance 's1 nil)))))
 
 (test restarts.leave-out-contents-alone
   (with-own-definitions

@@ -131,6 +131,15 @@
       (is (equal '(nil 4) (poke)) "the last defined, also when it is defined again")
       (is (equal '(poke) (mapcar #'command:manipulation-name (command:all-manipulations)))))))
 
+(test manipulation.undefined-while-under-way-fails
+  (with-own-manipulations
+    (define-way 'poke '(it - () :by hand) '(nil 1))
+    (let ((answers '()) (apple (designate 'apple)))
+      (command:run-manipulation 'poke apple (hand 0) (lambda (&rest all) (push all answers)))
+      (base:undefine 'manipulation 'poke)
+      (time:run-ticks 5)
+      (is (equal '((:failed nil)) answers)))))
+
 (test defmanipulation.keeps-methods-of-other-types
   "What was typed is no earlier version of a method with other types."
   (with-own-manipulations

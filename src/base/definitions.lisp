@@ -82,14 +82,19 @@ define as functions, or is no name of a function."
   (read-definition-again (source-file (defining-source definition))
                          (defining-form definition) (defining-ordinal definition)))
 
+(defun other-definition-p (value &optional (definition *definition*))
+  "True if VALUE is a whole form that can take the place of DEFINITION."
+  (and (consp value)
+       (symbolp (first value))
+       (same-name-p (first value) (first (defining-form definition)))))
+
 (defun definition-with (definition value)
   "Return the form of DEFINITION with VALUE for the clause that was rejected; VALUE itself if that
 is such a form."
   (let* ((form (defining-form definition))
          (clause (defining-clause definition))
          (new (subst value clause form :test #'equal)))
-    (cond ((and (consp value) (symbolp (first value)) (same-name-p (first value) (first form)))
-           value)
+    (cond ((other-definition-p value definition) value)
           ((and clause (not (equal new form))) new)
           (t (reject-use "~S can stand for no part of ~A. Give a whole form for it."
                          value (definition-text definition))))))
@@ -125,10 +130,15 @@ the user is asked again."
   (and (typep condition '(or unbound-variable undefined-function))
        (cell-error-name condition)))
 
+(defun head (form)
+  "Return operator and name of the definition FORM, in a list."
+  (subseq form 0 (min 2 (length form))))
+
 (defun reject-value (condition)
   "Signal MALFORMED-DEFINITION because of CONDITION, an error in a form that an author wrote."
   (reject-clause (definition-text *definition*)
-                 (or (missing-name condition) (second (defining-form *definition*)))
+                 (or (missing-name condition)
+                     (append (head (defining-form *definition*)) '(|...|)))
                  (format nil "forms that have values (~A)"
                          (string-right-trim "." (princ-to-string condition)))))
 
@@ -164,8 +174,9 @@ the definition."
 
 (defun forms-or-rejection (function nested)
   "Return what FUNCTION returns. If it signals MALFORMED-DEFINITION and the form is NESTED in
-others, where the compiler would make another error of that, return a form that signals it later."
-  (if nested
+others or in a file that is compiled, where the compiler would make another error of that, return a
+form that signals it later."
+  (if (or nested *compile-file-truename*)
       (handler-case (funcall function)
         (malformed-definition (condition) (list (rejected-form condition))))
       (funcall function)))

@@ -36,8 +36,8 @@ and bordeaux-threads so that no other layer has to.")
   (:export #:source-here #:source-file #:current-source #:*definition* #:definition-again
            #:make-defining #:defining-form #:reject-clause
            #:call-with-definition #:expand-definition #:call-as-definition
-           #:check-function-name #:in-file-p #:missing-name #:read-value #:clause-place
-           #:skip-definition #:skip-clause #:read-again)
+           #:check-function-name #:other-definition-p #:in-file-p #:missing-name #:read-value
+           #:clause-place #:skip-definition #:skip-clause #:read-again)
   ;; registry
   (:export #:registry #:define-registry #:registry-objects #:register #:seal-definitions
            #:lookup-entry #:entry-name #:entry-object #:entry-source

@@ -188,7 +188,11 @@ BEFORE is an object of the registry to come directly before, instead of last. Re
                      (member kind (registry-synonyms registry) :test #'same-name-p)))
                *registries*)
       (reject-name "kind of definition" kind
-                   (mapcar #'registry-kind (remove-if #'registry-fixed-p *registries*)))))
+                   (mapcar #'usual-name (remove-if #'registry-fixed-p *registries*)))))
+
+(defun usual-name (registry)
+  "Return what users call the kind of REGISTRY."
+  (or (first (registry-synonyms registry)) (registry-kind registry)))
 
 (defun forget-value (variable)
   "Let VARIABLE have no value at top level: what a headless run has bound it to here, it keeps."

@@ -99,10 +99,10 @@
         (fail-with operation :failed))))
 
 (defun begin-manipulation (operation resource &rest arguments)
-  "Choose the method for ARGUMENTS, and let it be performed when its delay has passed."
-  (let ((method (applicable-method
-                 (find-manipulation (command-name (operation-command operation)))
-                 arguments resource)))
+  "Choose the method for ARGUMENTS, and let it be performed when its delay has passed. There is none
+if the manipulation has been undefined since."
+  (let* ((manipulation (find-manipulation (command-name (operation-command operation)) nil))
+         (method (and manipulation (applicable-method manipulation arguments resource))))
     (cond ((null method) (fail-with operation :failed))
           ((<= (method-delay method) 1) (perform operation method))
           (t (go-on operation (lambda (operation) (perform operation method))

@@ -117,7 +117,7 @@ CAMERAS a list of lists (fov resolution). Return the robot."
             :bins (list ,@(loop for bin in bins collect (number-of bin bins)))))))))
 
 (public defrobot)
-(defmacro defrobot (&whole form name start &rest options &environment environment)
+(defmacro defrobot (&whole form name &optional start &rest options &environment environment)
   "Define a robot: (defrobot NAME (ENVIRONMENT (X Y) ANGLE) [:cameras ((FOV RESOLUTION) ...)]
 [:hands (STRENGTH ...)] [:bins (CAPACITY ...)]). NAME becomes a special variable bound to the
 robot, which stands in the resident world of the map ENVIRONMENT (its variable or name) at (X,Y),

@@ -68,7 +68,7 @@
 (defun check-attribute-clauses (definition domain base max-mult supported-by)
   (check-domain definition domain)
   (loop for (option value) in `((:base ,base) (:max-mult ,max-mult))
-        unless (typep value '(real 0))
+        unless (and (finite-p value) (<= 0 value))
           do (reject-clause definition (list option value) "a number not below 0"))
   (unless (and (proper-list-p supported-by) (every #'symbolp supported-by))
     (reject-clause definition (list :supported-by supported-by) "a list of attribute names")))
@@ -132,7 +132,7 @@
                                           :noticed ,noticed :supported-by ',supported-by)))))
 
 (public defattribute numeric)
-(defmacro defattribute (&whole form name domain &rest options &environment environment)
+(defmacro defattribute (&whole form name &optional domain &rest options &environment environment)
   "Define the attribute NAME, a keyword by convention (manual 5.4). DOMAIN is NUMERIC or a list
 of the possible values, unevaluated. Options, in any order:
   :success p -- base probability that a discrete reading is correct; default 1

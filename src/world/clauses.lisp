@@ -14,7 +14,7 @@
   (loop for (key value) on options by #'cddr
         for seen = '() then (cons last seen) for last = key
         do (unless (member key known)
-             (reject-clause definition (list key value)
+             (reject-clause definition (if (keywordp key) (list key value) options)
                             (format nil "one of the options ~(~{~S~^ ~}~)~@[; did you mean ~
                                          ~(~S~)?~]"
                                     known (and (symbolp key) (nearest-name key known)))))
@@ -71,7 +71,8 @@ which expected EXPECTED there."
 
 (defun call-with-clause (function clause path)
   "Call FUNCTION with CLAUSE, the one at PATH of the definition at hand. A user who chooses so
-leaves it out (then return NIL), or has FUNCTION called with another: read again, or typed."
+leaves it out (then return NIL), or has FUNCTION called with another: read again, or typed. A whole
+definition that is typed takes the place of the one at hand."
   (restart-case (funcall function clause)
     (skip-clause ()
       :report (lambda (stream) (format stream "Leave the clause ~S out." clause))
@@ -83,4 +84,6 @@ leaves it out (then return NIL), or has FUNCTION called with another: read again
     (use-value (other)
       :report "Use another clause."
       :interactive (lambda () (read-value "A clause to use"))
-      (call-with-clause function other path))))
+      (if (other-definition-p other)
+          (use-value other)
+          (call-with-clause function other path)))))

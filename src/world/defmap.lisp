@@ -220,7 +220,7 @@ recipe, of anything else the clause itself. NIL if it is to be left out."
                           :package ,(package-name *package*))))))))
 
 (public defmap)
-(defmacro defmap (&whole form name size &body clauses &environment environment)
+(defmacro defmap (&whole form name &optional size &body clauses &environment environment)
   "Define the map NAME (manual 5.1), a special variable bound to it. SIZE is (width height), in
 cells of a metre, and perhaps :cache with the name of a file to keep the built grid in. Clauses:
   (wall (x0 y0) (x1 y1) substance parameter [parameter1]) -- a line of walls

@@ -91,7 +91,8 @@ a thing. Return the kicker."
   (check-name definition name "kicker"))
 
 (public defkicker)
-(defmacro defkicker (&whole form name lambda-list options &body body &environment environment)
+(defmacro defkicker (&whole form name lambda-list &optional options
+                     &body body &environment environment)
   "Define the kicker NAME (manual 5.3.1), whose BODY runs with probability :prob (default 1) on
 any tick on which the form :test (default true) holds. LAMBDA-LIST is one variable, bound to the
 thing in both. NAME becomes a special variable bound to the kicker, unless it is one of Common
