@@ -121,6 +121,20 @@
       (is (equal '(:interrupt) codes))
       (signals base:misuse (time:run-ticks 1 simulation)))))
 
+(test map-redefined.after-its-simulator-was-aborted
+  "What is left of a run whose thread is dead is no obstacle."
+  (with-mole-in-shed
+    (robot:simulator 'mole :display nil)
+    (let* ((simulation time:*simulation*) (thread (time:simulation-thread simulation)))
+      (command:robot-turn (mole) 1 (lambda (&rest all)
+                                     (declare (ignore all))
+                                     (sb-thread:abort-thread)))
+      (loop while (base:thread-alive-p thread) do (sb-thread:thread-yield))
+      (is (search "has ended" (first (define-shed 9))))
+      (robot:simulator 'mole :display nil)
+      (is (not (eq simulation time:*simulation*)))
+      (robot:stop-simulator))))
+
 (test map-redefined.says-what-it-ends
   "Not for a run with nothing under way, unless it is live."
   (with-mole-in-shed

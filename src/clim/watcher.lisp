@@ -124,5 +124,5 @@ itself: it will come with the next tick."
   (let ((pacer (watcher-pacer watcher)))
     ;; When Lisp exits, the pacer may have been ended before.
     (when (and pacer (not (eq pacer (current-thread))))
-      (ignore-errors (join-thread pacer))))
+      (join-thread pacer)))
   (values))
