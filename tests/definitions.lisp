@@ -186,6 +186,22 @@
          (is (equal '(nil 4) (poke)) "also when nothing has changed"))
        (method-text "(0 9)" 1)))))
 
+(test manipulation.stays-if-loading-its-file-fails
+  (with-own-manipulations
+    (let ((text "(command:defmanipulation poke (it - ((:size 1)) :by hand) () (values nil 1))
+                 (command:defmanipulation poke (it - ((:size 2)) :by hand) (~A) (values nil 2))"))
+      (flet ((poke (size)
+               (world:set-attribute (thing 'apple) :size size)
+               (outcome-of 'poke (designate 'apple) (hand 0))))
+        (call-with-file
+         (lambda (path)
+           (load-here path)
+           (rewrite path (format nil text ":success 3"))
+           (signals base:malformed-definition (load-here path))
+           (is (equal '(nil 1) (poke 1)))
+           (is (equal '(nil 2) (poke 2)) "the old one, as there is no new one"))
+         (format nil text ""))))))
+
 (test place-type.before-others
   (with-own-definitions
     (eval '(world:def-place-type any (cell) :check-matchers ((((-)) 1)) :before world:concave))

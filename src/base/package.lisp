@@ -33,8 +33,8 @@ and bordeaux-threads so that no other layer has to.")
   (:export #:variable-name-p #:variable-forms #:known-variable-p #:local-variable-p
            #:nested-p #:variable-name-trouble)
   ;; sources, definitions
-  (:export #:source-here #:source-file #:current-source #:*definition* #:definition-again
-           #:make-defining #:defining-form #:reject-clause
+  (:export #:source-here #:source-file #:part-in-file-p #:current-source
+           #:*definition* #:definition-again #:make-defining #:defining-form #:reject-clause
            #:call-with-definition #:expand-definition #:call-as-definition
            #:check-function-name #:other-definition-p #:in-file-p #:missing-name #:read-value
            #:clause-place #:skip-definition #:skip-clause #:read-again)

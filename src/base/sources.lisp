@@ -166,6 +166,13 @@ CLAUSE is not found in it, or NIL; and which of the definitions of that name it 
   "Return what LINE-OF-CLAUSE does for the text in FILE; NIL if that cannot be read."
   (ignore-errors (line-of-clause (read-file-into-string file) form clause)))
 
+(defun part-in-file-p (file form part)
+  "True if a form in FILE, as that is now, has operator and name of FORM, and PART, a list, in it."
+  (ignore-errors
+    (let ((text (read-file-into-string file)))
+      (loop for (start end) in (definition-positions text form)
+              thereis (form-position text part start end)))))
+
 (defun read-definition-again (file form ordinal)
   "Return the definition that was FORM, number ORDINAL of its name, as it is in FILE now. Signals
 MISUSE if it is not there."

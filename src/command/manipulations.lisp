@@ -8,9 +8,10 @@
 ;;; the method's :BY parameter.
 ;;;
 ;;; A method replaces one with the same parameter list. When a file is loaded that has changed
-;;; since, the methods that it defined before are forgotten first: so a method whose parameters were
-;;; edited does not stay behind. Of those that are typed, one with the same variables, types and
-;;; attributes is taken for an earlier version unless no thing could be for both.
+;;; since, the methods that it had before and has no more are forgotten: so a method whose
+;;; parameters were edited does not stay behind. Of those that are typed, one with the same
+;;; variables, types and attributes is taken for an earlier version unless no thing could be for
+;;; both.
 
 (defstruct (parameter-list (:constructor make-parameter-list (objects patterns by others))
                            (:copier nil))
@@ -106,12 +107,15 @@ others, each a list (variable type), with NIL for no type."
                (loop for key in options by #'cddr always (member key '(:success :delay))))
     (reject-clause definition options "([:success probability] [:delay ticks])")))
 
-(defun outdated-p (method source)
-  "True if METHOD is from the file of SOURCE, but from an earlier version of it."
+(defun outdated-p (name method source)
+  "True if METHOD of NAME is from an earlier version of the file of SOURCE, which has it no more. If
+it still has it, it will come yet, unless loading fails before."
   (let ((old (method-source method)))
     (and source
          (equal (source-file old) (source-file source))
-         (not (equal old source)))))
+         (not (equal old source))
+         (not (part-in-file-p (source-file source) (list 'defmanipulation name)
+                              (method-form method))))))
 
 (defun retyped-p (old method)
   "True if OLD and METHOD were both typed, not read from files, and METHOD is OLD edited."
@@ -123,10 +127,10 @@ others, each a list (variable type), with NIL for no type."
          (every #'similar-patterns-p
                 (parameter-list-patterns parameters) (parameter-list-patterns others)))))
 
-(defun with-method (methods method)
-  "Return the list METHODS with METHOD before them, without one that has the same parameter list or
-of which it is a new version."
-  (let* ((current (remove-if (lambda (old) (outdated-p old (method-source method))) methods))
+(defun with-method (name methods method)
+  "Return METHODS, a list of those of NAME, with METHOD before them, without one that has the same
+parameter list or of which it is a new version."
+  (let* ((current (remove-if (lambda (old) (outdated-p name old (method-source method))) methods))
          (old (or (find (method-form method) current :key #'method-form :test #'value-equal)
                   (find-if (lambda (old) (retyped-p old method)) current))))
     (cons method (remove old current))))
@@ -158,7 +162,7 @@ parameter list, BODY a function of as many arguments. Return NAME."
       (warn-of-slips definition "a pattern" pattern))
     (say-if-shared name (manipulation-methods manipulation) method)
     (setf (manipulation-methods manipulation)
-          (with-method (manipulation-methods manipulation) method))
+          (with-method name (manipulation-methods manipulation) method))
     (unless (find-manipulation name nil)
       (register *manipulations* name manipulation))
     name))
