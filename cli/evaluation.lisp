@@ -39,7 +39,7 @@ definitions are messages like others."
   "Evaluate FORM. What it writes to the error output comes when it is done."
   (let ((diagnostics (make-string-output-stream)))
     (unwind-protect (let ((*error-output* diagnostics))
-                      (call-quietly (lambda () (eval form))))
+                      (call-quietly (lambda () (eval (with-own-name form)))))
       (write-but-diagnostics (get-output-stream-string diagnostics) *standard-output*))))
 
 (defun evaluate (session form)

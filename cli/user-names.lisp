@@ -4,7 +4,8 @@
 
 ;;; The variable of a robot is a symbol of the package that its world was written in. ARS-USER
 ;;; imports the robots that the prompt may command, so that (robot-turn robbie 1 nil) means what it
-;;; says. What the user has defined under such a name himself stays as it is.
+;;; says. What the user has defined under such a name himself stays as it is; and a robot that he
+;;; defines under it is another one, his own.
 
 (defun user-package () (find-package :ars-user))
 
@@ -35,3 +36,20 @@ been read, or is a robot's of another world."
 (defun call-by-name (names)
   "Let NAMES, of robots, be known in ARS-USER."
   (mapc #'call-by-its-name names))
+
+(defun names-other-robot-p (form)
+  "True if FORM defines a robot by a name that ARS-USER has imported."
+  (and (consp form)
+       (eq 'defrobot (first form))
+       (consp (rest form))
+       (symbolp (second form))
+       (eq (second form) (find-symbol (symbol-name (second form)) (user-package)))
+       (other-robot-p (second form))))
+
+(defun with-own-name (form)
+  "Return FORM, with a name of ARS-USER's own if it would define another world's robot anew."
+  (if (names-other-robot-p form)
+      (destructuring-bind (operator name &rest clauses) form
+        (unintern name (user-package))
+        (list* operator (intern (symbol-name name) (user-package)) clauses))
+      form))

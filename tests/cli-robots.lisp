@@ -58,6 +58,21 @@
       (is (eq 'ars-worlds:dot (known-as "DOT")))
       (is (null (symbol-package read))))))
 
+(test robots.of-the-users-own-take-the-name
+  "The shipped one of that name stays as it is, and can be gone back to."
+  (with-names ("DOT")
+    (let ((dot (robot:find-robot 'ars-worlds:dot)))
+      (is (equal '("robot-turn: Robot turned 1.00" "9")
+                 (last (type-to 'ars-worlds:dot
+                                "(defmap ars-test-den (30 30))"
+                                "(defrobot dot (ars-test-den (9 9) 0))"
+                                "world tiny"
+                                "(robot-turn ars-worlds:dot 1 nil)"
+                                "(values (round (robot-x dot)))")
+                       2)))
+      (is (not (eq 'ars-worlds:dot (known-as "DOT"))))
+      (is (eq dot (robot:find-robot 'ars-worlds:dot))))))
+
 (test robots.leave-alone-what-the-user-has-defined
   (dolist (define (list (lambda (symbol) (setf (symbol-value symbol) 1))
                         (lambda (symbol) (setf (fdefinition symbol) #'list))))
