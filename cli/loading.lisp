@@ -12,18 +12,10 @@
                      (condition-text (file-trouble-cause condition)))))
   (:documentation "A form in a file that is being loaded has failed; those before it have not."))
 
-(defun comment-end (text start)
-  "Return where the comment that begins in TEXT at START ends, or NIL if none does."
-  (cond ((char= #\; (char text start))
-         (or (position #\Newline text :start start) (length text)))
-        ((eql start (search "#|" text :start2 start :end2 (min (+ start 2) (length text))))
-         (let ((end (search "|#" text :start2 (+ start 2))))
-           (if end (+ end 2) (length text))))))
-
 (defun form-start (text start)
   "Return where, from START, the next form in TEXT begins; its length if there is none."
   (loop for position = (or (position-if-not #'blank-p text :start start) (length text))
-        for end = (and (< position (length text)) (comment-end text position))
+        for end = (and (< position (length text)) (skip-comment text position))
         while end
         do (setf start end)
         finally (return position)))

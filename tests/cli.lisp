@@ -325,7 +325,8 @@ of lines, and the number of errors."
   (is (member 'ars-user::butler (cli::world-robots-called "PARLOUR")))
   (signals cli:bad-line (cli::world-robots-called "no-such-world"))
   (uiop:with-temporary-file (:pathname path :stream stream :type "lisp")
-    (format stream "(defmap attic (5 5)) (defrobot bat (attic (2 2) 0))")
+    (format stream "#| A #| loft |# (oops) |# ; (and) so on~%~
+                    (defmap attic (5 5)) (defrobot bat (attic (2 2) 0))")
     :close-stream
     (is (equal '("BAT") (mapcar #'symbol-name
                                 (cli::world-robots-called (uiop:native-namestring path)))))))

@@ -33,7 +33,7 @@ and bordeaux-threads so that no other layer has to.")
   (:export #:variable-name-p #:variable-forms #:known-variable-p #:local-variable-p
            #:nested-p #:variable-name-trouble)
   ;; sources, definitions
-  (:export #:source-here #:source-file #:part-in-file-p #:current-source
+  (:export #:source-here #:source-file #:part-in-file-p #:skip-comment #:current-source
            #:*definition* #:definition-again #:make-defining #:defining-form #:reject-clause
            #:call-with-definition #:expand-definition #:call-as-definition
            #:check-function-name #:other-definition-p #:in-file-p #:missing-name #:read-value

@@ -79,16 +79,24 @@ and returns it and where it ends, or NIL."
                   (when (zerop (decf depth)) (return (1+ i)))))
         finally (return (length text))))
 
+(defun starts-at-p (prefix text i)
+  "True if TEXT goes on with PREFIX at I."
+  (let ((end (+ i (length prefix))))
+    (and (<= end (length text))
+         (string= prefix text :start2 i :end2 end))))
+
+(defun skip-comment (text i)
+  "Return where the comment that begins in TEXT at I ends; NIL if none does."
+  (cond ((char= #\; (char text i)) (or (position #\Newline text :start i) (length text)))
+        ((starts-at-p "#|" text i) (skip-block-comment text i))))
+
 (defun skip-text (text i)
   "Return where in TEXT what begins at I and is no code, or an escaped character, ends; NIL if it is
 code."
-  (let ((char (char text i))
-        (next (if (< (1+ i) (length text)) (char text (1+ i)) #\Space)))
-    (cond ((char= char #\;) (or (position #\Newline text :start i) (length text)))
-          ((find char "\"|") (skip-quoted text i))
-          ((and (char= char #\#) (char= next #\|)) (skip-block-comment text i))
-          ((and (char= char #\#) (char= next #\\)) (+ i 3))
-          ((char= char #\\) (+ i 2)))))
+  (cond ((skip-comment text i))
+        ((find (char text i) "\"|") (skip-quoted text i))
+        ((starts-at-p "#\\" text i) (+ i 3))
+        ((char= #\\ (char text i)) (+ i 2))))
 
 (defun openings (text start end)
   "Return the positions of the opening parentheses of code in TEXT between START and END."
