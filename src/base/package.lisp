@@ -40,7 +40,7 @@ and bordeaux-threads so that no other layer has to.")
            #:clause-place #:skip-definition #:skip-clause #:read-again)
   ;; registry
   (:export #:registry #:define-registry #:registry-objects #:register #:seal-definitions
-           #:lookup-entry #:entry-name #:entry-object #:entry-source
+           #:lookup-entry #:from-this-file-p #:entry-name #:entry-object #:entry-source
            #:defined-names #:find-definition #:definition-to-replace #:variable-in-use-p
            #:*kept-variables* #:undefine #:take-back #:reinstate #:become
            #:with-own-definitions #:call-with-own-definitions)

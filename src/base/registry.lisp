@@ -92,6 +92,12 @@ UNKNOWN-NAME if ERRORP is true."
     (cond (entry (entry-object entry))
           (errorp (reject-name (registry-text registry) name (defined-names registry))))))
 
+(defun from-this-file-p (name registry)
+  "True if NAME in REGISTRY is from the file that is being loaded, which may yet define it anew."
+  (let ((entry (lookup-entry name registry))
+        (file (source-file (current-source))))
+    (and entry file (equal file (source-file (entry-source entry))))))
+
 ;;; Defining.
 
 (defgeneric take-back (object)

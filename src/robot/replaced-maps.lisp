@@ -14,15 +14,9 @@
                         (map-name map) new (simulation-tick simulation)
                         (and new (map-name new)))))
 
-(defun defined-here-p (body)
-  "True if BODY is from the file that is being loaded, which will perhaps define it anew."
-  (let ((entry (lookup-entry (body-name body) *robots*))
-        (file (source-file (current-source))))
-    (and entry file (equal file (source-file (entry-source entry))))))
-
 (defun leave-out (body reason)
   "Let there be no robot of BODY in its new map, for REASON."
-  (unless (defined-here-p body)
+  (unless (from-this-file-p (body-name body) *robots*)
     (warn-of-definition "The robot ~(~A~) takes no more commands: ~A." (body-name body) reason))
   ;; Not the one that a headless run may have bound the variable to here.
   (let ((robot (ignore-errors (sb-ext:symbol-global-value (body-name body)))))

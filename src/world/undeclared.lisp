@@ -69,17 +69,11 @@ and what is wrong with it."
     (multiple-value-bind (inside trouble) (unfit-recipe (recipe-contents recipe) key)
       (when inside (return (values inside trouble))))))
 
-(defun from-this-file-p (map)
-  "True if MAP was defined in the file that is being loaded, which will perhaps define it anew."
-  (let ((entry (lookup-entry (map-name map) *maps*))
-        (file (source-file (current-source))))
-    (and entry file (equal file (source-file (entry-source entry))))))
-
 (defmethod attribute-redefined ((old attribute) new)
   (dolist (map (all-maps))
     (multiple-value-bind (recipe trouble)
         (unfit-recipe (map-things map) (attribute-name new))
-      (when (and recipe (not (from-this-file-p map)))
+      (when (and recipe (not (from-this-file-p (map-name map) *maps*)))
         (warn-of-definition "In map ~(~A~), ~(~A~) has a value that it could not be given any ~
                              more: ~A"
                             (map-name map) (recipe-name recipe) trouble)))))
