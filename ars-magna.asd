@@ -4,16 +4,22 @@
   :description "An abstract robot simulator for people who build reactive planners."
   :version "1.0.0"
   :license "MIT"
-  :depends-on ("alexandria" "bordeaux-threads" "named-readtables" "sb-cltl2" "sb-posix")
+  :depends-on ("alexandria" "bordeaux-threads" "closer-mop" "named-readtables"
+               "sb-cltl2" "sb-posix")
   :serial t
   :components
   ((:module "src/base" :serial t
     :components ((:file "package") (:file "policy") (:file "public")
+                 (:file "floats") (:file "globals") (:file "atomic") (:file "classes")
+                 (:file "packages") (:file "files") (:file "processes") (:file "backtraces")
+                 (:file "environments")
                  (:file "conditions") (:file "threads") (:file "dice") (:file "names")
                  (:file "digest") (:file "sources") (:file "variables") (:file "definitions")
                  (:file "registry") (:file "own-definitions")
                  (:file "messages") (:file "user-code")
-                 (:file "parameters") (:file "physics")))
+                 (:file "parameters") (:file "physics")
+                 (:file "kinds") (:file "digesting") (:file "copying")
+                 (:file "argument-types") (:file "operators")))
    (:module "src/geometry" :serial t
     :components ((:file "package") (:file "types") (:file "operands") (:file "points")
                  (:file "intervals") (:file "angles")))
@@ -23,36 +29,41 @@
                  (:file "reader") (:file "readtable") (:file "loading")))
    (:module "src/world" :serial t
     :components ((:file "package") (:file "clauses") (:file "attributes")
-                 (:file "built-in-attributes") (:file "substances")
-                 (:file "map") (:file "match-forms") (:file "place-types") (:file "places")
-                 (:file "trying-places") (:file "def-place-type")
-                 (:file "built-in-places") (:file "walls") (:file "map-cache")
-                 (:file "access") (:file "location") (:file "thing") (:file "world")
+                 (:file "asked-values") (:file "built-in-attributes") (:file "substances")
+                 (:file "map") (:file "grid-walk") (:file "match-forms")
+                 (:file "place-types") (:file "places") (:file "trying-places")
+                 (:file "def-place-type") (:file "built-in-places") (:file "walls")
+                 (:file "map-cache")
+                 (:file "location") (:file "thing") (:file "world") (:file "access")
                  (:file "kickers") (:file "kicker-groups") (:file "attaching")
-                 (:file "placing") (:file "recipes") (:file "undeclared") (:file "residents")
+                 (:file "placing") (:file "setting-attributes") (:file "recipes")
+                 (:file "undeclared") (:file "residents")
                  (:file "new-thing")
                  (:file "kicking") (:file "defmap") (:file "check")))
    (:module "src/time" :serial t
-    :components ((:file "package") (:file "resource") (:file "agenda") (:file "simulation")
-                 (:file "journal") (:file "inbox") (:file "ticks") (:file "schedule")
-                 (:file "clock")))
+    :components ((:file "package") (:file "resource") (:file "request") (:file "agenda")
+                 (:file "timeline") (:file "pacing") (:file "schedule")))
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "parts") (:file "odometer") (:file "motion")
-                 (:file "designator") (:file "place-sense") (:file "body")
-                 (:file "retiring") (:file "defrobot") (:file "simulation")
-                 (:file "replaced-maps") (:file "references")
-                 (:file "own-odometers") (:file "sight") (:file "tracks")
-                 (:file "inside") (:file "state") (:file "replay")
+                 (:file "designator") (:file "place-sense") (:file "sight") (:file "tracks")
+                 (:file "inside") (:file "body") (:file "retiring") (:file "defrobot")
+                 (:file "own-changes")
                  (:file "rays") (:file "noise") (:file "matching") (:file "sightings")
                  (:file "scanning") (:file "views") (:file "tending")))
    (:module "src/command" :serial t
-    :components ((:file "package") (:file "argument-types") (:file "command")
+    :components ((:file "package") (:file "command")
                  (:file "operation") (:file "define-command") (:file "turning")
                  (:file "places") (:file "driving") (:file "following")
                  (:file "handling") (:file "hands") (:file "inserting") (:file "bins")
                  (:file "patterns") (:file "manipulations") (:file "manipulating")
                  (:file "looking") (:file "searching") (:file "tracking")
                  (:file "turning-cameras") (:file "approaching")))
+   (:module "src/run" :serial t
+    :components ((:file "package") (:file "participant") (:file "run") (:file "fingerprint")
+                 (:file "journal")
+                 (:file "references") (:file "changes") (:file "tick") (:file "headless")
+                 (:file "live") (:file "replaced-maps") (:file "state")
+                 (:file "journal-text") (:file "replay")))
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "gcontext") (:file "canvas")
                  (:file "drawing") (:file "svg")
@@ -64,7 +75,7 @@
     :components ((:file "package") (:file "ring") (:file "fluent") (:file "network")
                  (:file "propagation") (:file "operators") (:file "timer") (:file "failure")
                  (:file "task") (:file "trace") (:file "runner") (:file "machine")
-                 (:file "ending") (:file "stepping") (:file "lisp-environment") (:file "source")
+                 (:file "ending") (:file "stepping") (:file "source")
                  (:file "procedure") (:file "scope") (:file "suspension")
                  (:file "leaf") (:file "compiler") (:file "steps") (:file "binding")
                  (:file "leaving") (:file "branching") (:file "repeating") (:file "tags")
@@ -98,11 +109,11 @@
 
 (defsystem "ars-magna/cli"
   :description "The prompt Robot>."
-  :depends-on ("ars-magna" "ars-magna/worlds")
+  :depends-on ("ars-magna" "ars-magna/worlds" "trivial-gray-streams")
   :serial t
   :components
   ((:module "cli" :serial t
-    :components ((:file "package") (:file "console") (:file "user-names")
+    :components ((:file "package") (:file "process") (:file "console") (:file "user-names")
                  (:file "session") (:file "line")
                  (:file "arguments") (:file "layout") (:file "errands") (:file "robot-lines")
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
@@ -132,9 +143,10 @@
   :serial t
   :components
   ((:module "tests" :serial t
-    :components ((:file "package") (:file "base") (:file "geometry") (:file "nisp")
-                 (:file "world") (:file "world-places") (:file "world-things")
-                 (:file "world-kickers") (:file "time") (:file "robot") (:file "moving")
+    :components ((:file "package") (:file "base") (:file "base-doors") (:file "geometry")
+                 (:file "nisp") (:file "world") (:file "world-caches") (:file "world-places")
+                 (:file "world-things") (:file "world-kickers") (:file "time") (:file "robot")
+                 (:file "moving")
                  (:file "random-driver") (:file "determinism") (:file "worlds")
                  (:file "worlds-moving") (:file "looking") (:file "looking-views")
                  (:file "looking-tracks") (:file "looking-cameras") (:file "looking-approach")
@@ -146,7 +158,8 @@
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-robot-live")
                  (:file "plans")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
-                 (:file "cli-plans") (:file "cli-robots") (:file "user-package")
+                 (:file "cli-plans") (:file "cli-robots") (:file "kinds") (:file "digests")
+                 (:file "user-package")
                  (:file "definitions") (:file "definitions-names")
                  (:file "definitions-mistakes") (:file "definitions-maps")
                  (:file "homes")

@@ -8,10 +8,20 @@
 (defgeneric read-argument (type datum robot)
   (:documentation
    "Return the argument of the type called TYPE (a keyword) that DATUM, as typed, stands for with
-ROBOT; signal BAD-LINE if it stands for none. Without a method, DATUM is the argument.")
+ROBOT; signal BAD-LINE if it stands for none. Parts go by their numbers. Otherwise, without a
+method, DATUM is the argument.")
   (:method (type datum robot)
-    (declare (ignore type robot))
-    datum))
+    (if (part-type-p type)
+        (numbered datum (parts-of-kind robot type) (kind-words type) robot)
+        datum)))
+
+(defun part-type-p (type)
+  "True if TYPE is the name of a kind of part."
+  (and (find type (all-kinds 'part) :key #'kind-name :test #'same-name-p) t))
+
+(defun kind-words (type)
+  "Return TYPE, the name of a kind of part, as people write it."
+  (substitute #\Space #\- (string-downcase type)))
 
 (defgeneric argument-words (type)
   (:documentation "Return in words what is typed for an argument of TYPE, a symbol."))
@@ -28,13 +38,6 @@ ROBOT; signal BAD-LINE if it stands for none. Without a method, DATUM is the arg
           (t (reject-line "There is no ~A ~D. ~A has ~D, numbered from 0."
                           kind index robot count)))))
 
-(macrolet ((define-part-argument (type kind elements)
-             `(defmethod read-argument ((type (eql ,type)) datum robot)
-                (numbered datum (,elements robot) ,kind robot))))
-  (define-part-argument :camera "camera" robot-cameras)
-  (define-part-argument :hand "hand" robot-hands)
-  (define-part-argument :storage-bin "storage bin" robot-bins))
-
 (defun designator-numbered (datum robot)
   (or (find-designator robot datum)
       (reject-line "There is no designator ~S. STATUS lists the designators." datum)))
@@ -49,16 +52,20 @@ ROBOT; signal BAD-LINE if it stands for none. Without a method, DATUM is the arg
   (declare (ignore robot))
   (if (and datum (symbolp datum)) (make-keyword (symbol-name datum)) datum))
 
-(defparameter *part-words*
-  '((:camera . "the number of a camera") (:hand . "the number of a hand")
-    (:storage-bin . "the number of a storage bin") (:designator . "the number of a designator")
-    (:destination . "the number of a designator"))
-  "What is typed for what is called by number.")
+(defun by-number-p (type)
+  "True if what is of TYPE, a keyword, is called by number."
+  (or (member type '(:designator :destination))
+      (part-type-p type)))
+
+(defun number-words (type)
+  "Return what is typed for what is of TYPE and called by number."
+  (format nil "the number of a ~A" (if (part-type-p type) (kind-words type) "designator")))
 
 (defun type-key (type) (make-keyword (symbol-name type)))
 
 (defmethod argument-words ((type symbol))
-  (or (cdr (assoc (type-key type) *part-words*))
+  (if (by-number-p (type-key type))
+      (number-words (type-key type))
       (argument-type-text type)))
 
 (defmethod argument-words ((type (eql 'designator-type)))
@@ -68,7 +75,6 @@ ROBOT; signal BAD-LINE if it stands for none. Without a method, DATUM is the arg
 
 (define-argument-type 'count (lambda (value) (typep value '(integer 0)))
   "a whole number, 0 or more")
-(define-argument-type 'integer #'integerp "a whole number")
 
 ;;; Reading.
 
@@ -118,7 +124,7 @@ ROBOT; signal BAD-LINE if it stands for none. Without a method, DATUM is the arg
 
 (defun reading-robot (line)
   "Return the robot whose parts the arguments of LINE name; NIL if they name none."
-  (and (some (lambda (slot) (assoc (type-key (slot-type slot)) *part-words*))
+  (and (some (lambda (slot) (by-number-p (type-key (slot-type slot))))
              (line-parameters line))
        (session-robot)))
 

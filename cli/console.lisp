@@ -7,7 +7,7 @@
 ;;; over and must be shown again. A terminal moves the cursor when the user presses return; nobody
 ;;; but ANSWERED can know. When nobody reads the stream any more, what is written is lost.
 
-(defclass console (sb-gray:fundamental-character-output-stream)
+(defclass console (fundamental-character-output-stream)
   ((stream :initarg :stream :reader console-stream)
    (lock :initform (make-lock "console") :reader console-lock)
    (column :initform 0 :accessor console-column)
@@ -32,10 +32,10 @@ written could not be delivered."))
   "Run BODY with STREAM bound to the stream below CONSOLE, nobody else writing to it."
   `(call-with-console (lambda (,stream) ,@body) ,console))
 
-(defmethod sb-gray:stream-line-column ((console console))
+(defmethod stream-line-column ((console console))
   (console-column console))
 
-(defmethod sb-gray:stream-write-string ((console console) string &optional (start 0) end)
+(defmethod stream-write-string ((console console) string &optional (start 0) end)
   (let* ((end (or end (length string)))
          (newline (position #\Newline string :start start :end end :from-end t)))
     (with-console (stream console)
@@ -46,14 +46,14 @@ written could not be delivered."))
                                          (+ (console-column console) (- end start))))))
   string)
 
-(defmethod sb-gray:stream-write-char ((console console) char)
-  (sb-gray:stream-write-string console (string char))
+(defmethod stream-write-char ((console console) char)
+  (stream-write-string console (string char))
   char)
 
-(defmethod sb-gray:stream-force-output ((console console))
+(defmethod stream-force-output ((console console))
   (with-console (stream console) (force-output stream)))
 
-(defmethod sb-gray:stream-finish-output ((console console))
+(defmethod stream-finish-output ((console console))
   (with-console (stream console) (finish-output stream)))
 
 ;;; Prompts.

@@ -81,7 +81,7 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
 
 (defun settled-p ()
   "True if no command waits to begin, or goes on, in the current simulation."
-  (and (null (simulation-inbox *simulation*))
+  (and (null (timeline-inbox (timeline-of *simulation*)))
        (notany #'robot-at-work-p (simulation-robots *simulation*))))
 
 (defun settle ()

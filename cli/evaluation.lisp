@@ -20,11 +20,11 @@ definitions are messages like others."
   (typecase condition
     (definition-warning (warning-set (one-line (princ-to-string condition)))
                         (muffle-warning condition))
-    ((or style-warning sb-ext:compiler-note) (muffle-warning condition))))
+    ((or style-warning compiler-note) (muffle-warning condition))))
 
 (defun call-quietly (function)
   (handler-bind ((warning #'quiet-warning)
-                 (sb-ext:compiler-note #'muffle-warning))
+                 (compiler-note #'muffle-warning))
     (funcall function)))
 
 (defun write-but-diagnostics (text stream)

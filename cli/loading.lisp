@@ -38,7 +38,7 @@
 (defun load-forms (path)
   "Do as LOAD does with the Lisp file at PATH. Signals FILE-TROUBLE."
   (let* ((text (read-file-into-string path))
-         (file (uiop:native-namestring path))
+         (file (native-name path))
          (*package* *package*) (*readtable* *readtable*)
          (*load-pathname* path) (*load-truename* (truename path)))
     (loop with start = 0

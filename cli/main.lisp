@@ -93,11 +93,6 @@ that has LINES does not wait for others to be typed."
 
 ;;; The process.
 
-(defun standard-stream (descriptor direction)
-  "Return a stream on the file DESCRIPTOR that no bytes can upset."
-  (sb-sys:make-fd-stream descriptor direction t :buffering :full
-                                    :external-format '(:utf-8 :replacement #\?)))
-
 (defun give-reason (condition status)
   "Say on the error output what CONDITION says; return STATUS."
   (format *error-output* "ars-magna: ~A~%" (condition-text condition))
@@ -108,15 +103,15 @@ that has LINES does not wait for others to be typed."
   (catch 'leave
     (handler-case (funcall function)
       (usage-error (condition) (give-reason condition 2))
-      (sb-sys:interactive-interrupt () 130)
+      (user-interrupt () 130)
       (error (condition) (give-reason condition 1)))))
 
 (defun main ()
   "Run ./cli/ars-magna: do what the arguments of this process say, and end it. The argument --probe
 only asks whether the core starts."
-  (when (equal (rest sb-ext:*posix-argv*) '("--probe")) (sb-ext:exit :code 0 :abort t))
+  (when (equal (process-arguments) '("--probe")) (end-process 0))
   (setf *standard-output* (make-console (standard-stream 1 :output)))
-  (let ((status (call-for-status (lambda () (run-arguments (rest sb-ext:*posix-argv*))))))
+  (let ((status (call-for-status (lambda () (run-arguments (process-arguments))))))
     (ignore-errors (finish-output *standard-output*))
     (ignore-errors (finish-output *error-output*))
-    (sb-ext:exit :code status :abort t)))
+    (end-process status)))

@@ -4,8 +4,14 @@
   (:documentation "Arguments of ./cli/ars-magna, the prompt, the line commands. The only code that
 ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:use :cl :ars-magna.base :ars-magna.world :ars-magna.time :ars-magna.robot
+        :ars-magna.run
         :ars-magna.command :ars-magna.display)
   (:shadowing-import-from :ars-magna.world #:map)
+  (:import-from :trivial-gray-streams
+                #:fundamental-character-output-stream #:fundamental-character-input-stream
+                #:stream-line-column #:stream-write-char #:stream-write-string
+                #:stream-force-output #:stream-finish-output
+                #:stream-read-char #:stream-read-line #:stream-unread-char)
   (:import-from :ars-magna.rpl
                 #:task-p #:task-name #:task-serial #:task-state #:task-result #:task-over-p
                 #:task-children #:task-awaits #:plan-failure #:failure-class #:failure-data
@@ -15,6 +21,11 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:import-from :ars-magna.rpl-robot
                 #:rpl-init-robot #:rpl-robot #:rpl-runner
                 #:begin-plan #:end-plan #:plans #:print-plans)
+  ;; trivial-gray-streams
+  (:export #:fundamental-character-output-stream #:fundamental-character-input-stream
+           #:stream-line-column #:stream-write-char #:stream-write-string
+           #:stream-force-output #:stream-finish-output
+           #:stream-read-char #:stream-read-line #:stream-unread-char)
   ;; line, names
   (:export #:line #:line-name #:line-parameters #:line-sentence #:define-line #:all-lines
            #:all-line-names #:find-line #:bad-line)

@@ -6,9 +6,9 @@
                                 (scale number "how many pixels there are to a cell" :optional))
     (:seeing)
     "Save a picture of the world as it is now in FILE, replacing it, SCALE pixels to a cell."
-  (let ((path (apply #'save-picture (session-robot) (uiop:parse-native-namestring file)
+  (let ((path (apply #'save-picture (session-robot) (native-path file)
                      (when scale (list :scale scale)))))
-    (format t "~A~%" (uiop:native-namestring path))))
+    (format t "~A~%" (native-name path))))
 
 (define-line "DISPLAY" (session) (:seeing)
     "Show the robot and its world in a window, where there is one to be had."

@@ -74,7 +74,7 @@ comes of earlier lines if the session waits for that."
 
 (defun lock-text (condition)
   "Return what CONDITION, that a locked name was to be defined, means to a user."
-  (let ((symbol (ignore-errors (sb-ext:package-locked-error-symbol condition))))
+  (let ((symbol (locked-symbol condition)))
     (if symbol
         (format nil "~A is a name of ~A. Call yours otherwise, or begin with (shadow '~A)."
                 symbol (package-name (symbol-package symbol)) symbol)
@@ -82,7 +82,7 @@ comes of earlier lines if the session waits for that."
 
 (defun condition-text (condition)
   "Return what CONDITION says, or what it is if it cannot say that."
-  (if (typep condition 'sb-ext:package-lock-violation)
+  (if (typep condition 'lock-violation)
       (lock-text condition)
       (plain-text condition)))
 
@@ -97,7 +97,7 @@ comes of earlier lines if the session waits for that."
 (defun call-guarded (session function)
   "Call FUNCTION; complain of what goes wrong in it."
   (handler-case (handler-bind ((error #'debug-if-wanted)) (funcall function))
-    (sb-sys:interactive-interrupt () (interrupted session))
+    (user-interrupt () (interrupted session))
     ((or error storage-condition) (condition) (complain session (condition-text condition)))))
 
 (defun interrupted (session)

@@ -128,7 +128,7 @@ VALUE."
           (values (save-journal file simulation)
                   (simulation-tick simulation)
                   (state-digest simulation)))
-      (format t "~A: ~A" (uiop:native-namestring path) (moment-text tick digest)))))
+      (format t "~A: ~A" (native-name path) (moment-text tick digest)))))
 
 (define-line "REPLAY" (session (file :token "the name of a file that SAVE-JOURNAL wrote"))
     (:running)

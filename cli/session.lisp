@@ -138,7 +138,7 @@ over."
   "Show messages when all changes of this tick are made, before programs are told of them."
   (unless (session-news-p session)
     (setf (session-news-p session) t)
-    (notify-later simulation (lambda () (show-messages session)))))
+    (notify-later (timeline-of simulation) (lambda () (show-messages session)))))
 
 (defun hear (session simulation)
   "Show the messages of SIMULATION, of which one is new."

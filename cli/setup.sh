@@ -38,8 +38,8 @@ choose_temporary_cache() {
 # What must be installed.
 
 libraries() {  # SYSTEM: the libraries that its definition names, one a line.
-    sed -n "\\|(defsystem \"$1\"|,\\|:components| s|.*:depends-on (\(.*\)).*|\1|p" \
-        "$root/ars-magna.asd" | tr -d '"' | tr ' ' '\n' |
+    sed -n "\\|(defsystem \"$1\"|,\\|:components|p" "$root/ars-magna.asd" | tr '\n' ' ' |
+        sed -n 's|.*:depends-on (\([^)]*\)).*|\1|p' | tr -d '"' | tr -s ' ' '\n' |
         grep -v -e '^ars-magna' -e '^sb-' -e '[^a-z0-9.-]' || :
 }
 

@@ -22,6 +22,20 @@
         for start = "View:  " then "          "
         do (put-line "~ACamera ~D: ~A" start (camera-index camera) (view-text camera))))
 
+(defun own-slots (part)
+  "Return what is known of the slots that the kind of PART has besides those that all parts have."
+  (set-difference (kind-slots (kind-of part))
+                  (kind-slots (find 'part (all-kinds) :key #'kind-name))))
+
+(defun write-sensors (robot)
+  "Show the parts of ROBOT that are of kinds of the user's own: their state and memory."
+  (loop for part across (robot-sensors robot)
+        do (put-line "~A:~{ ~A~^,~}" part
+                     (loop for slot in (reverse (own-slots part))
+                           when (member (kind-slot-role slot) '(:state :memory))
+                             collect (format nil "~(~A~) ~A" (kind-slot-name slot)
+                                             (funcall (kind-slot-reader slot) part))))))
+
 (defun write-designator (designator)
   (put-line "~D ~A @ ~A" (designator-number designator)
             (kind-text designator) (bearing-text designator))
@@ -46,6 +60,7 @@
                                 ("Turn Angle:" ,(robot-turn-angle robot)))
         do (format t "~19A~,2F~%" label number))
   (write-views robot)
+  (write-sensors robot)
   (format t "~19A~A~%" "Place:" (robot-last-place robot))
   (write-designators robot))
 
@@ -75,11 +90,11 @@ speed, the views of its cameras, the place it sensed last, its designators."
 
 (defun terminal-width (session)
   "Return how many columns the terminal of SESSION has, as far as can be found out."
-  (or (ignore-errors (parse-integer (sb-ext:posix-getenv "COLUMNS")))
+  (or (ignore-errors (parse-integer (environment-value "COLUMNS")))
       (and (terminal-p session)
            (ignore-errors
-            (let ((size (with-output-to-string (out)
-                          (sb-ext:run-program "stty" '("size") :search t :input t :output out))))
+            (let ((size (nth-value 1 (run-command "stty" '("size") :input :interactive
+                                                                   :output :string))))
               (parse-integer size :start (position #\Space size)))))
       80))
 

@@ -18,7 +18,7 @@ there are none."
     (load-lisp path)
     (or (mapcar #'body-name (remove-if (lambda (body) (member body before)) (all-bodies)))
         (reject-line "~A defines no robot; a world's file has a DEFROBOT."
-                     (uiop:native-namestring path)))))
+                     (native-name path)))))
 
 (defun robot-names ()
   "Return the names of all robots."
@@ -36,10 +36,10 @@ there are none."
 
 (defun existing-file (name)
   "Return the path of the Lisp file NAME, with or without its type, or NIL."
-  (let ((path (uiop:parse-native-namestring name)))
+  (let ((path (native-path name)))
     (and (pathname-name path)
-         (or (uiop:file-exists-p path)
-             (uiop:file-exists-p (make-pathname :type "lisp" :defaults path))))))
+         (or (existing-path path)
+             (existing-path (make-pathname :type "lisp" :defaults path))))))
 
 (defun world-robots-called (name)
   "Return the names of the robots in the world NAME: a map's name, or else a Lisp file that defines

@@ -56,8 +56,7 @@ the variables around it, but not blocks, tags and local plans. Run it by CALL-PL
 (defun make-plan (form &key compile)
   "Return a plan procedure without parameters that does FORM, plan text made by a program. Its Lisp
 code is interpreted, which costs little now and more when it runs, or compiled if COMPILE is true."
-  (let ((sb-ext:*evaluator-mode* (if compile :compile :interpret)))
-    (eval `(interp-lambda () ,form))))
+  (evaluate-form `(interp-lambda () ,form) :compile compile))
 
 ;;; Macros.
 

@@ -168,3 +168,21 @@ thread."
        (idle-p runner)
        (null (next-wake-time runner))
        (not (funcall (runner-busy-p runner)))))
+
+;;; Chance, and the state of it all.
+
+(defun reseed-runner (runner seed)
+  "Let the choices of plans in RUNNER come from the integer SEED from now on."
+  (setf (runner-dice runner) (make-dice seed :plans)))
+
+(defun digest-task (task digest)
+  "Add to DIGEST what TASK and its children are about."
+  (digest-add digest (list (task-serial task) (task-state task) (task-level task)
+                           (form-text (task-form task))))
+  (dolist (child (task-children task)) (digest-task child digest)))
+
+(defun digest-runner (runner digest)
+  "Add to DIGEST what the tasks of RUNNER are about, when they wake, and what chance will bring."
+  (digest-add digest (list (runner-tick runner) (next-wake-time runner)
+                           (and (runner-dice runner) (dice-state (runner-dice runner)))))
+  (dolist (task (runner-roots runner)) (digest-task task digest)))

@@ -45,7 +45,7 @@
 
 (defun lisp-backtrace ()
   "Return as a string the Lisp calls under way in a plan's code that has just signalled an error."
-  (let* ((calls (sb-debug:list-backtrace :count 100))
+  (let* ((calls (calls-under-way))
          (signalled (member-if #'signalling-call-p calls)))
     (with-output-to-string (stream)
       (loop for call in (if signalled (rest signalled) calls)

@@ -49,7 +49,7 @@ watcher, the value, and NIL or the error met in computing it. PENDING counts eve
   (previous nil :type (or null link))
   (next nil :type (or null link)))
 
-(declaim (sb-ext:freeze-type derived watcher link fluent))
+(declaim-final derived watcher link fluent)
 
 (addition fluent-p fluent-name)
 (setf (documentation 'fluent-name 'function)

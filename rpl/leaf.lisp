@@ -31,7 +31,7 @@
 
 (defun plan-meaning (form environment)
   "Return what FORM, a call in the plan's own text, means; FORM itself if just what it says."
-  (let ((name (or (operator-name form) "")))
+  (let ((name (or (plan-operator-name form) "")))
     (flet ((condition (form) (condition-form form environment))
            (is (&rest names) (member name names :test #'string=)))
       (cond ((is "IF") `(if ,(condition (second form)) ,@(cddr form)))
@@ -77,7 +77,7 @@
   "Return FORM, a leaf's, as Lisp is to compile it."
   (if (atom form)
       form
-      (walk form (scope-environment scope) #'leaf-meaning)))
+      (walk-form form (scope-environment scope) #'leaf-meaning)))
 
 (defun test-lambda (form scope)
   "Return the lambda expression, of the environment, for FORM as a condition."

@@ -19,7 +19,7 @@
 (defstruct (bundle (:constructor make-bundle (values)) (:copier nil))
   "Several values on their way from a leaf to whoever wants several."
   (values '() :type list :read-only t))
-(declaim (sb-ext:freeze-type escape completion bundle))
+(declaim-final escape completion bundle)
 
 (declaim (inline single-value))
 (defun single-value (value)
@@ -47,16 +47,16 @@ named for it."
 (define-node leaf ((function function))
   "An expression that cannot wait: FUNCTION takes the environment."
   :step step-leaf)
-(declaim (sb-ext:freeze-type leaf))
+(declaim-final leaf)
 
 (defun step-leaf (node task frame value)
   (declare (ignore task value))
   (values (frame-up frame) (funcall (leaf-function node) (frame-environment frame))))
 
-(sb-ext:define-load-time-global +parked+ (make-frame (make-leaf :function #'identity) (vector) nil)
+(define-global +parked+ (make-frame (make-leaf :function #'identity) (vector) nil)
   "What a step returns instead of a frame when its task does not go on now.")
 
-(sb-ext:define-load-time-global +nothing+ (make-leaf :form nil :function (constantly nil))
+(define-global +nothing+ (make-leaf :form nil :function (constantly nil))
   "The expression NIL.")
 
 (declaim (inline enter))

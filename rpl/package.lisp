@@ -51,4 +51,5 @@ Fluents hold what varies, tasks wait for fluents, a runner lets them react. Know
   (:export #:plan-runner #:make-plan-runner #:*runner* #:*runaway-limit* #:current-task #:plan-time
            #:plan-runner-tick #:plan-runner-tasks #:plan-runner-steps
            #:start-plan #:react #:post-batch #:post-call #:apply-next-batch #:advance-timers
-           #:next-wake-time #:idle-p #:plan-deadlocked-p #:stop-plan #:run-plan-alone))
+           #:reseed-runner #:digest-runner #:next-wake-time #:idle-p #:plan-deadlocked-p
+           #:stop-plan #:run-plan-alone))

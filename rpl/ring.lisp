@@ -9,7 +9,7 @@
   (items (make-array 16 :initial-element nil) :type simple-vector)
   (start 0 :type fixnum)
   (count 0 :type fixnum))
-(declaim (sb-ext:freeze-type ring))
+(declaim-final ring)
 
 (defun grow-ring (ring)
   (let* ((items (ring-items ring))

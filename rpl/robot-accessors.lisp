@@ -4,18 +4,12 @@
 
 ;;; Arguments may be fluents; what counts is their value. Parts are given by index, or as such.
 
-(defun part-of-kind-p (kind value)
-  (ecase kind
-    (:camera (camera-p value))
-    (:hand (hand-p value))
-    (:bin (storage-bin-p value))))
-
 (defun find-part (kind index operator)
   "Return the part of KIND with INDEX (an integer, one of the parts, or a fluent) of the plans'
 robot."
   (let* ((index (fluent-value index))
-         (parts (parts (rpl-robot) kind)))
-    (cond ((and (part-of-kind-p kind index) (find index parts)) index)
+         (parts (parts-of-kind (rpl-robot) kind)))
+    (cond ((find index parts) index)
           ((and (integerp index) (< -1 index (length parts))) (svref parts index))
           (t (error 'wrong-argument
                     :operator operator :name (string-downcase kind) :value index
@@ -39,7 +33,7 @@ robot."
              collect `(defun ,name (,(intern (string kind)))
                         ,(format nil "~A ~A is an index or a fluent. Signals WRONG-ARGUMENT. ~
                                       (Manual C.)" text kind)
-                        (,reader (find-part ,kind ,(intern (string kind)) ',name))))))
+                        (,reader (find-part ',kind ,(intern (string kind)) ',name))))))
 
 (defun num-cameras (robot) (length (robot-cameras robot)))
 (defun num-hands (robot) (length (robot-hands robot)))
@@ -53,21 +47,21 @@ robot."
   (rpl-robot-num-bins num-bins "Return how many storage bins the robot has."))
 
 (define-part-accessors
-  (rpl-camera-field-of-view :camera camera-field-of-view
+  (rpl-camera-field-of-view camera camera-field-of-view
    "Return how wide the camera sees, in radians.")
-  (rpl-camera-resolution :camera camera-resolution
+  (rpl-camera-resolution camera camera-resolution
    "Return how many pixels the camera's views have.")
-  (rpl-camera-angle :camera camera-angle
+  (rpl-camera-angle camera camera-angle
    "Return the camera's angle relative to the robot, in radians.")
-  (rpl-camera-last-view :camera camera-last-view
+  (rpl-camera-last-view camera camera-last-view
    "Return the last view of the camera, a list of numbers; () before the first.")
-  (rpl-hand-strength :hand hand-strength
+  (rpl-hand-strength hand hand-strength
    "Return the largest weight that the hand can lift.")
-  (rpl-storage-bin-capacity :bin storage-bin-capacity
+  (rpl-storage-bin-capacity storage-bin storage-bin-capacity
    "Return the size of all that fits into the bin.")
-  (rpl-storage-bin-real-capacity :bin remaining-capacity
+  (rpl-storage-bin-real-capacity storage-bin remaining-capacity
    "Return the size of what still fits into the bin.")
-  (rpl-storage-bin-closed? :bin storage-bin-closed-p
+  (rpl-storage-bin-closed? storage-bin storage-bin-closed-p
    "True if the bin is closed."))
 
 (public rpl-designator-data)
@@ -86,6 +80,12 @@ name in a list, or attributes and values. Signals WRONG-ARGUMENT (manual, figure
 
 ;;; Resources.
 
+(addition rpl-robot-part)
+(defun rpl-robot-part (kind index)
+  "Return the part of the plans' robot of KIND, a symbol, with INDEX, perhaps a fluent. Signals
+WRONG-ARGUMENT, and MISUSE without a robot."
+  (find-part kind index 'rpl-robot-part))
+
 (public rpl-grab-robot)
 (defun rpl-grab-robot ()
   "Stop whatever the robot itself is doing (manual C)."
@@ -98,9 +98,9 @@ name in a list, or attributes and values. Signals WRONG-ARGUMENT (manual, figure
                         collect `(defun ,name (index)
                                    ,(format nil "Stop whatever goes on on ~A INDEX. Signals ~
                                                  WRONG-ARGUMENT. (Manual C.)" text)
-                                   (grab-resource (find-part ,kind index ',name)
+                                   (grab-resource (find-part ',kind index ',name)
                                                   (interface-simulation (the-interface))))))))
   (define-grabs
-    (rpl-grab-camera :camera "the camera")
-    (rpl-grab-hand :hand "the hand")
-    (rpl-grab-bin :bin "the storage bin")))
+    (rpl-grab-camera camera "the camera")
+    (rpl-grab-hand hand "the hand")
+    (rpl-grab-bin storage-bin "the storage bin")))

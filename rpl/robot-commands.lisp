@@ -63,9 +63,6 @@
 
 ;;; Hands. One inside a box inside a bin is, when it comes out of the box, inside the bin.
 
-(defvar *insides* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "For each hand that is inside of something, what it was told to go into, innermost first.")
-
 (defun depth-inside (hand)
   "Return inside of how many things, one in the other, HAND is."
   (loop for outer = (part-location hand) then (outer-location outer)
@@ -73,14 +70,14 @@
 
 (defun went-into (hand destination)
   "Note that HAND went into DESTINATION; return that."
-  (setf (gethash hand *insides*)
-        (cons destination (last (gethash hand *insides*) (1- (depth-inside hand)))))
+  (setf (hand-way-in hand)
+        (cons destination (last (hand-way-in hand) (1- (depth-inside hand)))))
   destination)
 
 (defun came-out (hand)
   "Return what HAND, which came out of something, was told to go into before that; NIL for nothing."
-  (first (setf (gethash hand *insides*)
-               (last (gethash hand *insides*) (depth-inside hand)))))
+  (first (setf (hand-way-in hand)
+               (last (hand-way-in hand) (depth-inside hand)))))
 
 (define-outcome (hand-insert hand-insert-bin) (destination)
   (:when (null err) (:set hand-inside* (went-into resource destination)))

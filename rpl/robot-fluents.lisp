@@ -8,17 +8,17 @@
 (defvar *fluent-variables* '() "A list (variable kind) of all fluent variables.")
 
 (defmacro define-fluents (kind &body definitions)
-  "Define fluent variables for KIND, :robot, :camera, :hand or :bin: (name documentation)."
+  "Define fluent variables for KIND, ROBOT or a kind of part such as CAMERA: (name documentation)."
   `(progn
      ,@(loop for (name text) in definitions
              collect `(public ,name)
              collect `(defvar ,name nil ,(format nil "~A~@[~A~] (Manual C.)" text
-                                                 (unless (eq kind :robot)
+                                                 (unless (same-name-p kind 'robot)
                                                    (format nil " A vector, by ~(~A~)." kind))))
              collect `(pushnew '(,name ,kind) *fluent-variables* :key #'first)
              collect `(pushnew ',name *simulation-variables*))))
 
-(define-fluents :robot
+(define-fluents robot
   (robot-stopped* "Pulsed when the robot stops moving, whether or not it succeeded.")
   (robot-movement-error* "The error code of the last movement command to end; NIL: success.")
   (robot-angle-diff* "The estimated change in angle over the last turn, in radians.")
@@ -26,7 +26,7 @@
   (robot-place-input* "Pulsed when the robot's place type is sensed.")
   (robot-place* "The name of the place type last sensed, or NIL."))
 
-(define-fluents :camera
+(define-fluents camera
   (camera-input* "Pulsed when new sensory information is available.")
   (camera-views* "The latest view, a list of numbers.")
   (camera-designators* "The designators found by the last search; () if it failed.")
@@ -36,7 +36,7 @@
   (camera-moved* "Pulsed when the camera completes a move.")
   (camera-movement-error* "The error code of the last camera movement; NIL: success."))
 
-(define-fluents :hand
+(define-fluents hand
   (hand-moved* "Pulsed when the hand completes a movement.")
   (hand-error* "The error code of the last hand command; NIL: success.")
   (hand-lost* "Pulsed when the hand is seen to lose its grasp.")
@@ -44,22 +44,16 @@
   (hand-grasping* "The designator of what the hand is grasping, or NIL.")
   (hand-input* "Pulsed when sensory information becomes available."))
 
-(define-fluents :bin
+(define-fluents storage-bin
   (storage-bin-moved* "Pulsed when the bin has opened or closed, or failed to.")
   (storage-bin-error* "The error code of the last bin command; NIL: success.")
   (storage-bin-jammer* "The camera or hand that kept the bin from closing, or NIL."))
-
-(defun parts (robot kind)
-  (ecase kind
-    (:camera (robot-cameras robot))
-    (:hand (robot-hands robot))
-    (:bin (robot-bins robot))))
 
 (defun make-fluents (robot)
   "Give all fluent variables fresh fluents that suit ROBOT."
   (loop for (variable kind) in *fluent-variables*
         for name = (string-downcase variable)
         do (setf (symbol-value variable)
-                 (if (eq kind :robot)
+                 (if (same-name-p kind 'robot)
                      (create-fluent name)
-                     (create-fluent-vector name (length (parts robot kind)))))))
+                     (create-fluent-vector name (length (parts-of-kind robot kind)))))))

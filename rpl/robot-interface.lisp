@@ -15,8 +15,6 @@
   (robot nil :type robot :read-only t)
   (simulation nil :read-only t)
   (runner nil :type (or null plan-runner))
-  (observer nil :type (or null function))
-  (busy-test nil :type (or null function))
   (ender nil :type (or null function))
   (lock (make-lock "plans") :read-only t)
   ;; The thread that holds the lock, so that plans may start and end others.
@@ -25,7 +23,7 @@
   (thread nil :type t)
   (closed-p nil)
   ;; How many commands of plans are under way.
-  (under-way 0 :type sb-ext:word))
+  (under-way 0 :type atomic-count))
 
 (defvar *interface* nil
   "The interface in use; see RPL-INIT-ROBOT.")
@@ -67,12 +65,12 @@ the plans; a plan that is reacting changes nothing."
   (let ((tick (next-wake-time (interface-runner interface))))
     (and tick (>= (simulation-tick (interface-simulation interface)) tick))))
 
-(defun after-tick (interface)
-  "Called by the simulation's owner after each tick. In a live one only the plans' thread reacts: a
-plan may be waiting for the owner to answer it."
+;; In a live simulation only the plans' thread reacts: a plan may be waiting for the owner to answer
+;; it.
+(defmethod participant-after-tick ((interface interface) simulation)
   (cond ((interface-thread interface)
          (when (time-to-wake-p interface) (wake interface)))
-        ((live-p (interface-simulation interface))
+        ((live-p simulation)
          (when (plan-runner-tasks (interface-runner interface)) (ensure-thread interface)))
         (t (with-plans (interface) (react-fully interface)))))
 
@@ -95,13 +93,13 @@ plan may be waiting for the owner to answer it."
   (let ((simulation (interface-simulation interface)))
     (when (and (next-wake-time (interface-runner interface))
                (zerop (agenda-pending (simulation-agenda simulation))))
-      (post simulation (constantly nil)))))
+      (wake-owner (simulation-timeline simulation)))))
 
 (defun ensure-thread (interface)
   "Have a thread for the plans of a live simulation."
   (let ((simulation (interface-simulation interface)))
     (when (and (live-p simulation)
-               (null (sb-ext:compare-and-swap (interface-thread interface) nil :starting)))
+               (swap-if (interface-thread interface) nil :starting))
       (start-thread (lambda ()
                       (setf (interface-thread interface) (current-thread))
                       (let ((*interface* interface))
@@ -116,7 +114,7 @@ not count: they tell plans nothing."
   (let ((simulation (interface-simulation interface)))
     (or (plusp (interface-under-way interface))
         (plusp (agenda-pending (simulation-agenda simulation)))
-        (simulation-inbox simulation))))
+        (timeline-inbox (simulation-timeline simulation)))))
 
 (defun seconds-when-live (simulation)
   "Return the time in seconds, by which plans that hog their thread are noticed; headless 0."
@@ -137,27 +135,33 @@ not count: they tell plans nothing."
   (let ((simulation (interface-simulation interface)))
     (stop-plan (interface-runner interface))
     (asking (simulation)
-      (remove-observer (interface-observer interface) simulation)
-      (removef (simulation-busy-tests simulation) (interface-busy-test interface)))
+      (remove-participant interface simulation))
     (removef (robot-enders (interface-robot interface)) (interface-ender interface))
     (unless (or (interface-thread interface) (holding-p interface))
       (with-plans (interface) (react-fully interface)))
     (setf (interface-closed-p interface) t)
     (wake interface)))
 
+(defmethod participant-busy-p ((interface interface) simulation)
+  (declare (ignore simulation))
+  (next-wake-time (interface-runner interface)))
+
+(defmethod participant-reseed ((interface interface) seed)
+  (reseed-runner (interface-runner interface) seed))
+
+(defmethod participant-digest ((interface interface) digest)
+  (with-plans (interface) (digest-runner (interface-runner interface) digest)))
+
+(defmethod participant-end ((interface interface) simulation)
+  (declare (ignore simulation))
+  (close-interface interface))
+
 (defun attach (interface)
   (let ((simulation (interface-simulation interface)))
     (setf (interface-runner interface) (make-runner interface)
-          (interface-observer interface) (lambda (simulation)
-                                           (declare (ignore simulation))
-                                           (after-tick interface))
-          (interface-busy-test interface) (lambda (simulation)
-                                            (declare (ignore simulation))
-                                            (next-wake-time (interface-runner interface)))
           (interface-ender interface) (lambda () (close-interface interface)))
     (asking (simulation)
-      (add-observer (interface-observer interface) simulation)
-      (push (interface-busy-test interface) (simulation-busy-tests simulation))
+      (add-participant interface simulation)
       (push (interface-ender interface) (robot-enders (interface-robot interface))))))
 
 (public rpl-init-robot)

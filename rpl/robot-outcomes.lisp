@@ -11,20 +11,22 @@
   (let ((value (symbol-value variable)))
     (if (simple-vector-p value) (svref value (part-index part)) value)))
 
+(defun part-kind (type)
+  "Return the kind of part that arguments of TYPE are, or NIL if they are no parts."
+  (let ((kind (find type (all-kinds 'part) :key #'kind-name :test #'same-name-p)))
+    (and kind (kind-name kind))))
+
 (defun convert-argument (value type operator)
   "Return what VALUE, perhaps a fluent or an index, stands for as an argument of TYPE."
   (let ((value (fluent-value value)))
-    (flet ((of-type-p (name) (same-name-p type name)))
-      (cond ((of-type-p 'camera) (find-part :camera value operator))
-            ((of-type-p 'hand) (find-part :hand value operator))
-            ((or (of-type-p 'storage-bin)
-                 (and (of-type-p 'destination) (integerp value)))
-             (find-part :bin value operator))
-            (t value)))))
+    (cond ((part-kind type) (find-part (part-kind type) value operator))
+          ((and (same-name-p type 'destination) (integerp value))
+           (find-part 'storage-bin value operator))
+          (t value))))
 
 (defun convert-resource (arguments type operator)
   "Return the resource that ARGUMENTS begin with, and the rest; the robot is implied."
-  (if (eq type 'robot)
+  (if (same-name-p type (quote robot))
       (values (rpl-robot) arguments)
       (values (convert-argument (first arguments) type operator) (rest arguments))))
 
@@ -34,11 +36,11 @@
 
 (defun answering (interface command outcome)
   "Return a continuation for COMMAND: it posts what OUTCOME makes of the answer."
-  (sb-ext:atomic-incf (interface-under-way interface))
+  (atomic-incf (interface-under-way interface))
   (lambda (err resource &rest results)
     (post-batch (interface-runner interface) (apply outcome resource err results))
     (when (ends-p command err)
-      (sb-ext:atomic-decf (interface-under-way interface)))))
+      (atomic-decf (interface-under-way interface)))))
 
 (defun command-in-plan (operator command outcome arguments)
   "Issue COMMAND as the plan function OPERATOR, and post what OUTCOME, a function of the resource,
@@ -62,13 +64,14 @@ the error code and the results, makes of its end."
                                     :expected (argument-type-text (spec-type spec)))))
 
 (defun plan-function-name (command-name)
-  (intern (format nil "RPL-~A" command-name) :ars-magna.rpl-robot))
+  "Return the symbol of the plan function for COMMAND-NAME, in the package at hand."
+  (symbolicate 'rpl- command-name))
 
-(defun parameters-in-plan (command)
-  "Return the names of what the plan function for COMMAND takes."
-  (append (unless (eq 'robot (spec-type (command-resource command)))
-            (list (spec-name (command-resource command))))
-          (mapcar #'spec-name (command-parameters command))))
+(defun parameters-in-plan (resource parameters)
+  "Return the names of what the plan function takes for a command with RESOURCE, (variable type),
+and PARAMETERS, lists (variable type text)."
+  (append (unless (same-name-p 'robot (second resource)) (list (first resource)))
+          (mapcar #'first parameters)))
 
 (defun clause-form (clause)
   "Return a form that makes a list of settings from CLAUSE of DEFINE-OUTCOME."
@@ -91,15 +94,14 @@ its error code and RESULTS to its results: (:set fluent form), (:pulse fluent), 
 clause...)."
   `(progn
      ,@(loop for command-name in commands
-             for command = (find-command command-name)
+             for (resource specifications sentence) = (command-shape command-name)
              for name = (plan-function-name command-name)
-             for parameters = (parameters-in-plan command)
+             for parameters = (parameters-in-plan resource specifications)
              collect `(public ,name)
              collect `(defun ,name ,parameters
                         ,(format nil "~A~%Returns nothing; sets ~(~{~A~^, ~}~). Arguments may be ~
                                       fluents. (Manual C.)"
-                                 (command-documentation command)
-                                 (remove-duplicates (clause-fluents clauses)))
+                                 sentence (remove-duplicates (clause-fluents clauses)))
                         (command-in-plan ',name (find-command ',command-name)
                                          (lambda (resource err &optional ,@results &rest more)
                                            (declare (ignore more)

@@ -5,19 +5,22 @@
   (:use :cl :ars-magna.base :ars-magna.robot :ars-magna.command)
   (:import-from :ars-magna.world #:world-map #:*world* #:remaining-capacity)
   (:import-from :ars-magna.time
-                #:*simulation* #:seconds-now #:current-simulation #:simulation-tick #:asking
-                #:add-observer #:remove-observer #:live-p #:run-ticks #:call-as-owner
-                #:grab-resource
-                #:simulation-over #:simulation-seed
-                #:simulation-agenda #:simulation-inbox #:simulation-thread
-                #:simulation-busy-tests #:agenda-pending #:post #:*hog-seconds*)
-  (:import-from :ars-magna.robot #:robot-enders)
+                #:*simulation* #:seconds-now #:current-simulation #:asking #:live-p
+                #:grab-resource #:wake-owner #:timeline-inbox #:agenda-pending #:*hog-seconds*)
+  (:import-from :ars-magna.run
+                #:simulation-tick #:add-observer #:remove-observer #:run-ticks #:call-as-owner
+                #:simulation-over #:simulation-seed #:simulation-agenda #:simulation-thread
+                #:simulation-timeline #:simulation-robots #:robot-simulation
+                #:*simulation-variables* #:*simulator-hooks* #:add-participant
+                #:remove-participant #:participant-after-tick #:participant-busy-p
+                #:participant-reseed #:participant-digest #:participant-end)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:fluent-value #:post-batch #:react
                 #:apply-next-batch #:advance-timers #:next-wake-time #:make-plan-runner
                 #:start-plan #:stop-plan #:plan-runner #:plan-runner-tasks #:task-over-p
                 #:task-state #:task-result #:task-p #:plan-deadlocked-p #:report-deadlock
-                #:print-tasks #:find-procedure #:plan-trace #:write-trace)
+                #:reseed-runner #:digest-runner #:print-tasks #:find-procedure #:plan-trace
+                #:write-trace)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
            #:robot-place-input* #:robot-place*
@@ -25,8 +28,9 @@
            #:camera-tracking* #:camera-tracking-error* #:camera-moved* #:camera-movement-error*
            #:hand-moved* #:hand-error* #:hand-lost* #:hand-inside* #:hand-grasping* #:hand-input*
            #:storage-bin-moved* #:storage-bin-error* #:storage-bin-jammer*)
+  (:export #:define-fluents #:define-outcome)
   ;; interface, accessors
-  (:export #:rpl-init-robot #:rpl-robot #:*trace-plans*
+  (:export #:rpl-init-robot #:rpl-robot #:rpl-robot-part #:*trace-plans*
            #:rpl-robot-speed #:rpl-robot-turn-angle #:rpl-robot-num-cameras
            #:rpl-robot-num-hands #:rpl-robot-num-bins #:rpl-camera-field-of-view
            #:rpl-camera-resolution #:rpl-camera-angle #:rpl-camera-last-view

@@ -68,14 +68,14 @@
     (or (eq package #.(find-package :cl))
         (and package (starts-with-subseq "ARS-MAGNA." (package-name package))))))
 
-(defun operator-name (form)
+(defun plan-operator-name (form)
   "Return the name of the operator of FORM if plans may have a meaning for it, or NIL."
   (cond ((not (and (consp form) (symbolp (first form)))) nil)
         ((our-symbol-p (first form)) (symbol-name (first form)))
         ((eq (first form) :tag) ":TAG")))
 
 (defun operator-in-p (form names)
-  (let ((name (operator-name form)))
+  (let ((name (plan-operator-name form)))
     (and name (member name names :test #'string=))))
 
 (defun plan-in-leaf-p (form)
@@ -110,7 +110,7 @@
                    do (setf (gethash form *own-conses*) t)
                       (note (car form))
                       (setf form (cdr form)))
-             (when (sb-int:comma-p form) (note (sb-int:comma-expr form)))))
+             (when (form-behind-comma form) (note (form-behind-comma form)))))
     (note form))
   form)
 

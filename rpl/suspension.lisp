@@ -22,7 +22,7 @@ form and its scope and returns code that builds a node."
 
 (defun find-plan-form (form environment)
   "Return the plan form that FORM is one of, or NIL."
-  (let ((name (operator-name form)))
+  (let ((name (plan-operator-name form)))
     (and name
          (not (local-function-p (first form) environment))
          (or (string/= name "LOOP") (plan-loop-p form))
@@ -79,7 +79,7 @@ form and its scope and returns code that builds a node."
                        reason form)))
              (walk-inside (forms environment exits)
                (let ((*inner-exits* (append exits *inner-exits*)))
-                 (dolist (form forms) (walk form environment #'visit))))
+                 (dolist (form forms) (walk-form form environment #'visit))))
              (visit (form environment)
                (cond ((or (atom form) (not (symbolp (first form)))) form)
                      ((plan-in-leaf-p form) (values form t))
@@ -95,5 +95,5 @@ form and its scope and returns code that builds a node."
                           (walk-inside parts environment exits)
                           (values form t))
                          (t form))))))
-      (walk form (scope-environment scope) #'visit))
+      (walk-form form (scope-environment scope) #'visit))
     (values result reason)))

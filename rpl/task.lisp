@@ -54,7 +54,7 @@ what will happen to it instead. LEVEL 0 is the plan proper, a policy is one abov
   (newest-child nil :type (or null task))
   (older nil :type (or null task))
   (newer nil :type (or null task)))
-(declaim (sb-ext:freeze-type frame task))
+(declaim-final frame task)
 
 (addition task-p task-name task-state task-serial task-parent task-result)
 (loop for (reader text) in

@@ -17,7 +17,7 @@
   "A heap of timers, the earliest at 0."
   (heap (make-array 16 :adjustable t :fill-pointer 0) :type (and vector (not simple-array)))
   (count 0 :type fixnum))
-(declaim (sb-ext:freeze-type timer timers))
+(declaim-final timer timers)
 
 (defun earlier-p (a b)
   (or (< (timer-due a) (timer-due b))

@@ -38,7 +38,7 @@
 
 (defun fill-face (face documentation)
   "Let the package FACE, with DOCUMENTATION, export what is marked for it."
-  (sb-ext:unlock-package (ensure-face face documentation))
+  (unlock-package (ensure-face face documentation))
   (dolist (symbol (public-symbols face))
     (show symbol face)))
 
@@ -65,12 +65,14 @@ nor those of tools."
                  (list-all-packages)))
 
 (defun lock-packages ()
-  "Keep users from redefining what is ours."
-  (mapc #'sb-ext:lock-package (our-packages)))
+  "Keep users from redefining what is ours, and what they define from looking so."
+  (setf *marking-p* nil)
+  (mapc #'lock-package (our-packages)))
 
 (defun unlock-packages ()
   "Let what is ours be redefined, as when the system is loaded again."
-  (mapc #'sb-ext:unlock-package (our-packages)))
+  (setf *marking-p* t)
+  (mapc #'unlock-package (our-packages)))
 
 ;;; The prompt is a system of its own, which nothing here depends on.
 

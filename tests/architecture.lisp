@@ -76,22 +76,86 @@
   (loop for (library . words) in '((alexandria "alexandria")
                                    (bordeaux-threads "bordeaux-threads" "bt:")
                                    (named-readtables "named-readtables")
-                                   (lparallel "lparallel"))
+                                   (lparallel "lparallel")
+                                   (closer-mop "closer-mop")
+                                   (trivial-gray-streams "trivial-gray-streams"))
         for files = (files-mentioning words '("src/" "rpl/" "cli/" "worlds/"))
         do (is (<= (length files) 1) "~A is named in ~S" library files))
   (is (equal '("tests/package.lisp")
              (files-mentioning '("fiveam") '("src/" "rpl/" "cli/" "worlds/" "tests/")))))
 
+;;; What is SBCL's own. Each of its packages has one door, but for SB-EXT, a package of many ideas:
+;;; there each name has one, and only the files listed here may have any.
+
+(defparameter *sb-ext-doors*
+  '("src/base/policy.lisp" "src/base/floats.lisp" "src/base/globals.lisp" "src/base/atomic.lisp"
+    "src/base/packages.lisp" "src/base/environments.lisp")
+  "The files that may name SB-EXT.")
+
+(defparameter *before-the-doors*
+  '("cli/build.lisp")
+  "The files that may name what they like: build.lisp runs in a bare SBCL, to which none of the
+project's systems has been loaded.")
+
+(defun name-char-p (char)
+  (or (alphanumericp char) (find char "-:*+%!?")))
+
+(defun implementation-names (code)
+  "Return the names in CODE, in lower case, that are or are in packages of SBCL's."
+  (remove-duplicates
+   (loop for start = (search "sb-" code) then (search "sb-" code :start2 end)
+         while start
+         for end = (or (position-if-not #'name-char-p code :start start) (length code))
+         unless (and (plusp start) (find (char code (1- start)) "abcdefghijklmnopqrstuvwxyz-*+%"))
+           collect (subseq code start end))
+   :test #'string=))
+
+(defun names-of-files (exempt)
+  "Return a list of lists (file name...): what of SBCL's each file but those in EXEMPT names."
+  (loop for path in (lisp-files "src/" "rpl/" "cli/" "worlds/")
+        for file = (enough-namestring path (project-file ""))
+        for names = (implementation-names (code-in path))
+        when (and names (not (member file exempt :test #'string=)))
+          collect (cons file names)))
+
+(defun package-part (name)
+  (subseq name 0 (position #\: name)))
+
+(defun unit-of (name)
+  "Return what has one door: NAME's package, or NAME itself if it is in SB-EXT."
+  (if (string= "sb-ext" (package-part name)) name (package-part name)))
+
+(test implementation.has-one-door-for-each-idea
+  (let ((doors (make-hash-table :test #'equal)))
+    (loop for (file . names) in (names-of-files *before-the-doors*)
+          do (dolist (name names)
+               (pushnew file (gethash (unit-of name) doors) :test #'string=)
+               (when (string= "sb-ext" (package-part name))
+                 (is (member file *sb-ext-doors* :test #'string=) "~A names ~A" file name))))
+    (is (plusp (hash-table-count doors)))
+    (loop for unit being the hash-keys of doors using (hash-value files)
+          do (is (= 1 (length files)) "~A is named in ~S" unit files))))
+
+(test implementation.exceptions-are-needed
+  (let ((files (mapcar #'first (names-of-files '()))))
+    (dolist (file (append *sb-ext-doors* *before-the-doors*))
+      (is (member file files :test #'string=) "~A names nothing of SBCL's" file))))
+
+(test implementation.names-are-found-in-code
+  (is (equal '("sb-ext:gc" "sb-posix" "sb-c")
+             (implementation-names "(sb-ext:gc) '#:sb-posix usb-stick (f :sb-c)")))
+  (is (equal '() (implementation-names "(usb-port x)"))))
+
 (test chance-and-clock.come-from-where-they-should
   (is (null (files-mentioning '("(random " "*random-state*" "(sleep ")
                               '("src/" "rpl/" "cli/" "worlds/"))))
-  (is (equal '("src/time/clock.lisp")
+  (is (equal '("src/time/pacing.lisp")
              (files-mentioning '("get-internal-real-time" "get-universal-time"
                                  "get-time-of-day" "get-internal-run-time")
                                '("src/" "rpl/" "worlds/")))))
 
 (test cli.alone-ends-the-process
-  (is (null (files-mentioning '("sb-ext:exit" "sb-ext:quit" "uiop:quit")
+  (is (null (files-mentioning '("sb-ext:exit" "sb-ext:quit" "uiop:quit" "end-process")
                               '("src/" "rpl/" "worlds/")))))
 
 ;;; Packages.

@@ -128,9 +128,9 @@
          (written (make-string-output-stream)))
     (unwind-protect
          (let ((*standard-output* written))
-           (robot:simulator ars-user::butler :rate :free :display nil)
+           (run:simulator ars-user::butler :rate :free :display nil)
            (cli:run-session session))
-      (robot:stop-simulator))
+      (run:stop-simulator))
     (values (lines-of (get-output-stream-string output)) (cli:session-errors session))))
 
 (test live.a-patient-prompt-waits

@@ -47,8 +47,8 @@
 
 (test robots.that-run-live-are-known
   (with-names ("DOT")
-    (unwind-protect (robot:simulator 'ars-worlds:dot :rate :free :display nil)
-      (robot:stop-simulator))
+    (unwind-protect (run:simulator 'ars-worlds:dot :rate :free :display nil)
+      (run:stop-simulator))
     (is (eq 'ars-worlds:dot (known-as "DOT")))))
 
 (test robots.displace-what-was-merely-read
@@ -115,11 +115,11 @@
   "Type LINES at a live prompt that commands ROBOT, a name. Return what it writes."
   (let ((output (make-string-output-stream)) (*standard-output* (make-broadcast-stream)))
     (unwind-protect
-         (progn (robot:simulator robot :rate :free :display nil)
+         (progn (run:simulator robot :rate :free :display nil)
                 (cli:run-session
                  (cli:make-session :input (make-string-input-stream (joined lines))
                                    :output output :batch t :patient nil)))
-      (unless (time:simulation-over time:*simulation*) (robot:stop-simulator)))
+      (unless (run:simulation-over time:*simulation*) (run:stop-simulator)))
     (get-output-stream-string output)))
 
 (test run.that-is-over-is-told-at-the-prompt

@@ -29,7 +29,7 @@ of lines, and the number of errors."
   (let* ((output (make-string-output-stream))
          (session (apply #'cli:make-session :input (make-string-input-stream (joined lines))
                                             :output output options)))
-    (robot:call-with-simulation (lambda () (cli:run-session session)) '(ars-user::butler)
+    (run:call-with-simulation (lambda () (cli:run-session session)) '(ars-user::butler)
                                 :clean t :journal t)
     (values (lines-of (get-output-stream-string output)) (cli:session-errors session))))
 

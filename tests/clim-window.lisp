@@ -12,7 +12,7 @@
   (let* ((watcher (window:make-watcher (robot:robot-name robot) (constantly nil)))
          (port (clim:find-port :server-path '(:null)))
          (manager (clim:find-frame-manager :port port)))
-    (window:watch-simulation watcher (robot:robot-simulation robot))
+    (window:watch-simulation watcher (run:robot-simulation robot))
     (let ((window (window:make-robot-window watcher :frame-manager manager)))
       (clim:adopt-frame manager window)
       (unwind-protect
@@ -124,16 +124,16 @@
            (watcher (window:make-watcher 'studio-robot (lambda () (incf count)))))
       (window:watch-simulation watcher (time:current-simulation))
       (is (= 1 count))
-      (time:run-ticks 10)
+      (run:run-ticks 10)
       (is (= 1 count))
       (is (= 0 (display:snapshot-tick (window:watcher-snapshot watcher))))
       (setf (window::watcher-wanted-p watcher) t)
-      (time:run-ticks 10)
+      (run:run-ticks 10)
       (is (= 2 count))
       (is (= 11 (display:snapshot-tick (window:watcher-snapshot watcher))))
       (window:stop-watching watcher)
       (setf (window::watcher-wanted-p watcher) t)
-      (time:run-ticks 1)
+      (run:run-ticks 1)
       (is (= 2 count)))))
 
 (test watcher.follows-a-live-run-and-what-programs-change-between-ticks
@@ -143,7 +143,7 @@
            (news (base:make-semaphore "news"))
            (watcher (window:make-watcher 'studio-robot
                                          (lambda () (base:signal-semaphore news)))))
-      (time:start-clock simulation)
+      (run:start-clock simulation)
       (unwind-protect
            (progn
              (window:start-watching watcher simulation)
@@ -155,7 +155,7 @@
                            (display:snapshot-robot (window:watcher-snapshot watcher)
                                                    'studio-robot)))))
         (window:stop-watching watcher)
-        (time:stop-clock simulation)))))
+        (run:stop-clock simulation)))))
 
 ;;; The prompt's streams.
 
@@ -185,7 +185,7 @@
 (test window.commands-steer-a-live-run
   (in-window (window robot)
     (let ((simulation (time:current-simulation)))
-      (time:start-clock simulation :rate 20)
+      (run:start-clock simulation :rate 20)
       (unwind-protect
            (progn
              (window::com-pause)
@@ -193,10 +193,10 @@
              (window::com-resume)
              (is (not (time:paused-p simulation)))
              (window::com-faster)
-             (is (= 40 (time:simulation-rate simulation)))
+             (is (= 40 (run:simulation-rate simulation)))
              (window::com-free)
-             (is (eq :free (time:simulation-rate simulation))))
-        (time:stop-clock simulation)))))
+             (is (eq :free (run:simulation-rate simulation))))
+        (run:stop-clock simulation)))))
 
 (test window.layers-and-colours-can-be-switched
   (in-window (window robot)
@@ -233,9 +233,9 @@
 (test window.closing-it-leaves-the-simulator-running
   (in-studio (robot)
     (let* ((simulation (time:current-simulation))
-           (observers (length (time:simulation-observers simulation)))
+           (observers (length (run:simulation-observers simulation)))
            (clim:*default-server-path* '(:null)))
-      (time:start-clock simulation :rate :free)
+      (run:start-clock simulation :rate :free)
       (unwind-protect
            (let ((window (window:open-window robot)))
              (is (eq window (window:open-window robot)))
@@ -246,5 +246,5 @@
              (is (eq :disowned (clim:frame-state window)))
              (is (time:live-p simulation))
              ;; The history goes on.
-             (is (= (1+ observers) (length (time:simulation-observers simulation)))))
-        (time:stop-clock simulation)))))
+             (is (= (1+ observers) (length (run:simulation-observers simulation)))))
+        (run:stop-clock simulation)))))

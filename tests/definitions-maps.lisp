@@ -16,35 +16,35 @@
      (eval '(robot:defrobot mole (shed (6 6) 0) :hands (5)))
      (unwind-protect (progn ,@body)
        (when (and time:*simulation* (time:live-p time:*simulation*))
-         (robot:stop-simulator)))))
+         (run:stop-simulator)))))
 
 (test map-redefined.takes-effect-at-the-next-start
   (with-mole-in-shed
     (let ((old (mole)))
-      (robot:with-simulation (mole)
+      (run:with-simulation (mole)
         (is (null (define-shed 9 '(wall (2 2) (2 2) bricks 1))))
         (is (not (world:wall-at-p (world:world-map world:*world*) 2 2)) "under way"))
-      (robot:with-simulation (mole)
+      (run:with-simulation (mole)
         (is (world:wall-at-p (world:world-map world:*world*) 2 2)))
       (is (not (eq old (mole))))
       (is (eq (world:find-map 'shed) (world:world-map (robot:robot-world (mole)))))
-      (robot:simulator (mole) :display nil)
+      (run:simulator (mole) :display nil)
       (is (eq (world:find-map 'shed)
-              (world:world-map (time:simulation-world (time:current-simulation))))))))
+              (world:world-map (run:simulation-world (time:current-simulation))))))))
 
 (test map-redefined.stops-what-it-replaces
   "The old thread ends, pending commands are interrupted, and it is said so."
   (with-mole-in-shed
     (let ((answers '()) (robot (mole)))
-      (robot:simulator 'mole :display nil :rate :free)
+      (run:simulator 'mole :display nil :rate :free)
       (let ((simulation time:*simulation*))
         (time:pause)
         (time:asking (simulation)
           (command:robot-go-forward robot 1000 (lambda (code &rest more)
                                                  (declare (ignore more))
                                                  (push code answers))))
-        (time:step-ticks 3)
-        (loop until (= 3 (time:simulation-tick simulation)) do (sb-thread:thread-yield))
+        (run:step-ticks 3)
+        (loop until (= 3 (run:simulation-tick simulation)) do (sb-thread:thread-yield))
         (let ((warnings (define-shed 9)))
           (is (= 1 (length warnings)))
           (is (search "has ended at tick 3" (first warnings))))
@@ -66,7 +66,7 @@
     (let ((before (simulator-threads)))
       (dotimes (round 3)
         (define-shed 9)
-        (robot:simulator (mole) :display nil))
+        (run:simulator (mole) :display nil))
       (is (= (1+ before) (simulator-threads))))))
 
 (test map-redefined.rejects-what-no-longer-fits
@@ -74,13 +74,13 @@
     (let ((warnings (define-shed 5)))
       (is (= 1 (length warnings)))
       (is (search "outside the map, which is 5 by 9" (first warnings))))
-    (dolist (function (list (lambda () (robot:simulator 'mole))
-                            (lambda () (robot:call-with-simulation (constantly nil) '(mole)))
+    (dolist (function (list (lambda () (run:simulator 'mole))
+                            (lambda () (run:call-with-simulation (constantly nil) '(mole)))
                             (lambda () (command:robot-turn (mole) 1))))
       (signals base:misuse (funcall function)))
     (is (search "inside a wall" (first (define-shed 9 '(wall (6 6) (6 6) bricks 1)))))
     (is (null (define-shed 9)))
-    (is (eq (mole) (robot:simulator 'mole :display nil)) "it fits again")))
+    (is (eq (mole) (run:simulator 'mole :display nil)) "it fits again")))
 
 (test map-redefined.is-not-if-it-makes-no-sense
   (with-mole-in-shed
@@ -94,16 +94,16 @@
   (with-mole-in-shed
     (let ((old (mole)))
       (eval '(world:defmap annexe (9 9)))
-      (robot:simulator 'mole :display nil)
+      (run:simulator 'mole :display nil)
       (eval '(robot:defrobot mole (annexe (2 2) 0)))
-      (is (null (robot:simulation-robots time:*simulation*)) "it has left the shed")
+      (is (null (run:simulation-robots time:*simulation*)) "it has left the shed")
       (signals base:misuse (command:robot-turn old 1))
       (is (eq (world:find-map 'annexe) (world:world-map (robot:robot-world (mole)))))
       (finishes (command:robot-turn (mole) 1)))))
 
 (test run-over.robots-take-no-more-commands
   (with-mole-in-shed
-    (let ((robot (robot:with-simulation (mole) (mole))))
+    (let ((robot (run:with-simulation (mole) (mole))))
       (handler-case (progn (command:robot-turn robot 1) (fail "no error"))
         (base:misuse (condition)
           (is (search "headless simulation" (princ-to-string condition))))))))
@@ -112,36 +112,36 @@
   "What a headless run had under way when it ended is interrupted, and no tick passes any more."
   (with-mole-in-shed
     (let ((codes '()) (simulation nil))
-      (robot:with-simulation (mole)
+      (run:with-simulation (mole)
         (setf simulation (time:current-simulation))
         (command:robot-turn (mole) 1 (lambda (code &rest more)
                                        (declare (ignore more))
                                        (push code codes)))
-        (time:run-ticks 1))
+        (run:run-ticks 1))
       (is (equal '(:interrupt) codes))
-      (signals base:misuse (time:run-ticks 1 simulation)))))
+      (signals base:misuse (run:run-ticks 1 simulation)))))
 
 (test map-redefined.after-its-simulator-was-aborted
   "What is left of a run whose thread is dead is no obstacle."
   (with-mole-in-shed
-    (robot:simulator 'mole :display nil)
-    (let* ((simulation time:*simulation*) (thread (time:simulation-thread simulation)))
+    (run:simulator 'mole :display nil)
+    (let* ((simulation time:*simulation*) (thread (run:simulation-thread simulation)))
       (command:robot-turn (mole) 1 (lambda (&rest all)
                                      (declare (ignore all))
                                      (sb-thread:abort-thread)))
       (loop while (base:thread-alive-p thread) do (sb-thread:thread-yield))
       (is (search "has ended" (first (define-shed 9))))
-      (robot:simulator 'mole :display nil)
+      (run:simulator 'mole :display nil)
       (is (not (eq simulation time:*simulation*)))
-      (robot:stop-simulator))))
+      (run:stop-simulator))))
 
 (test map-redefined.says-what-it-ends
   "Not for a run with nothing under way, unless it is live."
   (with-mole-in-shed
-    (robot:simulator 'mole :display nil)
-    (robot:stop-simulator)
+    (run:simulator 'mole :display nil)
+    (run:stop-simulator)
     (is (null (define-shed 9)))
-    (robot:simulator 'mole :display nil)
+    (run:simulator 'mole :display nil)
     (is (search "has ended" (first (define-shed 9))))))
 
 (test find-thing.looks-in-the-current-simulation
@@ -151,10 +151,10 @@
     (eval '(robot:defrobot vole (annexe (2 2) 0)))
     (dolist (entry '((mole 1) (vole 2) (mole 1)))
       (destructuring-bind (name size) entry
-        (robot:simulator name :display nil)
+        (run:simulator name :display nil)
         (is (= 1 (length (world:find-things 'box))))
         (is (= size (world:get-attribute (world:find-thing 'box) :size)))))
-    (robot:with-simulation (vole)
+    (run:with-simulation (vole)
       (is (= 2 (world:get-attribute (world:find-thing 'box) :size))))))
 
 (test run-ended.tells-all-who-asked
@@ -164,21 +164,21 @@
       (flet ((hear (code &rest more)
                (declare (ignore more))
                (push code answers)))
-        (robot:simulator 'mole :display nil :rate :free)
+        (run:simulator 'mole :display nil :rate :free)
         (command:robot-go-forward (mole) 10 #'hear)
-        (time:await-idle)
+        (run:await-idle)
         (time:pause)
         (command:hand-track (robot:robot-hand (mole) 0) #'hear)
-        (robot:stop-simulator)
+        (run:stop-simulator)
         (command:robot-turn (mole) 1 #'hear)
         (let ((old time:*simulation*))
-          (robot:simulator 'mole :display nil)
+          (run:simulator 'mole :display nil)
           (is (equal 3 (length answers)))
           (is (= 1 (count :robot-blocked answers)))
-          (signals base:misuse (time:run-ticks 1 old))
-          (signals base:misuse (time:post old #'list)))
+          (signals base:misuse (run:run-ticks 1 old))
+          (signals base:misuse (time:post (make-errand #'list) old)))
         ;; Never started, and defined anew.
-        (robot:stop-simulator)
+        (run:stop-simulator)
         (define-shed 9)
         (setf answers '())
         (command:robot-turn (mole) 1 #'hear)
@@ -203,7 +203,7 @@
                                                 (base:misuse ()))))
                                    "asking"))))
       (dotimes (round 5)
-        (robot:simulator 'mole :display nil :rate :free)
+        (run:simulator 'mole :display nil :rate :free)
         (let ((goal (+ accepted 50)))
           (loop until (< goal accepted) do (sb-thread:thread-yield)))
         (define-shed 9))
@@ -216,31 +216,31 @@
 (test robot-redefined.is-interrupted
   (with-mole-in-shed
     (let ((answers '()))
-      (robot:simulator 'mole :display nil)
+      (run:simulator 'mole :display nil)
       (time:pause)
       (command:robot-go-forward (mole) 100 (lambda (code &rest more)
                                              (declare (ignore more))
                                              (push code answers)))
-      (time:step-ticks 2)
-      (loop until (= 2 (time:simulation-tick)) do (sb-thread:thread-yield))
+      (run:step-ticks 2)
+      (loop until (= 2 (run:simulation-tick)) do (sb-thread:thread-yield))
       (eval '(robot:defrobot mole (shed (5 5) 0)))
       (is (equal '(:interrupt) answers))
-      (is (equal (list (mole)) (robot:simulation-robots))))))
+      (is (equal (list (mole)) (run:simulation-robots))))))
 
 (test own-definitions.end-runs-and-let-others-begin
   (with-mole-in-shed
-    (robot:simulator 'mole :display nil)
+    (run:simulator 'mole :display nil)
     (let ((simulation time:*simulation*))
       (base:with-own-definitions ()
         (define-shed 12)
         (eval '(world:defmap annexe (9 9)))
         (eval '(robot:defrobot vole (annexe (2 2) 0)))
-        (robot:simulator 'vole :display nil))
+        (run:simulator 'vole :display nil))
       (is (eq simulation time:*simulation*))
-      (is (not (null (time:simulation-over simulation))))
+      (is (not (null (run:simulation-over simulation))))
       (is (= 9 (world:map-width (world:find-map 'shed))))
       (finishes (command:robot-turn (mole) 1))
-      (is (eq (mole) (robot:simulator 'mole :display nil)))
+      (is (eq (mole) (run:simulator 'mole :display nil)))
       (is (zerop (simulator-threads-of 'annexe))))))
 
 (defun simulator-threads-of (map)

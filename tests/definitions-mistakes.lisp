@@ -104,7 +104,7 @@
   (with-own-definitions
     (eval '(world:defmap shed (9 9) (obj crate (5 5) ((:size 2) (:shape round)))))
     (eval '(robot:defrobot seer (shed (4 4) 0) :cameras ((6.28 5))))
-    (robot:call-with-simulation
+    (run:call-with-simulation
      (lambda ()
        (flet ((look (specification)
                 (robot:look-for-things (camera-of 'seer) :non-local specification)

@@ -17,9 +17,9 @@
             (robot:defrobot resident (room (2 2) 0) :hands (5))))
     (is (eq 'room (world:map-name (world:find-map 'room))))
     (is (not (boundp 'room)))
-    (robot:with-simulation (resident :seed 1)
+    (run:with-simulation (resident :seed 1)
       (let ((box (world:find-thing 'box)))
-        (time:run-ticks 3)
+        (run:run-ticks 3)
         (is (null (world:get-attribute box :closed)))
         (is (< 5.79 (world:thing-x box) 5.81))
         (eval '(world:new-thing pin (room 3 4) ()))
@@ -59,21 +59,21 @@
 (test simulator.takes-the-name-of-a-map
   (with-own-definitions
     (eval '(world:defmap room (10 10)))
-    (signals base:misuse (robot:simulator 'room))
-    (signals base:unknown-name (robot:simulator 'rom))
+    (signals base:misuse (run:simulator 'room))
+    (signals base:unknown-name (run:simulator 'rom))
     (eval '(robot:defrobot resident (room (2 2) 0)))
     (unwind-protect
          (dolist (designator (list 'room "ROOM" (world:find-map 'room) 'resident))
-           (is (eq (robot:find-robot 'resident) (robot:simulator designator :display nil)))
+           (is (eq (robot:find-robot 'resident) (run:simulator designator :display nil)))
            (is (time:live-p (time:current-simulation))))
-      (robot:stop-simulator))))
+      (run:stop-simulator))))
 
 (test names.are-known-from-any-package
   "A robot, map or kicker is asked for by the symbol of whoever asks."
   (with-own-definitions
     (eval '(world:defmap shed (10 10)))
     (eval '(robot:defrobot cl-user::mole (cl-user::shed (2 2) 0)))
-    (is (eql 9 (eval '(robot:with-simulation (mole :seed 9)
+    (is (eql 9 (eval '(run:with-simulation (mole :seed 9)
                         (and (eq mole (robot:find-robot 'mole))
                              (eq mole cl-user::mole)
                              (world:world-seed world:*world*))))))))
@@ -131,7 +131,7 @@
   (with-own-definitions
     (with-packages (author asker)
       (eval-in author *gaudy-world*)
-      (robot:call-with-simulation
+      (run:call-with-simulation
        (lambda ()
          (let ((words (loop repeat 200
                             append (loop for sighting
@@ -147,7 +147,7 @@
   (with-own-definitions
     (with-packages (author asker)
       (eval-in author *gaudy-world*)
-      (robot:call-with-simulation
+      (run:call-with-simulation
        (lambda ()
          (loop for text in '("((:color (red green violet)))" "((:substance (wood metal glass)))")
                for specification = (form-in asker text)
@@ -169,7 +169,7 @@
       (eval-in author *gaudy-world*)
       (eval-in author "(ars:defmap gaudy (12 12) (rect (0 0) (12 12) bricks 1)
                                                  (rect (8 8) (9 9) bricks 1))")
-      (robot:call-with-simulation
+      (run:call-with-simulation
        (lambda ()
          (let ((sightings (robot:look-for-places (camera-of 'seer) (world:find-place-type 'convex)
                                                  :all t
@@ -181,7 +181,7 @@
            (command:robot-place seer (lambda (code robot name)
                                        (declare (ignore code robot))
                                        (push name names)))
-           (time:run-ticks 3)
+           (run:run-ticks 3)
            (is (equal (list (form-in author "concave")) names))))
        "SEER" :seed 1 :clean t))))
 
@@ -195,7 +195,7 @@
     (eval '(world:defmap bright (9 9) (obj crate (5 5) ((:size 2))) (obj lamp (5 5) ((:lit t)))))
     (loop for (map . expected) in '((dark) (bright t))
           do (eval `(robot:defrobot seer (,map (4 4) 0) :cameras ((6.28 5))))
-             (robot:call-with-simulation
+             (run:call-with-simulation
               (lambda ()
                 (let ((data (robot::sighting-data
                              (first (robot:look-for-things (camera-of 'seer) :non-local
@@ -220,9 +220,9 @@
         (is (= 12 (world:map-width (world:find-map 'den))) "the newest, for anybody else")
         (is (eq (symbol-value (in one "REX")) (robot:find-robot "ARS-TEST-AUTHOR:REX")))
         (loop for (package size) in (list (list one 9) (list other 12))
-              do (robot:call-with-simulation
+              do (run:call-with-simulation
                   (lambda ()
-                    (time:run-ticks 2)
+                    (run:run-ticks 2)
                     (is (= size (world:get-attribute (world:find-thing 'box) :size))))
                   (in package "REX")))))))
 
@@ -246,8 +246,8 @@
     (flet ((define-hop (size)
              (world:define-kicker 'hop :body (lambda (x) (world:set-attribute x :size size))))
            (size-after-a-tick ()
-             (robot:with-simulation (mole)
-               (time:run-ticks 2)
+             (run:with-simulation (mole)
+               (run:run-ticks 2)
                (list (world:get-attribute (world:find-thing 'box) :size)
                      (mapcar #'base:message-text (base:take-messages))))))
       (define-hop 5)

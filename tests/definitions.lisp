@@ -92,7 +92,7 @@
     (let ((robot (robot:find-robot 'mole)))
       (base:undefine 'map 'shed)
       (signals base:misuse (command:robot-turn robot 1))
-      (signals base:unknown-name (robot:call-with-simulation (constantly nil) '(mole))))))
+      (signals base:unknown-name (run:call-with-simulation (constantly nil) '(mole))))))
 
 ;;; Keeping.
 
@@ -117,9 +117,9 @@
         (is (= 7 (rpl:run-plan-alone 'doze)))
         (is (= 1 (length (command::manipulation-methods (command:find-manipulation 'dust)))))
         (is (not (null (world:find-place-type 'niche nil))))
-        (robot:with-simulation (mole :seed 1)
+        (run:with-simulation (mole :seed 1)
           (command:robot-turn (symbol-value 'mole) 1)
-          (time:run-ticks 40))
+          (run:run-ticks 40))
         (is (plusp count) "the kicker is as it was")))))
 
 (test own-definitions.can-be-made-again

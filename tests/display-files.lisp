@@ -37,9 +37,9 @@
 
 (test snapshot.changes-nothing-in-the-run
   (in-studio (robot)
-    (let ((digest (robot:state-digest)))
+    (let ((digest (run:state-digest)))
       (display:svg-picture robot :display :all :layers display:+picture-layers+)
-      (is (= digest (robot:state-digest))))))
+      (is (= digest (run:state-digest))))))
 
 ;;; Files.
 
@@ -77,11 +77,11 @@
 (test picture.user-graphics-of-a-live-robot-see-a-world-that-stands-still
   (in-studio (robot)
     (let ((simulation (time:current-simulation)))
-      (time:start-clock simulation :rate :free)
+      (run:start-clock simulation :rate :free)
       (unwind-protect
            (dotimes (count 5)
              (is (mentions-p (display:svg-picture robot) "STUDIO-ROBOT")))
-        (time:stop-clock simulation)))))
+        (run:stop-clock simulation)))))
 
 ;;; Animations.
 
@@ -89,8 +89,8 @@
   "Return the journal of a run in which ROBOT jumps about for 20 ticks."
   (dotimes (jump 4)
     (robot:place-robot robot (+ 2 jump) 6.5 0)
-    (time:run-ticks 5))
-  (robot::end-of-journal (time:current-simulation)))
+    (run:run-ticks 5))
+  (run:end-of-journal (time:current-simulation)))
 
 (test animation.shows-each-frame-in-its-turn
   (in-studio (robot)

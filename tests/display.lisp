@@ -142,8 +142,8 @@
             (obj pen (5.5 4.5) ((:size 0.2) (:color green)))))
     (eval '(robot:defrobot studio-robot (studio (6.5 6.5) 0)
             :cameras ((1 10)) :hands (5) :bins (10)))
-    (robot:call-with-simulation
-     (lambda () (funcall function (first (robot:simulation-robots))))
+    (run:call-with-simulation
+     (lambda () (funcall function (first (run:simulation-robots))))
      '(studio-robot) :journal t)))
 
 (defmacro in-studio ((robot) &body body)
@@ -224,7 +224,7 @@
       (is (shows-p '(:wedges) (format nil "~(~6,'0X~)" (aref canvas:lightred* 8))))
       (is (not (shows-p '(:trail) "<polyline points=\"52.5,52.5")))
       (robot:place-robot robot 7.5 6.5 0)
-      (time:run-ticks 1)
+      (run:run-ticks 1)
       (is (shows-p '(:trail) "<polyline points=\"60.5,52.5 52.5,52.5 \""))
       (is (not (shows-p '() "<polyline points=\"60.5,52.5 52.5,52.5 \"")))
       (is (shows-p '(:odometer) (format nil "~(~6,'0X~)" (aref canvas:lightviolet* 4)))))

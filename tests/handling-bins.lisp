@@ -69,7 +69,7 @@
     (world:move-thing (thing 'pen) (hand 0))
     (let ((designator (track (camera 0) (designate 'chest))))
       (command:robot-go-forward cook 4 nil)
-      (time:run-ticks 30)
+      (run:run-ticks 30)
       (is (null (stand-in (hand 0))))
       (is (null (stand-in (camera 0))))
       (is-false (robot:designator-valid-p designator))
@@ -85,7 +85,7 @@
     (is (null (code-of 'command:hand-grasp-desig (hand 0) (camera 1)
                        (track (camera 1) (designate 'hamper)))))
     (command:robot-go-forward cook 4 nil)
-    (time:run-ticks 30)
+    (run:run-ticks 30)
     (is (eq 'hamper (stand-in (camera 0))))))
 
 (test part.is-pulled-out-when-the-container-goes-or-vanishes
@@ -123,7 +123,7 @@
     (world:move-thing (thing 'apple) (hand 0))
     (world:move-thing (thing 'melon) (hand 0))
     (world:make-new-thing 'plum (hand 0) '((:size 1)))
-    (time:run-ticks 1)
+    (run:run-ticks 1)
     (is (equal (list (thing 'apple)) (robot:hand-contents (hand 0))))
     (is (equal '(:floor :floor) (mapcar #'world:thing-location
                                         (list (thing 'melon) (thing 'plum)))))

@@ -19,7 +19,7 @@
     (apply command (append arguments (list (lambda (error &rest more)
                                              (declare (ignore more))
                                              (setf code error)))))
-    (time:run-ticks ticks)
+    (run:run-ticks ticks)
     code))
 
 (test chance.of-missing-a-grasp

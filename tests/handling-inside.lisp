@@ -108,7 +108,7 @@
                        (texts))))))))
 
 (test hand-insert.a-stranger's-designator-or-bin
-  (robot:with-simulation ((cook rover-in-kitchen) :clean t)
+  (run:with-simulation ((cook rover-in-kitchen) :clean t)
     (let ((other (robot:find-robot 'rover-in-kitchen)))
       (is (eq :bad-designator
               (code-of 'command:hand-insert (robot:robot-hand other 0) (designate 'hamper))))
@@ -147,12 +147,12 @@
     (let ((*answers* '()) (designator (designate 'apple)))
       (command:camera-track (camera 0) designator (recorder 'track))
       (command:hand-grasp-desig (hand 0) (camera 0) designator (recorder 'grasp))
-      (time:run-ticks 10)
+      (run:run-ticks 10)
       (is (equal '((track nil) (grasp nil))
                  (mapcar (lambda (answer) (subseq answer 0 2)) (reverse *answers*))))
       (setf *answers* '())
       (command:hand-insert-bin (hand 0) (bin 0) (recorder 'insert))
-      (time:run-ticks 5)
+      (run:run-ticks 5)
       (is (equal '((insert nil) (track :lost-track))
                  (mapcar (lambda (answer) (subseq answer 0 2)) (reverse *answers*)))))))
 
@@ -242,7 +242,7 @@ the continuation of FIRST got; claims that it was called exactly once."
     (if second
         (apply (first second) (rest second))
         (time:grab-resource (second first)))
-    (time:run-ticks 20)
+    (run:run-ticks 20)
     (is (= 1 (length (answers-to 'first))) "~S" (first first))
     (first (answers-to 'first))))
 

@@ -25,7 +25,7 @@
 
 (defmacro with-cook ((&rest options) &body body)
   "Run BODY in a headless simulation with a fresh COOK."
-  `(robot:with-simulation (cook ,@options) ,@body))
+  `(run:with-simulation (cook ,@options) ,@body))
 
 (defun hand (index) (robot:robot-hand cook index))
 (defun camera (index) (robot:robot-camera cook index))
@@ -43,7 +43,7 @@
 
 (defun track (camera designator)
   "Let CAMERA track DESIGNATOR at once. Return DESIGNATOR."
-  (robot:start-track camera designator #'identity)
+  (robot:start-track camera designator nil)
   designator)
 
 (defun put-into (part location)
@@ -68,7 +68,7 @@
 a list; claims that it was called exactly once."
   (let ((calls '()))
     (apply command (append arguments (list (lambda (&rest call) (push call calls)))))
-    (time:run-ticks 20)
+    (run:run-ticks 20)
     (is (= 1 (length calls)) "~S was answered ~D times" command (length calls))
     (first calls)))
 
@@ -78,12 +78,12 @@ a list; claims that it was called exactly once."
 
 (defun ticks-of (command &rest arguments)
   "Return after how many ticks COMMAND with ARGUMENTS is answered."
-  (let ((start (time:simulation-tick)) (answered nil))
+  (let ((start (run:simulation-tick)) (answered nil))
     (apply command (append arguments (list (lambda (&rest call)
                                              (declare (ignore call))
                                              (setf answered t)))))
-    (time:run-until (lambda () answered) :limit 50)
-    (- (time:simulation-tick) start)))
+    (run:run-until (lambda () answered) :limit 50)
+    (- (run:simulation-tick) start)))
 
 (defun texts ()
   "Return the messages queued since last asked, as they are displayed."
@@ -168,9 +168,9 @@ a list; claims that it was called exactly once."
   (with-cook (:clean t)
     (let ((designator (track (camera 0) (designate 'apple))) (*answers* '()))
       (command:hand-grasp-desig (hand 0) (camera 0) designator (recorder 'grasp))
-      (time:run-ticks 5)
+      (run:run-ticks 5)
       (world:move-thing (thing 'apple) 9.5 9.5)
-      (time:run-ticks 1)
+      (run:run-ticks 1)
       (is (equal '(:missed-grasp) (mapcar #'first (answers-to 'grasp)))))))
 
 (test grasp.from-another-hand
@@ -274,10 +274,10 @@ a list; claims that it was called exactly once."
         (world:move-thing (thing 'apple) 5.5 5.5)
         (is (null (grasp 0 'apple)))
         (command:hand-track (hand 0) (recorder 'track))
-        (time:run-ticks 2500)
+        (run:run-ticks 2500)
         (is (null *answers*))
         (funcall theft)
-        (time:run-ticks 1)
+        (run:run-ticks 1)
         (is (equal (list (list :grasp-lost (hand 0))) (answers-to 'track)))))))
 
 (test hand-track.tells-of-a-kicker-in-its-own-tick
@@ -287,10 +287,10 @@ a list; claims that it was called exactly once."
       (command:hand-track (hand 0) (recorder 'track))
       (world:put-kicker squirm (apple (thing 'apple)) (:prob .01)
         (when (robot:in-location apple (hand 0))
-          (setf kicked (time:simulation-tick))
+          (setf kicked (run:simulation-tick))
           (world:kick-thing apple 0.3 0.3 t)))
-      (time:run-until (lambda () *answers*))
-      (is (eql kicked (time:simulation-tick)))
+      (run:run-until (lambda () *answers*))
+      (is (eql kicked (run:simulation-tick)))
       (is (equal '(:grasp-lost) (mapcar #'first (answers-to 'track)))))))
 
 (test hand-track.is-interrupted-by-any-command-to-the-hand
@@ -301,15 +301,15 @@ a list; claims that it was called exactly once."
                                          (command:hand-remove) (command:hand-ungrasp))
           do (let ((*answers* '()))
                (command:hand-track (hand 0) (recorder 'track))
-               (time:run-ticks 3)
+               (run:run-ticks 3)
                (apply command (hand 0) arguments)
-               (time:run-ticks 3)
+               (run:run-ticks 3)
                (is (equal (list (list :interrupt (hand 0))) (answers-to 'track)) "~S" command)))
     (let ((*answers* '()))
       (code-of 'command:hand-ungrasp (hand 0))
       (grasp 0 'apple)
       (command:hand-track (hand 0) (recorder 'track))
-      (time:run-ticks 3)
+      (run:run-ticks 3)
       (time:grab-resource (hand 0))
-      (time:run-ticks 1)
+      (run:run-ticks 1)
       (is (equal '(:interrupt) (mapcar #'first (answers-to 'track)))))))

@@ -17,7 +17,7 @@
 (defun settable-variables ()
   "Return the variables that others than their own layer may set, and those that a run binds."
   (append '(base::*noise-before-cleaning* cli::*prompt-robot*)
-          robot::*simulation-variables*
+          run:*simulation-variables*
           (loop for package in (layers)
                 append (loop for symbol being the external-symbols of package
                              when (and (eq package (symbol-package symbol))
@@ -57,14 +57,14 @@
   "End what runs live in resident worlds, and its plans."
   (when driver::*interface* (driver::close-interface driver::*interface*))
   (dolist (world (resident-worlds))
-    (when (world:world-simulation world) (time:stop-clock (world:world-simulation world)))))
+    (when (world:world-timeline world) (time:stop-pacing (world:world-timeline world)))))
 
 (defun renew-world (world)
   "Make the resident WORLD as if nothing had ever happened in it."
   (world:reset-world world :seed 0)
-  (mapc #'robot::reset-robot (world:world-robots world))
-  (setf (world:world-simulation world) nil
-        (world:world-move-watchers world) '()))
+  (when (world:world-timeline world)
+    (setf (world:world-timeline world)
+          (time:make-timeline (world:map-name (world:world-map world))))))
 
 ;;; All of it.
 

@@ -74,9 +74,9 @@ lead into the walls."
   `(progn
      ,map
      (robot:define-robot 'mason 'test-map '(,x ,y) ,angle :cameras '((6.2 20)))
-     (robot:call-with-simulation (lambda () ,@body) '(mason) ,@options)))
+     (run:call-with-simulation (lambda () ,@body) '(mason) ,@options)))
 
-(defun mason () (first (robot:simulation-robots)))
+(defun mason () (first (run:simulation-robots)))
 
 (defun near-angle (a b)
   (near 0 (geo:angle-difference a b) 1d-6))

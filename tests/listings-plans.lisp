@@ -51,12 +51,12 @@ prints goes nowhere."
     (with-valet (:clean t)
       (let ((task (driver:begin-plan (own 'rpl-scan-for-object) 0 :non-local '((:color red))
                                      (rpl:create-fluent 'desig))))
-        (time:run-until (lambda ()
+        (run:run-until (lambda ()
                           ;; It has just told the camera to turn once more.
-                          (and (< 10 (time:simulation-tick))
-                               (time:simulation-inbox (time:current-simulation)))))
+                          (and (< 10 (run:simulation-tick))
+                               (time:timeline-inbox (time:timeline-of (time:current-simulation))))))
         (command:camera-turn (valets-camera 0) 1 nil)
-        (time:run-ticks 2)
+        (run:run-ticks 2)
         (is (eq :failed (rpl:task-state task)))))))
 
 ;;; D.4: going there.
@@ -95,10 +95,10 @@ prints goes nowhere."
       (let* ((*standard-output* (make-broadcast-stream))
              (ball (put-ball 14.5 14.5))
              (task (driver:begin-plan (own 'rpl-go-to-object) 0 '((:color red)) 60)))
-        (time:run-until (lambda () (< 9 (robot:robot-y valet))) :limit 100)
+        (run:run-until (lambda () (< 9 (robot:robot-y valet))) :limit 100)
         (is (not (rpl:task-over-p task)))
         (world:destroy-thing ball)
-        (time:run-ticks 3)
+        (run:run-ticks 3)
         (is (eq :failed (rpl:task-state task)))))))
 
 (test rpl-go-to-object.arrives-amid-noise
@@ -201,7 +201,7 @@ whether the bin has jammed in the end."
           (when closed
             (call-once 'command:storage-bin-close (robot:robot-storage-bin valet 0)))
           (is (eq :succeeded (put-down-by-plan)))
-          (time:run-ticks 5)
+          (run:run-ticks 5)
           (is (on-floor-here-p ball))
           (is (not (closed-p 0)))
           (is (parts-put-away-p))
@@ -248,7 +248,7 @@ red (.475), and keep track for eight ticks; the hand must hit the bin (.95) and 
     (flet ((note (simulation)
              (declare (ignore simulation))
              (push (metres-from x y) distances)))
-      (time:add-observer #'note)
+      (run:add-observer #'note)
       (let ((state (nth-value 1 (run-own 'outing ticks speed))))
         (values state (reverse distances))))))
 
@@ -314,7 +314,7 @@ wall ends that."
   (with-all-listings ()
     (with-valet (:clean t)
       (let ((ball (put-ball 14.5 14.5)) (nearest 99))
-        (time:add-observer (lambda (simulation)
+        (run:add-observer (lambda (simulation)
                              (declare (ignore simulation))
                              (when (contents-of-bin 0)
                                (setf nearest (min nearest (metres-from 6.5 8.5))))))

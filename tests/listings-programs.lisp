@@ -15,7 +15,7 @@
 
 (defmacro with-valet ((&rest options) &body body)
   "Run BODY in a headless simulation with a fresh VALET."
-  `(robot:with-simulation (valet ,@options) ,@body))
+  `(run:with-simulation (valet ,@options) ,@body))
 
 (defun valets-camera (index) (robot:robot-camera valet index))
 
@@ -60,7 +60,7 @@
         (call-own 'scan-for-object (valets-camera 0) :non-local '((:color red))
                   (lambda (&rest call) (push call calls)))
         (command:camera-turn (valets-camera 0) 1 nil)
-        (time:run-ticks 20)
+        (run:run-ticks 20)
         (is (equal '((:interrupt nil)) calls))))))
 
 (test scan-for-object.cannot-turn-twice
@@ -89,7 +89,7 @@
   "Call FUNCTION in a thread of its own while the simulation runs live. Return its value, or NIL if
 it does not return."
   (let ((simulation (time:current-simulation)) (value nil) (returned nil))
-    (time:start-clock simulation :rate :free)
+    (run:start-clock simulation :rate :free)
     (unwind-protect
          (progn
            (base:start-thread (base:spread-specials (lambda ()
@@ -99,7 +99,7 @@ it does not return."
                                                     'valet '*home*)
                               "a listing")
            (await (lambda () returned)))
-      (time:stop-clock simulation))
+      (run:stop-clock simulation))
     value))
 
 (defmacro with-live-valet ((&key clean (seed 0)) &body body)
@@ -261,7 +261,7 @@ does not ask whether the hand got into the bin."
                    (is (eql 0 (search "Robot> " text)))
                    (is (search "Position:          (10.00,5.00)" text)))
                  (is (time:live-p (time:current-simulation))))
-            (robot:stop-simulator)))))))
+            (run:stop-simulator)))))))
 
 ;;; C: fluents.
 

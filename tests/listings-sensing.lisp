@@ -11,7 +11,7 @@
   (let ((example (listing-function "3-1-3-documentation-example" 'robot)))
     (with-output-to-string (*standard-output*)
       (funcall example robot)
-      (time:run-ticks ticks))))
+      (run:run-ticks ticks))))
 
 (test documentation-example.tells-the-error
   "There is no place type DOOR, the manual says DOORWAY; with such a type it says nothing."
@@ -220,7 +220,7 @@ also widens the range that has none of its own."
   (let ((outcomes '()))
     (loop repeat trials
           do (funcall way box key (hand 0) (lambda (&rest outcome) (push outcome outcomes)))
-             (time:run-ticks 1))
+             (run:run-ticks 1))
     outcomes))
 
 (test lock.locks-nine-times-in-ten

@@ -260,7 +260,7 @@
 
 (test robbie.has-his-parts
   (with-listings ("5-2-robbie")
-    (robot:call-with-simulation
+    (run:call-with-simulation
      (lambda ()
        (let ((robbie (symbol-value (own 'robbie))))
          (is (base:value-equal `(((,(/ pi 4) 3) (,(/ pi 2) 5)) (10 4) (20 5))

@@ -6,7 +6,7 @@
 
 (defun track-at-once (designator &optional (camera (eye)))
   "Let CAMERA track DESIGNATOR, from before the next tick. Return DESIGNATOR."
-  (robot:start-track camera designator #'identity)
+  (robot:start-track camera designator nil)
   designator)
 
 (defun tracked-ball (x y &rest attributes)
@@ -45,7 +45,7 @@
         (command:camera-track (eye) designator (recorder :track))
         ;; As in the manual's figure D.3: the track begins in time.
         (command:robot-goto-designator watcher (eye) (recorder :goto))
-        (time:run-ticks 60)
+        (run:run-ticks 60)
         (is (equal '((:track nil) (:goto nil) (:track :lost-track)) (reverse order)))))))
 
 (test goto.a-place
@@ -65,8 +65,8 @@
         (loop repeat 8
               for y downfrom 12.3 by .3 for x from 9.7 by .3
               do (world:move-thing ball (list x y))
-                 (time:run-ticks 2))
-        (time:run-ticks 30)
+                 (run:run-ticks 2))
+        (run:run-ticks 30)
         (is (equal (list (list nil watcher (eye) designator)) calls))
         (is (near (floor (robot:robot-x watcher)) (floor (world:thing-x ball))))))))
 
@@ -74,9 +74,9 @@
   (with-watcher (:clean t)
     (let ((ball (tracked-ball 9.5 10.5)) (calls '()))
       (command:robot-goto-designator watcher (eye) (lambda (&rest call) (push call calls)))
-      (time:run-ticks 6)
+      (run:run-ticks 6)
       (world:move-thing ball (list (robot:robot-x watcher) (robot:robot-y watcher)))
-      (time:run-ticks 2)
+      (run:run-ticks 2)
       (is (equal '(nil) (mapcar #'first calls))))))
 
 (test goto.errors-at-the-start
@@ -115,9 +115,9 @@
   (with-watcher (:clean t)
     (let ((designator (nth-value 1 (tracked-ball 15.5 10.5))) (calls '()))
       (command:robot-goto-designator watcher (eye) (lambda (&rest call) (push call calls)))
-      (time:run-ticks 8)
+      (run:run-ticks 8)
       (put 'screen '(12.5 10.5) :obsview t)
-      (time:run-ticks 5)
+      (run:run-ticks 5)
       (is (equal (list (list :not-tracking watcher (eye) designator)) calls))
       (is (< 5.5 (robot:robot-x watcher) 12)))))
 
@@ -126,7 +126,7 @@
     (tracked-ball 15.5 10.5)
     (let ((calls '()))
       (command:robot-goto-designator watcher (eye) (lambda (&rest call) (push call calls)))
-      (time:run-ticks 8)
+      (run:run-ticks 8)
       (call-once 'command:robot-stop watcher)
       (is (equal (list (list :interrupt watcher nil nil)) calls))
       (is (robot:camera-tracks (eye))))))

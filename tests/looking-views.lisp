@@ -59,7 +59,7 @@
   (with-watcher (:clean t)
     (put 'ball '(9.5 10.5))
     (let ((designator (find-object '())))
-      (robot:start-track (eye) designator #'identity)
+      (robot:start-track (eye) designator nil)
       (view)
       (is (robot:tracking-p (eye) designator)))))
 

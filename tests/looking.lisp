@@ -17,7 +17,7 @@
 
 (defmacro with-watcher ((&rest options) &body body)
   "Run BODY in a headless simulation with a fresh WATCHER."
-  `(robot:with-simulation (watcher ,@options) ,@body))
+  `(run:with-simulation (watcher ,@options) ,@body))
 
 (defun eye (&optional (index 0)) (robot:robot-camera watcher index))
 
@@ -29,11 +29,11 @@
 (defun call-times (ticks command &rest arguments)
   "Issue COMMAND with ARGUMENTS and pass TICKS. Return what its continuation was called with, each
 time as (tick code resource result...), ticks counted from now."
-  (let ((calls '()) (start (time:simulation-tick)))
+  (let ((calls '()) (start (run:simulation-tick)))
     (apply command (append arguments
                            (list (lambda (&rest call)
-                                   (push (cons (- (time:simulation-tick) start) call) calls)))))
-    (time:run-ticks ticks)
+                                   (push (cons (- (run:simulation-tick) start) call) calls)))))
+    (run:run-ticks ticks)
     (reverse calls)))
 
 (defun call-once (command &rest arguments)
@@ -252,10 +252,10 @@ claiming that this was once."
                                                  (lambda (err camera designators)
                                                    (declare (ignore err camera))
                                                    (setf found designators)))
-      (time:run-ticks 5)
+      (run:run-ticks 5)
       (world:move-thing mouse '(9.5 9.6))
       (world:destroy-thing fly)
-      (time:run-ticks 5)
+      (run:run-ticks 5)
       (is (equal '(ball) (loop for designator in found
                                collect (world:thing-name
                                         (robot:designator-denotation designator))))))))
@@ -267,14 +267,14 @@ claiming that this was once."
                        command:camera-get-all-object-designators))
       (let ((calls '()))
         (funcall command (eye) :non-local '() (lambda (&rest call) (push call calls)))
-        (time:run-ticks 2)
+        (run:run-ticks 2)
         (call-once 'command:camera-view (eye))
         (is (equal (list (list :interrupt (eye) nil)) calls))))))
 
 (test already-tracking.keeps-from-searching
   (with-watcher (:clean t)
     (put 'ball '(9.5 10.5))
-    (robot:start-track (eye) (find-object '()) #'identity)
+    (robot:start-track (eye) (find-object '()) nil)
     (is (eq :already-tracking (end-code 'command:camera-get-object-designator
                                         (eye) :non-local '())))
     (is (eq :already-tracking (end-code 'command:camera-get-all-object-designators

@@ -137,7 +137,7 @@
     (let ((answers '()) (apple (designate 'apple)))
       (command:run-manipulation 'poke apple (hand 0) (lambda (&rest all) (push all answers)))
       (base:undefine 'manipulation 'poke)
-      (time:run-ticks 5)
+      (run:run-ticks 5)
       (is (equal '((:failed nil)) answers)))))
 
 (test defmanipulation.keeps-methods-of-other-types
@@ -173,7 +173,7 @@
               (lambda (code value)
                 (is (eq (and (null code) (hand 0)) value))
                 (push code codes)))
-            (time:run-ticks 1))
+            (run:run-ticks 1))
           (is (= 200 (length codes)))
           (is (expected-count-p (count :failed codes) 200 .1))
           (is (= 200 (+ (count :failed codes) (count nil codes))))
@@ -206,7 +206,7 @@
 
 (test manipulation.knows-its-own-robot's-designators-only
   (with-only (command::*manipulations*)
-    (robot:with-simulation ((cook rover-in-kitchen) :clean t)
+    (run:with-simulation ((cook rover-in-kitchen) :clean t)
       (define-way 'poke '(it - () :by hand) '(nil done))
       (let ((other (robot:robot-hand (robot:find-robot 'rover-in-kitchen) 0)))
         (is (equal '(:failed nil) (outcome-of 'poke (designate 'apple) other)))))))
@@ -225,9 +225,9 @@
     (define-way 'poke '(it - ((:size 1)) :by hand) '(nil 1) :delay 5)
     (let ((*answers* '()) (apple (designate 'apple)))
       (command:manipulate poke apple (hand 0) (recorder 'poke))
-      (time:run-ticks 3)
+      (run:run-ticks 3)
       (world:set-attribute (thing 'apple) :size 2)
-      (time:run-ticks 5)
+      (run:run-ticks 5)
       (is (equal '((:failed nil)) (answers-to 'poke)))
       (is (equal '(nil 2) (outcome-of 'poke apple (hand 0)))))))
 
@@ -239,7 +239,7 @@
       (dotimes (i 2000)
         (command:manipulate try apple (hand 0)
           (lambda (code value) (declare (ignore value)) (unless code (incf done))))
-        (time:run-ticks 1))
+        (run:run-ticks 1))
       (is (expected-count-p done 2000 .3))
       (is (equal '(:failed nil) (outcome-of 'never apple (hand 0)))))))
 
@@ -250,11 +250,11 @@
     (let ((*answers* '()) (apple (designate 'apple)))
       (command:manipulate poke apple (hand 0) (recorder 'first))
       (command:manipulate poke apple (camera 0) (recorder 'camera))
-      (time:run-ticks 2)
+      (run:run-ticks 2)
       (command:manipulate poke apple (hand 0) (recorder 'second))
-      (time:run-ticks 2)
+      (run:run-ticks 2)
       (command:hand-grasp-check (hand 0) nil)
-      (time:run-ticks 10)
+      (run:run-ticks 10)
       (is (equal '((:interrupt nil)) (answers-to 'first)))
       (is (equal '((:interrupt nil)) (answers-to 'second)))
       (is (equal '((nil seen)) (answers-to 'camera)))
@@ -262,7 +262,7 @@
       (command:hand-insert-bin (hand 0) (bin 0) (recorder 'insert))
       (command:manipulate poke apple (hand 0) nil)
       (time:grab-resource (hand 0))
-      (time:run-ticks 10)
+      (run:run-ticks 10)
       (is (equal '(:interrupt) (mapcar #'first (answers-to 'insert)))))))
 
 (test manipulation.passes-its-other-arguments
@@ -318,14 +318,14 @@
     (flet ((keep-doing (name &rest more)
              (loop repeat 20
                    do (apply #'command:run-manipulation name (append more '(nil)))
-                      (time:run-ticks 2))))
+                      (run:run-ticks 2))))
       (with-cook (:seed 5 :journal t :clean t)
         (keep-doing 'grow (see '((:size 1))) (hand 0) 1)
         (keep-doing 'poke (see '((:size 12))) (hand 0) "word")
-        (let ((journal (time:simulation-journal time:*simulation*)))
-          (setf (time:journal-end journal) (time:simulation-tick))
-          (is (= 42 (length (time:journal-entries journal))))
-          (is (eql (robot:state-digest) (nth-value 1 (robot:replay journal)))))))))
+        (let ((journal (run:simulation-journal time:*simulation*)))
+          (setf (run:journal-end journal) (run:simulation-tick))
+          (is (= 42 (length (run:journal-entries journal))))
+          (is (eql (run:state-digest) (nth-value 1 (run:replay journal)))))))))
 
 (test in-location.is-immediate
   (with-cook ()

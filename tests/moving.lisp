@@ -8,11 +8,11 @@
   "Issue COMMAND on the rover with ARGUMENTS, let TICKS pass and return what its continuation got,
 after the number of ticks that had passed: (tick code robot result...). Claims that it was called
 exactly once."
-  `(let ((calls '()) (start (time:simulation-tick)))
+  `(let ((calls '()) (start (run:simulation-tick)))
      (,command rover ,@arguments
                (lambda (&rest results)
-                 (push (cons (- (time:simulation-tick) start) results) calls)))
-     (time:run-ticks ,ticks)
+                 (push (cons (- (run:simulation-tick) start) results) calls)))
+     (run:run-ticks ,ticks)
      (is (= 1 (length calls)) "~S was answered ~D times" ',command (length calls))
      (first calls)))
 
@@ -106,7 +106,7 @@ exactly once."
   (with-rover (:clean t)
     (let ((interrupted '()))
       (command:robot-go-forward rover 100 (lambda (&rest results) (push results interrupted)))
-      (time:run-ticks 7)
+      (run:run-ticks 7)
       (let* ((before (robot:robot-x rover))
              (outcome (outcome (:ticks 10) command:robot-stop)))
         (is (null (code outcome)))
@@ -119,7 +119,7 @@ exactly once."
 (test other-commands.stop-at-once
   (with-rover (:clean t)
     (command:robot-go-forward rover 100)
-    (time:run-ticks 7)
+    (run:run-ticks 7)
     (let ((before (robot:robot-x rover)))
       (outcome () command:robot-turn 0.1)
       (is (= before (robot:robot-x rover))))))
@@ -196,7 +196,7 @@ exactly once."
       (apply (command:command-name command) rover
              (append arguments (list (lambda (&rest results) (push results calls)))))
       (apply (first then) rover (rest then))
-      (time:run-ticks 100)
+      (run:run-ticks 100)
       (values calls (list (list* :interrupt rover
                                  (make-list (length (command:command-results command)))))))))
 
@@ -215,7 +215,7 @@ exactly once."
   (with-rover (:clean t)
     (command:robot-set-speed rover 0.5d0)
     (command:robot-go-forward rover 4)
-    (time:run-ticks 20)
+    (run:run-ticks 20)
     (is (< (abs (- (robot:robot-x rover) 7.5)) 1d-9))))
 
 (test commands.check-their-arguments-at-once
@@ -261,13 +261,13 @@ exactly once."
                        (command:robot-stop robot (lambda (err robot)
                                                    (declare (ignore err robot))
                                                    (record :stopped)))))))
-                 (time:run-ticks 100))))))
+                 (run:run-ticks 100))))))
 
 (test commands.survive-bad-continuations
   (with-rover ()
     (command:robot-turn rover 0.1 (lambda (err) (declare (ignore err)) nil))
     (command:robot-turn rover 0.1 (lambda (&rest r) (declare (ignore r)) (error "oops")))
-    (time:run-ticks 50)
+    (run:run-ticks 50)
     (let ((text (displayed)))
       (is (search "continuation of robot-turn" text))
       (is (search "oops" text)))
@@ -277,12 +277,12 @@ exactly once."
   (with-rover ()
     (let ((calls '()))
       (command:robot-go-forward rover 100 (lambda (&rest r) (push r calls)))
-      (time:run-ticks 10)
+      (run:run-ticks 10)
       (time:grab-resource rover)
-      (time:run-ticks 1)
+      (run:run-ticks 1)
       (is (equal (list (list :interrupt rover)) calls))
       (let ((x (robot:robot-x rover)))
-        (time:run-ticks 10)
+        (run:run-ticks 10)
         (is (= x (robot:robot-x rover)))))))
 
 (test commands.report-by-messages

@@ -26,9 +26,9 @@
 (defun fetch-in-office (errand seed &key clean)
   "Let MARVIN fetch the thing of ERRAND. Return whether it did, the plan's value, and a digest."
   (destructuring-bind (name description places) errand
-    (robot:with-simulation (ars-worlds:marvin :seed seed :clean clean)
+    (run:with-simulation (ars-worlds:marvin :seed seed :clean clean)
       (let ((value (driver:run-plan 'ars-worlds:fetch-thing description places)))
-        (values (brought-p name 62 38) value (robot:state-digest))))))
+        (values (brought-p name 62 38) value (run:state-digest))))))
 
 (test fetch.always-in-a-noiseless-world
   (dolist (errand *office-errands*)
@@ -48,11 +48,11 @@
     (is (/= (digest 21) (digest 22)))))
 
 (test fetch.by-other-robots
-  (robot:with-simulation (ars-worlds:robbie :seed 1)
+  (run:with-simulation (ars-worlds:robbie :seed 1)
     (driver:run-plan 'ars-worlds:fetch-thing
                      '((:color world:lightgreen) (:substance world:wood)) '((35.5 22.5)))
     (is-true (brought-p 'broom 10 5)))
-  (robot:with-simulation (ars-worlds:gofer :seed 1)
+  (run:with-simulation (ars-worlds:gofer :seed 1)
     (driver:run-plan 'ars-worlds:fetch-thing
                      '((:color world:blue) (:substance world:plastic)) '((108 66.5)))
     (is-true (brought-p 'bucket 15 24))))
@@ -62,14 +62,14 @@
     (and (typep failure 'rpl:plan-failure) (rpl:failure-class failure))))
 
 (test fetch.says-why-it-failed
-  (robot:with-simulation (ars-worlds:dot :clean t)
+  (run:with-simulation (ars-worlds:dot :clean t)
     (is (eq :not-found (failure-class-of 'ars-worlds:fetch-thing '((:color world:violet))
                                          '((5.5 5.5))))))
-  (robot:with-simulation (ars-worlds:gofer :clean t)
+  (run:with-simulation (ars-worlds:gofer :clean t)
     (is (eq :too-heavy (failure-class-of 'ars-worlds:fetch-thing
                                          '((:color world:red) (:substance world:metal))
                                          '((58 37.5))))))
-  (robot:with-simulation (ars-worlds:dot :clean t)
+  (run:with-simulation (ars-worlds:dot :clean t)
     (is (eq :nothing-inside (failure-class-of 'ars-worlds:put-thing-down 0 0 0)))
     (is (null (robot:part-location (robot:robot-camera ars-worlds:dot 0))))
     (is (null (robot:part-location (robot:robot-hand ars-worlds:dot 0))))))
@@ -119,7 +119,7 @@
 
 (test reckoning.stays-right-on-long-ways
   (loop for seed from 31 to 34
-        do (robot:with-simulation (ars-worlds:marvin :seed seed)
+        do (run:with-simulation (ars-worlds:marvin :seed seed)
              (driver:rpl-init-robot ars-worlds:marvin)
              (let ((me (ars-worlds:begin-reckoning '(62 38 0))))
                (is (eq :succeeded (nth-value 1 (driver:run-plan 'travel-there me
@@ -129,17 +129,17 @@
                  (is (> 2.5 (sqrt (+ (expt (- x 62) 2) (expt (- y 38) 2))))))))))
 
 (test reckoning.knows-nothing-of-the-truth
-  (robot:with-simulation (ars-worlds:dot :clean t)
+  (run:with-simulation (ars-worlds:dot :clean t)
     (driver:rpl-init-robot ars-worlds:dot)
     (let ((me (ars-worlds:begin-reckoning '(3.5 6.5 0))))
       (robot:place-robot ars-worlds:dot 9.5 2.5 1)
       (is (equal '(3.5d0 6.5d0) (ars-worlds:reckon me)))
       (command:robot-go-forward ars-worlds:dot 1)
-      (time:run-ticks 10)
+      (run:run-ticks 10)
       (is (> .01 (abs (- 4.3 (first (ars-worlds:reckon me)))))))))
 
 (test patrol.visits-what-can-be-reached
-  (robot:with-simulation (ars-worlds:robbie :seed 2)
+  (run:with-simulation (ars-worlds:robbie :seed 2)
     (is (= 6 (driver:run-plan 'ars-worlds:patrol-places '((23 10) (34 8) (6 22)) :rounds 2)))
     (multiple-value-bind (x y) (robot:robot-position ars-worlds:robbie)
       (is (> 2 (sqrt (+ (expt (- x 6) 2) (expt (- y 22) 2))))))))
@@ -162,7 +162,7 @@
 
 (test tidy.stows-what-is-kicked-about
   (loop for seed from 1 to 3
-        do (robot:with-simulation (nurse :seed seed)
+        do (run:with-simulation (nurse :seed seed)
              (driver:run-plan 'ars-worlds:tidy-room
                               '(((:color world:red) (:substance world:plastic))
                                 ((:color world:blue) (:substance world:paper)))
@@ -174,14 +174,14 @@
 
 (defun run-errand-of (robot name description seed &key clean (camera 0) (limit 4000))
   "Return whether ROBOT stowed the thing called NAME, and the codes that its continuation got."
-  (robot:call-with-simulation
+  (run:call-with-simulation
    (lambda ()
      (let* ((codes '()) (body (symbol-value robot)) (thing (world:find-thing name)))
        (ars-worlds:run-errand body description
                               (lambda (err robot) (declare (ignore robot)) (push err codes))
                               :camera camera)
-       (time:run-until (lambda () codes) :limit limit)
-       (time:run-ticks 50)
+       (run:run-until (lambda () codes) :limit limit)
+       (run:run-ticks 50)
        (values (and (member thing (robot:storage-bin-contents (robot:robot-storage-bin body 0))) t)
                codes)))
    (list robot) :seed seed :clean clean))

@@ -19,7 +19,7 @@
 
 (defmacro with-rover ((&rest options) &body body)
   "Run BODY in a headless simulation with a fresh ROVER."
-  `(robot:with-simulation (rover ,@options) ,@body))
+  `(run:with-simulation (rover ,@options) ,@body))
 
 ;;; Definition.
 
@@ -89,7 +89,7 @@
         (wander rover (base:make-dice seed :wander))
         (let ((main (robot:robot-main-odometer rover)) (late nil) (wrong 0) where)
           (loop for tick from 1 to 3000
-                do (time:run-ticks 1)
+                do (run:run-ticks 1)
                    (when (= tick 700)
                      (setf late (robot:make-odometer rover 'late)
                            where (list (robot:robot-x rover) (robot:robot-y rover)
@@ -102,9 +102,9 @@
 (test odometer.is-exact-in-a-clean-world
   (with-rover (:clean t)
     (command:robot-turn rover 1)
-    (time:run-ticks 20)
+    (run:run-ticks 20)
     (command:robot-go-forward rover 3)
-    (time:run-ticks 20)
+    (run:run-ticks 20)
     (let ((odometer (robot:robot-main-odometer rover)))
       (is (< (geo:interval-width (robot:get-odometer-ang odometer)) 1d-9))
       (is (< (geo:interval-width (robot:get-odometer-pos odometer)) 1d-9))
@@ -121,9 +121,9 @@
                       (abs (- heading (robot:robot-angle rover)))))))
         (loop repeat 3
               do (command:robot-turn rover 0.7)
-                 (time:run-ticks 20)
+                 (run:run-ticks 20)
                  (command:robot-go-forward rover 3)
-                 (time:run-ticks 20)
+                 (run:run-ticks 20)
                  (is (< (off) 1d-9))
                  (robot:reset-odometer main)
                  (is (< (off) 1d-9)))
@@ -139,9 +139,9 @@
         (is (equal (list (robot:robot-main-odometer rover) second)
                    (robot:robot-odometers rover)))
         (command:robot-turn rover 1)
-        (time:run-ticks 20)
+        (run:run-ticks 20)
         (command:robot-go-forward rover 2)
-        (time:run-ticks 20)
+        (run:run-ticks 20)
         (flet ((far (odometer)
                  (list (plusp (geo:interval-max (robot:get-odometer-ang odometer)))
                        (plusp (geo:norm (geo:nominal (robot:get-odometer-pos odometer)))))))
@@ -237,7 +237,7 @@
       (is (= 5.5d0 (robot:robot-x rover)))
       (is-true (world:find-thing 'pillar)))
     (is (eq rover outside))
-    (signals base:unknown-name (robot:call-with-simulation (constantly nil) '(nobody)))))
+    (signals base:unknown-name (run:call-with-simulation (constantly nil) '(nobody)))))
 
 (test with-simulation.binds-parameters
   (with-rover (:parameters '((braking* 9)))
@@ -252,8 +252,8 @@
   (flet ((digest (seed)
            (with-rover (:seed seed)
              (wander rover (base:make-dice 1))
-             (time:run-ticks 500)
-             (robot:state-digest))))
+             (run:run-ticks 500)
+             (run:state-digest))))
     (is (= (digest 1) (digest 1)))
     (is (/= (digest 1) (digest 2)))))
 
@@ -261,10 +261,10 @@
   (flet ((digest (again)
            (with-rover (:seed 1)
              (wander rover (base:make-dice 1))
-             (time:run-ticks 100)
-             (when again (robot:set-seed again))
-             (time:run-ticks 100)
-             (robot:state-digest))))
+             (run:run-ticks 100)
+             (when again (run:set-seed again))
+             (run:run-ticks 100)
+             (run:state-digest))))
     (is (/= (digest nil) (digest 5)))
     (is (= (digest 5) (digest 5)))))
 
@@ -280,12 +280,12 @@
       (setf (world::map-resident annex) nil)
       (let ((robot (robot:define-robot 'lodger 'annex '(2 2) 0)))
         (funcall change robot)
-        (let ((simulation (robot:robot-simulation robot)))
-          (is (plusp (time:journal-length (time:simulation-journal simulation))))
+        (let ((simulation (run:robot-simulation robot)))
+          (is (plusp (run:journal-length (run:simulation-journal simulation))))
           (robot:define-robot 'latecomer 'annex '(5 5) 0)
-          (time:run-ticks 5 simulation)
-          (is (= (robot:state-digest simulation)
-                 (nth-value 1 (robot:replay (robot::end-of-journal simulation))))))))))
+          (run:run-ticks 5 simulation)
+          (is (= (run:state-digest simulation)
+                 (nth-value 1 (run:replay (run:end-of-journal simulation))))))))))
 
 (test place-robot.checks-and-keeps-odometers
   (with-rover ()

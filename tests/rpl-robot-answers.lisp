@@ -25,7 +25,7 @@
 
 (defmacro with-fitter ((&rest options) &body body)
   "Run BODY in a headless simulation with a fresh FITTER that plans drive."
-  `(robot:with-simulation (fitter ,@options)
+  `(run:with-simulation (fitter ,@options)
      (driver:rpl-init-robot fitter)
      ,@body))
 
@@ -252,7 +252,7 @@
 
 (test answers.of-every-command
   "Each command is tried with success, and with a failure of its own if it has any."
-  (dolist (command (command:all-commands))
+  (dolist (command (own-commands))
     (let ((codes (loop for (name code) in *answer-rows*
                        when (eq name (command:command-name command)) collect code))
           (own (mapcar #'command:error-code-keyword (command:command-errors command))))

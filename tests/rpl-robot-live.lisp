@@ -17,14 +17,14 @@
 (defun call-live (function rate)
   (let ((driver::*interface* nil) (time:*simulation* nil))
     (with-messages
-      (let* ((simulation (robot:fresh-simulation '(fitter) :seed 3))
+      (let* ((simulation (run:fresh-simulation '(fitter) :seed 3))
              (time:*simulation* simulation)
-             (robot (first (robot:simulation-robots simulation))))
+             (robot (first (run:simulation-robots simulation))))
         (progv '(fitter) (list robot)
-          (time:start-clock simulation :rate rate)
+          (run:start-clock simulation :rate rate)
           (driver:rpl-init-robot robot)
           (unwind-protect (funcall function simulation)
-            (time:stop-clock simulation)
+            (run:stop-clock simulation)
             (driver::close-interface driver::*interface*)))))))
 
 (defmacro live ((simulation &key (rate :free)) &body body)
@@ -51,10 +51,10 @@
           (run-as-plan
             (driver:rpl-robot-place)
             (rpl:wait-for driver:robot-place-input*)
-            (list (base:current-thread) (time:simulation-thread simulation)))
+            (list (base:current-thread) (run:simulation-thread simulation)))
         (is (not (eq plan-thread here)))
         (is (not (eq plan-thread simulator-thread)))
-        (is (eq simulator-thread (time:simulation-thread simulation)))))))
+        (is (eq simulator-thread (run:simulation-thread simulation)))))))
 
 (test live.waiting-costs-nothing
   "While its plans wait, the thread does not run, whatever number of ticks pass."
@@ -64,9 +64,9 @@
                                    (rpl:wait-for (svref driver:hand-lost* 0))))))
       (awaiting (eq :waiting (rpl:task-state task)))
       (let ((steps (rpl:plan-runner-steps runner))
-            (tick (time:simulation-tick simulation)))
+            (tick (run:simulation-tick simulation)))
         (command:robot-turn fitter 30)
-        (awaiting (> (time:simulation-tick simulation) (+ 10 tick)))
+        (awaiting (> (run:simulation-tick simulation) (+ 10 tick)))
         (is (= steps (rpl:plan-runner-steps runner))))
       (driver:end-plan task)
       (awaiting (eq :evaporated (rpl:task-state task))))))
@@ -114,13 +114,13 @@
           (base:signal-semaphore ended))
         'driver::*interface* 'time:*simulation* 'base:*message-queue*)
        "runs a plan")
-      (awaiting (> (time:simulation-tick simulation) 20))
-      (time:stop-clock simulation)
+      (awaiting (> (run:simulation-tick simulation) 20))
+      (run:stop-clock simulation)
       (is-true (base:wait-on-semaphore ended 30))
       (is (eq :stopped state))
       (is-true (driver::interface-valid-p interface))
       (awaiting (null (rpl:plan-runner-tasks (driver:rpl-runner))))
-      (time:start-clock simulation :rate :free)
+      (run:start-clock simulation :rate :free)
       (is (eq 5 (run-as-plan (rpl:wait-time 3) 5)) "and it goes on after a new start"))))
 
 (defun call-resident (function)
@@ -130,10 +130,10 @@
         (*standard-output* (make-broadcast-stream)))
     (with-messages
       (unwind-protect
-           (progn (robot:simulator fitter :rate :free)
+           (progn (run:simulator fitter :rate :free)
                   (driver:rpl-init-robot fitter)
                   (funcall function))
-        (robot:stop-simulator)))))
+        (run:stop-simulator)))))
 
 (test live.a-restarted-simulator-ends-old-plans
   "A plan may try a command before it hears of its end; then it fails."
@@ -142,8 +142,8 @@
      (let ((task (driver:begin-plan (rpl:interp-lambda ()
                                       (loop (driver:rpl-robot-turn 1)
                                             (rpl:wait-for driver:robot-stopped*))))))
-       (awaiting (> (time:simulation-tick) 20))
-       (robot:simulator fitter :rate :free)
+       (awaiting (> (run:simulation-tick) 20))
+       (run:simulator fitter :rate :free)
        (awaiting (rpl:task-over-p task))
        (is-true (member (rpl:task-state task) '(:evaporated :failed)))
        (signals base:misuse (driver:rpl-robot-turn 1))
@@ -175,7 +175,7 @@
      (let ((task (driver:begin-plan (rpl:interp-lambda ()
                                       (loop (driver:rpl-robot-turn 1)
                                             (rpl:wait-for driver:robot-stopped*))))))
-       (awaiting (> (time:simulation-tick) 20))
+       (awaiting (> (run:simulation-tick) 20))
        (define-fitter-anew)
        (awaiting (rpl:task-over-p task))
        (is-true (member (rpl:task-state task) '(:evaporated :failed)))

@@ -74,14 +74,14 @@
     (is (eq (robot:robot-storage-bin fitter 1) (value-in (svref driver:hand-inside* 0))))))
 
 (test interface.needs-a-robot
-  (robot:with-simulation ((rover))
+  (run:with-simulation ((rover))
     (signals base:misuse (driver:rpl-robot-turn 1))
     (is (null (driver:plans)))
     (is (eq rover (driver:rpl-init-robot 'rover)))
     (is (eq rover (driver:rpl-robot))))
-  (robot:with-simulation ((fitter))
+  (run:with-simulation ((fitter))
     (is (= 1 (run-as-plan 1)) "RUN-PLAN takes the only robot")
-    (robot:with-simulation ((rover))
+    (run:with-simulation ((rover))
       (signals base:misuse (driver:rpl-robot-turn 1)))
     (is (eq fitter (driver:rpl-robot)))))
 
@@ -144,7 +144,7 @@
                     (rpl:wait-for driver:robot-place-input*)
                     (incf heard))
                   heard))))
-    (is (= 50 (time:simulation-tick)))))
+    (is (= 50 (run:simulation-tick)))))
 
 (rpl:def-interp-proc waiter (number order)
   (rpl:wait-for driver:robot-stopped*)
@@ -158,7 +158,7 @@
       (loop for number from 1 to 200 do (driver:begin-plan 'waiter number order))
       (is (= 200 (length (driver:plans))))
       (driver:rpl-robot-turn 1)
-      (time:run-until (lambda () (null (driver:plans))) :limit 50)
+      (run:run-until (lambda () (null (driver:plans))) :limit 50)
       (coerce order 'list))))
 
 (test plans.two-hundred-end-in-the-same-order
@@ -186,7 +186,7 @@
       (driver:run-plan 'wanderer)
       (list (with-output-to-string (stream)
               (rpl:write-trace (rpl:plan-trace (driver:rpl-runner)) stream))
-            (robot:state-digest)
+            (run:state-digest)
             (multiple-value-list (robot:robot-position fitter))))))
 
 (test plans.same-seed-same-trace
@@ -239,10 +239,10 @@
       (is (search "robot-arrived-at*" text)))))
 
 (test run-plan.kickers-do-not-hide-a-deadlock
-  (robot:with-simulation (robbie)
+  (run:with-simulation (robbie)
     (with-messages
       (is (eq :deadlock (nth-value 1 (run-as-plan (rpl:wait-for driver:robot-stopped*)))))
-      (is (> 5 (time:simulation-tick))))))
+      (is (> 5 (run:simulation-tick))))))
 
 (test run-plan.not-inside-a-plan
   (with-fitter ()
@@ -266,14 +266,14 @@
                                       (rpl:wait-for driver:robot-stopped*)
                                       :heard)))
           (second (driver:begin-plan (rpl:interp-lambda () (rpl:wait-time 100)))))
-      (time:run-ticks 2)
+      (run:run-ticks 2)
       (is (equal (list first second) (driver:plans)))
       (is (search "robot-stopped*"
                   (with-output-to-string (stream) (driver:print-plans stream))))
       (driver:end-plan second)
       (is (eq :evaporated (rpl:task-state second)))
       (driver:rpl-robot-turn .1)
-      (time:run-ticks 10)
+      (run:run-ticks 10)
       (is (eq :succeeded (rpl:task-state first)))
       (is (eq :heard (rpl:task-result first)))
       (driver:begin-plan (rpl:interp-lambda () (rpl:wait-time 100)))
@@ -285,7 +285,7 @@
     (let ((task (driver:begin-plan (rpl:interp-lambda () (rpl:wait-time 100))))
           (stopped driver:robot-stopped*))
       (driver:rpl-init-robot fitter)
-      (time:run-ticks 1)
+      (run:run-ticks 1)
       (is (eq :evaporated (rpl:task-state task)))
       (is (not (eq stopped driver:robot-stopped*))))))
 
@@ -297,12 +297,12 @@
                                      (let ((first (rewritten)))
                                        (rpl:wait-time 5)
                                        (list first (rewritten)))))))
-      (time:run-ticks 2)
+      (run:run-ticks 2)
       (unwind-protect
            (progn (let ((*error-output* (make-broadcast-stream)))
                     (handler-bind ((warning #'muffle-warning))
                       (eval '(rpl:def-interp-proc rewritten () :new))))
-                  (time:run-ticks 10)
+                  (run:run-ticks 10)
                   (is (equal '(:old :new) (rpl:task-result task))))
         (handler-bind ((warning #'muffle-warning))
           (eval '(rpl:def-interp-proc rewritten () :old)))))))

@@ -269,16 +269,20 @@
 
 ;;; Tracks.
 
+;; What is told of the end of a track, and notes the tick.
+(defstruct stopwatch (end nil))
+
+(defmethod robot:track-ended ((stopwatch stopwatch) code designator)
+  (declare (ignore code designator))
+  (setf (stopwatch-end stopwatch) (run:simulation-tick)))
+
 (defun track-lengths (trials make-designator)
   "Return for how many ticks each of TRIALS tracks of what MAKE-DESIGNATOR returns lasted."
   (loop repeat trials
-        collect (let ((start (time:simulation-tick)) (end nil))
-                  (robot:start-track (eye) (funcall make-designator)
-                                     (lambda (code)
-                                       (declare (ignore code))
-                                       (setf end (time:simulation-tick))))
-                  (time:run-until (lambda () end) :limit 5000)
-                  (- end start))))
+        collect (let ((start (run:simulation-tick)) (stopwatch (make-stopwatch)))
+                  (robot:start-track (eye) (funcall make-designator) stopwatch)
+                  (run:run-until (lambda () (stopwatch-end stopwatch)) :limit 5000)
+                  (- (stopwatch-end stopwatch) start))))
 
 (defun geometric-p (lengths probability)
   "True if LENGTHS, from 1, go with ending each tick with PROBABILITY."
@@ -304,7 +308,7 @@
     (let ((distances '()) (angles '()))
       (loop repeat 2000
             do (let ((designator (phantom 15.5 10.5)))
-                 (robot:start-track (eye) designator #'identity)
+                 (robot:start-track (eye) designator nil)
                  (push (- (robot:designator-distance designator) 10) distances)
                  (push (robot:designator-angle designator) angles)
                  (robot:end-track (eye) :interrupt)
@@ -350,7 +354,7 @@
                                   (eye))))
                  (is (eq ball (robot:designator-denotation designator)))
                  (is (near (atan 2d0 4d0) (robot:designator-angle designator)))))
-      (robot:start-track (eye) (first (robot:live-designators watcher)) #'identity)
-      (time:run-ticks 20)
+      (robot:start-track (eye) (first (robot:live-designators watcher)) nil)
+      (run:run-ticks 20)
       (is (robot:camera-tracks (eye)))
       (is (equal '(30d0 10d0 30d0) (robot:take-view (eye 1)))))))

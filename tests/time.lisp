@@ -1,15 +1,30 @@
-;;;; time.lisp -- the agenda, the tick, schedule, threads and the journal.
+;;;; time.lisp -- the agenda, the tick, schedule and threads.
 
 (in-package :ars-magna.tests)
 
 (def-suite* time :in ars-magna)
 
+(world:defmap bare (3 3))
+
+(defun bare-simulation ()
+  "Return a simulation of a world with nothing in it."
+  (let ((world (world:make-world (world:find-map 'bare))))
+    (run::ensure-timeline world)
+    (run::make-simulation world)))
+
 (defmacro with-bare-simulation ((variable) &body body)
   "Run BODY with VARIABLE bound to a simulation of nothing."
   `(with-messages
-     (let* ((,variable (time:make-simulation :name "bare"))
+     (let* ((,variable (bare-simulation))
             (time:*simulation* ,variable))
        ,@body)))
+
+;; A request that calls a function.
+(defstruct (errand (:include time:request) (:constructor make-errand (function))) function)
+
+(defmethod time:perform ((errand errand) timeline)
+  (declare (ignore timeline))
+  (funcall (errand-function errand)))
 
 (defmacro recording ((record) &body body)
   "Run BODY, in which (RECORD datum) remembers DATUM; return the data in order."
@@ -80,10 +95,10 @@
   (with-bare-simulation (s)
     (is (equal '(1 1 4)
                (recording (record)
-                 (time:schedule (nil) (record (time:simulation-tick)))
-                 (time:schedule (nil :timer 0) (record (time:simulation-tick)))
-                 (time:schedule (nil :timer 4) (record (time:simulation-tick)))
-                 (time:run-ticks 10))))))
+                 (time:schedule (nil) (record (run:simulation-tick)))
+                 (time:schedule (nil :timer 0) (record (run:simulation-tick)))
+                 (time:schedule (nil :timer 4) (record (run:simulation-tick)))
+                 (run:run-ticks 10))))))
 
 (test schedule.the-first-of-equals-stays-the-higher-wins
   (with-bare-simulation (s)
@@ -92,37 +107,89 @@
                  (time:schedule (:arm :interrupt (record :first-lost)) (record :first))
                  (time:schedule (:arm :interrupt (record :second-lost)) (record :second))
                  (time:schedule (:arm :priority 1) (record :third))
-                 (time:run-ticks 3))))))
+                 (run:run-ticks 3))))))
 
 (test schedule.when-and-timeout
   (with-bare-simulation (s)
     (is (equal '((:true 8))
                (recording (record)
-                 (time:schedule (nil :timer 3 :when (>= (time:simulation-tick) 8) :timeout 20)
-                   (record (list :true (time:simulation-tick))))
-                 (time:schedule (nil :when (>= (time:simulation-tick) 8) :timeout 5)
+                 (time:schedule (nil :timer 3 :when (>= (run:simulation-tick) 8) :timeout 20)
+                   (record (list :true (run:simulation-tick))))
+                 (time:schedule (nil :when (>= (run:simulation-tick) 8) :timeout 5)
                    (record :evaporated))
                  (time:schedule (nil :when nil :timeout 5 :interrupt (record :interrupted))
                    (record :never))
-                 (time:run-ticks 30))))
-    (is-true (time:idle-p s))))
+                 (run:run-ticks 30))))
+    (is-true (run:idle-p s))))
 
 (test schedule.an-event-can-queue-the-next
   (with-bare-simulation (s)
     (is (equal '(1 3 5 7)
                (recording (record)
                  (labels ((again ()
-                            (record (time:simulation-tick))
+                            (record (run:simulation-tick))
                             (time:schedule (:chain :timer 2) (again))))
                    (time:schedule (:chain) (again))
-                   (time:run-ticks 8)))))))
+                   (run:run-ticks 8)))))))
+
+(test schedule.waits-its-turn-among-requests
+  "What is asked of a resource is taken in the order of asking."
+  (with-bare-simulation (s)
+    (is (equal '(:mine)
+               (recording (record)
+                 (time:grab-resource :a)
+                 (time:schedule (:a) (record :mine))
+                 (run:run-ticks 3)))
+        "a grab does not take what is asked for after it")
+    (is (equal '(:lost)
+               (recording (record)
+                 (time:schedule (:a :timer 2 :interrupt (record :lost)) (record :mine))
+                 (time:grab-resource :a)
+                 (run:run-ticks 3))))))
+
+(test schedule.an-interrupted-event-may-ask-again
+  "The event that an :interrupt form schedules meets the winner, and only one is pending."
+  (with-bare-simulation (s)
+    (is (equal '(:again-lost :high)
+               (recording (record)
+                 (time:schedule (:arm :timer 5
+                                      :interrupt (time:schedule
+                                                     (:arm :interrupt (record :again-lost))
+                                                   (record :again)))
+                   (record :low))
+                 (time:schedule (:arm :timer 3 :priority 1) (record :high))
+                 (run:run-ticks 2)
+                 (is (= 1 (time:agenda-pending (run:simulation-agenda s))))
+                 (run:run-ticks 10))))))
+
+(test schedule.does-not-outlive-its-timeout
+  (with-bare-simulation (s)
+    (is (equal '((:last 4))
+               (recording (record)
+                 (time:schedule (nil :when t :timer 8 :timeout 4) (record :too-late))
+                 (time:schedule (nil :when t :timer 4 :timeout 4)
+                   (record (list :last (run:simulation-tick))))
+                 (time:schedule (:gate :when nil :timeout 3) (record :never))
+                 (run:run-ticks 3)
+                 (is (null (time:pending-event (run:simulation-agenda s) :gate)))
+                 (run:run-ticks 20))))))
+
+(test schedule.resources-that-look-the-same-are
+  (with-bare-simulation (s)
+    (is (equal '(:lost :lost :first :first)
+               (recording (record)
+                 (loop for resource in (list (list :door 3) "gate")
+                       do (time:schedule ((copy-seq resource)) (record :first))
+                          (time:schedule ((copy-seq resource) :interrupt (record :lost))
+                            (record :second)))
+                 (run:run-ticks 2))))))
 
 (test schedule.trouble-in-a-body-is-reported
   (with-bare-simulation (s)
     (time:schedule (nil) (error "bad body"))
-    (time:run-ticks 2)
+    (run:run-ticks 2)
     (is (search "bad body" (displayed)))
-    (is (= 2 (time:simulation-tick)))))
+    (is (= 2 (run:simulation-tick)))))
 
 (test schedule.rejects-what-is-no-number
   (with-bare-simulation (s)
@@ -132,30 +199,35 @@
 ;;; Ticks.
 
 (test ticks.have-their-order
-  "Inbox, events, phases, notifications, observers."
+  "Requests, events, kickers, tracks and grips, notifications, observers."
   (with-messages
-    (is (equal '(:inbox :event :phase :notification :observer)
+    (is (equal '(:request :event :kicker :notification :observer)
                (recording (record)
-                 (let ((s (time:make-simulation
-                           :phases (list (lambda (s)
-                                           (record :phase)
-                                           (time:notify-later s (lambda ()
-                                                                  (record :notification))))))))
+                 (let* ((s (bare-simulation))
+                        (thing (world:make-new-thing 'gnome (list (run:simulation-world s) 1 1)
+                                                     '((:size 1)))))
+                   (world:call-put-kicker thing 'note
+                                          :body (lambda (thing)
+                                                  (declare (ignore thing))
+                                                  (record :kicker)
+                                                  (time:notify-later
+                                                   (time:timeline-of s)
+                                                   (lambda () (record :notification)))))
                    (time:call-scheduled (lambda () (record :event)) nil :simulation s)
-                   (time:post s (lambda () (record :inbox)))
-                   (time:add-observer (lambda (s) (declare (ignore s)) (record :observer)) s)
-                   (time:run-ticks 1 s)))))))
+                   (time:post (make-errand (lambda () (record :request))) s)
+                   (run:add-observer (lambda (s) (declare (ignore s)) (record :observer)) s)
+                   (run:run-ticks 1 s)))))))
 
 (test ticks.run-until-a-predicate-or-a-limit
   (with-bare-simulation (s)
     (is (equal '(t 5) (multiple-value-list
-                       (time:run-until (lambda () (= 5 (time:simulation-tick)))))))
+                       (run:run-until (lambda () (= 5 (run:simulation-tick)))))))
     (is (equal '(nil 12) (multiple-value-list
-                          (time:run-until (constantly nil) :limit 7))))))
+                          (run:run-until (constantly nil) :limit 7))))))
 
 (test ticks.no-simulation-names-the-remedy
   (let ((time:*simulation* nil))
-    (handler-case (progn (time:run-ticks 1) (fail "ran"))
+    (handler-case (progn (run:run-ticks 1) (fail "ran"))
       (base:misuse (trouble) (is (search "with-simulation" (princ-to-string trouble)))))))
 
 ;;; Live.
@@ -168,17 +240,17 @@
     (base:wait-on-semaphore passed 60)))
 
 (defmacro with-live ((simulation rate) &body body)
-  `(unwind-protect (progn (time:start-clock ,simulation :rate ,rate) ,@body)
-     (time:stop-clock ,simulation)))
+  `(unwind-protect (progn (run:start-clock ,simulation :rate ,rate) ,@body)
+     (run:stop-clock ,simulation)))
 
 (test live.ticks-pass-by-themselves
   (with-bare-simulation (s)
     (with-live (s :free)
       (is-true (wait-for-event s 5000))
-      (is-true (time:await-idle s))
-      (let ((tick (time:ask s (lambda () (time:simulation-tick s)))))
+      (is-true (run:await-idle s))
+      (let ((tick (time:ask s (lambda () (run:simulation-tick s)))))
         (is (>= tick 5000))
-        (is (= tick (time:ask s (lambda () (time:simulation-tick s)))) "idle time stands still")))
+        (is (= tick (time:ask s (lambda () (run:simulation-tick s)))) "idle time stands still")))
     (is-false (time:live-p s))))
 
 (test live.pause-step-resume
@@ -187,8 +259,8 @@
       (time:pause s)
       (let ((stepped (base:make-semaphore "stepped")))
         (time:call-scheduled (lambda () (base:signal-semaphore stepped)) nil :simulation s)
-        (is (= 0 (time:ask s (lambda () (time:simulation-tick s)))))
-        (time:step-ticks 1 s)
+        (is (= 0 (time:ask s (lambda () (run:simulation-tick s)))))
+        (run:step-ticks 1 s)
         (is-true (base:wait-on-semaphore stepped 60))
         (time:call-scheduled (lambda () (base:signal-semaphore stepped)) nil :timer 50
                                                                              :simulation s)
@@ -198,9 +270,9 @@
 (test live.run-ticks-is-refused
   (with-bare-simulation (s)
     (with-live (s 20)
-      (signals base:misuse (time:run-ticks 1 s))
-      (signals base:misuse (time:start-clock s)))
-    (signals base:wrong-argument (time:start-clock s :rate 0))))
+      (signals base:misuse (run:run-ticks 1 s))
+      (signals base:misuse (run:start-clock s)))
+    (signals base:wrong-argument (run:start-clock s :rate 0))))
 
 (test live.questions-bring-back-values-and-errors
   (with-bare-simulation (s)
@@ -217,44 +289,9 @@
                              collect (base:start-thread
                                       (lambda ()
                                         (loop repeat each
-                                              do (time:post s (lambda () (incf count)))))
+                                              do (time:post (make-errand (lambda () (incf count)))
+                                                        s)))
                                       "poster"))))
           (mapc #'base:join-thread threads)
           (is-true (wait-for-event s 2)))
         (is (= (* 4 each) (time:ask s (lambda () count))))))))
-
-;;; Journals on file.
-
-(defmacro with-temporary-file ((file) &body body)
-  `(uiop:with-temporary-file (:pathname ,file :type "journal") ,@body))
-
-(test journal.file-round-trip
-  (with-bare-simulation (s)
-    (setf (time:simulation-journal s) (time:make-journal '(:seed 3)))
-    (time:note s :parameter 'base:braking* 3)
-    (time:run-ticks 4)
-    (time:note s :command "robot-turn" 0.5d0)
-    (with-temporary-file (file)
-      (time:write-journal (time:simulation-journal s) file)
-      (let ((journal (time:read-journal file)))
-        (is (equal '((0 :parameter base:braking* 3) (4 :command "robot-turn" 0.5d0))
-                   (time:journal-entries journal)))
-        (is (equal '(:seed 3) (time:journal-header journal)))
-        (is (= 4 (time:journal-end journal)))))))
-
-(test journal.damaged-files-are-refused
-  (with-temporary-file (file)
-    (dolist (text '("" "(:something-else)" "(:ars-magna-journal 1 :end 3 :header ())"
-                    "(:ars-magna-journal 1 :end 3 :header ()) (3 :com" "#.(quit)"
-                    "(:ars-magna-journal 99 :end 3 :header ()) :end"
-                    "(:ars-magna-journal 1 :end 3 :header ()) 17 :end"))
-      (with-open-file (out file :direction :output :if-exists :supersede)
-        (write-string text out))
-      (signals time:damaged-journal (time:read-journal file)))))
-
-(test journal.functions-cannot-be-written
-  (with-bare-simulation (s)
-    (setf (time:simulation-journal s) (time:make-journal '()))
-    (time:schedule (nil) nil)
-    (with-temporary-file (file)
-      (signals base:misuse (time:write-journal (time:simulation-journal s) file)))))

@@ -157,7 +157,7 @@
   (with-plan-of-users (ars-user::travel-to (&rest ways) (rpl:fail :class :users-own :data ways))
     (is (not (eq (rpl:find-procedure 'ars-user::travel-to)
                  (rpl:find-procedure 'ars-worlds:travel-to))))
-    (robot:with-simulation (ars-worlds:marvin :seed 1 :clean t)
+    (run:with-simulation (ars-worlds:marvin :seed 1 :clean t)
       (is (eq :succeeded (nth-value 1 (driver:run-plan 'ars-user::fetch-thing
                                                        '((:color world:blue)
                                                          (:substance world:plastic))

@@ -289,13 +289,18 @@
         (is (not (world:thing-alive-p lamp)))
         (is (= 1 (world:thing-serial (world:find-thing 'lamp resident))))))))
 
-(test access.replaced-for-changes-from-outside
+;; What takes the place of a timeline.
+(defstruct clerk (seen '()))
+
+(defmethod world:change-world ((clerk clerk) world function operator arguments)
+  (declare (ignore world))
+  (push (cons operator arguments) (clerk-seen clerk))
+  (funcall function))
+
+(test changes.go-to-the-timeline-of-their-world
   (with-own-definitions
-    (let* ((world (open-world)) (seen '())
-           (world:*world-access* (lambda (function where operation arguments)
-                                   (is (eq where world))
-                                   (push (cons operation arguments) seen)
-                                   (funcall function)))
+    (let* ((world (open-world))
+           (clerk (setf (world:world-timeline world) (make-clerk)))
            (box (thing-in world 'box 1 1)))
       (world:set-attribute box :size 3)
       (world:change-attribute box '((:size 4)))
@@ -307,8 +312,8 @@
       (is (equal '(world:make-new-thing world:set-attribute world:change-attribute world:kick-thing
                    world:move-thing world::call-put-kicker world::call-put-kicker
                    world:destroy-thing)
-                 (reverse (mapcar #'first seen))))
-      (is (equal (list box :size 3) (rest (nth 6 seen)))))))
+                 (reverse (mapcar #'first (clerk-seen clerk)))))
+      (is (equal (list box :size 3) (rest (nth 6 (clerk-seen clerk))))))))
 
 ;;; Anything goes.
 
@@ -367,7 +372,7 @@
 
 (test digest.is-of-the-state
   (with-own-definitions
-    (flet ((digest (world) (base:digest-value (world:world-digest world (base:make-digest)))))
+    (flet ((digest (world) (base:digest-value (base:digest-state world (base:make-digest)))))
       (is (= (digest (random-history 3 300)) (digest (random-history 3 300))))
       (is (/= (digest (random-history 3 300)) (digest (random-history 4 300))))
       (let* ((world (open-world)) (box (thing-in world 'box 1 1 '((:size 1) (:weight 2))))

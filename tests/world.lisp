@@ -1,4 +1,4 @@
-;;;; world.lisp -- maps: walls, clauses and their errors, caches.
+;;;; world.lisp -- maps: walls, clauses and their errors, lines through the grid.
 
 (in-package :ars-magna.tests)
 
@@ -197,97 +197,28 @@
   (is (search "(wall (0 0) 1 bricks 1)"
               (complaint-about '(world:defmap test-map (4 4) (wall (0 0) 1 bricks 1))))))
 
-;;; The cache.
+;;; Lines through the grid.
 
-(defun cache-file () (world::cache-path (format nil "~Aars-magna-tests/[world]*cache"
-                                                (uiop:temporary-directory))))
+(defun cells-on-line (x y dx dy &rest arguments)
+  "Return what is met by the line from (X,Y) in a grid of 4 by 3: lists (index distance column)."
+  (let ((met '()))
+    (values (apply #'world:walk-grid
+                   (lambda (index at column)
+                     (push (list index at column) met)
+                     nil)
+                   4 3 x y dx dy arguments)
+            (reverse met))))
 
-(defun cached-map (&rest clauses)
-  (eval `(world:defmap cached-map (20 20 :cache ,(cache-file)) ,@clauses))
-  (world:find-map 'cached-map))
+(test walk-grid.goes-by-cells-to-the-edge
+  (is (equalp '(3.5d0 ((5 0.5d0 t) (6 1.5d0 t) (7 2.5d0 t)))
+              (multiple-value-list (cells-on-line 0.5d0 1.5d0 1d0 0d0 10))))
+  (is (equalp '(1d0 ((5 0d0 nil) (1 0.5d0 nil)))
+              (multiple-value-list (cells-on-line 1.5d0 2d0 0d0 -2d0 10))))
+  (is (equalp '(1.5d0 ((5 0.5d0 t)))
+              (multiple-value-list (cells-on-line 0.5d0 1.5d0 1d0 0d0 1)))))
 
-(defun grid-of (map)
-  (list (world:map-flags map) (world:map-parameters map) (world:map-substances map)
-        (world:map-substance-types map) (world:map-places map) (world:map-directions map)
-        (world:map-least-parameter map) (world:map-greatest-parameter map)))
-
-(defmacro with-fresh-cache (&body body)
-  `(with-own-definitions
-     (flet ((clean () (when (probe-file (cache-file)) (delete-file (cache-file)))))
-       (clean)
-       (unwind-protect (progn ,@body) (clean)))))
-
-(defparameter *cached-clauses*
-  '((rect (0 0) (20 20) bricks -1 10 30 25) (wall (5 5) (5 15) slate 3) (wall (5 5) (9 5) wood 4)))
-
-(test cache.restores-the-grid-and-not-by-building
-  (with-fresh-cache
-    (let ((built (grid-of (apply #'cached-map *cached-clauses*))))
-      (is (probe-file (cache-file)))
-      (let* ((map (world::%make-map :name 'cached-map :width 20 :height 20
-                                    :clauses *cached-clauses*))
-             (key (world::cache-key map)))
-        (is (world::restore-from-cache map (cache-file) key))
-        (is (equalp built (grid-of map))))
-      (is (equalp built (grid-of (apply #'cached-map *cached-clauses*))))
-      (is (null (message-texts))))))
-
-(test cache.is-rebuilt-with-a-warning-when-stale
-  (with-fresh-cache
-    (apply #'cached-map *cached-clauses*)
-    (let ((map (cached-map '(wall (1 1) (2 2) bricks 1))))
-      (is (= 2 (count 1 (world:map-flags map))))
-      (is (search "is stale" (first (message-texts)))))
-    (cached-map '(wall (1 1) (2 2) bricks 1))
-    (is (null (message-texts)) "the file was rewritten")
-    (eval '(world:def-place-type nook (cell) :check-matchers ((((*)) 0))))
-    (cached-map '(wall (1 1) (2 2) bricks 1))
-    (is (search "is stale" (first (message-texts))) "place types count too")))
-
-(defun damage-cache (position byte)
-  (with-open-file (file (cache-file) :direction :io :if-exists :overwrite
-                                     :element-type '(unsigned-byte 8))
-    (file-position file position)
-    (write-byte byte file)))
-
-(test cache.is-rebuilt-with-a-warning-when-damaged
-  (with-fresh-cache
-    (let ((built (grid-of (apply #'cached-map *cached-clauses*))))
-      (loop for position in '(17 33 40 100 300)
-            do (damage-cache position 99)
-               (is (equalp built (grid-of (apply #'cached-map *cached-clauses*))))
-               (is (search "is damaged" (first (message-texts))) "byte ~D" position))
-      (loop for size in '(0 8 104)
-            do (let ((octets (with-open-file (in (cache-file) :element-type '(unsigned-byte 8))
-                               (let ((v (make-array size :element-type '(unsigned-byte 8))))
-                                 (read-sequence v in)
-                                 v))))
-                 (with-open-file (out (cache-file) :direction :output :if-exists :supersede
-                                                   :element-type '(unsigned-byte 8))
-                   (write-sequence octets out)))
-               (is (equalp built (grid-of (apply #'cached-map *cached-clauses*))))
-               (is (search "is damaged" (first (message-texts))) "~D bytes" size)))))
-
-(test cache.leaves-files-alone-that-are-none
-  (with-fresh-cache
-    (with-open-file (out (ensure-directories-exist (cache-file)) :direction :output)
-      (write-string "Chapter one of a thesis." out))
-    (let ((built (grid-of (apply #'cached-map *cached-clauses*))))
-      (is (search "is no cache" (first (message-texts))))
-      (is (string= "Chapter one of a thesis." (base:read-file-into-string (cache-file))))
-      (is (equalp built (grid-of (apply #'cached-map *cached-clauses*))))))
-  (with-own-definitions
-    (dolist (name '("/dev/null" "/tmp/"))
-      (eval `(world:defmap test-map (3 3 :cache ,name)))
-      (is (search "is no cache" (first (message-texts))) "~A" name))))
-
-(test cache.that-cannot-be-written-is-no-error
-  (with-own-definitions
-    (eval '(world:defmap test-map (3 3 :cache "/dev/null/nowhere/file")))
-    (let ((messages (message-texts)))
-      (is (some (lambda (text) (search "cannot be written" text)) messages) "~A" messages))
-    (is (= 3 (world:map-width (world:find-map 'test-map))))))
-
-(test cache.tilde-is-home
-  (is (equal (namestring (merge-pathnames "cache/x" (user-homedir-pathname)))
-             (namestring (world::cache-path "~/cache/x")))))
+(test walk-grid.goes-through-a-corner-by-a-neighbour
+  (flet ((first-cell (&rest arguments)
+           (first (first (nth-value 1 (apply #'cells-on-line 0.5d0 0.5d0 1d0 1d0 arguments))))))
+    (is (= 4 (first-cell 10)) "the next row")
+    (is (= 1 (first-cell 10 t)) "the next column")))

@@ -11,7 +11,7 @@
                      (loop with thing = (world:find-thing thing-name world)
                            repeat samples
                            collect (multiple-value-list (world:thing-position thing))
-                           do (time:run-ticks ticks)))))
+                           do (run:run-ticks ticks)))))
 
 (defun spread (positions)
   "Return how far apart POSITIONS lie, in metres, along the longer axis."
@@ -26,8 +26,8 @@
    'watson 3
    (lambda (world)
      (let ((ball (world:find-thing 'ball world)))
-       (is (time:run-until (lambda () (world:get-attribute ball :rolling)) :limit 5000))
-       (is (time:run-until (lambda () (null (world:get-attribute ball :rolling))) :limit 100))))))
+       (is (run:run-until (lambda () (world:get-attribute ball :rolling)) :limit 5000))
+       (is (run:run-until (lambda () (null (world:get-attribute ball :rolling))) :limit 100))))))
 
 (test kickers.things-are-borrowed-and-left-at-their-haunts
   (loop for (world thing) in '((watson scissors) (office cup) (office magazine) (office broom))
@@ -43,7 +43,7 @@
    (lambda (world)
      (let ((scissors (world:find-thing 'scissors world)) (desk (world:find-thing 'desk world)))
        (world:move-thing scissors desk)
-       (time:run-ticks 10000)
+       (run:run-ticks 10000)
        (is (eq desk (world:thing-location scissors)))))))
 
 (test kickers.a-closed-lid-keeps-papers-in
@@ -53,7 +53,7 @@
             (lambda (world)
               (let ((basket (world:thing-location (world:find-thing 'wrapper world))))
                 (world:set-attribute basket :closed closed)
-                (time:run-ticks 5000)
+                (run:run-ticks 5000)
                 (length (world:thing-contents basket)))))))
     (is (= 1 (papers-left t)))
     (is (= 0 (papers-left nil)))))
@@ -64,10 +64,10 @@
    (lambda (world)
      (let ((printer (world:find-thing 'printer world)))
        (is (null (world:thing-contents printer)))
-       (time:run-ticks 2000)
+       (run:run-ticks 2000)
        (is (= 3 (length (world:thing-contents printer))))
        (world:destroy-thing (first (world:thing-contents printer)))
-       (time:run-ticks 2000)
+       (run:run-ticks 2000)
        (is (= 3 (length (world:thing-contents printer))))))))
 
 (test kickers.a-light-changes
@@ -76,7 +76,7 @@
    (lambda (world)
      (let ((lamp (world:find-thing 'signal-lamp world)))
        (dolist (color '(lightgreen lightred))
-         (is (time:run-until (lambda ()
+         (is (run:run-until (lambda ()
                                (base:same-name-p color (world:get-attribute lamp :color)))
                              :limit 2000)))))))
 
@@ -106,7 +106,7 @@
                 (loop for leg in (round-legs rounds)
                       do (is (null (obstacle-on-leg world leg)) "~A on ~A" walker leg))
                 (dolist (point rounds)
-                  (is (time:run-until (lambda () (not (equal point (first (world:get-attribute
+                  (is (run:run-until (lambda () (not (equal point (first (world:get-attribute
                                                                            thing :rounds)))))
                                       :limit 3000)
                       "~A does not get to ~A" walker point))
@@ -119,6 +119,6 @@
      (let* ((trolley (world:find-thing 'mail-trolley world))
             (letter (first (world:thing-contents trolley)))
             (start (world:thing-x trolley)))
-       (time:run-ticks 500)
+       (run:run-ticks 500)
        (is (< 20 (abs (- start (world:thing-position letter)))))
        (is (= (world:thing-x trolley) (world:thing-position letter)))))))

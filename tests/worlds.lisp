@@ -28,7 +28,7 @@
 
 (defun call-in-shipped (name seed function)
   "Call FUNCTION on the fresh world of a headless simulation of the shipped world NAME."
-  (robot:call-with-simulation (lambda () (funcall function world:*world*))
+  (run:call-with-simulation (lambda () (funcall function world:*world*))
                               (shipped name :robots) :seed seed))
 
 ;;; Where one gets to.
@@ -210,8 +210,8 @@
 (defun digest-after (name seed ticks)
   (call-in-shipped name seed
                    (lambda (world)
-                     (time:run-ticks ticks)
-                     (base:digest-value (world:world-digest world (base:make-digest))))))
+                     (run:run-ticks ticks)
+                     (base:digest-value (base:digest-state world (base:make-digest))))))
 
 (test worlds.stay-in-order
   "For 20,000 ticks nothing leaves the open or the index, and no kicker complains."
@@ -220,7 +220,7 @@
             name 1992
             (lambda (world)
               (loop repeat 20
-                    do (time:run-ticks 1000)
+                    do (run:run-ticks 1000)
                        (is (null (things-in-walls world)) "in ~A" name)
                        (is (null (world:world-invariant-violations world)) "in ~A" name))
               (is (null (mapcar #'base:message-text (base:take-messages))))))))
@@ -237,7 +237,7 @@
   (dolist (name '(hall tiny))
     (call-in-shipped name 1 (lambda (world)
                               (is (not (world:world-has-kickers-p world)))
-                              (is (time:idle-p))))))
+                              (is (run:idle-p))))))
 
 ;;; The robots.
 
@@ -263,7 +263,7 @@
        (command:robot-goto-wall robbie (lambda (code &rest results)
                                          (declare (ignore results))
                                          (setf ended (list code))))
-       (is (time:run-until (lambda () ended) :limit 100))
+       (is (run:run-until (lambda () ended) :limit 100))
        (is (equal '(nil) ended))
        (is (< 28.9 (robot:robot-x robbie) 29))))))
 

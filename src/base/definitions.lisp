@@ -27,6 +27,10 @@
   "Return the source of the definition that is being carried out, or NIL if it was typed."
   (and *definition* (defining-source *definition*)))
 
+(defun current-form-digest ()
+  "Return a number for the form of the definition that is being carried out, or NIL."
+  (and *definition* (form-digest (defining-form *definition*))))
+
 (defun definition-text (definition)
   "Return what DEFINITION is called in messages, such as \"defmap yard\"."
   (let ((*print-case* :downcase))
@@ -56,7 +60,7 @@ define as functions, or is no name of a function."
   (unless (or (symbolp name) (and (consp name) (eq 'setf (first name))))
     (reject-clause definition name "a symbol as the name"))
   (let ((package (and (symbolp name) (symbol-package name))))
-    (when (and package (sb-ext:package-locked-p package) (not (eq package *package*)))
+    (when (and package (package-locked-p package) (not (eq package *package*)))
       (reject-clause definition name
                      (format nil "a name that is free; ~A belongs to ~A. Call it my-~(~A~), or ~
                                   shadow the symbol in your package: (:shadow #:~(~A~))"

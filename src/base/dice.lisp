@@ -23,7 +23,7 @@
 (defstruct (dice (:constructor %make-dice (state)) (:copier copy-dice))
   "A stream of chance. Two dice in the same state roll the same numbers for ever."
   (state 0 :type word))
-(declaim (sb-ext:freeze-type dice))
+(declaim-final dice)
 (setf (documentation 'copy-dice 'function)
       "Return new dice that will roll what these dice would."
       (documentation 'dice-state 'function)

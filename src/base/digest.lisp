@@ -15,11 +15,10 @@
 
 (defun digest-add (digest datum)
   "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by
-their elements, functions as such. Return DIGEST."
-  (etypecase datum
+their elements, functions as such, other objects by what tells them apart. Return DIGEST."
+  (typecase datum
     (double-float
-     (digest-word digest (logior (ash (ldb (byte 32 0) (sb-kernel:double-float-high-bits datum)) 32)
-                                 (sb-kernel:double-float-low-bits datum))))
+     (digest-word digest (double-to-bits datum)))
     (integer (digest-word digest (ldb (byte 64 0) datum)))
     (real (digest-add digest (coerce datum 'double-float)))
     ((or symbol string) (digest-word digest (name-word (name-string datum))))
@@ -30,5 +29,9 @@ their elements, functions as such. Return DIGEST."
                 finally (digest-add digest tail)))
     (vector (loop for element across datum do (digest-add digest element)))
     (function (digest-word digest 1))
-    (structure-object (digest-word digest (name-word (princ-to-string datum)))))
+    (t (digest-mention datum digest)))
   digest)
+
+(defun text-checksum (text &optional (before 0))
+  "Return a number of 32 bits for the characters of TEXT, and for BEFORE, a number of that kind."
+  (ldb (byte 32 0) (mix-word (logxor before (name-word text)))))

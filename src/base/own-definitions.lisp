@@ -4,10 +4,9 @@
 
 (defun become (object model)
   "Make the structure OBJECT like MODEL, another of its type, slot by slot. Return OBJECT."
-  (dolist (slot (sb-mop:class-slots (class-of object)) object)
-    (let ((name (sb-mop:slot-definition-name slot)))
-      (unless (eql (slot-value object name) (slot-value model name))
-        (setf (slot-value object name) (slot-value model name))))))
+  (dolist (name (class-slot-names (class-of object)) object)
+    (unless (eql (slot-value object name) (slot-value model name))
+      (setf (slot-value object name) (slot-value model name)))))
 
 (defun keep-entry (entry)
   "Return ENTRY with what RESTORE-ENTRY needs besides: a copy of its object, and a list of the value
@@ -15,13 +14,13 @@ of its variable if there is one."
   (let ((variable (entry-variable entry)))
     (list entry
           (copy-structure (entry-object entry))
-          (and variable (boundp variable) (list (sb-ext:symbol-global-value variable))))))
+          (and variable (boundp variable) (list (global-value variable))))))
 
 (defun restore-entry (kept)
   (destructuring-bind (entry copy value) kept
     (become (entry-object entry) copy)
     (when value
-      (setf (sb-ext:symbol-global-value (entry-variable entry)) (first value)))))
+      (setf (global-value (entry-variable entry)) (first value)))))
 
 (defun restore-registry (registry kept)
   "Make REGISTRY as it was when KEPT, a list made by KEEP-ENTRY, was made."
@@ -36,8 +35,8 @@ of its variable if there is one."
 
 (defun claim-definitions ()
   "Let this thread be the one inside WITH-OWN-DEFINITIONS. Return what to set back afterwards."
-  (let ((other (sb-ext:compare-and-swap (symbol-value '*own-definitions-thread*) nil
-                                        (current-thread))))
+  (let ((other (compare-and-swap (symbol-value '*own-definitions-thread*) nil
+                                 (current-thread))))
     (unless (member other (list nil (current-thread)))
       (reject-use "Another thread is inside with-own-definitions: only one at a time may be."))
     other))

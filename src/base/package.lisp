@@ -1,21 +1,39 @@
 ;;;; package.lisp -- the base layer: what every other layer stands on.
 
 (defpackage :ars-magna.base
-  (:documentation "Conditions, dice, threads, messages and parameters. Names alexandria
-and bordeaux-threads so that no other layer has to.")
+  (:documentation "Conditions, dice, threads, messages and parameters. Names alexandria,
+bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has to.")
   (:use :cl)
   (:import-from :alexandria
                 #:clamp #:ensure-list #:once-only #:parse-body #:removef #:when-let #:if-let
                 #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
-                #:read-file-into-string #:starts-with-subseq #:ends-with #:define-constant)
+                #:read-file-into-string #:starts-with-subseq #:ends-with
+                #:ends-with-subseq #:define-constant #:proper-list-p)
   ;; alexandria
   (:export #:clamp #:ensure-list #:once-only #:parse-body #:removef #:when-let #:if-let
            #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
-           #:read-file-into-string #:starts-with-subseq #:define-constant)
+           #:read-file-into-string #:starts-with-subseq #:define-constant #:proper-list-p)
   ;; policy
-  (:export #:*hot* #:double #:finite-p #:cell-index #:tick-count #:document-functions)
+  (:export #:*hot* #:compiler-note #:declaim-final #:double #:cell-index #:tick-count
+           #:document-functions)
   ;; public
-  (:export #:public #:addition #:addition-p #:public-symbols)
+  (:export #:public #:addition #:addition-p #:public-symbols #:*marking-p*)
+  ;; floats, globals
+  (:export #:finite-p #:double-to-bits #:bits-to-double #:global-value #:define-global)
+  ;; atomic
+  (:export #:atomic-count #:compare-and-swap #:swap-if #:atomic-push #:atomic-incf #:atomic-decf
+           #:memory-barrier)
+  ;; classes, packages
+  (:export #:define-function-class #:generic-name #:class-ancestors #:class-slot-names
+           #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
+           #:copy-nicknames)
+  ;; files, processes, backtraces
+  (:export #:native-name #:native-path #:existing-path #:replace-file #:plain-file-p
+           #:environment-value #:run-command #:calls-under-way)
+  ;; environments
+  (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
+           #:local-function-p #:known-function-p #:macro-expander #:lisps-macro-p
+           #:extended-environment #:nested-p #:evaluate-form #:form-behind-comma #:walk-form)
   ;; conditions
   (:export #:ars-magna-error #:wrong-argument #:check-argument #:malformed-definition
            #:malformed-definition-place
@@ -23,15 +41,15 @@ and bordeaux-threads so that no other layer has to.")
            #:unknown-name #:plain-name #:misuse #:reject-use)
   ;; threads
   (:export #:make-lock #:with-lock #:make-semaphore #:signal-semaphore #:wait-on-semaphore
-           #:start-thread #:join-thread #:thread-alive-p #:current-thread #:spread-specials)
+           #:start-thread #:join-thread #:thread-alive-p #:current-thread #:yield-thread
+           #:spread-specials)
   ;; dice
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance)
   ;; names
-  (:export #:same-name-p #:name-string #:nearest-name #:resembles-p #:reject-name #:value-equal)
+  (:export #:same-name-p #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables
-  (:export #:variable-name-p #:variable-forms #:known-variable-p #:local-variable-p
-           #:nested-p #:variable-name-trouble)
+  (:export #:variable-name-p #:variable-forms #:variable-name-trouble)
   ;; sources, definitions
   (:export #:source-here #:source-file #:part-in-file-p #:skip-comment #:current-source
            #:*definition* #:definition-again #:make-defining #:defining-form #:reject-clause
@@ -41,6 +59,8 @@ and bordeaux-threads so that no other layer has to.")
   ;; registry
   (:export #:registry #:define-registry #:registry-objects #:register #:seal-definitions
            #:lookup-entry #:from-this-file-p #:entry-name #:entry-object #:entry-source
+           #:entry-digest #:registry-entries #:users-p #:current-form-digest #:text-checksum
+           #:name-string
            #:defined-names #:find-definition #:definition-to-replace #:variable-in-use-p
            #:*kept-variables* #:undefine #:take-back #:reinstate #:become
            #:with-own-definitions #:call-with-own-definitions)
@@ -58,7 +78,7 @@ and bordeaux-threads so that no other layer has to.")
            #:all-parameters #:find-parameter #:call-with-parameters #:parameter-settings
            #:check-parameters #:parameter-values #:follow-parameters
            #:clean-simulation #:dirty-simulation #:*noise-before-cleaning*)
-  ;; physics: the parameters of chapter 4
+  ;; physics: the parameters of chapter 4, and chance
   (:export #:max-speed* #:max-turn-angle* #:min-turn-angle* #:braking* #:motion-noise*
            #:robot-turn-max-error* #:robot-align-error-prob* #:robot-move-delay*
            #:robot-turn-delay* #:robot-align-delay*
@@ -72,6 +92,17 @@ and bordeaux-threads so that no other layer has to.")
            #:standard-match-threshold*
            #:prob-miss-grasp* #:prob-grasp-lose-desig* #:hand-insert-miss-prob*
            #:hand-insert-lose-desig-prob* #:hand-move-delay* #:hand-grasp-delay*
-           #:bin-close-jam-prob* #:bin-delay* #:tick-quantum*)
+           #:bin-close-jam-prob* #:bin-delay* #:tick-quantum*
+           #:per-tick-probability)
   ;; digest
-  (:export #:digest #:make-digest #:digest-add #:digest-value))
+  (:export #:digest #:make-digest #:digest-add #:digest-value)
+  ;; kinds, digesting, copying
+  (:export #:define-kind #:kind #:kind-p #:kind-of #:kind-name #:kind-slots #:all-kinds
+           #:kind-slot-name #:kind-slot-role #:kind-slot-type #:kind-slot-text #:kind-slot-part-p
+           #:kind-slot-reader
+           #:kind-slot-writer #:object-slots #:reset #:reference #:digest-state #:digest-mention
+           #:copy-running #:make-copy-table #:copied)
+  ;; argument-types, operators
+  (:export #:define-argument-type #:argument-type-text #:argument-of-type-p #:find-argument-type
+           #:check-of-type #:operator #:operator-name #:operator-function #:operator-types
+           #:define-operator #:find-operator #:check-operands))

@@ -156,11 +156,11 @@ used is put back, with an error message. NOTE is called with each symbol and its
         for symbol = (parameter-symbol (the parameter parameter))
         for old = (svref known index)
         for here = (symbol-value symbol)
-        for global = (if global-p (sb-ext:symbol-global-value symbol) here)
+        for global = (if global-p (global-value symbol) here)
         unless (and (eql here old) (eql global old))
           do (let ((new (if (eql global old) here global)))
                (unless (usable-value-p parameter new) (setf new old))
                (setf (svref known index) new
                      (symbol-value symbol) new)
-               (when global-p (setf (sb-ext:symbol-global-value symbol) new))
+               (when global-p (setf (global-value symbol) new))
                (unless (eql new old) (funcall note symbol new)))))

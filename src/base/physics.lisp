@@ -1,4 +1,4 @@
-;;;; physics.lisp -- the constants of the simulated world: the parameters of chapter 4.
+;;;; physics.lisp -- the parameters of chapter 4: constants of the world, and chance per tick.
 
 (in-package :ars-magna.base)
 
@@ -105,3 +105,11 @@ designators of things, but no parameter for them." :addition t)
      (tick-quantum* 1 "ticks" :setting (real 1)
       "How much time one tick stands for: motion, drift and chances scale with it. The manual
 only wishes, in chapter 1.2, to skip ahead." :addition t))))
+
+(defun per-tick-probability (probability)
+  "Return the chance that something of PROBABILITY per unit of time happens in a tick, which stands
+for TICK-QUANTUM* of them."
+  (let ((probability (double probability)))
+    (if (= tick-quantum* 1)
+        probability
+        (- 1d0 (expt (- 1d0 probability) (double tick-quantum*))))))

@@ -6,6 +6,14 @@
   (defparameter *hot* '(optimize (speed 3) (safety 1) (debug 0) (sb-ext:inhibit-warnings 3))
     "How a function that a profile pointed at is compiled: (declare #.*hot*)."))
 
+(deftype compiler-note ()
+  "The condition by which the compiler says that it cannot make code fast."
+  'sb-ext:compiler-note)
+
+(defmacro declaim-final (&rest types)
+  "Promise the compiler that no type will include one of the structures TYPES from here on."
+  `(declaim (sb-ext:freeze-type ,@types)))
+
 (deftype cell-index ()
   "The index of a grid cell: maps have at most 2^30 cells."
   '(unsigned-byte 30))
@@ -33,9 +41,3 @@
 which have no place of their own for it."
   `(setf ,@(loop for (name text) on names-and-texts by #'cddr
                  append `((documentation ',name 'function) ,text))))
-
-(defun finite-p (object)
-  "True of real numbers other than the infinities and what is no number."
-  (and (realp object)
-       (not (and (floatp object)
-                 (or (sb-ext:float-infinity-p object) (sb-ext:float-nan-p object))))))

@@ -32,11 +32,15 @@
                       (substitute mark old *marks* :test #'eq)
                       (append *marks* (list mark))))))
 
+(defvar *marking-p* t
+  "True while the simulator is being loaded. What is defined later is a user's, and not marked.")
+
 (defun mark-names (names addition-p)
   "Mark each of NAMES, a symbol or a list (symbol face...)."
-  (dolist (name names)
-    (destructuring-bind (symbol &rest faces) (ensure-list name)
-      (register-mark (make-mark symbol (or faces (list (face-of symbol))) addition-p)))))
+  (when *marking-p*
+    (dolist (name names)
+      (destructuring-bind (symbol &rest faces) (ensure-list name)
+        (register-mark (make-mark symbol (or faces (list (face-of symbol))) addition-p))))))
 
 (defmacro public (&rest names)
   "Mark NAMES, which are defined next, as names of the manual that users see. A name may be a list

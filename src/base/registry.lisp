@@ -9,12 +9,16 @@
 ;;; The lists are replaced, never altered, so that any thread may read them at any time. All
 ;;; writing is done under one lock.
 
-(defstruct (entry (:constructor make-entry (name object source variable)) (:copier nil))
-  "That NAME means OBJECT, by a definition in SOURCE; VARIABLE, if any, holds what it stands for."
+(defstruct (entry (:constructor make-entry (name object source variable
+                                            &optional (digest (current-form-digest))))
+                  (:copier nil))
+  "That NAME means OBJECT, by a definition in SOURCE; VARIABLE, if any, holds what it stands for.
+DIGEST is a number for the form of the definition, or NIL if there was none."
   (name nil :type symbol :read-only t)
   (object nil :read-only t)
   (source nil :type list :read-only t)
-  (variable nil :type symbol :read-only t))
+  (variable nil :type symbol :read-only t)
+  (digest nil :type (or null integer) :read-only t))
 
 (defstruct (registry (:constructor %make-registry (kind text)) (:copier nil))
   "All definitions of one KIND, called TEXT in messages: entries in order, and their objects."
@@ -36,6 +40,8 @@
   entry-name "Return the symbol that is defined."
   entry-object "Return what the name of the entry means."
   entry-source "Return the source of the entry's definition; see sources.lisp."
+  entry-digest "Return a number for the form of the entry's definition, or NIL."
+  registry-entries "Return what is known of the definitions in REGISTRY, in order."
   registry-objects "Return what REGISTRY has, in order of definition; do not alter it.")
 
 (defmethod print-object ((registry registry) stream)
@@ -126,7 +132,12 @@ UNKNOWN-NAME if ERRORP is true."
     (set-entries registry
                  (loop for entry in (registry-entries registry)
                        collect (make-entry (entry-name entry) (entry-object entry)
-                                           *own-source* (entry-variable entry))))))
+                                           *own-source* (entry-variable entry)
+                                       (entry-digest entry))))))
+
+(defun users-p (entry)
+  "True if ENTRY is a definition of a user's, not of the simulator's own."
+  (not (equal *own-source* (entry-source entry))))
 
 (defun same-entry-p (entry name registry)
   (if (registry-by-symbol-p registry)
@@ -146,7 +157,7 @@ or last. Of several that are called the same the newest comes last, for those wh
 
 (defun variable-in-use-p (name)
   "True if the variable NAME has a value at top level that something else would lose."
-  (ignore-errors (sb-ext:symbol-global-value name)))
+  (ignore-errors (global-value name)))
 
 (defun free-variable (name kind)
   "Return NAME if it can be a variable, and is not in use, for a definition of KIND, called so; else
@@ -182,7 +193,7 @@ BEFORE is an object of the registry to come directly before, instead of last. Re
          (new (make-entry name object (current-source) variable)))
     (with-lock (*registries-lock*)
       (set-entries registry (entries-with new old before registry))
-      (when variable (setf (sb-ext:symbol-global-value variable) value)))
+      (when variable (setf (global-value variable) value)))
     (when old (say-if-replaced old new registry))
     object))
 

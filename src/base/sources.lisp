@@ -9,10 +9,6 @@
 ;;; A file is read here without regard to its packages: words are compared as words, and nothing
 ;;; is interned in any package that a user has.
 
-(defun file-digest (file)
-  "Return a number for the text of FILE."
-  (digest-value (digest-add (make-digest) (read-file-into-string file))))
-
 (defun text-file (path)
   "Return PATH if that is a file of Lisp text, not a compiled one."
   (and path
@@ -34,8 +30,7 @@
 (defun package-for-words ()
   "Return an empty package in which those packages go by nicknames that do so in the current one."
   (let ((package (make-package (gensym "WORDS") :use '())))
-    (loop for (nickname . other) in (sb-ext:package-local-nicknames *package*)
-          do (sb-ext:add-package-local-nickname nickname other package))
+    (copy-nicknames *package* package)
     package))
 
 (defmacro with-words ((text) &body body)
@@ -189,3 +184,38 @@ MISUSE if it is not there."
     (unless place
       (reject-use "~A has no (~(~A ~A~) ...) that can be read." file (first form) (second form)))
     (values (read-from-string text t nil :start (first place)))))
+
+;;; What a text or form says, as a number.
+
+(defun code-alone (text)
+  "Return TEXT without comments, and with one space for each run of blanks."
+  (with-output-to-string (out)
+    (let ((i 0) (blank t))
+      (loop while (< i (length text))
+            do (let ((end (or (skip-comment text i)
+                              (and (find (char text i) '(#\Space #\Tab #\Newline #\Return #\Page))
+                                   (1+ i)))))
+                 (cond (end
+                        (unless blank (write-char #\Space out))
+                        (setf blank t i end))
+                       (t
+                        (let ((end (or (skip-text text i) (1+ i))))
+                          (write-string text out :start i :end (min end (length text)))
+                          (setf blank nil i end)))))))))
+
+(defun file-digest (file)
+  "Return a number for the code in FILE; comments and layout do not count."
+  (digest-value (digest-add (make-digest) (code-alone (read-file-into-string file)))))
+
+(defun form-digest (form)
+  "Return a number for FORM: for what its symbols are called, and its data."
+  (digest-value (digest-add (make-digest) (without-commas form))))
+
+(defun without-commas (form)
+  "Return FORM with each comma in it as a list."
+  (cond ((form-behind-comma form) (list 'comma (without-commas (form-behind-comma form))))
+        ((consp form) (loop with copies = '()
+                            while (consp form)
+                            do (push (without-commas (pop form)) copies)
+                            finally (return (nreconc copies (and form (without-commas form))))))
+        (t form)))

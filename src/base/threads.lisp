@@ -44,6 +44,10 @@
   "Return the thread that asks."
   (bordeaux-threads:current-thread))
 
+(defun yield-thread ()
+  "Let other threads run for a moment."
+  (bordeaux-threads:thread-yield))
+
 (defun spread-specials (function &rest symbols)
   "Return a function that calls FUNCTION with the values that SYMBOLS have here and now.
 Threads start with global values; this carries the dynamic ones over."

@@ -1,4 +1,4 @@
-;;;; variables.lisp -- which names can be variables, and what is known where a form stands.
+;;;; variables.lisp -- which names can be variables.
 
 (in-package :ars-magna.base)
 
@@ -7,9 +7,9 @@
 (defun variable-name-trouble (name)
   "Return in words why the symbol NAME, of a package, cannot become a special variable, or NIL."
   (let ((package (symbol-package name)))
-    (cond ((sb-ext:package-locked-p package) (format nil "belongs to ~A" (package-name package)))
+    (cond ((package-locked-p package) (format nil "belongs to ~A" (package-name package)))
           ((constantp name) "is a constant")
-          ((not (member (sb-cltl2:variable-information name) '(nil :special)))
+          ((not (member (variable-kind name) '(nil :special)))
            "is a symbol macro or a global variable"))))
 
 (defun variable-name-p (name)
@@ -22,15 +22,3 @@ locked package, such as Common Lisp's or ours."
 (defun variable-forms (name)
   "Return the forms, perhaps none, that declare NAME a special variable."
   (when (variable-name-p name) `((defvar ,name))))
-
-(defun local-variable-p (symbol environment)
-  "True if SYMBOL is a local variable or symbol macro in ENVIRONMENT."
-  (nth-value 1 (sb-cltl2:variable-information symbol environment)))
-
-(defun known-variable-p (symbol environment)
-  "True if SYMBOL, as a form in ENVIRONMENT, is a variable or constant that is known."
-  (and (sb-cltl2:variable-information symbol environment) t))
-
-(defun nested-p (environment)
-  "True if a form in ENVIRONMENT stands inside others that are compiled with it."
-  (and environment (uiop:symbol-call :sb-c '#:lexenv-lambda environment) t))

@@ -127,7 +127,7 @@
                              :layers (window-layers window)
                              :in-color (window-color-p window)
                              :scale (pane-scale (pane-named window 'world)))))
-    (say (window-transcript window) (format nil "Saved ~A~%" (sb-ext:native-namestring file)))))
+    (say (window-transcript window) (format nil "Saved ~A~%" (native-name file)))))
 
 (define-window-command (com-save-svg "Save as SVG") (window)
     "Save a picture of the displays as SVG."

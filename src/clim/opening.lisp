@@ -91,7 +91,7 @@
 
 (defun x-server-named-p ()
   (or clim:*default-server-path*
-      (let ((display (sb-ext:posix-getenv "DISPLAY")))
+      (let ((display (environment-value "DISPLAY")))
         (and display (string/= display "")))))
 
 (defun window-port ()
@@ -101,7 +101,7 @@
   (handler-case (clim:find-port)
     (error (condition)
       (reject-use "No display: the X server ~A does not answer (~A)."
-                  (sb-ext:posix-getenv "DISPLAY")
+                  (environment-value "DISPLAY")
                   (substitute #\Space #\Newline (princ-to-string condition))))))
 
 (defun open-new-window (robot)

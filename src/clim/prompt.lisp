@@ -6,7 +6,7 @@
 ;;; transcript. So a line that takes long does not keep the window from painting. It begins with
 ;;; the first line typed: until then messages stay with whoever else shows them.
 
-(defclass line-stream (sb-gray:fundamental-character-input-stream)
+(defclass line-stream (fundamental-character-input-stream)
   ((lock :initform (make-lock "lines") :reader stream-lock)
    (ready :initform (make-semaphore "line") :reader stream-ready)
    ;; Lines not read yet, oldest first, and what is left of the one that is being read.
@@ -31,14 +31,14 @@
             ((stream-over-p stream) (return nil))))
     (wait-on-semaphore (stream-ready stream))))
 
-(defmethod sb-gray:stream-read-line ((stream line-stream))
+(defmethod stream-read-line ((stream line-stream))
   (let ((rest (shiftf (stream-rest stream) "")))
     (if (string= rest "")
         (let ((line (await-line stream)))
           (values (or line "") (null line)))
         (values (string-right-trim '(#\Newline) rest) nil))))
 
-(defmethod sb-gray:stream-read-char ((stream line-stream))
+(defmethod stream-read-char ((stream line-stream))
   (when (string= (stream-rest stream) "")
     (let ((line (await-line stream)))
       (when line (setf (stream-rest stream) (format nil "~A~%" line)))))
@@ -47,7 +47,7 @@
           (t (setf (stream-rest stream) (subseq rest 1))
              (char rest 0)))))
 
-(defmethod sb-gray:stream-unread-char ((stream line-stream) char)
+(defmethod stream-unread-char ((stream line-stream) char)
   (setf (stream-rest stream) (concatenate 'string (string char) (stream-rest stream)))
   nil)
 

@@ -48,20 +48,19 @@
 
 ;;; As a stream.
 
-(defclass transcript-stream (sb-gray:fundamental-character-output-stream)
+(defclass transcript-stream (fundamental-character-output-stream)
   ((transcript :initarg :transcript :reader stream-transcript))
   (:documentation "An output stream that adds what is written to a transcript."))
 
-(defmethod sb-gray:stream-write-string ((stream transcript-stream) string
-                                        &optional (start 0) end)
+(defmethod stream-write-string ((stream transcript-stream) string &optional (start 0) end)
   (say (stream-transcript stream) (subseq string start end))
   string)
 
-(defmethod sb-gray:stream-write-char ((stream transcript-stream) char)
+(defmethod stream-write-char ((stream transcript-stream) char)
   (say (stream-transcript stream) (string char))
   char)
 
-(defmethod sb-gray:stream-line-column ((stream transcript-stream))
+(defmethod stream-line-column ((stream transcript-stream))
   (length (first (latest-lines (stream-transcript stream) 1))))
 
 ;;; Its pane: the bottom of the text is in view, unless the user has scrolled up.

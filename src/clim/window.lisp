@@ -108,8 +108,7 @@
 (defun request-refresh (window)
   "Let WINDOW be refreshed soon. Any thread may ask."
   (let ((sheet (clim:frame-top-level-sheet window)))
-    (when (and sheet
-               (null (sb-ext:compare-and-swap (car (window-queued window)) nil t)))
+    (when (and sheet (swap-if (car (window-queued window)) nil t))
       (clim:queue-event sheet (make-instance 'refresh-event :sheet sheet)))))
 
 (defun refresh (window)
@@ -124,7 +123,7 @@
 (defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event refresh-event))
   (let ((window (clim:pane-frame sheet)))
     (setf (car (window-queued window)) nil)
-    (sb-thread:barrier (:memory))
+    (memory-barrier)
     (refresh window)))
 
 ;;; What the user types and points at.

@@ -18,7 +18,7 @@
 can be told."
   (let ((angle (angle-difference (designator-angle designator) 0)))
     (or (<= (abs angle) (max 1d-9 (double camera-angle-max-error*)))
-        (< (abs (turn-step robot angle)) 1d-12))))
+        (< (abs (turn-step robot angle)) +facing+))))
 
 (defun approach-step (operation robot camera designator)
   "Take ROBOT one tick nearer to DESIGNATOR, tracked by CAMERA, and end OPERATION if that ends it."
@@ -31,14 +31,17 @@ can be told."
            (cond ((at-designator-p robot designator) (succeed operation camera designator))
                  (block (fail-with operation :robot-blocked camera designator)))))))
 
-(defun approach (operation robot camera designator)
-  "Let ROBOT go to DESIGNATOR, tracked by CAMERA, beginning in this tick."
-  (flet ((approach (operation)
-           (approach-step operation robot camera designator)
-           (unless (operation-finished-p operation) (once-more operation))))
-    (begin-movement robot)
-    (setf (operation-step operation) #'approach)
-    (approach operation)))
+(defun approach-on (operation)
+  "Go on for a tick to the designator that is the subject of OPERATION."
+  (approach-step operation (operation-resource operation)
+                 (first (operation-arguments operation)) (operation-subject operation))
+  (unless (operation-finished-p operation) (once-more operation)))
+
+(defun approach (operation robot designator)
+  "Let ROBOT go to DESIGNATOR, beginning in this tick."
+  (begin-movement robot)
+  (setf (operation-subject operation) designator)
+  (go-on-now operation 'approach-on))
 
 (define-command robot-goto-designator (operation (robot robot)
                                        (camera camera "the camera that tracks the designator"))
@@ -57,4 +60,4 @@ can be told."
     (cond ((null designator) (fail-with operation :not-tracking camera))
           ((eq (designator-type designator) :local)
            (fail-with operation :goto-local camera designator))
-          (t (approach operation robot camera designator)))))
+          (t (approach operation robot designator)))))

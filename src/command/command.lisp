@@ -59,6 +59,9 @@ function of the operation that returns one."
   command-results "Return the specifications of what its continuation gets besides."
   command-errors "Return the command's own error codes; any can also end with :INTERRUPT.")
 
+(defmethod reference ((command command))
+  (list :command (name-string (command-name command))))
+
 (defmethod print-object ((command command) stream)
   (print-unreadable-object (command stream :type t) (princ (command-name command) stream)))
 
@@ -68,12 +71,31 @@ function of the operation that returns one."
 
 (define-registry command "command" :object-p command-p :fixed t :aliases #'command-aliases)
 
+;; What other definitions in the same file may need, when that is compiled and there is no command
+;; yet.
+(defun command-shape (name)
+  "Return a list of what DEFINE-COMMAND said of the command NAME: its resource (variable type), its
+parameters (variable type text) and its sentence. Signals UNKNOWN-NAME."
+  (or (get name 'command-shape)
+      (find-command name)))
+
 (declaim (inline command-of))
 (defun command-of (symbol)
   "Return the command that the function called SYMBOL issues."
   (get symbol 'command))
 
+(defun issuer (command)
+  "Return a function that issues COMMAND on a resource, with arguments, and without a continuation."
+  (lambda (resource &rest arguments)
+    (apply (command-name command) resource (append arguments '(nil)))))
+
 (defun register-command (command)
-  (setf (get (command-name command) 'command) command)
-  (register *commands* (command-name command) command)
-  (command-name command))
+  "Let there be COMMAND, for those who ask by name, and for journals."
+  (let ((name (command-name command)))
+    (setf (get name 'command) command)
+    (register *commands* name command)
+    (define-operator name
+        (cons (spec-type (command-resource command))
+              (mapcar #'spec-type (command-parameters command)))
+      (issuer command))
+    name))

@@ -41,10 +41,11 @@ storage-bin- (manual E; the rule is inferred)."
   (destructuring-bind (name type &optional (text "")) specification
     `(make-spec ',name ',type ,text)))
 
-(defun check-command-argument (operator name value type)
-  (unless (argument-of-type-p value type)
-    (error 'wrong-argument :operator operator :name name :value value
-                           :expected (argument-type-text type value))))
+(defun continuation-p (value)
+  (or (functionp value) (symbolp value)))
+
+(define-argument-type 'continuation #'continuation-p
+  "a continuation: a function of an error code and the command's results, or NIL for none")
 
 (defmacro define-command (name (operation resource &rest parameters) (&rest results)
                           (&rest options) sentence &body body)
@@ -65,6 +66,8 @@ BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now o
         (report (option :report options)))
     `(progn
        (public ,name)
+       (eval-when (:compile-toplevel :load-toplevel :execute)
+         (setf (get ',name 'command-shape) '(,resource ,parameters ,sentence)))
        (register-command
         (make-command
          :name ',name
@@ -92,9 +95,9 @@ BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now o
        (defun ,name (,(first resource) ,@variables &optional continuation)
          ,(describe-command sentence resource parameters results errors
                             (first (option :section options)))
-         (check-command-argument ',name ',(first resource) ,(first resource) ',(second resource))
+         (check-of-type ',name ',(first resource) ,(first resource) ',(second resource))
          ,@(loop for (variable type) in parameters
-                 collect `(check-command-argument ',name ',variable ,variable ',type))
-         (check-command-argument ',name 'continuation continuation 'continuation)
+                 collect `(check-of-type ',name ',variable ,variable ',type))
+         (check-of-type ',name 'continuation continuation 'continuation)
          (issue (command-of ',name) ,(first resource) (list ,@variables) continuation))
        ',name)))

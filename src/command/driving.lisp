@@ -6,20 +6,41 @@
 ;;; last step. It ends at once, without braking, when it is interrupted by anything but
 ;;; ROBOT-STOP, which finds the robot in motion and lets it coast.
 
+(defmacro drive-on ((block operation) &body body)
+  "Drive the robot of OPERATION for a tick, and run BODY with BLOCK bound to what blocks it, :WALL,
+:THING or NIL. OPERATION goes on in the next tick unless BODY has ended it. Fails with :NOT-MOVING
+when the speed is 0."
+  `(let ((robot (operation-resource ,operation)))
+     (declare #.*hot* (type operation ,operation) (type robot robot))
+     (if (zerop (the double-float (robot-speed-now robot)))
+         (fail-with ,operation :not-moving)
+         (let ((,block (drive-tick robot)))
+           ,@body
+           (unless (operation-finished-p ,operation) (once-more ,operation))))))
+
 (defun drive (operation robot step)
-  "Let ROBOT drive, beginning in this tick: call STEP with what blocks it, or NIL, after each. The
-operation goes on until STEP ends it. Fails with :NOT-MOVING when the speed is 0."
-  (declare (type function step))
+  "Let a movement of ROBOT begin in this tick, by STEP, the name of a function of OPERATION."
   (begin-movement robot)
-  (flet ((step-once (operation)
-           (declare #.*hot* (type operation operation))
-           (if (zerop (the double-float (robot-speed-now robot)))
-               (fail-with operation :not-moving)
-               (progn
-                 (funcall step (drive-tick robot))
-                 (unless (operation-finished-p operation) (once-more operation))))))
-    (setf (operation-step operation) #'step-once)
-    (step-once operation)))
+  (go-on-now operation step))
+
+(defun drive-count (operation)
+  "Drive for a tick of those that are left, and end OPERATION after the last."
+  (drive-on (block operation)
+    (cond (block (fail-with operation :robot-blocked))
+          ((zerop (decf (operation-count operation))) (succeed operation)))))
+
+(defun drive-to-wall (operation)
+  "Drive for a tick, and end OPERATION at a wall."
+  (drive-on (block operation)
+    (case block
+      (:wall (succeed operation))
+      (:thing (fail-with operation :robot-blocked)))))
+
+(defun coast (operation)
+  "Drive for a tick of those that are left; OPERATION succeeds after the last, or where it is
+blocked."
+  (drive-on (block operation)
+    (when (or block (zerop (decf (operation-count operation)))) (succeed operation))))
 
 (define-command robot-go-forward (operation (robot robot)
                                   (time ticks "for how many ticks"))
@@ -29,14 +50,10 @@ operation goes on until STEP ends it. Fails with :NOT-MOVING when the speed is 0
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot stopped"))
     "Drive ROBOT straight ahead for TIME ticks. With TIME 0 or less it succeeds at once."
-  (let ((left (ceiling time)))
-    (declare (type fixnum left))
-    (if (plusp left)
-        (drive operation robot
-               (lambda (block)
-                 (cond (block (fail-with operation :robot-blocked))
-                       ((zerop (decf left)) (succeed operation)))))
-        (succeed operation))))
+  (setf (operation-count operation) (ceiling time))
+  (if (plusp (operation-count operation))
+      (drive operation robot 'drive-count)
+      (succeed operation)))
 
 (define-command robot-goto-wall (operation (robot robot))
     ()
@@ -45,23 +62,18 @@ operation goes on until STEP ends it. Fails with :NOT-MOVING when the speed is 0
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot is at a wall"))
     "Drive ROBOT straight ahead until it meets a wall or the edge of the map."
-  (drive operation robot
-         (lambda (block)
-           (ecase block
-             ((nil))
-             (:wall (succeed operation))
-             (:thing (fail-with operation :robot-blocked))))))
+  (drive operation robot 'drive-to-wall))
+
+(defun driving-p (robot)
+  "True if ROBOT drove in the last tick, or in this."
+  (>= (robot-drove-tick robot) (1- (world-tick (robot-world robot)))))
 
 (define-command robot-stop (operation (robot robot))
     ()
     ((:family :moving) (:section "3.5") (:delay 1)
      (:report () "Robot stopped"))
     "Stop ROBOT: if it is driving, let it coast for BRAKING* ticks first."
-  (let ((left braking*)
-        (driving (>= (robot-drove-tick robot)
-                     (1- (simulation-tick (operation-simulation operation))))))
-    (if (and driving (plusp left))
-        (drive operation robot
-               (lambda (block)
-                 (when (or block (zerop (decf left))) (succeed operation))))
-        (succeed operation))))
+  (setf (operation-count operation) braking*)
+  (if (and (driving-p robot) (plusp braking*))
+      (drive operation robot 'coast)
+      (succeed operation)))

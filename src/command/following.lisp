@@ -38,7 +38,24 @@ then looks there, but for the error of turning."
   (let* ((left (angle-difference (* heading (/ pi 2)) (robot-angle robot)))
          (close (< (abs left) 1d-3)))
     (or close
-        (< (abs (turn-step robot left)) 1d-12))))
+        (< (abs (turn-step robot left)) +facing+))))
+
+(defun drive-along (operation robot side)
+  "Drive ROBOT for a tick along the wall at SIDE, and end OPERATION where that ends."
+  (ecase (drive-tick robot)
+    (:wall (succeed operation))
+    (:thing (fail-with operation :robot-blocked))
+    ((nil) (if (neighbour-wall-p robot side)
+               (once-more operation)
+               (succeed operation)))))
+
+(defun follow-on (operation)
+  "Follow the wall of OPERATION, whose subject is its side and the heading along it, for a tick."
+  (let ((robot (operation-resource operation)))
+    (destructuring-bind (side heading) (operation-subject operation)
+      (cond ((not (steer robot heading)) (once-more operation))
+            ((zerop (robot-speed-now robot)) (fail-with operation :not-moving))
+            (t (drive-along operation robot side))))))
 
 (define-command robot-follow-wall (operation (robot robot))
     ()
@@ -48,16 +65,9 @@ then looks there, but for the error of turning."
      (:report () "Robot is at the end of the wall"))
     "Drive ROBOT along the nearest wall next to it until the wall ends or a corner is reached.
 Without a wall next to it, it succeeds at once."
-  (multiple-value-bind (side heading) (wall-to-follow robot)
-    (flet ((follow (operation)
-             (cond ((not (steer robot heading)) (once-more operation))
-                   ((zerop (robot-speed-now robot)) (fail-with operation :not-moving))
-                   (t (ecase (drive-tick robot)
-                        (:wall (succeed operation))
-                        (:thing (fail-with operation :robot-blocked))
-                        ((nil) (if (neighbour-wall-p robot side)
-                                   (once-more operation)
-                                   (succeed operation))))))))
-      (begin-movement robot)
-      (setf (operation-step operation) #'follow)
-      (if side (follow operation) (succeed operation)))))
+  (begin-movement robot)
+  (let ((way (multiple-value-list (wall-to-follow robot))))
+    (setf (operation-subject operation) way)
+    (if (first way)
+        (go-on-now operation 'follow-on)
+        (succeed operation))))

@@ -8,7 +8,6 @@
   (or (storage-bin-p object) (designator-p object)))
 
 (define-argument-type 'destination #'destination-p "a designator or a storage bin")
-(define-argument-type 'designator #'designator-p "a designator")
 
 (defun handling-dice (part)
   (world-dice (robot-world (part-robot part)) :handling))

@@ -99,14 +99,13 @@ designators silently."
 (defconstant +watch-period+ 1000
   "How long the event of a watch waits, in ticks, before it is queued anew.")
 
-(defun watch-grip (operation hand)
-  "Let OPERATION occupy HAND until it no longer holds what it holds now."
-  (let ((thing (hand-holding hand)))
-    (flet ((watch (operation)
-             (cond ((not (eq thing (hand-holding hand))) (fail-with operation :grasp-lost))
-                   ((not (event-pending-p operation)) (go-on operation (operation-step operation)
-                                                             +watch-period+)))))
-      (go-on operation #'watch +watch-period+))))
+(defun watch-grip (operation)
+  "Let OPERATION occupy its hand until that no longer holds its subject, what it held at first."
+  (let ((hand (operation-resource operation)))
+    (cond ((not (eq (operation-subject operation) (hand-holding hand)))
+           (fail-with operation :grasp-lost))
+          ((not (event-pending-p operation))
+           (go-on operation 'watch-grip +watch-period+)))))
 
 (define-command hand-track (operation (hand hand))
     ()
@@ -114,25 +113,21 @@ designators silently."
      (:errors (:grasp-lost (part-text "~A lost its grip"))
               (:not-grasping (part-text "~A is not holding anything"))))
     "Watch the grip of HAND until that is lost, or any other command to HAND interrupts."
+  (setf (operation-subject operation) (hand-holding hand))
   (if (hand-holding hand)
-      (watch-grip operation hand)
+      (watch-grip operation)
       (fail-with operation :not-grasping)))
 
-(defun check-grip (hand)
+(defun watched-p (hand)
+  "True if a HAND-TRACK of HAND is under way."
   (let ((operation (resource-event hand)))
-    (when (and (operation-p operation)
-               (eq (operation-command operation) (command-of 'hand-track)))
-      (run-operation operation))))
+    (and (operation-p operation)
+         (eq 'watch-grip (operation-step operation)))))
 
-(defun check-grips (simulation)
-  "Let the watches of grips in SIMULATION see whether they still hold."
+(defun check-grips (world)
+  "Let the watches of grips in WORLD see whether they still hold."
   (declare #.*hot*)                     ; in each tick
-  (dolist (robot (world-robots (simulation-world simulation)))
+  (dolist (robot (world-robots world))
     (loop for hand across (robot-hands robot)
-          do (when (resource-event (the hand hand)) (check-grip hand)))))
-
-(defvar *grips-phase* (lambda (simulation) (check-grips simulation))
-  "The phase of a tick that looks after grips, when all else that moves things is done.")
-
-(unless (member *grips-phase* *tick-phases*)
-  (setf *tick-phases* (append *tick-phases* (list *grips-phase*))))
+          do (when (and (resource-event (the hand hand)) (watched-p hand))
+               (run-operation (resource-event hand))))))

@@ -17,7 +17,7 @@
 (defun fits-type-p (value type)
   "True if VALUE can be of the type called TYPE. Types that commands do not know fit all."
   (let ((known (and type (find-argument-type type nil))))
-    (or (null type) (null known) (funcall (argument-type-predicate known) value))))
+    (or (null type) (null known) (argument-of-type-p value type))))
 
 (defun resource-p* (object)
   (or (robot-p object) (part-p object)))
@@ -79,7 +79,7 @@
   (let* ((arguments (operation-arguments operation))
          (things (method-things method arguments))
          (results '(:failed))
-         (*world* (simulation-world (operation-simulation operation))))
+         (*world* (operation-world operation)))
     (call-user-code (lambda ()
                       (setf results
                             (multiple-value-list
@@ -88,9 +88,11 @@
                     (list "manipulation " (command-prefix (operation-command operation))))
     results))
 
-(defun perform (operation method)
-  "Do what METHOD does, if that is still possible and succeeds, and end OPERATION."
-  (let ((dice (world-dice (simulation-world (operation-simulation operation)) :manipulations)))
+(defun carry-out (operation)
+  "Do what the method that is the subject of OPERATION does, if that is still possible and succeeds,
+and end OPERATION."
+  (let ((method (operation-subject operation))
+        (dice (world-dice (operation-world operation) :manipulations)))
     (if (and (method-applies-p method (operation-arguments operation))
              (chance (method-success method) dice))
         (destructuring-bind (&optional code value &rest more) (run-body operation method)
@@ -99,14 +101,14 @@
         (fail-with operation :failed))))
 
 (defun begin-manipulation (operation resource &rest arguments)
-  "Choose the method for ARGUMENTS, and let it be performed when its delay has passed. There is none
-if the manipulation has been undefined since."
+  "Choose the method for ARGUMENTS, and let it be carried out when its delay has passed. There is
+none if the manipulation has been undefined since."
   (let* ((manipulation (find-manipulation (command-name (operation-command operation)) nil))
          (method (and manipulation (applicable-method manipulation arguments resource))))
+    (setf (operation-subject operation) method)
     (cond ((null method) (fail-with operation :failed))
-          ((<= (method-delay method) 1) (perform operation method))
-          (t (go-on operation (lambda (operation) (perform operation method))
-                    (1- (method-delay method)))))))
+          ((<= (method-delay method) 1) (carry-out operation))
+          (t (go-on operation 'carry-out (1- (method-delay method)))))))
 
 ;;; Issuing.
 
@@ -145,14 +147,7 @@ if the manipulation has been undefined since."
 
 (defun issue-manipulation (manipulation resource arguments continuation)
   "Post MANIPULATION on RESOURCE with ARGUMENTS, which fit one of its methods."
-  (let* ((simulation (resource-simulation resource))
-         (operation (make-operation (command-for manipulation) resource arguments
-                                    (value-continuation continuation) simulation)))
-    (post simulation
-          (lambda ()
-            (apply #'note simulation :manipulate
-                   (string (manipulation-name manipulation)) arguments)
-            (begin-unless-retired operation)))))
+  (issue (command-for manipulation) resource arguments (value-continuation continuation)))
 
 (public run-manipulation)
 (defun run-manipulation (name &rest arguments)
@@ -166,8 +161,7 @@ manipulation's own. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method take
          (continuation (first (last arguments)))
          (arguments (butlast arguments))
          (method (first (methods-for manipulation arguments))))
-    (check-command-argument name 'continuation continuation 'continuation)
-    (check-in-run (method-resource method arguments) name)
+    (check-of-type name 'continuation continuation 'continuation)
     (issue-manipulation manipulation (method-resource method arguments) arguments continuation)
     (values)))
 
@@ -177,6 +171,8 @@ manipulation's own. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method take
 (manipulate lock box-designator key-designator hand continuation) (manual 5.5.2)."
   `(run-manipulation ',name ,@arguments))
 
-(defmethod apply-entry ((operation (eql :manipulate)) arguments simulation)
-  (declare (ignore simulation))
-  (apply #'run-manipulation (append arguments '(nil))))
+(defun manipulate-again (name &rest arguments)
+  "Carry out the manipulation NAME with ARGUMENTS and without a continuation."
+  (apply #'run-manipulation name (append arguments '(nil))))
+
+(define-operator 'manipulate '(name) #'manipulate-again :rest 'datum)

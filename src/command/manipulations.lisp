@@ -26,10 +26,14 @@ others, each a list (variable type), with NIL for no type."
   "One way to carry out a manipulation."
   (form '() :type list :read-only t)
   (source '() :type list :read-only t)
+  (digest nil :type (or null integer) :read-only t)
   (parameters nil :type parameter-list :read-only t)
   (success 1d0 :type double-float :read-only t)
   (delay 0 :type tick-count :read-only t)
   (body nil :type function :read-only t))
+
+(defmethod reference ((method manipulation-method))
+  (list :method (method-form method)))
 
 (defstruct (manipulation (:constructor make-manipulation (name)) (:copier nil))
   "A named action on things. COMMAND, made when it is first needed, carries it out."
@@ -38,6 +42,9 @@ others, each a list (variable type), with NIL for no type."
   (command nil :type (or null command)))
 (addition manipulation-name)
 (document-functions
+  method-source "Return the source of the method's definition; see SOURCE-HERE."
+  method-digest "Return a number for the form of the method's definition, or NIL."
+  manipulation-methods "Return a list of the methods of the manipulation, the newest first."
   manipulation-name "Return the symbol that the manipulation is called.")
 
 (define-registry manipulation "manipulation" :object-p manipulation-p)
@@ -152,7 +159,7 @@ parameter list, BODY a function of as many arguments. Return NAME."
   (let* ((definition (format nil "defmanipulation ~(~A~)" name))
          (manipulation (or (find-manipulation name nil) (make-manipulation name)))
          (method (make-manipulation-method
-                  :form form :source (current-source)
+                  :form form :source (current-source) :digest (current-form-digest)
                   :parameters (parse-parameters definition form) :body body
                   :success (double (check-option definition :success success '(real 0 1)
                                                  "a probability from 0 to 1"))

@@ -2,30 +2,58 @@
 
 (in-package :ars-magna.command)
 
-;;; Issuing a command posts an OPERATION to the simulation. At the start of the next tick the
-;;; operation takes its resource over, interrupting what was there, and waits for the command's
-;;; delay; then its body runs, with the preconditions as they are by then. The body ends the
-;;; operation, or goes on in further ticks. Invariant: an operation ends exactly once, and its
-;;; continuation is called exactly once, at the end of that tick.
+;;; Issuing a command posts an OPERATION, a request, to the timeline of its robot. At the start of
+;;; the next tick the operation takes its resource over, interrupting what was there, and waits for
+;;; the command's delay; then its body runs, with the preconditions as they are by then. The body
+;;; ends the operation, or goes on in further ticks: its STEP is the name of a function, and what
+;;; that needs to know from tick to tick is in the operation's slots. Invariant: an operation ends
+;;; exactly once, and its continuation is called exactly once, at the end of that tick.
 
-(defstruct (operation (:include event (function #'run-operation)) (:copier nil)
-                      (:constructor make-operation (command resource arguments continuation
-                                                    simulation)))
-  "A command under way. It is the event that is pending on its resource."
-  (command nil :type command :read-only t)
-  (arguments '() :type list :read-only t)
-  (continuation nil :read-only t)
-  (simulation nil :type simulation :read-only t)
-  ;; What to call in the next tick that is the operation's, with the operation.
-  (step nil :type (or null function))
-  (finished-p nil))
+(define-kind (operation :include event
+                        :constructor (make-operation
+                                      (operator resource arguments continuation timeline
+                                       &aux (function #'run-operation)
+                                         (interrupt #'interrupt-operation))))
+    "A command under way. It is the event that is pending on its resource."
+  (:fixed
+   (timeline nil (or null timeline) "the timeline that the operation takes place in"))
+  (:state
+   (step nil symbol "the name of the function of the operation that is to carry it on")
+   (finished-p nil boolean "the operation has ended")
+   (count 0 fixnum "how many ticks it is yet to go on")
+   (left 0d0 double-float "what is left to be turned, in radians")
+   (reading 0d0 double-float "what the odometry has read so far, in radians")
+   (subject nil t "what it is about: what is held, was found, is done"))
+  (:link
+   (continuation nil t "what to call when it ends, or NIL")))
 
 (document-functions
-  operation-command "Return the command that the operation carries out."
-  operation-resource "Return the robot or part that the operation occupies."
-  operation-arguments "Return the arguments after the resource."
-  operation-simulation "Return the simulation that the operation takes place in."
-  operation-finished-p "True once the operation has ended.")
+  operation-p "True of operations."
+  operation-resource "Return the robot or part that the operation occupies.")
+
+(declaim (inline operation-command))
+(defun operation-command (operation)
+  "Return the command that OPERATION carries out."
+  (the command (operation-operator operation)))
+
+(declaim (inline operation-agenda))
+(defun operation-agenda (operation)
+  (timeline-agenda (the timeline (operation-timeline operation))))
+
+(defun operation-world (operation)
+  "Return the world that OPERATION takes place in."
+  (robot-world (resource-robot (operation-resource operation))))
+
+(defmethod reference ((operation operation))
+  (list :operation (name-string (command-name (operation-command operation)))
+        (event-time operation)))
+
+(defmethod request-entry ((operation operation))
+  (let ((command (operation-command operation)))
+    (if (eq :manipulating (command-family command))
+        (list* 'manipulate (command-name command) (operation-arguments operation))
+        (list* (command-name command) (operation-resource operation)
+               (operation-arguments operation)))))
 
 ;;; Ending.
 
@@ -59,7 +87,7 @@
 
 (defun call-continuation (operation code results)
   (let ((origin (command-origin (operation-command operation))))
-    (call-watched (operation-simulation operation)
+    (call-watched (operation-timeline operation)
                   (lambda ()
                     (apply #'call-user-code (operation-continuation operation) origin
                            code (operation-resource operation) results))
@@ -68,7 +96,7 @@
 (defun notify (operation code results)
   "Call the continuation of OPERATION with CODE and RESULTS at the end of this tick."
   (when (operation-continuation operation)
-    (notify-later (operation-simulation operation)
+    (notify-later (operation-timeline operation)
                   (lambda () (call-continuation operation code results)))))
 
 (defun finish (operation code &rest results)
@@ -77,7 +105,7 @@ the resource and RESULTS. The second end of an operation changes nothing."
   (unless (operation-finished-p operation)
     (setf (operation-finished-p operation) t)
     (when (event-pending-p operation)
-      (cancel-event (simulation-agenda (operation-simulation operation)) operation))
+      (cancel-event (operation-agenda operation) operation))
     (let ((results (fit-results operation results)))
       (report operation code results)
       (notify operation code results))))
@@ -90,23 +118,30 @@ the resource and RESULTS. The second end of an operation changes nothing."
   "End OPERATION with the error CODE; its continuation gets that, the resource and RESULTS."
   (apply #'finish operation code results))
 
+(defun interrupt-operation (operation)
+  (finish operation :interrupt))
+
 ;;; Beginning and going on.
 
 (defun run-operation (operation)
-  (let ((step (operation-step operation)))
-    (declare (type function step))
-    (unless (operation-finished-p operation)
-      (funcall step operation))))
+  "Call the step of OPERATION: what is to be done in this tick."
+  (unless (operation-finished-p operation)
+    (funcall (the symbol (operation-step operation)) operation)))
 
 (declaim (inline once-more))
 (defun once-more (operation)
   "Let the step of OPERATION be called again in the next tick. Called by that step."
-  (queue-again (simulation-agenda (operation-simulation operation)) operation 1))
+  (queue-again (operation-agenda operation) operation 1))
 
 (defun go-on (operation step &optional (delay 1))
-  "Let STEP, a function of OPERATION, be called DELAY ticks from now to carry it on."
+  "Let STEP, the name of a function of OPERATION, be called DELAY ticks from now to carry it on."
   (setf (operation-step operation) step)
-  (queue-again (simulation-agenda (operation-simulation operation)) operation delay))
+  (queue-again (operation-agenda operation) operation delay))
+
+(defun go-on-now (operation step)
+  "Let STEP, the name of a function of OPERATION, carry it on in this tick and all that follow."
+  (setf (operation-step operation) step)
+  (funcall step operation))
 
 (defun start-body (operation)
   (apply (command-body (operation-command operation))
@@ -123,17 +158,15 @@ followed by (robot-go-forward ...) sets the speed."
 
 (defun begin (operation)
   "Take over the resource of OPERATION and let it wait for its command's delay."
-  (let* ((simulation (operation-simulation operation))
-         (agenda (simulation-agenda simulation))
+  (let* ((agenda (operation-agenda operation))
          (rival (pending-event agenda (operation-resource operation)))
          (delay (funcall (command-delay (operation-command operation)))))
     (when rival (make-way agenda rival))
-    (setf (operation-step operation) #'start-body
-          (operation-interrupt operation) (lambda () (finish operation :interrupt)))
-    (queue-again agenda operation delay)))
+    (go-on operation 'start-body delay)))
 
-(defun begin-unless-retired (operation)
-  "Begin OPERATION, unless its robot has been retired since it was issued; then it is interrupted."
+;; A robot may have been retired since the command was issued.
+(defmethod perform ((operation operation) timeline)
+  (declare (ignore timeline))
   (if (robot-retired (resource-robot (operation-resource operation)))
       (finish operation :interrupt)
       (begin operation)))
@@ -142,32 +175,10 @@ followed by (robot-go-forward ...) sets the speed."
   "Return RESOURCE if it is a robot, else the robot that it is a part of."
   (if (robot-p resource) resource (part-robot resource)))
 
-(defun resource-simulation (resource)
-  (robot-simulation (resource-robot resource)))
-
 (defun issue (command resource arguments continuation)
   "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked; CONTINUATION may be NIL.
 Return nothing: the command takes effect in the next tick. Signals MISUSE if the robot's run is
 over."
   (check-in-run resource (command-name command))
-  (let* ((simulation (resource-simulation resource))
-         (operation (make-operation command resource arguments continuation simulation)))
-    (post simulation
-          (lambda ()
-            (when (simulation-journal simulation)
-              (note-command simulation operation))
-            (begin-unless-retired operation))))
-  (values))
-
-;;; In the journal.
-
-(defun note-command (simulation operation)
-  (apply #'note simulation :command
-         (string-downcase (command-name (operation-command operation)))
-         (operation-resource operation)
-         (operation-arguments operation)))
-
-(defmethod apply-entry ((operation (eql :command)) arguments simulation)
-  (declare (ignore simulation))
-  (destructuring-bind (name resource . arguments) arguments
-    (issue (find-command name) resource arguments nil)))
+  (let ((timeline (world-timeline (robot-world (resource-robot resource)))))
+    (post (make-operation command resource arguments continuation timeline) timeline)))

@@ -13,13 +13,16 @@
            #:command-errors #:command-documentation #:command-prefix
            #:parameter-spec #:spec-name #:spec-type #:spec-text
            #:error-code #:error-code-keyword #:error-code-text
-           #:all-commands #:find-command #:argument-type-text #:argument-of-type-p)
+           #:all-commands #:find-command #:command-of #:command-shape)
   ;; operation
   (:export #:operation #:operation-command #:operation-resource #:operation-arguments
-           #:operation-simulation #:operation-finished-p #:issue #:finish #:succeed #:fail-with
-           #:notify #:report #:once-more #:go-on)
-  ;; define-command, argument-types
-  (:export #:define-command #:define-argument-type)
+           #:operation-p #:operation-world #:operation-finished-p #:operation-continuation
+           #:operation-step #:operation-subject #:operation-count #:issue #:finish #:succeed
+           #:fail-with #:notify #:report #:once-more #:go-on #:go-on-now)
+  ;; define-command
+  (:export #:define-command)
+  ;; hands
+  (:export #:check-grips)
   ;; moving
   (:export #:robot-set-speed #:robot-set-turn-angle #:robot-turn #:robot-about-face
            #:robot-turn-left #:robot-turn-right #:robot-align-place #:robot-turn-corner
@@ -35,4 +38,5 @@
            #:storage-bin-close)
   ;; manipulations
   (:export #:defmanipulation #:define-manipulation #:manipulate #:run-manipulation
-           #:find-manipulation #:all-manipulations #:manipulation-name))
+           #:find-manipulation #:all-manipulations #:manipulation-name
+           #:manipulation-methods #:method-source #:method-digest))

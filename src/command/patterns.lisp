@@ -8,24 +8,14 @@
 ;;; two numbers mean a range. NIL means false or unspecified. A matchvar is bound where
 ;;; it comes first and must meet the same value wherever it comes again, in this pattern or a later.
 
-(defun clause-p (clause)
-  (and (proper-list-p clause)
-       (<= 2 (length clause) 3)
-       (first clause) (symbolp (first clause))
-       (typep (third clause) '(or null (real 0)))))
-
-(defun reversed-p (key value)
-  "True if VALUE for the attribute KEY is a range with the higher end first."
-  (and (range-p value)
-       (not (alternatives-p key value))
-       (> (first value) (second value))))
+(defun reversed-p (attribute value)
+  "True if VALUE for ATTRIBUTE is a range with the higher end first."
+  (and (asks-range-p attribute value) (not (range-p value))))
 
 (defun impossible-value (attribute value)
   "Return what of VALUE, in a pattern for ATTRIBUTE, no thing can have, and what was meant perhaps."
-  (let ((domain (attribute-domain attribute)))
-    (find-if-not (lambda (value)
-                   (or (matchvar-p value) (member value domain :test #'value-equal)))
-                 (if (member value domain :test #'value-equal) '() (ensure-list value)))))
+  (find-if-not (lambda (value) (or (matchvar-p value) (in-domain-p attribute value)))
+               (if (in-domain-p attribute value) '() (ensure-list value))))
 
 (defun check-discrete-clause (definition clause attribute)
   (let ((value (impossible-value attribute (second clause))))
@@ -41,10 +31,10 @@
     (when (and value (symbolp value) (starts-with-subseq "?" (symbol-name value)))
       (reject-clause definition clause
                      "a value; after (in-readtable :nisp), which goes before it, ?x is a matchvar"))
-    (when (reversed-p key value)
+    (when (reversed-p attribute value)
       (reject-clause definition clause "a range with the lower end first"))
     (cond ((null attribute))
-          ((eq :discrete (attribute-kind attribute))
+          ((discrete-p attribute)
            (check-discrete-clause definition clause attribute))
           ((eq :substance key))
           ((not (or (matchvar-p value) (realp value) (null value) (range-p value)))
@@ -53,10 +43,10 @@
 (defun parse-pattern (definition specification)
   "Return the pattern that SPECIFICATION, a list of lists (attribute value [threshold]), stands
 for. Signals MALFORMED-DEFINITION about DEFINITION."
-  (unless (and (proper-list-p specification) (every #'clause-p specification))
+  (unless (and (proper-list-p specification) (every #'asking-form-p specification))
     (reject-clause definition
                    (if (proper-list-p specification)
-                       (find-if-not #'clause-p specification)
+                       (find-if-not #'asking-form-p specification)
                        specification)
                    "a descriptor ((attribute value [threshold]) ...) after each object's hyphen"))
   (dolist (clause specification) (check-clause definition clause))
@@ -68,21 +58,15 @@ for. Signals MALFORMED-DEFINITION about DEFINITION."
 (defun within-p (number low high threshold)
   (<= (- low threshold) number (+ high threshold)))
 
-(defun range-p (value)
-  (and (proper-list-p value) (= 2 (length value)) (every #'realp value)))
-
 (defun alternatives-p (key value)
   "True if VALUE, a list, means for the attribute KEY that any of its elements will do."
-  (let ((attribute (attribute-of key)))
-    (if attribute
-        (or (eq :discrete (attribute-kind attribute)) (not (range-p value)))
-        (not (range-p value)))))
+  (not (asks-range-p (attribute-of key) value)))
 
 (defun comparable-value (key value wanted)
   "Return what of VALUE, of the attribute KEY, is to be compared with WANTED: of a substance, its
 parameter or its type."
   (cond ((not (eq key :substance)) value)
-        ((or (realp wanted) (range-p wanted)) (substance-value-parameter value))
+        ((value-limits wanted) (substance-value-parameter value))
         (t (substance-value-type value))))
 
 (defun value-fits-p (key wanted threshold value)
@@ -99,8 +83,7 @@ parameter or its type."
 (defun has-value-p (key value)
   "True if VALUE is a value of the attribute KEY; NIL is one of those that can be true or false."
   (or value
-      (let ((attribute (attribute-of key)))
-        (and attribute (member nil (attribute-domain attribute))))))
+      (can-be-false-p (attribute-of key))))
 
 (defun bind-matchvar (matchvar key value bindings)
   "True if MATCHVAR, for KEY, can be VALUE; BINDINGS with what it is bound to as second value."
@@ -135,11 +118,6 @@ parameter or its type."
                  fits)))
 
 ;;; Versions of a pattern.
-
-(defun value-limits (value)
-  "Return the least and the greatest number that VALUE, in a pattern, stands for; NIL if none."
-  (cond ((realp value) (values value value))
-        ((range-p value) (values (first value) (second value)))))
 
 (defun exclusive-p (one other)
   "True if nothing that is as ONE, a value in a pattern, can be as OTHER."

@@ -20,7 +20,7 @@
 
 (defun turn-to-face (operation robot direction)
   "Turn ROBOT to DIRECTION, the short way round, and end OPERATION."
-  (turn-and-succeed operation robot (angle-difference direction (robot-angle robot))))
+  (turn-by operation robot (angle-difference direction (robot-angle robot))))
 
 (defun judged-right-p (robot type)
   "True if ROBOT takes TYPE, which it has sensed, for right: if it is, or by mistake."

@@ -27,23 +27,26 @@ that the attributes can have, and of a range the lower end first"
         for designator = (designate sighting camera)
         when designator collect designator))
 
-(defun name-one (operation camera sightings)
-  "End OPERATION with a designator for the first of SIGHTINGS by CAMERA."
-  (let ((designator (first (name-sightings camera sightings))))
+(defun designate-first (operation sightings)
+  "End OPERATION with a designator for the first of SIGHTINGS."
+  (let ((designator (first (name-sightings (operation-resource operation) sightings))))
     (if designator
         (succeed operation designator)
         (fail-with operation :designator-not-found))))
 
-(defun name-all (operation camera sightings)
-  "End OPERATION with designators for all of SIGHTINGS by CAMERA."
-  (flet ((name (operation)
-           (let ((designators (name-sightings camera sightings)))
-             (if designators
-                 (succeed operation designators)
-                 (fail-with operation :designator-not-found)))))
-    (if (rest sightings)
-        (go-on operation #'name (length (rest sightings)))
-        (name operation))))
+(defun designate-found (operation)
+  "End OPERATION with designators for all sightings that are its subject."
+  (let ((designators (name-sightings (operation-resource operation) (operation-subject operation))))
+    (if designators
+        (succeed operation designators)
+        (fail-with operation :designator-not-found))))
+
+(defun designate-all (operation sightings)
+  "End OPERATION with designators for all of SIGHTINGS, when it has had the time to name them."
+  (setf (operation-subject operation) sightings)
+  (if (rest sightings)
+      (go-on operation 'designate-found (length (rest sightings)))
+      (designate-found operation)))
 
 ;;; Places.
 
@@ -65,8 +68,8 @@ that the attributes can have, and of a range the lower end first"
   (let ((obstacle (place-search-obstacle camera place-type)))
     (if obstacle
         (fail-with operation obstacle)
-        (funcall (if all #'name-all #'name-one)
-                 operation camera
+        (funcall (if all #'designate-all #'designate-first)
+                 operation
                  (look-for-places camera (find-place-type place-type) :all all
                                   :name (asked-name place-type))))))
 
@@ -104,8 +107,8 @@ that the attributes can have, and of a range the lower end first"
 (defun search-for-things (operation camera type specification all)
   (if (camera-tracking camera)
       (fail-with operation :already-tracking)
-      (funcall (if all #'name-all #'name-one)
-               operation camera
+      (funcall (if all #'designate-all #'designate-first)
+               operation
                (look-for-things camera type specification :all all))))
 
 (define-command camera-get-object-designator

@@ -20,9 +20,8 @@
        (eq (designator-location designator) (camera-location camera))
        (designator-local-p* designator)))
 
-(defun tell-track-ended (operation designator code)
-  "Tell that the track which OPERATION began has ended with CODE. Warnings have said why, unless it
-was interrupted."
+;; Warnings have said why, unless it was interrupted.
+(defmethod track-ended ((operation operation) code designator)
   (setf (operation-finished-p operation) t)
   (when (eq code :interrupt) (report operation code '()))
   (notify operation code (list designator)))
@@ -30,7 +29,7 @@ was interrupted."
 (defun begin-track (operation camera designator)
   (report operation nil (list designator))
   (notify operation nil (list designator))
-  (start-track camera designator (lambda (code) (tell-track-ended operation designator code))))
+  (start-track camera designator operation))
 
 (define-command camera-track (operation (camera camera)
                               (designator designator "what to track"))

@@ -50,6 +50,9 @@
 
 ;;; Turning.
 
+(define-constant +facing+ 1d-12
+  :documentation "What is less than this has been turned, in radians: it is rounding.")
+
 (defun turn-step (robot left)
   "Turn ROBOT for a tick, of the angle LEFT to be turned. Return what is then left, and the
 odometry's reading of the step."
@@ -59,23 +62,23 @@ odometry's reading of the step."
     (values (- left step)
             (* 0.5d0 (+ (robot-turned-low robot) (robot-turned-high robot))))))
 
-(defun turn-robot (operation robot angle then)
-  "Turn ROBOT by about ANGLE, beginning in this tick; then call THEN with the reading of it."
-  (let ((left (double angle))
-        (reading 0d0))
-    (begin-movement robot)
-    (flet ((turn (operation)
-             (multiple-value-bind (rest read) (turn-step robot left)
-               (setf left rest)
-               (incf reading read))
-             (if (< (abs left) 1d-12)
-                 (funcall then reading)
-                 (once-more operation))))
-      (setf (operation-step operation) #'turn)
-      (if (zerop left) (funcall then 0d0) (turn operation)))))
+(defun turn-on (operation)
+  "Turn for a tick what is left to be turned by OPERATION, and end that when nothing is."
+  (multiple-value-bind (left read)
+      (turn-step (operation-resource operation) (operation-left operation))
+    (setf (operation-left operation) left)
+    (incf (operation-reading operation) read)
+    (if (< (abs left) +facing+)
+        (succeed operation (operation-reading operation))
+        (once-more operation))))
 
-(defun turn-and-succeed (operation robot angle)
-  (turn-robot operation robot angle (lambda (reading) (succeed operation reading))))
+(defun turn-by (operation robot angle)
+  "Turn ROBOT by about ANGLE, beginning in this tick, and end OPERATION with the reading of it."
+  (begin-movement robot)
+  (setf (operation-left operation) (double angle))
+  (if (zerop angle)
+      (succeed operation 0d0)
+      (go-on-now operation 'turn-on)))
 
 (defun turned-text (angle)
   (format nil "Robot turned ~,2F" angle))
@@ -86,7 +89,7 @@ odometry's reading of the step."
     ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
      (:report (angle) (turned-text angle)))
     "Turn ROBOT in place by about ANGLE."
-  (turn-and-succeed operation robot angle))
+  (turn-by operation robot angle))
 
 (macrolet ((define-turn (name angle words)
              `(define-command ,name (operation (robot robot))
@@ -94,7 +97,7 @@ odometry's reading of the step."
                   ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
                    (:report (angle) (turned-text angle)))
                   ,(format nil "Turn ROBOT in place by about ~A." words)
-                (turn-and-succeed operation robot ,angle))))
+                (turn-by operation robot ,angle))))
   (define-turn robot-about-face pi "half a circle")
   (define-turn robot-turn-left (/ pi -2) "a quarter circle to the left")
   (define-turn robot-turn-right (/ pi 2) "a quarter circle to the right"))

@@ -19,11 +19,12 @@ ticks and at the end."
                (keep-history simulation)
                (when (zerop (mod (simulation-tick simulation) every))
                  (show (simulation-world simulation)))))
-        (let ((*tick-phases* (append *tick-phases* (list #'look))))
-          (with-replay (journal :until until)
-            (let ((simulation (current-simulation)))
-              (unless (and last (= (snapshot-tick last) (simulation-tick simulation)))
-                (show (simulation-world simulation))))))))))
+        (call-with-replay (lambda ()
+                            (let ((simulation (current-simulation)))
+                              (unless (and last (= (snapshot-tick last)
+                                                   (simulation-tick simulation)))
+                                (show (simulation-world simulation)))))
+                          journal :until until :observer #'look)))))
 
 (defun frame-step (journal every until)
   "Return every how many ticks to draw a frame."

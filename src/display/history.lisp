@@ -54,21 +54,13 @@
 
 (defun ray-end (world x y angle)
   "Return, as two values, where what a camera at X, Y can see of WORLD in direction ANGLE ends."
-  (let* ((map (world-map world))
+  (let* ((map (world-map world)) (flags (world-flags world))
          (dx (cos angle)) (dy (sin angle))
-         (cell-x (floor x)) (cell-y (floor y))
-         (per-x (if (zerop dx) 1d9 (abs (/ dx))))
-         (per-y (if (zerop dy) 1d9 (abs (/ dy))))
-         (at-x (* per-x (if (minusp dx) (- x cell-x) (- (1+ cell-x) x))))
-         (at-y (* per-y (if (minusp dy) (- y cell-y) (- (1+ cell-y) y)))))
-    (loop for at = (min at-x at-y)
-          do (if (< at-x at-y)
-                 (setf cell-x (+ cell-x (if (minusp dx) -1 1)) at-x (+ at-x per-x))
-                 (setf cell-y (+ cell-y (if (minusp dy) -1 1)) at-y (+ at-y per-y)))
-          until (let ((index (map-index map cell-x cell-y)))
-                  (or (null index)
-                      (logtest (logior +wall+ +obsview+) (aref (world-flags world) index))))
-          finally (return (values (+ x (* at dx)) (+ y (* at dy)))))))
+         (end (walk-grid (lambda (index at column)
+                           (declare (ignore at column))
+                           (logtest +opaque+ (aref flags index)))
+                         (map-width map) (map-height map) x y dx dy +no-limit+)))
+    (values (+ x (* end dx)) (+ y (* end dy)))))
 
 (defun look-of (camera)
   "Return the look that CAMERA's last view comes from, if it was taken where CAMERA is now."

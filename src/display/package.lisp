@@ -3,7 +3,7 @@
 (defpackage :ars-magna.display
   (:documentation "Pictures of a robot in its world: what is drawn, on whatever canvas. Manual B.")
   (:use :cl :ars-magna.base :ars-magna.geometry :ars-magna.world :ars-magna.time
-        :ars-magna.robot :ars-magna.canvas)
+        :ars-magna.robot :ars-magna.run :ars-magna.canvas)
   (:shadowing-import-from :cl #:equal)
   (:shadowing-import-from :ars-magna.world #:map)
   ;; text-map

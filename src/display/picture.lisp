@@ -38,18 +38,14 @@ are to a cell. IN-COLOR is false for a picture in black and white. Signals WRONG
 
 (defun convert-to-png (svg file)
   "Write the SVG document SVG to FILE as PNG, by the program rsvg-convert."
-  (let ((process (handler-case
-                     (with-input-from-string (in svg)
-                       (sb-ext:run-program "rsvg-convert"
-                                           (list "--unlimited" "-f" "png" "-o"
-                                                 (sb-ext:native-namestring file))
-                                           :search t :input in :output nil :error nil
-                                           :external-format :utf-8))
-                   (error () nil))))
-    (cond ((null process)
+  (let ((status (with-input-from-string (in svg)
+                  (run-command "rsvg-convert"
+                               (list "--unlimited" "-f" "png" "-o" (native-name file))
+                               :input in))))
+    (cond ((null status)
            (reject-use "PNG pictures need the program rsvg-convert, of Debian's package ~
                         librsvg2-bin: apt-get install librsvg2-bin. Or save the picture as .svg."))
-          ((not (eql 0 (sb-ext:process-exit-code process)))
+          ((plusp status)
            (reject-use "rsvg-convert could not write ~A." file)))
     (truename file)))
 

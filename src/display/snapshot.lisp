@@ -163,9 +163,9 @@ what it holds of each."
 (defun take-snapshot (world &optional previous)
   "Return a snapshot of WORLD as it is now; to be called where it stands still. PREVIOUS, an earlier
 snapshot of WORLD, makes it cheaper."
-  (let* ((simulation (world-simulation world))
-         (history (and simulation (history-of simulation))))
-    (make-snapshot :tick (if simulation (simulation-tick simulation) 0)
+  (let* ((timeline (world-timeline world))
+         (history (and timeline (timeline-run timeline) (history-of (timeline-run timeline)))))
+    (make-snapshot :tick (world-tick world)
                    :map (world-map world)
                    :things (images-on-floor world (if previous (snapshot-things previous) #()))
                    :robots (loop for robot in (world-robots world)

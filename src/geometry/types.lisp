@@ -13,7 +13,7 @@
   "A point or vector in the plane, in metres: x grows to the right, y downward (manual 3.2.1)."
   (x 0d0 :type double-float)
   (y 0d0 :type double-float))
-(declaim (sb-ext:freeze-type pt))
+(declaim-final pt)
 
 (declaim (inline make-pt pt-x pt-y (setf pt-x) (setf pt-y) set-pt!))
 
@@ -56,7 +56,7 @@
   "The real numbers from min to max, both included: an uncertain number (manual 3.2.1)."
   (min 0d0 :type double-float)
   (max 0d0 :type double-float))
-(declaim (sb-ext:freeze-type interval))
+(declaim-final interval)
 
 (declaim (inline %set-interval! interval-min interval-max))
 
@@ -108,7 +108,7 @@
   "A box with sides parallel to the axes: an uncertain point (manual 3.2.1)."
   (x (%make-interval 0d0 0d0) :type interval :read-only t)
   (y (%make-interval 0d0 0d0) :type interval :read-only t))
-(declaim (sb-ext:freeze-type pt-interval))
+(declaim-final pt-interval)
 
 (addition make-pt-interval)
 (defun make-pt-interval (a b)

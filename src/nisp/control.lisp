@@ -37,7 +37,7 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
 (public nop)
 (defun nop ()
   "Do nothing, but let other threads run meanwhile. Return nothing (manual, Figure D.3)."
-  (sb-thread:thread-yield)
+  (yield-thread)
   (values))
 
 ;;; Vectors.

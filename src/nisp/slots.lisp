@@ -7,10 +7,8 @@
 ;;; of it, and a form with a type, !(PT x), into a call of that type's own reader. Structures and
 ;;; classes that users define need not be registered: all of their slots can be reached.
 
-(defclass slot-accessor (standard-generic-function)
-  ()
-  (:metaclass sb-mop:funcallable-standard-class)
-  (:documentation "A function that reads or sets the slot of one name in objects of all types."))
+(define-function-class slot-accessor
+  "A function that reads or sets the slot of one name in objects of all types.")
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun slot-accessor-name (slot)
@@ -37,9 +35,7 @@
 
 (defun class-slots (class)
   "Return an alist from names to readers of the slots of CLASS, inherited ones last."
-  (unless (sb-mop:class-finalized-p class)
-    (sb-mop:finalize-inheritance class))
-  (loop for class in (sb-mop:class-precedence-list class)
+  (loop for class in (class-ancestors class)
         for type = (class-nisp-type class)
         when type append (nisp-type-slots type)))
 
@@ -48,14 +44,14 @@
   (let ((package (symbol-package (class-name class))))
     (and (typep class '(or structure-class standard-class))
          package
-         (not (sb-ext:package-locked-p package))
+         (not (package-locked-p package))
          (not (starts-with-subseq "ARS-MAGNA." (package-name package))))))
 
 (defun own-slots (object)
   "Return the names, symbols, of the slots of OBJECT if its class is a user's."
   (let ((class (class-of object)))
     (when (users-class-p class)
-      (mapcar #'sb-mop:slot-definition-name (sb-mop:class-slots class)))))
+      (class-slot-names class))))
 
 (defun slot-names (object)
   "Return the names of the slots of OBJECT that programs can reach, as strings."
@@ -75,7 +71,7 @@
 
 (defmethod no-applicable-method ((accessor slot-accessor) &rest arguments)
   (let* ((object (first (last arguments)))
-         (name (sb-mop:generic-function-name accessor))
+         (name (generic-name accessor))
          (setter (consp name))
          (slot (subseq (symbol-name (if setter (second name) name)) 2))
          (own (find slot (own-slots object) :test #'string=)))

@@ -15,11 +15,16 @@
   (angle 0d0 :type double-float :read-only t)
   (cameras '() :type list :read-only t)
   (hands '() :type list :read-only t)
-  (bins '() :type list :read-only t))
+  (bins '() :type list :read-only t)
+  ;; Of other kinds: lists (kind initarg value ...).
+  (parts '() :type list :read-only t))
 
-(setf (documentation 'body-p 'function) "True of what DEFROBOT said of a robot."
-      (documentation 'body-name 'function) "Return the name of the robot."
-      (documentation 'body-map 'function) "Return the name of the map that the robot starts in.")
+(document-functions
+  body-p "True of what DEFROBOT said of a robot."
+  body-name "Return the name of the robot."
+  body-map "Return the name of the map that the robot starts in."
+  body-x "Return the x coordinate where the robot starts, in metres."
+  body-y "Return the y coordinate where the robot starts, in metres.")
 
 (define-registry robot "robot" :object-p body-p :by-symbol t
   :finder find-body :lister all-bodies :internal t)
@@ -56,6 +61,9 @@ NIL."
 
 ;;; Making robots.
 
+(defmethod reference ((body body))
+  (list :body (name-string (body-name body))))
+
 (defun make-parts (robot constructor specifications)
   (coerce (loop for specification in specifications
                 for index from 0
@@ -73,7 +81,24 @@ NIL."
                     (loop for strength in (body-hands body) collect (list :strength strength)))
         (robot-bins robot)
         (make-parts robot #'make-storage-bin
-                    (loop for capacity in (body-bins body) collect (list :capacity capacity)))))
+                    (loop for capacity in (body-bins body) collect (list :capacity capacity)))
+        (robot-sensors robot)
+        (make-sensors robot (body-parts body))))
+
+(defun make-sensors (robot specifications)
+  "Return a vector of parts of ROBOT, made as SPECIFICATIONS, lists (kind initarg value ...), say."
+  (coerce (loop for ((kind . initargs) . rest) on specifications
+                collect (apply (kind-constructor kind)
+                               :robot robot
+                               :index (- (count kind specifications :key #'first)
+                                         (count kind rest :key #'first)
+                                         1)
+                               initargs))
+          'simple-vector))
+
+(defun kind-constructor (kind)
+  "Return the function that makes parts of KIND, a symbol."
+  (find-symbol (format nil "MAKE-~A" kind) (symbol-package kind)))
 
 (defun start-trouble (map x y)
   "Return in words why a robot cannot start at (X,Y) in MAP, or NIL."
@@ -93,44 +118,23 @@ NIL."
   "Return a robot made by BODY, at its start in WORLD. Signals MISUSE if that is in a wall."
   (check-start body (world-map world))
   (let ((robot (%make-robot :name (body-name body) :body body :world world)))
+    (unless (world-timeline world)
+      (setf (world-timeline world) (make-timeline (map-name (world-map world)))))
+    (pushnew #'watch-thing (world-move-watchers world))
+    (pushnew #'watch-container (world-move-watchers world))
     (outfit robot body)
-    (set-robot-pose robot (body-x body) (body-y body) (body-angle body))
-    (add-odometer robot 'main)
+    (stand-at-start robot)
     (setf (world-robots world) (append (world-robots world) (list robot)))
     robot))
 
-(defun reset-robot (robot)
-  "Put ROBOT back to how it was made, its parts the same objects as before."
+(defun stand-at-start (robot)
+  "Put ROBOT where its body says, with a fresh odometer."
   (let ((body (robot-body robot)))
-    (setf (resource-event robot) nil
-          (robot-speed robot) 0.8d0
-          (robot-turn-angle robot) 0.3d0
-          (robot-last-place robot) nil
-          (robot-drove-tick robot) -1
-          (robot-odometer-list robot) '())
-    (forget-designators robot)
     (set-robot-pose robot (body-x body) (body-y body) (body-angle body))
-    (add-odometer robot 'main)
-    (map nil #'reset-camera (robot-cameras robot))
-    (map nil #'reset-hand (robot-hands robot))
-    (map nil #'reset-bin (robot-bins robot))
-    robot))
+    (add-odometer robot 'main)))
 
-(defun reset-part (part)
-  (setf (resource-event part) nil
-        (part-location part) nil))
+(defmethod reset :before ((robot robot))
+  (mapc #'free-number (live-designators robot)))
 
-(defun reset-camera (camera)
-  (reset-part camera)
-  (setf (camera-angle camera) 0d0
-        (camera-last-view camera) '()
-        (camera-tracking camera) nil))
-
-(defun reset-hand (hand)
-  (reset-part hand)
-  (setf (hand-contents hand) '()))
-
-(defun reset-bin (bin)
-  (reset-part bin)
-  (setf (storage-bin-contents bin) '()
-        (storage-bin-closed-p bin) nil))
+(defmethod reset :after ((robot robot))
+  (stand-at-start robot))

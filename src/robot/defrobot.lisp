@@ -40,7 +40,16 @@
         (funcall reject angle "a heading in radians, between -1e9 and 1e9"))
       map)))
 
-(defun make-body-from (name environment position angle cameras hands bins)
+(defun parse-part (specification reject)
+  "Return SPECIFICATION, (kind initarg value ...), as the kind's name and the rest."
+  (let ((kind (and (consp specification) (symbolp (first specification))
+                   (find (first specification) (all-kinds 'part) :key #'kind-name))))
+    (unless (and kind (proper-list-p specification) (evenp (length (rest specification))))
+      (funcall reject specification
+               "(kind initarg value ...), a kind of part that DEFINE-KIND has defined"))
+    (cons (kind-name kind) (rest specification))))
+
+(defun make-body-from (name environment position angle cameras hands bins parts)
   (flet ((reject (clause expected)
            (reject-clause (format nil "defrobot ~(~A~)" name) clause expected)))
     (let ((map (parse-place environment position angle #'reject)))
@@ -49,16 +58,18 @@
                  :angle (double angle)
                  :cameras (loop for camera in cameras collect (parse-camera camera #'reject))
                  :hands (loop for hand in hands collect (parse-amount hand #'reject))
-                 :bins (loop for bin in bins collect (parse-amount bin #'reject))))))
+                 :bins (loop for bin in bins collect (parse-amount bin #'reject))
+                 :parts (loop for part in parts collect (parse-part part #'reject))))))
 
 (addition define-robot)
-(defun define-robot (name environment position angle &key cameras hands bins)
+(defun define-robot (name environment position angle &key cameras hands bins parts)
   "Do as DEFROBOT does, with values: ENVIRONMENT is a map or its name, POSITION a list (x y),
-CAMERAS a list of lists (fov resolution). Return the robot."
+CAMERAS a list of lists (fov resolution), PARTS one of lists (kind initarg value ...). Return the
+robot."
   (check-robot-name (format nil "defrobot ~(~A~)" name) name)
   (check-robot-variable name)
-  (let* ((body (make-body-from name environment position angle cameras hands bins))
-         (robot (settle body)))
+  (let* ((body (make-body-from name environment position angle cameras hands bins parts))
+         (robot (settle-robot body)))
     (register *robots* name body :variable t :value robot)
     robot))
 
@@ -87,7 +98,7 @@ CAMERAS a list of lists (fov resolution). Return the robot."
     (unless (and (proper-list-p start) (= (length start) 3)
                  (proper-list-p (second start)) (= (length (second start)) 2))
       (reject start "(environment (x y) angle)"))
-    (check-options definition options '(:cameras :hands :bins))
+    (check-options definition options '(:cameras :hands :bins :parts))
     (loop for (key value) on options by #'cddr
           do (unless (proper-list-p value) (reject (list key value) "a list after the keyword")))))
 
@@ -100,7 +111,7 @@ CAMERAS a list of lists (fov resolution). Return the robot."
 (defun robot-forms (definition name start options lisp-environment)
   "Return the forms that DEFROBOT expands to."
   (destructuring-bind (environment (x y) angle) start
-    (destructuring-bind (&key cameras hands bins) options
+    (destructuring-bind (&key cameras hands bins parts) options
       (flet ((number-of (form clause)
                (value-form definition form clause "a form that has a value")))
         `((define-robot ',name
@@ -114,15 +125,28 @@ CAMERAS a list of lists (fov resolution). Return the robot."
                                                               collect (number-of form camera)))
                                                (number-of camera camera))))
             :hands (list ,@(loop for hand in hands collect (number-of hand hands)))
-            :bins (list ,@(loop for bin in bins collect (number-of bin bins)))))))))
+            :bins (list ,@(loop for bin in bins collect (number-of bin bins)))
+            :parts (list ,@(loop for part in parts collect (part-form part #'number-of)))))))))
+
+(defun part-form (specification value)
+  "Return a form for SPECIFICATION, (kind initarg form ...); VALUE, a function of a form and what it
+stands in, returns a form for its value."
+  (if (and (proper-list-p specification) specification)
+      `(list ',(first specification)
+             ,@(loop for (initarg form) on (rest specification) by #'cddr
+                     collect initarg
+                     collect (funcall value form specification)))
+      `',specification))
 
 (public defrobot)
 (defmacro defrobot (&whole form name &optional start &rest options &environment environment)
   "Define a robot: (defrobot NAME (ENVIRONMENT (X Y) ANGLE) [:cameras ((FOV RESOLUTION) ...)]
-[:hands (STRENGTH ...)] [:bins (CAPACITY ...)]). NAME becomes a special variable bound to the
-robot, which stands in the resident world of the map ENVIRONMENT (its variable or name) at (X,Y),
-in metres, heading ANGLE, in radians. Numbers are evaluated. A robot that was called NAME before
-takes no more commands. Signals MALFORMED-DEFINITION (manual 5.2)."
+[:hands (STRENGTH ...)] [:bins (CAPACITY ...)] [:parts ((KIND INITARG VALUE ...) ...)]). NAME
+becomes a special variable bound to the robot, which stands in the resident world of the map
+ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in radians. Numbers are
+evaluated. Parts of kinds of one's own, which the manual does not have, are made as their KIND says
+\(see DEFINE-KIND). A robot that was called NAME before takes no more commands. Signals
+MALFORMED-DEFINITION (manual 5.2)."
   (let ((definition (format nil "defrobot ~(~A~)" name)))
     (expand-definition form environment
                        (lambda ()

@@ -9,46 +9,39 @@
 ;;; container, a storage bin, or NIL in the open.
 
 (public designator)
-(defstruct (designator (:constructor make-designator) (:copier nil))
-  "A handle on a thing or place that a camera has seen, or believes that it has (manual 3.4.1)."
-  (type :non-local :type (member :local :non-local))
-  (angle 0d0 :type double-float)
-  (data '() :type list)
-  (robot nil :type (or null robot))
-  (number 0 :type fixnum)
-  (serial 0 :type fixnum)
-  (denotation nil :type (or null thing place))
-  (distance 0d0 :type double-float)
-  (valid-p t :type boolean)
-  (x 0d0 :type double-float)
-  (y 0d0 :type double-float)
-  (location nil)
-  ;; The true direction in which it was last seen, unless that was too near to have one, in the
-  ;; world and relative to the robot; by how much it changed in the tick REFRESHED.
-  (bearing 0d0 :type double-float)
-  (bearing-p nil :type boolean)
-  (truth 0d0 :type double-float)
-  (swing 0d0 :type double-float)
-  (refreshed -1 :type fixnum))
+(define-kind (designator)
+    "A handle on a thing or place that a camera has seen, or believes that it has (manual 3.4.1)."
+  (:fixed
+   (robot nil (or null robot) "the robot that the designator is a handle for")
+   (number 0 fixnum "the designator's number; after it was dropped, another may have it")
+   (serial 0 fixnum "how many designators the robot had before it"))
+  (:state
+   (type :non-local (member :local :non-local) ":LOCAL or :NON-LOCAL (manual 3.4.1)")
+   (angle 0d0 double-float "the estimated angle of what the designator denotes relative to the
+robot's heading, in radians, not normalised (manual 3.4.1)")
+   (data '() list "what was seen: a list of lists (attribute value), or of the name of a place type
+(manual 3.4.1)")
+   (denotation nil (or null thing place)
+               "the THING or PLACE that the designator denotes; NIL: it is false")
+   (distance 0d0 double-float "the distance at which the denotation was last seen, in metres")
+   (valid-p t boolean "the designator has not been dropped")
+   (x 0d0 double-float "the x coordinate where the denotation was last seen, in metres")
+   (y 0d0 double-float "the y coordinate where the denotation was last seen, in metres")
+   (location nil t "the container or bin where the denotation was seen, or NIL")
+   (bearing 0d0 double-float "the true direction in which it was last seen, in radians")
+   (bearing-p nil boolean "it was seen from far enough to have a direction")
+   (relative-bearing 0d0 double-float "that direction relative to the robot's heading, in radians")
+   (swing 0d0 double-float "by how much the direction changed in the tick REFRESHED, in radians")
+   (refreshed -1 fixnum "the tick in which it was last brought up to date")))
 
 (addition designator-p designator-type designator-angle designator-data designator-robot
           designator-number designator-denotation designator-distance designator-valid-p
           designator-x designator-y designator-location)
 (document-functions
-  designator-p "True of a designator."
-  designator-type "Return :LOCAL or :NON-LOCAL (manual 3.4.1)."
-  designator-angle "Return the estimated angle of what the designator denotes relative to the
-robot's heading, in radians, not normalised (manual 3.4.1)."
-  designator-data "Return what was seen: a list of lists (attribute value), or of the name of a
-place type (manual 3.4.1)."
-  designator-robot "Return the robot that the designator is a handle for."
-  designator-number "Return the designator's number; after it was dropped, another may have it."
-  designator-denotation "Return the THING or PLACE that the designator denotes; NIL: it is false."
-  designator-distance "Return the distance at which the denotation was last seen, in metres."
-  designator-valid-p "True until the designator is dropped."
-  designator-x "Return the x coordinate where the denotation was last seen, in metres."
-  designator-y "Return the y coordinate where the denotation was last seen, in metres."
-  designator-location "Return the container or bin where the denotation was seen, or NIL.")
+  make-designator "Return a new designator, which no robot knows by number yet."
+  designator-p "True of a designator.")
+
+(define-argument-type 'designator #'designator-p "a designator")
 
 (defmethod print-object ((designator designator) stream)
   (print-named designator stream (format nil "Designator ~D" (designator-number designator))))
@@ -97,12 +90,6 @@ place type (manual 3.4.1)."
                      (null (aref designators (1- (length designators)))))
           do (vector-pop designators))))
 
-(defun forget-designators (robot)
-  "Make all designators of ROBOT invalid, silently, as at the start of a run."
-  (mapc #'free-number (live-designators robot))
-  (setf (robot-designators-made robot) 0
-        (robot-ended-tracks robot) '()))
-
 ;;; Where things are, to a robot.
 
 (defun thing-space (thing)
@@ -148,13 +135,14 @@ a container or in a bin, and within reach. False of places."
          (multiple-value-bind (x y) (designator-position designator)
            (and x (within-reach-p (designator-robot designator) x y))))))
 
-;;; In a journal.
+;;; In a journal: also one that has been dropped can be named.
 
-(defmethod externalize ((designator designator))
-  (make-reference :designator (list (string (robot-name (designator-robot designator)))
-                                    (designator-serial designator)
-                                    (designator-number designator)
-                                    (designator-type designator))))
+(defmethod reference ((designator designator))
+  (list :designator (string (robot-name (designator-robot designator)))
+        (designator-serial designator)
+        (designator-number designator)
+        (designator-type designator)))
 
 (defun serial-designator (robot serial)
+  "Return the valid designator of ROBOT that had SERIAL before it, or NIL."
   (find serial (live-designators robot) :key #'designator-serial))

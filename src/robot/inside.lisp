@@ -59,22 +59,17 @@
 
 ;;; Things into and out of hands.
 
-(defmacro with-own-access (&body body)
-  "Run BODY, which moves things as the simulation's own doing, not a program's."
-  `(let ((*world-access* 'direct-world-access)) ,@body))
-
 (defun take-up (hand thing)
   "Let HAND hold THING, wherever that was."
-  (with-own-access (move-thing thing hand)))
+  (move-thing thing hand))
 
 (defun set-down (hand thing)
   "Leave THING, which HAND holds, where the hand is: in what it is inside of, or on the floor where
 the robot stands."
   (let ((robot (hand-robot hand)))
-    (with-own-access
-      (if (hand-location hand)
-          (move-thing thing (hand-location hand))
-          (move-thing thing (robot-x robot) (robot-y robot))))))
+    (if (hand-location hand)
+        (move-thing thing (hand-location hand))
+        (move-thing thing (robot-x robot) (robot-y robot)))))
 
 ;;; Parts into and out of containers.
 
@@ -82,8 +77,6 @@ the robot stands."
   "Take PART, a camera or hand, into LOCATION: a thing, a storage bin, or NIL for the open. What
 it holds moves along, what it tracks is lost; warnings say so."
   (let ((old (part-location part)))
-    (when (thing-p location)
-      (pushnew #'watch-container (world-move-watchers (location-world part))))
     (setf (part-location part) location)
     (part-moved part old)))
 
@@ -147,11 +140,7 @@ what they hold too much."
   (when (or (null new-location) (thing-contents thing) (plusp (thing-capacity thing)))
     (mapc #'settle-parts (world-robots (thing-world thing)))))
 
-(defun settle-robots (simulation)
-  (dolist (robot (world-robots (simulation-world simulation)))
+(defun settle-robots (world)
+  "Settle what is inside what in WORLD: pull out the parts of robots that are out of their reach."
+  (dolist (robot (world-robots world))
     (settle-parts robot)))
-
-(defvar *settling-phase* (lambda (simulation) (settle-robots simulation))
-  "The phase of a tick that settles parts, before tracks are looked after.")
-
-(pushnew *settling-phase* *tick-phases*)

@@ -16,27 +16,17 @@ are NIL, if it is one of CHOICES."
   (high nil :type (or null real) :read-only t)
   (choices '() :type list :read-only t))
 
-(defun numbers-p (value)
-  "True if VALUE is a list of two numbers."
-  (and (consp value) (consp (rest value)) (null (cddr value))
-       (realp (first value)) (realp (second value))))
-
-(defun range-p (value)
-  "True if VALUE is a range: a list of two numbers, the lower one first."
-  (and (numbers-p value) (<= (first value) (second value))))
-
 (defun numeric-demand (key attribute value threshold)
   (let ((threshold (or threshold standard-match-threshold*)))
-    (multiple-value-bind (low high)
-        (if (realp value) (values value value) (values (first value) (second value)))
+    (multiple-value-bind (low high) (value-limits value)
       (make-demand :key key :attribute attribute
                    :low (- low threshold) :high (+ high threshold)))))
 
 (defun parse-demand (specification)
   (destructuring-bind (name value &optional threshold) specification
     (let* ((key (attribute-key name)) (attribute (attribute-of key)))
-      (if (and (or (realp value) (range-p value))
-               (not (and attribute (eq (attribute-kind attribute) :discrete))))
+      (if (or (asks-range-p attribute value)
+              (and (realp value) (not (discrete-p attribute))))
           (numeric-demand key attribute value threshold)
           (make-demand :key key :attribute attribute
                        ;; NIL is a value, not a list of none.
@@ -51,26 +41,22 @@ are NIL, if it is one of CHOICES."
 (defun possible-value-p (attribute value)
   "True if VALUE, an atom, can be a value of ATTRIBUTE (NIL: an undefined one)."
   (cond ((null attribute) t)
-        ((eq (attribute-kind attribute) :discrete)
-         (member value (attribute-domain attribute) :test #'value-equal))
+        ((discrete-p attribute) (in-domain-p attribute value))
         ((eq (attribute-name attribute) :substance) (or (realp value) (symbolp value)))
         (t (realp value))))
 
 (defun takes-range-p (attribute value)
   "True if VALUE, a list, must be a range for ATTRIBUTE (NIL: an undefined one)."
-  (cond ((null attribute) (numbers-p value))
-        ((eq (attribute-kind attribute) :discrete) nil)
-        ((eq (attribute-name attribute) :substance) (numbers-p value))
-        (t t)))
+  (or (asks-range-p attribute value)
+      (not (or (null attribute)
+               (discrete-p attribute)
+               (eq (attribute-name attribute) :substance)))))
 
 (defun demand-form-p (form)
-  (and (consp form) (first form) (symbolp (first form))
-       (consp (rest form)) (listp (cddr form)) (null (cdddr form))
-       (typep (third form) '(or null (real 0)))
+  (and (asking-form-p form)
        (let ((attribute (attribute-of (first form))) (value (second form)))
          (if (consp value)
-             (and (null (cdr (last value)))
-                  (or (range-p value)
+             (and (or (range-p value)
                       (not (takes-range-p attribute value)))
                   (every (lambda (value) (possible-value-p attribute value)) value))
              (possible-value-p attribute value)))))
@@ -78,17 +64,17 @@ are NIL, if it is one of CHOICES."
 (defun specification-p (object)
   "True if OBJECT is a descriptor specification (manual 3.4.2): a list of lists (attribute value
 [threshold]) with values that the attributes can have."
-  (and (listp object) (null (cdr (last object)))
+  (and (proper-list-p object)
        (every #'demand-form-p object)))
 
 (defun specification-trouble (object)
   "Return in words what of OBJECT, which is no descriptor specification, cannot be used, or NIL."
-  (let* ((form (and (listp object) (null (cdr (last object)))
+  (let* ((form (and (proper-list-p object)
                     (find-if-not #'demand-form-p object)))
          (attribute (and (consp form) (symbolp (first form)) (attribute-of (first form))))
          (domain (and attribute (attribute-domain attribute)))
          (value (and domain (consp (rest form))
-                     (find-if-not (lambda (value) (member value domain :test #'value-equal))
+                     (find-if-not (lambda (value) (in-domain-p attribute value))
                                   (ensure-list (second form))))))
     (when form
       (format nil "not ~(~S~)~@[, as the values are ~(~A~)~]~@[; did you mean ~(~A~)?~]"
@@ -138,7 +124,7 @@ asked for, the one that the world's author writes."
   "True if VALUE, which a thing has for ATTRIBUTE (NIL: an undefined one), means none."
   (and (null value)
        attribute
-       (not (member nil (attribute-domain attribute)))))
+       (not (can-be-false-p attribute))))
 
 (defun match-thing (thing demands distance dice)
   "Return true if readings of THING from DISTANCE metres away meet all DEMANDS, and those readings
@@ -166,7 +152,7 @@ as an object descriptor."
 that says nothing of a boolean has it false; but of one that the manual does not know only where any
 thing of MAP starts with it."
   (or value
-      (and (member nil (attribute-domain attribute))
+      (and (can-be-false-p attribute)
            (or (built-in-attribute-p attribute)
                (member (attribute-name attribute) (map-attribute-names map) :test #'eq)))))
 

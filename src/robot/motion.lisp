@@ -8,6 +8,8 @@
 
 (define-constant +contact-gap+ 1d-6
   :documentation "How far from what blocks it the robot stops, in metres.")
+(define-constant +border-gap+ 1d-12
+  :documentation "How far from its far borders a cell ends for a robot that rounding took out.")
 
 (defun set-robot-angle (robot angle)
   "Turn ROBOT to the heading ANGLE, in radians, at once; its odometers do not notice."
@@ -42,16 +44,12 @@
 
 ;;; Sweeping.
 
-(declaim (inline cell-block))
-(defun cell-block (flags width height x y)
-  "Return what keeps a robot out of the cell (X,Y): :WALL, :THING or NIL."
-  (declare (type (simple-array (unsigned-byte 8) (*)) flags)
-           (type fixnum width height x y))
-  (if (and (< -1 x width) (< -1 y height))
-      (let ((flag (aref flags (+ x (the fixnum (* y width))))))
-        (cond ((logtest flag +wall+) :wall)
-              ((logtest flag +obsmove+) :thing)))
-      :wall))
+(declaim (inline what-blocks))
+(defun what-blocks (flag)
+  "Return what keeps a robot out of a cell with FLAG: :WALL, :THING or NIL."
+  (declare (type (unsigned-byte 8) flag))
+  (cond ((logtest flag +wall+) :wall)
+        ((logtest flag +obsmove+) :thing)))
 
 (declaim (inline whole-part))
 (defun whole-part (x)
@@ -62,55 +60,62 @@
 (defun within-cell (coordinate cell)
   "Return COORDINATE, or the nearest inside CELL if rounding took it out."
   (declare (type double-float coordinate) (type fixnum cell))
-  (max (float cell 1d0) (min coordinate (- (float (1+ cell) 1d0) 1d-12))))
+  (max (float cell 1d0) (min coordinate (- (float (1+ cell) 1d0) +border-gap+))))
 
-;; Inline, like what follows, so that no float has to be boxed on the way.
+;; Inline, so that no float has to be boxed on the way.
+(declaim (inline free-way))
+(defun free-way (world x y dx dy distance)
+  "Return how far one can go from (X,Y), in the map, in direction (DX,DY), at most DISTANCE; column
+and row of the cell where that is; and what blocks the way: :WALL, :THING or NIL."
+  (declare (type world world) (type double-float x y dx dy distance))
+  (let* ((map (world-map world)) (flags (world-flags world))
+         (cell-x (cell-number x)) (cell-y (cell-number y))
+         (step-x (if (minusp dx) -1 1)) (step-y (if (minusp dy) -1 1))
+         (block nil)
+         (at (walk-grid (lambda (index at column)
+                          (or (>= at distance)
+                              (setf block (what-blocks (aref flags index)))
+                              (progn (if column (incf cell-x step-x) (incf cell-y step-y))
+                                     nil)))
+                        (map-width map) (map-height map) x y dx dy +no-limit+ t)))
+    (declare (type fixnum cell-x cell-y) (type double-float at))
+    (if (>= at distance)
+        (values distance cell-x cell-y nil)
+        (values (max 0d0 (- at +contact-gap+)) cell-x cell-y (or block :wall)))))
+
+(defun leave-cell (robot)
+  "Move ROBOT out of its cell along its heading by ROBOT-MOVED metres, or to what blocks it. Leave
+the metres in ROBOT-MOVED; return :WALL, :THING or NIL. From outside the map there is no way."
+  (declare #.*hot* (type robot robot))
+  (let ((world (robot-world robot))
+        (x (robot-x robot)) (y (robot-y robot)) (dx (robot-cos robot)) (dy (robot-sin robot)))
+    (declare (type world world))
+    (cond ((point-index (world-map world) x y)
+           (multiple-value-bind (moved cell-x cell-y block)
+               (free-way world x y dx dy (robot-moved robot))
+             (declare (type double-float moved))
+             (setf (robot-x robot) (within-cell (+ x (* dx moved)) cell-x)
+                   (robot-y robot) (within-cell (+ y (* dy moved)) cell-y)
+                   (robot-moved robot) moved)
+             block))
+          (t (setf (robot-moved robot) 0d0)
+             :wall))))
+
 (declaim (inline sweep))
 (defun sweep (robot distance)
   "Move ROBOT along its heading by DISTANCE, or to what blocks it. Leave the metres in
 ROBOT-MOVED; return :WALL, :THING or NIL."
   (declare #.*hot* (type robot robot) (type double-float distance))
-  (let* ((world (robot-world robot))
-         (flags (world-flags (the world world)))
-         (map (world-map world))
-         (width (map-width map)) (height (map-height map))
-         (x (robot-x robot)) (y (robot-y robot))
-         (dx (robot-cos robot)) (dy (robot-sin robot))
+  (let* ((x (robot-x robot)) (y (robot-y robot))
          (cell-x (whole-part x)) (cell-y (whole-part y))
-         (new-x (+ x (* dx distance))) (new-y (+ y (* dy distance))))
-    (declare (type fixnum width height cell-x cell-y) (type double-float new-x new-y))
-    (flet ((arrive (x y moved)
-             (setf (robot-x robot) x
-                   (robot-y robot) y
-                   (robot-moved robot) moved)))
-      (declare (inline arrive))
-      (if (and (= (whole-part new-x) cell-x) (= (whole-part new-y) cell-y))
-          (progn (arrive new-x new-y distance) nil)
-          (let* ((step-x (if (minusp dx) -1 1))
-                 (step-y (if (minusp dy) -1 1))
-                 (per-x (if (zerop dx) 1d18 (abs (/ dx))))
-                 (per-y (if (zerop dy) 1d18 (abs (/ dy))))
-                 (to-x (* per-x (if (minusp dx) (- x cell-x) (- (1+ cell-x) x))))
-                 (to-y (* per-y (if (minusp dy) (- y cell-y) (- (1+ cell-y) y)))))
-            (declare (type double-float per-x per-y to-x to-y))
-            (loop
-              (let ((at (min to-x to-y)))
-                (when (>= at distance)
-                  (arrive (within-cell new-x cell-x) (within-cell new-y cell-y) distance)
-                  (return nil))
-                (let* ((across (<= to-x to-y))
-                       (next-x (if across (+ cell-x step-x) cell-x))
-                       (next-y (if across cell-y (+ cell-y step-y)))
-                       (block (cell-block flags width height next-x next-y)))
-                  (declare (type fixnum next-x next-y))
-                  (when block
-                    (let ((moved (max 0d0 (- at +contact-gap+))))
-                      (arrive (within-cell (+ x (* dx moved)) cell-x)
-                              (within-cell (+ y (* dy moved)) cell-y)
-                              moved))
-                    (return block))
-                  (setf cell-x next-x cell-y next-y)
-                  (if across (incf to-x per-x) (incf to-y per-y))))))))))
+         (new-x (+ x (* (robot-cos robot) distance)))
+         (new-y (+ y (* (robot-sin robot) distance))))
+    (declare (type double-float new-x new-y))
+    (setf (robot-moved robot) distance)
+    (cond ((and (= (whole-part new-x) cell-x) (= (whole-part new-y) cell-y))
+           (setf (robot-x robot) new-x (robot-y robot) new-y)
+           nil)
+          (t (leave-cell robot)))))
 
 ;;; Driving and turning.
 
@@ -140,7 +145,7 @@ ROBOT-MOVED; return :WALL, :THING or NIL."
     (incf (robot-estimate-x robot) (* estimate (robot-cos robot)))
     (incf (robot-estimate-y robot) (* estimate (robot-sin robot)))))
 
-(defun drive-tick (robot &optional (limit 1d18))
+(defun drive-tick (robot &optional (limit +endless+))
   "Drive ROBOT for one tick at its speed, but not much more than LIMIT metres. Return :WALL or
 :THING if that blocked it, else NIL. The distance is uniform within MOTION-NOISE* of the
 speed; the odometers read an interval that contains it."
@@ -155,7 +160,7 @@ speed; the odometers read an interval that contains it."
          (expected (if block moved nominal))
          (dice (world-dice world :odometry)))
     (declare (type double-float noise nominal distance moved expected))
-    (setf (robot-drove-tick robot) (simulation-tick (world-simulation world)))
+    (setf (robot-drove-tick robot) (world-tick world))
     (count-distance robot
                     (- moved (* (roll dice) (max 0d0 (- moved (* expected (- 1d0 noise))))))
                     (+ moved (* (roll dice) (max 0d0 (- (* expected (+ 1d0 noise)) moved)))))

@@ -34,7 +34,7 @@ name of a package; so that what is misread is still a word of the world's author
     (if (and value (symbolp value) (not (keywordp value)) (not (eq value t))
              package
              (or (find-symbol (symbol-name value) package)
-                 (not (sb-ext:package-locked-p package))))
+                 (not (package-locked-p package))))
         (values (intern (symbol-name value) package))
         value)))
 

@@ -9,19 +9,32 @@
 ;;; rounding error.
 
 (public odometer)
-(defstruct (odometer (:constructor %make-odometer (robot name)) (:copier nil))
-  "An uncertain estimate of the robot's position and heading since the odometer was reset (manual
+(define-kind (odometer :constructor (%make-odometer (robot name)))
+    "An uncertain estimate of the robot's position and heading since the odometer was reset (manual
 3.2.2)."
-  (robot nil :type (or null robot))
-  (name nil :type symbol)
-  (x-min 0d0 :type double-float) (x-max 0d0 :type double-float)
-  (y-min 0d0 :type double-float) (y-max 0d0 :type double-float)
-  (angle-min 0d0 :type double-float) (angle-max 0d0 :type double-float)
+  (:fixed
+   (robot nil (or null robot) "the robot that the odometer is of")
+   (name nil symbol "the symbol that names the odometer"))
+  (:state
+   (x-min 0d0 double-float "the least x, in metres") (x-max 0d0 double-float "the greatest x")
+   (y-min 0d0 double-float "the least y, in metres") (y-max 0d0 double-float "the greatest y")
+   (angle-min 0d0 double-float "the least angle, in radians")
+   (angle-max 0d0 double-float "the greatest angle, in radians")
+   (cos-min 1d0 double-float "the least cosine of the heading")
+   (cos-max 1d0 double-float "the greatest cosine of the heading")
+   (sin-min 0d0 double-float "the least sine of the heading")
+   (sin-max 0d0 double-float "the greatest sine of the heading"))
   ;; Where and in what heading the robot really was when it was reset; for displays.
-  (origin-x 0d0 :type double-float) (origin-y 0d0 :type double-float)
-  (origin-angle 0d0 :type double-float)
-  (cos-min 1d0 :type double-float) (cos-max 1d0 :type double-float)
-  (sin-min 0d0 :type double-float) (sin-max 0d0 :type double-float))
+  (:memory
+   (origin-x 0d0 double-float "the robot's true x when the position was last reset, in metres")
+   (origin-y 0d0 double-float "the robot's true y when the position was last reset, in metres")
+   (origin-angle 0d0 double-float
+                 "the robot's true heading when the angle was last reset, in radians")))
+
+(defmethod reference ((odometer odometer))
+  (list :odometer (string (robot-name (odometer-robot odometer)))
+        (string (odometer-name odometer))))
+
 (defun odometer-estimate (odometer)
   "Return where ODOMETER, seen from outside, puts the robot: the middle of its box, x and y in
 metres on the map, and the heading in radians. For displays: no program of the robot can know."
@@ -34,10 +47,7 @@ metres on the map, and the heading in radians. For displays: no program of the r
             (+ axis (* 0.5d0 (+ (odometer-angle-min odometer) (odometer-angle-max odometer)))))))
 
 (addition odometer-p odometer-name)
-(setf (documentation 'odometer-origin-angle 'function)
-      "Return the robot's true heading when the angle of the odometer was last reset, radians."
-      (documentation 'odometer-p 'function) "True of odometers."
-      (documentation 'odometer-name 'function) "Return the symbol that names the odometer.")
+(document-functions odometer-p "True of odometers.")
 
 (defmethod print-object ((odometer odometer) stream)
   (print-named odometer stream (format nil "Odometer ~A" (odometer-name odometer))))

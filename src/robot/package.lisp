@@ -2,26 +2,30 @@
 
 (defpackage :ars-magna.robot
   (:documentation "Robots and their parts, odometers, motion and place sensing; the simulation
-of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
+in a world. Manual 2.2, 3.2.2, 3.4 and 5.2.")
   (:use :cl :ars-magna.base :ars-magna.geometry :ars-magna.world :ars-magna.time)
   (:shadowing-import-from :cl #:equal)
   (:shadowing-import-from :ars-magna.world #:map)
   ;; parts
   (:export #:robot #:robot-p #:robot-name #:robot-body #:robot-world #:robot-retired #:check-in-run
-           #:robot-enders
-           #:headless-p #:all-bodies #:find-body #:robot-simulation
+           #:robot-enders #:retire-robot #:close-robot
+           #:*robots* #:all-bodies #:find-body #:body-robot #:body-x #:body-y
+           #:make-robot #:settle-robot
+           #:robot-of-body #:start-trouble
            #:robot-x #:robot-y #:robot-angle #:robot-cos #:robot-sin #:robot-position
            #:robot-speed #:robot-turn-angle #:robot-cameras #:robot-hands #:robot-bins
            #:robot-last-place #:robot-drove-tick #:robot-designators
-           #:robot-camera #:robot-hand #:robot-storage-bin #:robot-parts
+           #:robot-camera #:robot-hand #:robot-storage-bin #:robot-part #:robot-parts
+           #:parts-of-kind #:robot-sensors #:robot-ended-tracks
            #:part #:part-p #:part-robot #:part-index #:part-location
            #:camera #:camera-p #:camera-robot #:camera-index #:camera-field-of-view
            #:camera-resolution #:camera-angle #:camera-location #:camera-last-view
            #:camera-tracking
            #:hand #:hand-p #:hand-robot #:hand-index #:hand-strength #:hand-location
-           #:hand-contents #:hand-holding
+           #:hand-contents #:hand-holding #:hand-way-in
            #:storage-bin #:storage-bin-p #:storage-bin-robot #:storage-bin-index
            #:storage-bin-capacity #:storage-bin-closed-p #:storage-bin-contents)
+  (:export #:world-tick)
   ;; odometer
   (:export #:odometer #:odometer-p #:odometer-name #:odometer-estimate
            #:odometer-origin-angle #:make-odometer #:robot-main-odometer
@@ -46,21 +50,18 @@ of a world with robots in it. Manual 2.2, 3.2.2, 3.4, 5.2 and appendix A.")
   ;; noise, matching, scanning, views, tending
   (:export #:own-symbol #:reading-reliability #:reading-deviation #:read-attribute #:angle-error
            #:specification-p #:specification-trouble #:notice-probability #:sighting
-           #:designate #:look-for-things
+           #:designate #:look-for-things #:tend-tracks #:tracks-busy-p
+           #:track #:track-ended #:serial-designator #:make-designator
            #:look-for-places #:camera-heading #:take-view #:start-track #:trackable-p
            #:in-same-cell-p)
   ;; inside
   (:export #:in-location #:outer-location #:inside-p #:part-inside #:part-reaches-p
-           #:part-reaches-bin-p #:take-up #:set-down #:move-part #:space-around #:settle-parts)
+           #:part-reaches-bin-p #:take-up #:set-down #:move-part #:space-around #:settle-parts
+           #:settle-robots)
   ;; places
   (:export #:robot-place-here #:sense-place-type #:canonical-directions #:nearest-direction)
   ;; body
   (:export #:defrobot #:define-robot #:find-robot #:all-robots
            #:body-name #:body-map)
-  ;; references, simulation, replay, state
-  (:export #:with-simulation #:call-with-simulation #:simulator #:stop-simulator
-           #:end-simulation #:set-seed
-           #:resident-simulation #:fresh-simulation #:simulation-robots #:replay
-           #:state-digest #:save-journal #:load-journal #:*simulator-hooks*
-           #:*tick-phases* #:*busy-tests* #:*simulation-variables* #:place-robot
-           #:with-replay #:call-with-replay))
+  ;; own-changes
+  (:export #:place-robot))

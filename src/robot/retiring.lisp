@@ -36,9 +36,7 @@
 
 (defun interrupt-robot (robot)
   "Interrupt all that ROBOT and its parts are doing. Called by the owner of its world."
-  (let ((simulation (world-simulation (robot-world robot))))
-    (when simulation
-      (abandon simulation (cons robot (robot-parts robot))))))
+  (abandon (timeline-of robot) (cons robot (robot-parts robot))))
 
 (defun take-out (robot reason)
   "Retire ROBOT, interrupt what it is doing, and take it out of its world."
@@ -50,8 +48,8 @@
 
 (defun ask-owner (world function)
   "Call FUNCTION where WORLD stands still."
-  (if (world-simulation world)
-      (ask (world-simulation world) function)
+  (if (world-timeline world)
+      (ask (world-timeline world) function)
       (funcall function)))
 
 (defun take-out-all (name reason)
@@ -59,7 +57,7 @@
   (dolist (robot (robots-called name))
     (ask-owner (robot-world robot) (lambda () (take-out robot reason)))))
 
-(defun settle (body)
+(defun settle-robot (body)
   "Put a robot made by BODY into the resident world of its map, instead of any that was made by an
 earlier definition of its name, and return it."
   (let* ((world (map-resident-world (find-map (body-map body))))

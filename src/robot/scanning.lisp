@@ -7,9 +7,6 @@
 ;;; is all that lies in the robot's own cell. A camera inside a container or storage bin sees
 ;;; what is directly in it, at distance 0. What a hand holds is where the hand is.
 
-(defconstant +no-limit+ 32767
-  "How many columns and rows a ray crosses at most when nothing else ends it.")
-
 (declaim (inline mark-seen))
 (defun mark-seen (flags index flag)
   (declare (type flag-vector flags) (type cell-index index) (type (unsigned-byte 8) flag))
@@ -37,7 +34,7 @@
                (logtest flag +opaque+))))
       (declare (inline visit))
       (do-fan (dx dy) (angle width count)
-        (walk-ray #'visit flags columns rows x y (nonzero dx) (nonzero dy) reach)))
+        (walk-ray #'visit flags columns rows x y dx dy reach)))
     (unmark-seen flags found)
     (nreverse found)))
 
@@ -57,7 +54,7 @@ place type has NUMBER in the map."
              (logtest flag +opaque+)))
       (declare (inline visit))
       (do-fan (dx dy) (angle width count)
-        (walk-ray #'visit flags columns rows x y (nonzero dx) (nonzero dy) +no-limit+)))
+        (walk-ray #'visit flags columns rows x y dx dy +no-limit+)))
     (unmark-seen flags found)
     (nreverse found)))
 

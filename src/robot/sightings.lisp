@@ -5,13 +5,19 @@
 ;;; A sighting is what a camera takes for a thing or place. Those found together become designators
 ;;; one after another, so each must still be where it was seen when its turn comes.
 
-(defstruct (sighting (:constructor make-sighting (type denotation x y data)) (:copier nil))
-  "Something seen, or imagined if it has no DENOTATION, at (X,Y)."
-  (type :non-local :type (member :local :non-local) :read-only t)
-  (denotation nil :type (or null thing place) :read-only t)
-  (x 0d0 :type double-float :read-only t)
-  (y 0d0 :type double-float :read-only t)
-  (data '() :type list :read-only t))
+(define-kind (sighting :constructor (make-sighting (type denotation x y data)))
+    "Something seen, or imagined if it has no DENOTATION, at (X,Y)."
+  (:state
+   (type :non-local (member :local :non-local) "whether it is next to the robot")
+   (denotation nil (or null thing place) "what was really seen, or NIL")
+   (x 0d0 double-float "where it seems to be, the x coordinate in metres")
+   (y 0d0 double-float "where it seems to be, the y coordinate in metres")
+   (data '() list "what it looks like")))
+
+(defmethod reference ((sighting sighting))
+  (list :sighting (sighting-type sighting) (sighting-x sighting) (sighting-y sighting)
+        (sighting-data sighting)
+        (and (sighting-denotation sighting) (reference (sighting-denotation sighting)))))
 
 ;;; From the robot, things have a direction unless they are right where it is.
 
@@ -51,7 +57,7 @@ cell, with the chance PROB-STOP* at each, or at the edge of the map."
   (flet ((exit (position direction size)
            (cond ((plusp direction) (/ (- size position) direction))
                  ((minusp direction) (/ (- position) direction))
-                 (t 1d18))))
+                 (t +endless+))))
     (let ((exit (max metres (min (exit (robot-x robot) dx (map-width map))
                                  (exit (robot-y robot) dy (map-height map))))))
       (clip-to-map map
@@ -121,7 +127,7 @@ that, the nearest to what it was."
          (change (angle-difference bearing (+ heading angle))))
     (setf (designator-bearing designator) bearing
           (designator-bearing-p designator) t
-          (designator-truth designator) (- bearing heading)
+          (designator-relative-bearing designator) (- bearing heading)
           (designator-angle designator) (+ angle change (angle-error dice)))))
 
 (defun designate (sighting camera)

@@ -13,10 +13,7 @@
 
 (defun quantum-chance (probability dice)
   "True with the chance that something of PROBABILITY per unit of time happens within a tick."
-  (chance (if (= tick-quantum* 1)
-              probability
-              (- 1 (expt (- 1 (double probability)) tick-quantum*)))
-          dice))
+  (chance (per-tick-probability probability) dice))
 
 (defun drift (designator dice)
   "Let the false DESIGNATOR wander: if non-local, nearer or farther and to the side."
@@ -58,7 +55,7 @@ changed."
     (when known
       (setf (designator-swing designator)
             (abs (angle-difference bearing (designator-bearing designator)))))
-    (unless (and known (= relative (designator-truth designator)))
+    (unless (and known (= relative (designator-relative-bearing designator)))
       (set-bearing designator bearing dice))))
 
 ;;; Losing.
@@ -146,7 +143,7 @@ changed."
 
 (defun tell-ended-tracks (robot)
   (loop for (track . code) in (reverse (shiftf (robot-ended-tracks robot) '()))
-        do (funcall (track-teller track) code)))
+        do (tell-track-ended track code)))
 
 (defun tend-robot (robot tick)
   (when (plusp (length (robot-designators robot)))
@@ -158,52 +155,25 @@ changed."
     (tend-untracked robot))
   (when (robot-ended-tracks robot) (tell-ended-tracks robot)))
 
-(defun tend-tracks (simulation)
-  "Do what is due in this tick for all tracks and designators of SIMULATION."
-  (dolist (robot (world-robots (simulation-world simulation)))
-    (tend-robot robot (simulation-tick simulation))))
+(defun tend-tracks (world)
+  "Do what is due in this tick for all tracks and designators in WORLD."
+  (dolist (robot (world-robots world))
+    (tend-robot robot (world-tick world))))
 
-(defun tracks-busy-p (simulation)
-  "True if SIMULATION needs ticks for a track."
-  (loop for robot in (world-robots (simulation-world simulation))
+(defun tracks-busy-p (world)
+  "True if WORLD needs ticks for a track."
+  (loop for robot in (world-robots world)
           thereis (or (robot-ended-tracks robot)
                       (some #'camera-tracking (robot-cameras robot)))))
 
 ;;; Starting.
 
-(defun start-track (camera designator teller)
-  "Let CAMERA track DESIGNATOR from now on, and call TELLER with the code that ends the track."
+(defun start-track (camera designator operation)
+  "Let CAMERA track DESIGNATOR from now on; OPERATION is told when that ends, by TRACK-ENDED."
   (unless (tracked-p designator)
     (let ((world (robot-world (camera-robot camera))))
-      (refresh-once designator (simulation-tick (world-simulation world))
-                    (world-dice world :tracking))
+      (refresh-once designator (world-tick world) (world-dice world :tracking))
       ;; It may have been seen from quite another place.
       (setf (designator-swing designator) 0d0)))
   (setf (camera-angle camera) (designator-angle designator)
-        (camera-tracking camera) (make-track designator teller)))
-
-;;; In the digest.
-
-(defmethod digest-part ((designator designator) digest)
-  (dolist (value (list (designator-number designator) (designator-serial designator)
-                       (designator-angle designator) (designator-distance designator)
-                       (designator-x designator) (designator-y designator)
-                       (eq (designator-type designator) :local)))
-    (digest-add digest value)))
-
-(defmethod digest-part :after ((robot robot) digest)
-  (dolist (designator (live-designators robot)) (digest-part designator digest))
-  (loop for camera across (robot-cameras robot)
-        for designator = (camera-tracks camera)
-        do (digest-add digest (and designator (designator-serial designator)))))
-
-;;; In each tick.
-
-(defvar *tracks-phase* (lambda (simulation) (tend-tracks simulation))
-  "The phase of a tick that looks after tracks.")
-(defvar *tracks-busy-test* (lambda (simulation) (tracks-busy-p simulation))
-  "The test that keeps a clock going while there are tracks.")
-
-(unless (member *tracks-phase* *tick-phases*)
-  (setf *tick-phases* (append *tick-phases* (list *tracks-phase*))))
-(pushnew *tracks-busy-test* *busy-tests*)
+        (camera-tracking camera) (make-track designator operation)))

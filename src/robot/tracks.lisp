@@ -10,10 +10,15 @@
 ;;; survive the loss of its last track; one that was not does not survive that its denotation
 ;;; moves, or that a local one is out of reach.
 
-(defstruct (track (:constructor make-track (designator teller)) (:copier nil))
-  "What a camera does while it tracks DESIGNATOR; TELLER is called with the code that ends it."
-  (designator nil :type designator :read-only t)
-  (teller nil :type function :read-only t))
+(define-kind (track :constructor (make-track (designator operation)))
+    "What a camera does while it tracks a designator."
+  (:state
+   (designator nil (or null designator) "what is tracked")
+   (operation nil t "what is told when the track ends, see TRACK-ENDED; or NIL")))
+
+(defgeneric track-ended (operation code designator)
+  (:documentation "Let OPERATION know that the track of DESIGNATOR, which it began, has ended with
+CODE."))
 
 (addition camera-tracks)
 (defun camera-tracks (camera)
@@ -39,6 +44,11 @@
 
 ;;; Ending.
 
+(defun tell-track-ended (track code)
+  "Let whoever asked for TRACK, if anybody, know that it has ended with CODE."
+  (when (track-operation track)
+    (track-ended (track-operation track) code (track-designator track))))
+
 (defun stop-track (camera code warning)
   "End the track of CAMERA and nothing else. Return its designator, or NIL if it had no track."
   (let ((track (camera-tracking camera)))
@@ -46,7 +56,7 @@
       (setf (camera-tracking camera) nil)
       (when warning (warning-set warning))
       (if (eq code :interrupt)
-          (funcall (track-teller track) code)
+          (tell-track-ended track code)
           (push (cons track code) (robot-ended-tracks (camera-robot camera))))
       (track-designator track))))
 
@@ -72,8 +82,8 @@ is lost and no other camera tracks the designator, that is dropped."
   (end-track camera :lost-track
              (format nil "~A lost track of ~A" camera (camera-tracks camera))))
 
-(defmethod release-resource ((camera camera) simulation)
-  (declare (ignore simulation))
+(defmethod release-resource ((camera camera) timeline)
+  (declare (ignore timeline))
   (call-next-method)
   (end-track camera :interrupt))
 
@@ -136,13 +146,4 @@ DATA, in LOCATION (NIL: in the open)."
       (multiple-value-bind (x y) (designator-position designator)
         (setf (designator-x designator) (double x)
               (designator-y designator) (double y))))
-    (pushnew #'watch-thing (world-move-watchers (robot-world robot)))
     (take-number robot designator)))
-
-(defmethod internalize-reference ((kind (eql :designator)) arguments simulation)
-  (destructuring-bind (name serial number type) arguments
-    (let ((robot (robot-in simulation name)))
-      (or (serial-designator robot serial)
-          ;; It had been dropped when the journal was told of it.
-          (make-designator :robot robot :serial serial :number number :type type
-                           :valid-p nil)))))

@@ -33,7 +33,7 @@
                           (incf count)))
                       nil))))
       (walk-ray #'visit flags (map-width map) (map-height map)
-                x y (nonzero dx) (nonzero dy) +no-limit+))
+                x y dx dy +no-limit+))
     (/ (+ sum last) count)))
 
 (defun noisy-pixel (value map dice)

@@ -15,19 +15,23 @@
 (defconstant +page-size+ (ash 1 +page-bits+))
 (defconstant +page-mask+ (1- +page-size+))
 
-(defstruct (event (:constructor %make-event (function)) (:copier nil))
-  "Something that FUNCTION, called with the event, will do in the tick TIME."
-  (function #'identity :type function)
-  (time 0 :type tick-count)
-  (priority 0 :type fixnum)
-  (resource nil)
-  (interrupt nil :type (or null function))
-  (pending-p nil)
-  ;; True while some bucket holds the event, pending or cancelled.
-  (queued-p nil)
-  (next nil :type (or null event)))
-(setf (documentation 'event-pending-p 'function) "True while the event waits for its tick."
-      (documentation 'event-resource 'function) "Return the resource of the event, or NIL.")
+(define-kind (event :include request :constructor (%make-event (function)))
+    "Something that FUNCTION, called with the event, will do in the tick TIME."
+  (:fixed
+   (function #'identity function "the function of the event that is called in its tick")
+   (interrupt nil (or null function) "the function of the event to call if it is interrupted")
+   (resource nil t "the resource that the event occupies, or NIL"))
+  (:state
+   (time 0 tick-count "the tick that the event waits for")
+   (priority 0 fixnum "the event's priority; higher ones come first")
+   (pending-p nil boolean "the event waits for its tick"))
+  ;; True while some bucket holds the event, pending or cancelled, and what comes after it there.
+  (:link
+   (queued-p nil boolean "a bucket holds the event, pending or cancelled")
+   (next nil (or null event) "the event behind it in its bucket")))
+
+(defmethod reference ((event event))
+  (list :event (event-time event)))
 
 (defstruct (bucket (:constructor make-bucket ()) (:copier nil))
   (first nil :type (or null event))
@@ -46,11 +50,13 @@
   ;; How many events are pending, and how many of those have a priority other than 0.
   (pending 0 :type fixnum)
   (unequal 0 :type fixnum)
-  ;; The pending event of each resource that is not a RESOURCE structure.
-  (claims (make-hash-table :test 'eql) :type hash-table :read-only t))
-(setf (documentation 'make-agenda 'function) "Return an agenda without events, at tick 0."
-      (documentation 'agenda-tick 'function) "Return the tick that the agenda has reached."
-      (documentation 'agenda-pending 'function) "Return how many events are pending.")
+  ;; The pending event of each resource that is not a RESOURCE structure; lists and strings are
+  ;; the same resource if they look the same.
+  (claims (make-hash-table :test 'equal) :type hash-table :read-only t))
+(document-functions
+  make-agenda "Return an agenda without events, at tick 0."
+  agenda-tick "Return the tick that the agenda has reached."
+  agenda-pending "Return how many events are pending.")
 
 (declaim (inline append-event))
 (defun append-event (event bucket)
@@ -143,8 +149,8 @@
 
 (defun queue-event (agenda delay function &key resource (priority 0) interrupt)
   "Queue a new event that calls FUNCTION with itself DELAY ticks from now (at least 1) and
-return it. RESOURCE must have no pending event. INTERRUPT, a function of no arguments, is called
-if the event is interrupted."
+return it. RESOURCE must have no pending event. INTERRUPT is called with the event if that is
+interrupted."
   (let ((event (%make-event function)))
     (setf (event-resource event) resource
           (event-priority event) priority
@@ -163,7 +169,7 @@ if the event is interrupted."
   (when (event-pending-p event)
     (cancel-event agenda event)
     (when (event-interrupt event)
-      (call-user-code (event-interrupt event) "an event's interrupt handler"))))
+      (funcall (event-interrupt event) event))))
 
 ;;; Running.
 
@@ -201,3 +207,40 @@ if the event is interrupted."
             (dolist (event (bucket-by-priority event))
               (setf (event-queued-p event) nil)
               (when (event-pending-p event) (run-event agenda event))))))))
+
+;;; Looking at it whole.
+
+(defun map-bucket (function bucket)
+  (loop for event = (bucket-first bucket) then (event-next event)
+        while event
+        do (when (event-pending-p event) (funcall function event))))
+
+(defun pending-events (agenda)
+  "Return a list of the events pending in AGENDA: by time, and at the same time by priority and then
+in the order of queueing."
+  (let ((events '()))
+    (flet ((note (event) (push event events)))
+      (loop for bucket across (agenda-near agenda) do (map-bucket #'note bucket))
+      (loop for bucket across (agenda-far agenda) do (map-bucket #'note bucket))
+      (map-bucket #'note (agenda-beyond agenda)))
+    (stable-sort (nreverse events)
+                 (lambda (a b)
+                   (or (< (event-time a) (event-time b))
+                       (and (= (event-time a) (event-time b))
+                            (> (event-priority a) (event-priority b))))))))
+
+(defmethod digest-state ((agenda agenda) digest)
+  (digest-add digest (agenda-tick agenda))
+  (dolist (event (pending-events agenda) digest)
+    (digest-state event digest)
+    (digest-add digest (event-resource event))))
+
+(defmethod copy-running ((agenda agenda) table)
+  (or (gethash agenda table)
+      (let ((copy (copied agenda table (make-agenda))))
+        (setf (agenda-tick copy) (agenda-tick agenda))
+        (dolist (event (pending-events agenda) copy)
+          (let ((event (copy-running event table)))
+            (activate copy event)
+            (claim copy event (event-resource event))
+            (shelve copy event))))))

@@ -2,9 +2,8 @@
 
 (in-package :ars-magna.time)
 
-(defstruct (resource (:constructor nil) (:copier nil))
-  "What commands and events compete for: a robot or one of its parts. Anything else may serve as
+(define-kind (resource :constructor nil)
+    "What commands and events compete for: a robot or one of its parts. Anything else may serve as
 a resource of SCHEDULE too; these carry their pending event themselves, which is faster."
-  (event nil))
-(setf (documentation 'resource-event 'function)
-      "Return the event or operation pending on the resource, or NIL.")
+  (:state
+   (event nil t "the event or command that is pending on the resource, or NIL")))

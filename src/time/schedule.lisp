@@ -2,62 +2,94 @@
 
 (in-package :ars-magna.time)
 
-;;; Events of SCHEDULE meet on a resource by priority: the higher stays, of equals the one that
-;;; was there. Whichever loses is interrupted. Commands do not go this way, they take over.
+;;; All that is asked of a resource, by SCHEDULE, GRAB-RESOURCE or a command, is taken in the order
+;;; of asking, at the start of the next tick. Events of SCHEDULE meet on a resource by priority: the
+;;; higher stays, of equals the one that was there. Whichever loses is interrupted. A command takes
+;;; over whatever is there; it has the priority 0 itself.
 
-(defun conditional (agenda function test deadline)
-  "Return an event function that calls FUNCTION in the first tick in which TEST is true, and
-gives up after the tick DEADLINE (NIL: never)."
-  (lambda (event)
-    (cond ((call-user-code test "a scheduled event's :when") (funcall function event))
-          ((and deadline (>= (agenda-tick agenda) deadline)))
-          (t (queue-again agenda event 1)))))
+(define-kind (scheduled :include event
+                        :constructor (make-scheduled
+                                      (body resource priority on-interrupt test timeout timer
+                                       &aux (operator 'schedule) (function #'run-scheduled)
+                                         (interrupt #'interrupt-scheduled))))
+    "An event of SCHEDULE."
+  (:fixed
+   (body nil function "what the event does, a function")
+   (on-interrupt nil (or null function) "what to call if the event loses, or NIL")
+   (test nil (or null function) "what must be true for the event to happen, or NIL")
+   (timeout nil (or null integer) "after how many ticks it is given up, or NIL")
+   (timer 1 integer "in how many ticks it may happen, at the earliest")
+   (agenda nil (or null agenda) "the agenda that it waits in"))
+  (:state
+   (deadline nil (or null integer) "the last tick in which it may happen, or NIL")))
 
-(defun lose (interrupt)
-  (when interrupt (call-user-code interrupt "an event's interrupt handler")))
+(defun interrupt-scheduled (event)
+  (when (scheduled-on-interrupt event)
+    (call-user-code (scheduled-on-interrupt event) "an event's interrupt handler")))
 
-(defun enter (simulation function resource priority interrupt test timeout timer)
-  (let* ((agenda (simulation-agenda simulation))
+(defun time-left (event)
+  "Return how many ticks are left after this one, which is that of EVENT, for it to happen in."
+  (if (scheduled-deadline event)
+      (- (scheduled-deadline event) (event-time event))
+      1))
+
+(defun run-scheduled (event)
+  "Do what EVENT is to do if its test is true; if not, try again in the next tick."
+  (let ((test (scheduled-test event)) (left (time-left event)))
+    (cond ((minusp left))
+          ((or (null test) (call-user-code test "a scheduled event's :when"))
+           (call-user-code (scheduled-body event) "a scheduled event"))
+          ((plusp left) (queue-again (scheduled-agenda event) event 1)))))
+
+(defun enter (event agenda)
+  "Let EVENT wait in AGENDA for its tick."
+  (setf (scheduled-agenda event) agenda
+        (scheduled-deadline event) (and (scheduled-test event) (scheduled-timeout event)
+                                        (+ (agenda-tick agenda) (scheduled-timeout event))))
+  (queue-again agenda event (scheduled-timer event)))
+
+(defmethod perform ((event scheduled) timeline)
+  (let* ((agenda (timeline-agenda timeline))
+         (resource (event-resource event))
          (rival (and resource (pending-event agenda resource))))
-    (cond ((and rival (>= (event-priority rival) priority)) (lose interrupt))
+    (cond ((and rival (>= (event-priority rival) (event-priority event)))
+           (interrupt-scheduled event))
           (t (when rival (interrupt-event agenda rival))
-             (queue-event agenda timer
-                          (if test
-                              (conditional agenda function test
-                                           (and timeout (+ (agenda-tick agenda) timeout)))
-                              function)
-                          :resource resource :priority priority :interrupt interrupt)))))
+             (enter event agenda)))))
 
 (defun call-scheduled (function resource
                        &key (priority 0) interrupt when timeout (timer 1)
                             (simulation (current-simulation)))
-  "Queue an event that calls FUNCTION. See SCHEDULE, of which this is the function. Returns
+  "Ask for an event that calls FUNCTION. See SCHEDULE, of which this is the function. Returns
 nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
   (check-argument schedule priority (typep priority 'fixnum) "an integer")
   (check-argument schedule timer (typep timer '(integer 0)) "a number of ticks, 0 or more")
   (check-argument schedule timeout (typep timeout '(or null (integer 0))) "a number of ticks")
-  (flet ((run (event)
-           (declare (ignore event))
-           (call-user-code function "a scheduled event")))
-    (let ((enter (lambda ()
-                   (enter simulation #'run resource priority interrupt when timeout timer))))
-      (if (and (owner-p simulation) (simulation-ticking-p simulation))
-          (funcall enter)
-          (asking (simulation)
-            (when (simulation-journal simulation)
-              (note simulation :schedule enter))
-            (funcall enter)))))
-  (values))
+  (post (make-scheduled function resource priority interrupt when timeout timer) simulation))
+
+;; Only in memory: a function cannot be written to a file.
+(defmethod request-entry ((event scheduled))
+  (list 'schedule (scheduled-body event) (event-resource event) (event-priority event)
+        (scheduled-on-interrupt event) (scheduled-test event) (scheduled-timeout event)
+        (scheduled-timer event)))
+
+(defun schedule-again (function resource priority interrupt when timeout timer)
+  (call-scheduled function resource :priority priority :interrupt interrupt :when when
+                                    :timeout timeout :timer timer))
+
+(define-operator 'schedule '(function datum integer datum datum datum integer) #'schedule-again)
 
 (public schedule)
 (defmacro schedule ((resource &key priority interrupt (when t when-p) timeout timer)
                     &body body)
-  "Queue an event that runs BODY on RESOURCE (NIL: none) in the next tick, or TIMER ticks from
+  "Ask for an event that runs BODY on RESOURCE (NIL: none) in the next tick, or TIMER ticks from
 now. On a resource that has an event, the one with the higher :PRIORITY (an integer, default 0)
 stays, of equal ones the first; the form INTERRUPT is evaluated if this event loses. With the
 form WHEN, the event happens in the first tick from then on in which WHEN is true, at most
-TIMEOUT ticks from now; then it evaporates. Both forms, like BODY, run inside ticks. Returns
-nothing (manual 3.8)."
+TIMEOUT ticks from now; then it evaporates. Both forms, like BODY, run inside ticks. Resources that
+are EQUAL are the same. What is asked of a resource, by commands too, is taken in the order of
+asking, at the start of the next tick; a command has the priority 0, and takes over whatever is
+there. Returns nothing (manual 3.8)."
   `(call-scheduled (lambda () ,@body) ,resource
                    :priority ,(or priority 0)
                    :timer ,(or timer 1)
@@ -65,32 +97,33 @@ nothing (manual 3.8)."
                    ,@(when interrupt `(:interrupt (lambda () ,interrupt)))
                    ,@(when when-p `(:when (lambda () ,when)))))
 
-(defgeneric release-resource (resource simulation)
+;;; Taking resources away.
+
+(defgeneric release-resource (resource timeline)
   (:documentation
    "Interrupt whatever is pending on RESOURCE, or goes on in the background of it. Called inside
 a tick, by the owner. A layer that adds background activities adds a method.")
-  (:method (resource simulation)
-    (let* ((agenda (simulation-agenda simulation))
+  (:method (resource timeline)
+    (let* ((agenda (timeline-agenda timeline))
            (event (pending-event agenda resource)))
       (when event (interrupt-event agenda event)))))
+
+(define-kind (grab :include request :constructor (make-grab (arguments &aux (operator 'grab))))
+    "That a resource, the only argument, is to be taken from whatever occupies it.")
+
+(defmethod perform ((grab grab) timeline)
+  (release-resource (first (request-arguments grab)) timeline))
 
 (public grab-resource)
 (defun grab-resource (resource &optional (simulation (current-simulation)))
   "Interrupt the command or event that occupies RESOURCE, and a track that it keeps, at the
 start of the next tick. Returns nothing (manual, figure D.3)."
-  (post simulation (lambda ()
-                     (note simulation :grab resource)
-                     (release-resource resource simulation))))
+  (post (make-grab (list resource)) simulation))
 
-(defun abandon (simulation resources)
+(define-operator 'grab '(datum) #'grab-resource)
+
+(defun abandon (timeline resources)
   "Interrupt all that occupies RESOURCES, in order, and let those know who asked for it. Called by
-the owner of SIMULATION, between ticks."
-  (dolist (resource resources) (release-resource resource simulation))
-  (deliver-notifications simulation))
-
-(defmethod apply-entry ((operation (eql :schedule)) arguments simulation)
-  (declare (ignore simulation))
-  (funcall (first arguments)))
-
-(defmethod apply-entry ((operation (eql :grab)) arguments simulation)
-  (grab-resource (first arguments) simulation))
+the owner of TIMELINE, between ticks."
+  (dolist (resource resources) (release-resource resource timeline))
+  (deliver-notifications timeline))

@@ -2,32 +2,45 @@
 
 (in-package :ars-magna.world)
 
-;;; Only the owner of a simulation changes its world. Operations that users may call from any
-;;; thread wrap their work here; the layer above replaces *WORLD-ACCESS* to send the work to
-;;; the owner and to note it in a journal.
+;;; Whoever runs a world changes it within its ticks: kickers, events, commands. What users do from
+;;; anywhere else goes to the world's owner, its timeline, by one generic function: the layer above
+;;; sends it to the thread that may do it, and notes it in the journal. A world says which thread
+;;; is changing it; so nobody else has to.
 
-(defun direct-world-access (function world operation arguments)
-  "Call FUNCTION here and now: access for the owner of WORLD."
-  (declare (ignore world operation arguments) (type function function))
-  (funcall function))
+(defgeneric change-world (timeline world function operator arguments)
+  (:documentation
+   "Make a change to WORLD, whose timeline is TIMELINE, by calling FUNCTION with no arguments, where
+and when that is allowed, and return its values. It is what the operator called OPERATOR, a symbol,
+does with the list ARGUMENTS.")
+  (:method ((timeline null) world function operator arguments)
+    (declare (ignore world operator arguments))
+    (funcall function)))
 
-(defvar *world-access* 'direct-world-access
-  "A function (function world operation arguments) that makes a change to WORLD by calling
-FUNCTION with no arguments, where and when that is allowed, and returns its values. OPERATION
-is the symbol of the operation that the user called with the list ARGUMENTS.")
+(declaim (inline writing-p))
+(defun writing-p (world)
+  "True if this thread is changing WORLD, or there is no world to change."
+  (or (null world)
+      (eq (world-writer (the world world)) (current-thread))))
 
-(defun call-with-world-access (function world operation arguments)
-  "Have *WORLD-ACCESS* call FUNCTION, which changes WORLD. Without a WORLD, for prototypes,
-call it directly."
-  (if world
-      (funcall *world-access* function world operation arguments)
-      (funcall function)))
+(defun call-writing (function world)
+  "Call FUNCTION, which may change WORLD. Called by its owner."
+  (let ((before (world-writer world)))
+    (setf (world-writer world) (current-thread))
+    (unwind-protect (funcall function)
+      (setf (world-writer world) before))))
 
-(defmacro with-world-access ((world operation &rest arguments) &body body)
-  "Run BODY, which changes WORLD, by way of *WORLD-ACCESS*; it is the work of OPERATION (a
-symbol, unevaluated) called with ARGUMENTS. Conses nothing where access is direct."
-  (with-gensyms (work)
-    `(flet ((,work () ,@body))
-       (if (eq *world-access* 'direct-world-access)
-           (,work)
-           (call-with-world-access #',work ,world ',operation (list ,@arguments))))))
+(defmacro writing ((world) &body body)
+  "Run BODY, in which this thread may change WORLD. Only its owner may do so."
+  `(flet ((write-it () ,@body))
+     (declare (dynamic-extent #'write-it))
+     (call-writing #'write-it ,world)))
+
+(defmacro changing ((world operator &rest arguments) &body body)
+  "Run BODY, which changes WORLD (NIL: nobody's, as of prototypes), where that is allowed; it is
+what OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside ticks."
+  (once-only (world)
+    `(flet ((change-it () ,@body))
+       (if (writing-p ,world)
+           (change-it)
+           (change-world (world-timeline ,world) ,world #'change-it
+                         ',operator (list ,@arguments))))))

@@ -31,19 +31,23 @@
 Signals WRONG-ARGUMENT and UNKNOWN-NAME. Return it as attached, what SELF is when it runs."
   (check-argument set-kicker thing (thing-p thing) "a thing")
   (let ((kicker (find-kicker kicker-name)))
-    (with-world-access ((thing-world thing) set-kicker thing kicker-name)
+    (changing ((thing-world thing) set-kicker thing (kicker-name kicker))
       (attach-kicker thing kicker))))
+
+(define-operator 'set-kicker '(thing name) #'set-kicker)
 
 (defun call-put-kicker (thing name &key (prob 1) test body)
   "Do what PUT-KICKER says; without a BODY, remove the kicker NAME."
   (check-argument put-kicker thing (thing-p thing) "a thing")
   (let ((kicker (and body (fill-kicker (make-kicker name) (format nil "put-kicker ~(~A~)" name)
                                        prob test body))))
-    (with-world-access ((thing-world thing) call-put-kicker thing name
+    (changing ((thing-world thing) call-put-kicker thing name
                         :prob prob :test test :body body)
       (if kicker
           (attach-kicker thing kicker)
           (detach-kicker thing name)))))
+
+(define-operator 'call-put-kicker '(thing name) #'call-put-kicker :rest 'datum)
 
 (public put-kicker)
 (defmacro put-kicker (name target &optional options &body body)

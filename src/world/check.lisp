@@ -1,51 +1,6 @@
-;;;; check.lisp -- the digest of a world, and what must always hold of one.
+;;;; check.lisp -- what must always hold of a world.
 
 (in-package :ars-magna.world)
-
-(defun digestible (value)
-  "Return VALUE, or for data without content of their own their type."
-  (typecase value
-    ((or real symbol string character function) value)
-    (cons (cons (digestible (car value)) (digestible (cdr value))))
-    (t (type-of value))))
-
-(defun digest-location (digest thing)
-  (let ((location (thing-location thing)))
-    (cond ((eq location :floor)
-           (digest-add digest (thing-x thing))
-           (digest-add digest (thing-y thing))
-           (digest-add digest (position thing (things-at (thing-world thing)
-                                                         (thing-x thing) (thing-y thing)))))
-          ((null location) (digest-add digest nil))
-          (t (digest-add digest (location-name location))
-             (digest-add digest (position thing (location-contents location)))))))
-
-(defun digest-thing (digest thing)
-  (digest-add digest (thing-serial thing))
-  (digest-add digest (thing-name thing))
-  (digest-location digest thing)
-  (loop for (key value) in (sort (copy-list (thing-attributes thing)) #'string< :key #'first)
-        do (digest-add digest key)
-           (digest-add digest (digestible value)))
-  (dolist (attachment (thing-kickers thing))
-    (digest-add digest (attachment-name attachment))
-    (digest-add digest (- (attachment-due attachment)
-                          (world-kicker-tick (thing-world thing))))))
-
-(defun world-digest (world digest)
-  "Add the state of WORLD to DIGEST, to the bit: its map's name and tick, things by serial number
-with locations, attributes and kickers, the serial counter, and what chance will bring. Return
-DIGEST."
-  (digest-add digest (map-name (world-map world)))
-  (digest-add digest (world-tick world))
-  (digest-add digest (world-next-serial world))
-  (do-things (thing world) (digest-thing digest thing))
-  (loop for dice across (world-dice-set world) do (digest-add digest (dice-state dice)))
-  (dolist (group (world-kicker-groups world) digest)
-    (digest-add digest (group-probability group))
-    (digest-add digest (group-skip group))))
-
-;;; Invariants.
 
 (defun thing-violation (world thing)
   "Return what is wrong with where THING is, a string, or NIL."

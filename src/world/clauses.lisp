@@ -2,10 +2,6 @@
 
 (in-package :ars-magna.world)
 
-(defun proper-list-p (object)
-  "True if OBJECT is a list that ends, in NIL."
-  (and (listp object) (ignore-errors (list-length object)) (null (cdr (last object)))))
-
 (defun check-options (definition options known)
   "Signal MALFORMED-DEFINITION unless OPTIONS is a plist with keys among KNOWN, each once."
   (unless (and (proper-list-p options) (evenp (length options)))
@@ -27,8 +23,8 @@
     (reject-clause definition (list option value) "a probability from 0 to 1"))
   (double value))
 
-(defun point-form-p (form)
-  "True if FORM is a list of two real numbers."
+(defun number-pair-p (form)
+  "True if FORM is a list of two real numbers, such as a point or a range."
   (and (proper-list-p form) (= 2 (length form)) (every #'realp form)))
 
 (defun check-name (definition name what)

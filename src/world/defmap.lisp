@@ -5,24 +5,27 @@
 ;;; Clauses are checked when the form is expanded, what they evaluate (prototypes, sizes of
 ;;; things, kickers) when it is loaded; either signals MALFORMED-DEFINITION with the clause.
 
+(defun find-places (map path key)
+  "Find the places of MAP anew and keep it in the file PATH, if that is one and all code of place
+types worked."
+  (let ((whole (nth-value 1 (classify-places map))))
+    (when (and path whole) (write-cache map path key))))
+
 (defun build-map (map)
   "Fill the grid of MAP from its clauses, or from its cache if that holds them."
   (let* ((path (usable-cache-path map))
          (key (and path (cache-key map))))
     (unless (and path (restore-from-cache map path key))
       (draw-walls map)
-      (classify-places map)
-      (when path (write-cache map path key)))
+      (find-places map path key))
     map))
 
 (addition rebuild-map)
 (defun rebuild-map (map)
   "Find the places of MAP (a map or its name) anew, by the place types that are defined now, and
 rewrite its cache. Worlds of MAP see the change at once. Return the map."
-  (let ((map (find-map map)))
-    (classify-places map)
-    (let ((path (usable-cache-path map)))
-      (when path (write-cache map path (cache-key map))))
+  (let* ((map (find-map map)) (path (usable-cache-path map)))
+    (find-places map path (and path (cache-key map)))
     map))
 
 (defun define-map (name width height &key cache clauses things (package *package*))
@@ -140,7 +143,7 @@ PATH."
   (unless (and (eq :obj (clause-kind definition clause)) (<= 4 (length clause)))
     (reject-clause definition clause "(obj name (x y) descriptor contents...)"))
   (destructuring-bind (head position descriptor &rest contents) (rest clause)
-    (unless (and (point-form-p position)
+    (unless (and (number-pair-p position)
                  (<= 0 (first position)) (< (first position) width)
                  (<= 0 (second position)) (< (second position) height))
       (reject-clause definition clause
@@ -222,7 +225,8 @@ recipe, of anything else the clause itself. NIL if it is to be left out."
 (public defmap)
 (defmacro defmap (&whole form name &optional size &body clauses &environment environment)
   "Define the map NAME (manual 5.1), a special variable bound to it. SIZE is (width height), in
-cells of a metre, and perhaps :cache with the name of a file to keep the built grid in. Clauses:
+cells of a metre, and perhaps :cache with the name of a file to keep the built grid in, unless a
+place type has a :checker. Clauses:
   (wall (x0 y0) (x1 y1) substance parameter [parameter1]) -- a line of walls
   (rect (x0 y0) (x1 y1) substance parameter [parameter1 parameter2 parameter3]) -- an outline
   (circle (x y) radius substance parameter) -- likewise

@@ -1,4 +1,4 @@
-;;;; kicker-groups.lisp -- running kickers at the cost of those that fire.
+;;;; kicker-groups.lisp -- the trials of kickers, at the cost of those that succeed.
 
 (in-package :ars-magna.world)
 
@@ -12,31 +12,31 @@
 ;;; what a kick costs (25 ns, most of it waiting for memory): attachment, its thing (NIL when
 ;;; dead), its kicker.
 
-(defstruct (group (:constructor make-group (probability)) (:copier nil))
-  "Kickers of equal PROBABILITY. SKIP trials fail before the next that succeeds."
-  (probability 0d0 :type double-float :read-only t)
-  (quantum 0 :type real)
-  (scale 0d0 :type double-float)
-  (skip 0 :type fixnum)
-  (row (make-array 12 :initial-element nil) :type simple-vector)
-  (count 0 :type fixnum)
-  (dead '() :type list)
-  (origin (make-origin) :type origin))
+(define-kind (group :constructor (make-group (probability)))
+    "Kickers of equal PROBABILITY, in a row of trials."
+  (:fixed
+   (probability 0d0 double-float "the probability per unit of time of the group's kickers"))
+  (:state
+   (quantum 0 real "for how long a tick the trials were drawn")
+   (scale 0d0 double-float "the factor that turns the logarithm of a roll into a gap")
+   (skip 0 fixnum "how many trials fail before the next that succeeds")
+   (row (make-array 12 :initial-element nil) simple-vector "the members: attachment, thing, kicker")
+   (count 0 fixnum "how many members the row has")
+   (dead '() list "members that have left since the last tick"))
+  (:link
+   (origin (make-origin) origin "who is to blame for trouble")))
 
 (defstruct (origin (:constructor make-origin ()) (:copier nil))
   "What is printed as the origin of trouble: the attachment that ran when it came."
   (attachment nil :type (or null attachment)))
 
+(defmethod reference ((group group))
+  (list :group (group-probability group)))
+
 (defmethod print-object ((origin origin) stream)
   (princ (origin-attachment origin) stream))
 
 ;;; Chance.
-
-(defun per-tick-probability (probability)
-  "Return the chance that something of PROBABILITY per unit of time happens in a tick."
-  (if (= tick-quantum* 1)
-      probability
-      (- 1d0 (expt (- 1d0 probability) (double tick-quantum*)))))
 
 (defun gap-scale (probability)
   "Return the factor that turns the logarithm of a roll into a gap, see DRAW-GAP."
@@ -165,7 +165,7 @@ error the row goes on behind it."
 for, then those whose chance has come. Trouble in a kicker is queued as an error message.
 Return nothing."
   (when (or (world-kicker-groups world) (world-due-kickers world))
-    (let ((*world-access* 'direct-world-access) (*world* world) (self nil)
+    (let ((*world* world) (self nil)
           (dice (world-dice world :kickers)))
       (unless (= (world-kicker-generation world) *kicker-generation*) (regroup-kickers world))
       (incf (world-kicker-tick world))

@@ -18,24 +18,29 @@
  kicker-name "Return the symbol that the kicker is called."
  kicker-prob "Return the kicker's probability per tick.")
 
-(defstruct (attachment (:constructor make-attachment (kicker thing)) (:copier nil))
-  "A kicker on a thing."
-  (kicker nil :type kicker :read-only t)
-  (thing nil :type thing :read-only t)
-  (alive-p t :type boolean)
-  (due 0 :type tick-count)
-  (ran 0 :type tick-count)
-  (group nil)
-  (index 0 :type fixnum))
+(define-kind (attachment :constructor (make-attachment (kicker thing)))
+    "A kicker on a thing."
+  (:fixed
+   (kicker nil kicker "the attached kicker")
+   (thing nil thing "the thing that the kicker is on"))
+  (:state
+   (alive-p t boolean "the kicker has not been taken off")
+   (due 0 tick-count "the tick of kickers in which it is to run because somebody asked for it")
+   (ran 0 tick-count "the tick of kickers in which it last ran for that reason")
+   (index 0 fixnum "its number in its group")
+   (group nil t "the group of equal kickers that it is in, or NIL")))
 (addition attachment-kicker attachment-thing)
-(document-functions
- attachment-kicker "Return the attached kicker."
- attachment-thing "Return the thing that the kicker is on.")
+
+(defmethod reference ((attachment attachment))
+  (list :attachment (thing-serial (attachment-thing attachment)) (attachment-name attachment)))
 
 (defmethod print-object ((kicker kicker) stream)
   (if (or *print-escape* *print-readably*)
       (print-unreadable-object (kicker stream) (format stream "KICKER ~A" (kicker-name kicker)))
       (princ (kicker-name kicker) stream)))
+
+(defmethod reference ((kicker kicker))
+  (list :kicker (name-string (kicker-name kicker))))
 
 (defun attachment-name (attachment)
   (kicker-name (attachment-kicker attachment)))

@@ -43,7 +43,9 @@ if it moved; NIL also if it is inside something closed or has been destroyed."
   (check-argument kick-thing thing (thing-p thing) "a thing")
   (check-argument kick-thing dx (realp dx) "a number")
   (check-argument kick-thing dy (realp dy) "a number")
-  (with-world-access ((thing-world thing) kick-thing thing dx dy kick-if-wall)
+  (changing ((thing-world thing) kick-thing thing dx dy kick-if-wall)
     (and (thing-location (thing-outermost thing))
          (not (enclosed-p thing))
          (%kick-thing thing (double dx) (double dy) kick-if-wall))))
+
+(define-operator 'kick-thing '(thing number number truth) #'kick-thing)

@@ -6,8 +6,9 @@
 ;;; for each wall (index + substance * 2^32, parameter) and for each place (index + type * 2^32,
 ;;; direction), floats as their bits. The key stands for the map's size and clauses and for the
 ;;; definitions of all place types. A file with another key is stale, one whose words do not
-;;; add up is damaged; neither is ever used. Only the grid is kept, never things. A file that is
-;;; no cache, by its first word, or that is no file of bytes, is never written to.
+;;; add up is damaged; neither is ever used. Only the grid is kept, never things; and nothing
+;;; while a place type has a :checker, which is code that may look at anything. What is no cache,
+;;; by its first word, or no file of bytes, or cannot be told is never written to.
 
 (define-constant +cache-magic+ #x4152534D41503031
   :documentation "ARSMAP01 in ASCII; changes when the file's layout does.")
@@ -23,22 +24,14 @@
                      (loop for type in (registry-objects *place-types*)
                            collect (list (place-type-name type) (place-type-key type)))))))
 
-(defun double-bits (number)
-  (logior (ash (ldb (byte 32 0) (sb-kernel:double-float-high-bits number)) 32)
-          (sb-kernel:double-float-low-bits number)))
-
-(defun bits-double (bits)
-  (let ((high (ldb (byte 32 32) bits)))
-    (sb-kernel:make-double-float (if (logbitp 31 high) (- high (ash 1 32)) high)
-                                 (ldb (byte 32 0) bits))))
-
 (defun words-sum (words)
-  "Return a check sum of WORDS behind the header."
+  "Return a check sum of WORDS but for the first and the sum itself, the last of the header."
   (declare (type words words))
   (let ((sum 1))
     (declare (type (unsigned-byte 64) sum))
-    (loop for index from +cache-header+ below (length words)
-          do (setf sum (ldb (byte 64 0) (+ (* sum #x100000001B3) (aref words index)))))
+    (loop for index from 1 below (length words)
+          unless (= index (1- +cache-header+))
+            do (setf sum (ldb (byte 64 0) (+ (* sum #x100000001B3) (aref words index)))))
     sum))
 
 ;;; Writing.
@@ -53,24 +46,25 @@
          (position +cache-header+))
     (flet ((add (number index value)
              (setf (aref words position) (logior index (ash number 32))
-                   (aref words (1+ position)) (double-bits value))
+                   (aref words (1+ position)) (double-to-bits value))
              (incf position 2)))
       (loop for number across (map-substances map) for index from 0
             when (plusp number) do (add number index (aref (map-parameters map) index)))
       (loop for number across (map-places map) for index from 0
             when (plusp number) do (add number index (aref (map-directions map) index))))
-    (replace words (list +cache-magic+ key walls places (words-sum words)))))
+    (replace words (list +cache-magic+ key walls places))
+    (setf (aref words (1- +cache-header+)) (words-sum words))
+    words))
 
 (defun write-words (words path)
-  "Write WORDS to the file PATH, which is whole at every moment."
-  (let ((temporary (sb-ext:parse-native-namestring
-                    (format nil "~A.new" (sb-ext:native-namestring path)))))
-    (ensure-directories-exist path)
-    (with-open-file (out temporary :direction :output :if-exists :supersede
-                                   :element-type '(unsigned-byte 64))
-      (write-sequence words out))
-    (sb-unix:unix-rename (sb-ext:native-namestring temporary)
-                         (sb-ext:native-namestring path))))
+  "Write WORDS to the file PATH, which is whole at every moment: it is a new file's name at last."
+  (ensure-directories-exist path)
+  (uiop:with-temporary-file (:stream out :pathname new :element-type '(unsigned-byte 64)
+                             :directory (uiop:pathname-directory-pathname path)
+                             :prefix "map-cache" :type :unspecific)
+    (write-sequence words out)
+    :close-stream
+    (replace-file path new)))
 
 ;;; Reading.
 
@@ -90,29 +84,35 @@
              (/= (aref words 4) (words-sum words)))
          "is damaged")))
 
+(defun check-number (number names)
+  "Signal an error unless NUMBER stands for an element of NAMES, the first of which is for none."
+  (unless (< 0 number (length names))
+    (error "no name has the number ~D" number)))
+
+(defun restore-wall (map index number value)
+  (check-number number (map-substance-types map))
+  (setf (aref (map-flags map) index) +wall+
+        (aref (map-substances map) index) number
+        (aref (map-parameters map) index) value))
+
+(defun restore-place (map index number value)
+  (check-number number (map-place-types map))
+  (setf (aref (map-places map) index) number
+        (aref (map-directions map) index) value))
+
 (defun restore-map (map words)
-  "Fill the empty grid of MAP from WORDS."
+  "Fill the empty grid of MAP from WORDS. Signals an error if they stand for none."
   (clear-walls map)
   (clear-places map)
   (let ((walls-end (+ +cache-header+ (* 2 (aref words 2)))))
     (loop for position from +cache-header+ below (length words) by 2
-          for index = (ldb (byte 32 0) (aref words position))
-          for number = (ldb (byte 32 32) (aref words position))
-          for value = (bits-double (aref words (1+ position)))
-          do (if (< position walls-end)
-                 (setf (aref (map-flags map) index) +wall+
-                       (aref (map-substances map) index) number
-                       (aref (map-parameters map) index) value)
-                 (setf (aref (map-places map) index) number
-                       (aref (map-directions map) index) value))))
+          do (funcall (if (< position walls-end) #'restore-wall #'restore-place)
+                      map
+                      (ldb (byte 32 0) (aref words position))
+                      (ldb (byte 32 32) (aref words position))
+                      (bits-to-double (aref words (1+ position))))))
   (note-parameter-range map)
   map)
-
-(defun regular-file-p (path)
-  "True if PATH is a file of bytes: no directory, device or pipe."
-  (= sb-posix:s-ifreg
-     (logand sb-posix:s-ifmt
-             (sb-posix:stat-mode (sb-posix:stat (sb-ext:native-namestring path))))))
 
 (defun begins-as-cache-p (path)
   "True if the file PATH is empty or begins as caches do."
@@ -123,20 +123,21 @@
                (= +cache-magic+ (aref words 0)))))))
 
 (defun foreign-p (path)
-  "True if there is something at PATH that is not a map's cache, whole or damaged."
-  (and (or (probe-file path) (uiop:directory-exists-p path))
-       (not (and (regular-file-p path) (begins-as-cache-p path)))))
+  "True if there is something at PATH, perhaps by way of a link, that is not a map's cache, whole
+or damaged, or that cannot be told."
+  (and (ignore-errors (probe-file path))
+       (not (ignore-errors (and (plain-file-p path) (begins-as-cache-p path))))))
 
 (defun cache-path (name)
   "Return the file that NAME, a string or pathname, stands for; ~/ is the home directory."
   (cond ((pathnamep name) name)
         ((starts-with-subseq "~/" name)
-         (merge-pathnames (sb-ext:parse-native-namestring (subseq name 2))
+         (merge-pathnames (native-path (subseq name 2))
                           (user-homedir-pathname)))
-        (t (sb-ext:parse-native-namestring name))))
+        (t (native-path name))))
 
 (defun warn-of-cache (map path what)
-  (warning-set "The cache " (sb-ext:native-namestring path) " of map " (map-name map) " " what
+  (warning-set "The cache " (native-name path) " of map " (map-name map) " " what
                "; the map is built anew."))
 
 (defun restore-from-cache (map path key)
@@ -155,16 +156,21 @@
 (defun write-cache (map path key)
   (handler-case (write-words (map-words map key) path)
     (error (condition)
-      (warning-set "The cache " (sb-ext:native-namestring path) " of map " (map-name map)
+      (warning-set "The cache " (native-name path) " of map " (map-name map)
                    " cannot be written: " (princ-to-string condition)))))
+
+(defun keepable-p (map)
+  "True if MAP is to be kept, and its places depend on no user code."
+  (and (map-cache map)
+       (notany #'place-type-checker (registry-objects *place-types*))))
 
 (defun usable-cache-path (map)
   "Return the file that MAP is to be kept in, if any; not one that holds something else."
-  (let ((path (and (map-cache map) (cache-path (map-cache map)))))
+  (let ((path (and (keepable-p map) (cache-path (map-cache map)))))
     (cond ((null path) nil)
-          ((handler-case (foreign-p path) (error () nil))
-           (warning-set "The file " (sb-ext:native-namestring path)
+          ((foreign-p path)
+           (warning-set "The file " (native-name path)
                         " is no cache of a map; it is left as it is, and " (map-name map)
                         " is not kept. Give :cache another name.")
            nil)
-          (t (or (probe-file path) path)))))
+          (t (or (ignore-errors (probe-file path)) path)))))

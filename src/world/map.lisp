@@ -14,6 +14,8 @@
   :documentation "The flag of a cell where a thing on the floor blocks movement.")
 (define-constant +obsview+ 4
   :documentation "The flag of a cell where a thing on the floor blocks sight.")
+(define-constant +opaque+ (logior +wall+ +obsview+)
+  :documentation "The flags of a cell where sight ends.")
 (define-constant +occupied+ 8
   :documentation "The flag of a cell where any thing lies on the floor.")
 
@@ -74,6 +76,9 @@
       (print-unreadable-object (map stream)
         (format stream "MAP ~A ~Dx~D" (map-name map) (map-width map) (map-height map)))
       (princ (map-name map) stream)))
+
+(defmethod reference ((map map))
+  (list :map (name-string (map-name map))))
 
 ;;; The registry.
 

@@ -42,12 +42,14 @@ ours, a list of kickers or their names. Signals WRONG-ARGUMENT and UNKNOWN-NAME.
       (if world
           (note-slips name descriptor world)
           (warn-of-slips "new-thing" name descriptor))
-      (with-world-access (world make-new-thing name location descriptor
+      (changing (world make-new-thing name location descriptor
                                 :prototype prototype :contents contents :kickers kickers)
         (let ((thing (follow-recipe recipe world)))
           (cond (world (relocate thing place x y))
                 (place (place-thing thing place x y)))
           thing)))))
+
+(define-operator 'make-new-thing '(name datum datum) #'make-new-thing :rest 'datum)
 
 (defun position-form-p (form environment)
   "True if FORM, three elements long, means (map x y) rather than a call in ENVIRONMENT: it does if

@@ -7,7 +7,7 @@
   (:shadow #:map)
   (:import-from :ars-magna.nisp #:matchvar-p)
   ;; clauses
-  (:export #:proper-list-p #:check-options #:check-name #:call-for-value)
+  (:export #:number-pair-p #:check-options #:check-name #:call-for-value)
   ;; attributes
   (:export #:attribute #:attribute-p #:defattribute #:define-attribute #:find-attribute
            #:all-attributes #:attribute-of #:built-in-attribute-p #:attribute-key
@@ -15,6 +15,9 @@
            #:attribute-success #:attribute-base #:attribute-max-mult #:attribute-noticed
            #:attribute-supporters #:numeric
            #:red #:green #:blue #:violet #:lightred #:lightgreen #:lightblue #:lightviolet)
+  ;; asked values
+  (:export #:asking-form-p #:range-p #:value-limits #:discrete-p #:in-domain-p
+           #:can-be-false-p #:asks-range-p)
   ;; substances
   (:export #:substance #:substance-p #:defsubstance #:define-substance #:find-substance
            #:all-substances #:substance-name #:substance-parameter #:substance-value-type
@@ -26,22 +29,24 @@
            #:map-place-types #:map-least-parameter #:map-greatest-parameter #:map-things
            #:map-resident-world #:map-resident #:map-attribute-names #:map-package #:map-replaced
            #:map-form
-           #:map-index #:find-map #:all-maps #:map-cell #:wall-at-p
-           #:+wall+ #:+obsmove+ #:+obsview+ #:+occupied+
+           #:map-index #:point-index #:find-map #:all-maps #:map-cell #:wall-at-p
+           #:+wall+ #:+obsmove+ #:+obsview+ #:+occupied+ #:+opaque+
            #:cell #:cell-p #:cell-map #:cell-x #:cell-y #:cell-filled? #:cell-type
            #:cell-substance-type #:cell-substance-parameter #:cell-occupancy-window
            #:place #:make-place #:place-p #:place-cell #:place-canonical-dir
            #:place-directions)
+  ;; grid walk
+  (:export #:walk-grid #:cell-number #:grid-size #:+endless+ #:+no-limit+)
   ;; place types
   (:export #:place-type #:place-type-p #:place-type-name #:place-type-rank
            #:place-type-confusion #:place-type-invisible-p #:place-type-graphics
            #:def-place-type #:define-place-type #:find-place-type #:all-place-types
            #:place-type-index #:doorway #:convex #:concave #:beak)
+  (:export #:*place-types* #:*attributes* #:*substances* #:*kickers* #:*maps*)
   ;; defmap
   (:export #:defmap #:define-map #:rebuild-map)
   ;; access
-  (:export #:*world-access* #:with-world-access #:call-with-world-access
-           #:direct-world-access)
+  (:export #:change-world #:changing #:writing #:writing-p #:world-writer)
   ;; location
   (:export #:location-contents #:location-position #:location-world #:location-closed-p
            #:location-name #:remaining-capacity)
@@ -54,7 +59,7 @@
            #:get-attribute #:set-attribute #:change-attribute)
   ;; world
   (:export #:world #:world-p #:world-map #:world-seed #:world-flags #:world-cells
-           #:world-things #:world-thing-list #:world-robots #:world-simulation #:world-tick
+           #:world-things #:world-thing-list #:world-robots #:world-timeline
            #:world-dice #:world-dice-set #:world-move-watchers #:*world* #:current-world
            #:make-world #:reset-world #:seed-world #:world-has-kickers-p #:things-at
            #:find-thing #:find-things #:do-things #:world-live-count)
@@ -64,7 +69,8 @@
   (:export #:note-strange-name #:warn-of-slips #:value-like)
   ;; kickers
   (:export #:kicker #:kicker-p #:kicker-name #:kicker-prob #:defkicker #:define-kicker #:find-kicker
-           #:all-kickers #:set-kicker #:put-kicker #:run-kicker #:run-kickers #:kick-thing
+           #:all-kickers #:set-kicker #:put-kicker #:call-put-kicker #:run-kicker
+           #:run-kickers #:kick-thing
            #:attachment #:attachment-kicker #:attachment-thing #:self)
   ;; check
-  (:export #:world-digest #:world-invariant-violations))
+  (:export #:world-invariant-violations))

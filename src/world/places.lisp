@@ -165,17 +165,18 @@ outside."
 
 (defun classify-places (map)
   "Find the places of MAP anew, by the place types known now. A type whose code fails is left out,
-with a warning. Return MAP."
+with a warning. Return MAP, and true if no type was left out."
   (clear-places map)
-  (let ((codes (neighbourhood-codes map)))
+  (let ((codes (neighbourhood-codes map)) (whole t))
     (loop for type in (registry-objects *place-types*) for number from 1
           do (handler-case (progn (classify-by-type map type number codes)
                                   (check-directions map type number))
                (error (condition)
+                 (setf whole nil)
                  (forget-places map number)
                  (warn-of-definition "Map ~A has no places of type ~A: ~A"
-                                     (map-name map) (place-type-name type) condition)))))
-  map)
+                                     (map-name map) (place-type-name type) condition))))
+    (values map whole)))
 
 ;;; Reading.
 
@@ -191,6 +192,10 @@ with a warning. Return MAP."
  place-type "Return the PLACE-TYPE that the place is of."
  place-canonical-dir "Return the place's basic canonical direction, radians (manual 5.1.1)."
  place-cell "Return the cell that is the place.")
+
+(defmethod reference ((place place))
+  (list :place (name-string (place-type-name (place-type place)))
+        (cell-x (place-cell place)) (cell-y (place-cell place))))
 
 (addition cell-type)
 (defun cell-type (cell)

@@ -115,12 +115,12 @@ matter. Signals WRONG-ARGUMENT outside the map, MISUSE for prototypes, things
 destroyed, and a container put into itself. Return THING."
   (check-movable 'move-thing thing)
   (let ((position (cond (y-p (list location y))
-                        ((point-form-p location) location))))
+                        ((number-pair-p location) location))))
     (if position
         (check-inside 'move-thing (world-map (thing-world thing)) (first position)
                       (second position))
         (check-holder 'move-thing thing location))
-    (with-world-access ((thing-world thing) move-thing thing (or position location))
+    (changing ((thing-world thing) move-thing thing (or position location))
       (if position
           (relocate thing :floor (first position) (second position))
           (relocate thing location)))))
@@ -135,64 +135,16 @@ destroyed, and a container put into itself. Return THING."
     (remove-thing thing (thing-world thing))
     (note-move thing old nil)))
 
+(define-operator 'move-thing '(thing datum) #'move-thing)
+
 (addition destroy-thing)
 (defun destroy-thing (thing)
   "Destroy THING; what it contains stays where it was. Destroying it again does nothing.
 Signals MISUSE for prototypes. Return nothing."
   (unless (and (thing-p thing) (not (thing-alive-p thing)))
     (check-movable 'destroy-thing thing)
-    (with-world-access ((thing-world thing) destroy-thing thing)
+    (changing ((thing-world thing) destroy-thing thing)
       (when (thing-alive-p thing) (%destroy-thing thing))))
   (values))
 
-;;; Attributes of things in a world.
-
-(defun change-attributes (thing descriptor)
-  "Give THING the attributes in DESCRIPTOR and make caches and flags agree."
-  (setf (thing-attributes thing) (merge-descriptors descriptor (thing-attributes thing)))
-  (refresh-physics thing)
-  (when (eq (thing-location thing) :floor)
-    (refresh-cell-flags (thing-world thing) (thing-index thing))))
-
-(defun normal-descriptor (operator descriptor)
-  "Return the object descriptor DESCRIPTOR with keywords as names. Signals WRONG-ARGUMENT."
-  (unless (descriptor-p descriptor)
-    (reject-value operator "descriptor" descriptor
-                  "a list of lists (attribute value), each attribute once"))
-  (loop for (name value) in descriptor
-        for key = (attribute-key name)
-        do (check-attribute-value operator key value)
-        collect (list key value)))
-
-(defun descriptor-p (object)
-  "True if OBJECT has the shape of an object descriptor."
-  (and (proper-list-p object)
-       (loop for entry in object
-             always (and (proper-list-p entry) (= 2 (length entry))
-                         (first entry) (symbolp (first entry))))
-       (loop for ((name) . rest) on object
-             never (find name rest :key #'first :test #'same-name-p))))
-
-(public set-attribute)
-(defun set-attribute (thing attribute new-value)
-  "Set ATTRIBUTE, a keyword, of THING to NEW-VALUE and return that (manual 5.3). NIL means false
-or unspecified. Signals WRONG-ARGUMENT for a value that the attribute cannot have."
-  (check-argument set-attribute thing (thing-p thing) "a thing")
-  (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
-  (let ((descriptor (normal-descriptor 'set-attribute (list (list attribute new-value)))))
-    (with-world-access ((thing-world thing) set-attribute thing attribute new-value)
-      (change-attributes thing descriptor)))
-  new-value)
-
-(defun (setf get-attribute) (new-value thing attribute)
-  (set-attribute thing attribute new-value))
-
-(public change-attribute)
-(defun change-attribute (thing descriptor)
-  "Set all attributes of THING that the object descriptor DESCRIPTOR gives; others stay
-(manual 5.3). Signals WRONG-ARGUMENT. Return THING."
-  (check-argument change-attribute thing (thing-p thing) "a thing")
-  (let ((descriptor (normal-descriptor 'change-attribute descriptor)))
-    (with-world-access ((thing-world thing) change-attribute thing descriptor)
-      (change-attributes thing descriptor)))
-  thing)
+(define-operator 'destroy-thing '(thing) #'destroy-thing)

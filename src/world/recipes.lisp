@@ -71,27 +71,21 @@ DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMEN
 ;;; Worlds.
 
 (defun empty-world (world)
-  "Leave WORLD without things and kickers, as its map is. What was in it is destroyed."
+  "Leave WORLD without things and kickers, as its map is. What was in it is destroyed, and its
+robots are as they were made."
   (let ((map (world-map world)))
     (do-things (thing world)
       (setf (thing-alive-p thing) nil (thing-location thing) nil (thing-contents thing) '())
       (detach-all-kickers thing))
+    (reset world)
     (setf (world-flags world) (copy-seq (map-flags map))
           (world-cells world) (make-array (* (map-width map) (map-height map))
                                           :initial-element '())
-          (world-things world) (make-list-vector)
-          (world-live-count world) 0
-          (world-next-serial world) 1
-          (world-tick world) 0
-          (world-kicker-groups world) '()
-          (world-kicker-tick world) 0
-          (world-kicker-generation world) *kicker-generation*
-          (world-due-kickers world) '()
-          (world-noted-names world) '())))
+          (world-kicker-generation world) *kicker-generation*)))
 
 (defun reset-world (world &key (seed (world-seed world)))
   "Make WORLD as it was when it was fresh, with the integer SEED: the things of its map's recipe,
-tick 0. Robots, simulation and watchers stay. Return WORLD."
+tick 0, robots where they start. Timeline and watchers stay. Return WORLD."
   (empty-world world)
   (seed-world world seed)
   (dolist (recipe (map-things (world-map world)) world)

@@ -6,52 +6,40 @@
 ;;; value), replaced and never altered in place. Those that physics needs are cached in typed
 ;;; slots. A thing without a world is a prototype. Manual 3.3 and 5.3.
 
-(defstruct (thing (:constructor %make-thing (name serial world)) (:copier nil))
-  "An object in a world, or a prototype of such."
-  (name nil :type symbol :read-only t)
-  (serial 0 :type fixnum :read-only t)
-  (world nil)
-  (rank 0 :type fixnum)
-  (location nil)
-  (x 0d0 :type double-float)
-  (y 0d0 :type double-float)
-  (attributes '() :type list)
-  (contents '() :type list)
-  (kickers '() :type list)
-  (alive-p t :type boolean)
-  (obsmove-p nil :type boolean)
-  (obsview-p nil :type boolean)
-  (closed-p nil :type boolean)
-  (substance-p nil :type boolean)
-  (size 0d0 :type double-float)
-  (weight 0d0 :type double-float)
-  (capacity 0d0 :type double-float)
-  (substance-parameter 0d0 :type double-float))
+(define-kind (thing :constructor (%make-thing (name serial world)))
+    "An object in a world, or a prototype of such."
+  (:fixed
+   (name nil symbol "the symbol that the thing is called; others may be called the same")
+   (serial 0 fixnum "the thing's number in its world, from 1; 0 for prototypes")
+   (world nil t "the world that the thing is in, or NIL for a prototype"))
+  (:state
+   (location nil t "where the thing is: :FLOOR, what holds it, or NIL if it is nowhere")
+   (x 0d0 double-float "the x coordinate of a thing on the floor, in metres")
+   (y 0d0 double-float "the y coordinate of a thing on the floor, in metres")
+   (attributes '() list "the thing's attributes as an object descriptor; do not alter it")
+   (contents '() list "the list of things directly inside the thing, in order of arrival")
+   (kickers '() list "the list of the thing's kickers, as ATTACHMENTs" :part)
+   (alive-p t boolean "the thing has not been destroyed")
+   (obsmove-p nil boolean "the thing blocks movement")
+   (obsview-p nil boolean "the thing obstructs vision")
+   (closed-p nil boolean "the thing, as a container, is closed")
+   (substance-p nil boolean "the thing has a :substance")
+   (size 0d0 double-float "the thing's :size, 0 if unspecified")
+   (weight 0d0 double-float "the thing's own :weight, 0 if unspecified")
+   (capacity 0d0 double-float "the thing's :capacity, 0 if it is no container")
+   (substance-parameter 0d0 double-float
+                        "the parameter of the thing's :substance, 0 if unspecified")
+   (rank 0 fixnum "where in the vector of its world's things it is")))
 
 (addition thing-p thing-name thing-serial thing-world thing-location thing-x thing-y
           thing-attributes thing-contents thing-kickers thing-alive-p thing-obsmove-p
           thing-obsview-p thing-closed-p thing-substance-p thing-size thing-weight thing-capacity
           thing-substance-parameter)
 (document-functions
- thing-p "True of a thing."
- thing-name "Return the symbol that the thing is called; others may be called the same."
- thing-serial "Return the thing's number in its world, from 1; 0 for prototypes."
- thing-world "Return the world that the thing is in, or NIL for a prototype."
- thing-location "Return where the thing is: :FLOOR, what holds it, or NIL if it is nowhere."
- thing-x "Return the x coordinate of a thing on the floor, metres."
- thing-y "Return the y coordinate of a thing on the floor, metres."
- thing-attributes "Return the thing's attributes as an object descriptor; do not alter it."
- thing-contents "Return the list of things directly inside the thing, in order of arrival."
- thing-kickers "Return the list of the thing's kickers, as ATTACHMENTs."
- thing-alive-p "True until the thing is destroyed."
- thing-obsmove-p "True if the thing blocks movement."
- thing-obsview-p "True if the thing obstructs vision."
- thing-closed-p "True if the thing, as a container, is closed."
- thing-substance-p "True if the thing has a :substance."
- thing-size "Return the thing's :size, 0 if unspecified."
- thing-weight "Return the thing's own :weight, 0 if unspecified."
- thing-capacity "Return the thing's :capacity, 0 if it is no container."
- thing-substance-parameter "Return the parameter of the thing's :substance, 0 if unspecified.")
+ thing-p "True of a thing.")
+
+(defmethod reference ((thing thing))
+  (and (thing-world thing) (list :thing (thing-serial thing))))
 
 (defmethod print-object ((thing thing) stream)
   (let ((name (symbol-name (thing-name thing)))
@@ -156,6 +144,8 @@ if it is nowhere."
         for inside in (thing-contents thing)
         do (incf sum (the double-float (thing-total-weight inside)))
         finally (return sum)))
+
+(define-argument-type 'thing #'thing-p "a thing")
 
 (defmethod location-contents ((thing thing)) (thing-contents thing))
 (defmethod (setf location-contents) (things (thing thing)) (setf (thing-contents thing) things))

@@ -81,7 +81,7 @@ against the edges, is the edges."
 (defun check-wall-clause (definition clause kind)
   "Signal MALFORMED-DEFINITION unless CLAUSE, of KIND :WALL or :RECT, can be drawn."
   (destructuring-bind (&optional start end type &rest parameters) (rest clause)
-    (unless (and (point-form-p start) (point-form-p end) type (symbolp type)
+    (unless (and (number-pair-p start) (number-pair-p end) type (symbolp type)
                  (member (length parameters) (if (eq kind :wall) '(1 2) '(1 4)))
                  (every #'realp parameters))
       (reject-clause definition clause
@@ -91,7 +91,7 @@ against the edges, is the edges."
 
 (defun check-circle-clause (definition clause)
   (destructuring-bind (&optional center radius type parameter &rest others) (rest clause)
-    (unless (and (point-form-p center) (typep radius '(real 0)) type (symbolp type)
+    (unless (and (number-pair-p center) (typep radius '(real 0)) type (symbolp type)
                  (realp parameter) (null others))
       (reject-clause definition clause
                      "(circle (x y) radius substance parameter), numbers, radius not below 0"))))

@@ -10,43 +10,38 @@
 
 (defun make-list-vector () (make-array 16 :adjustable t :fill-pointer 0))
 
-(defstruct (world (:constructor %make-world (map)) (:copier nil))
-  "Things, dice and kickers on a map, in the state that they have now."
-  (map nil :type map :read-only t)
-  (seed 0 :type integer)
-  (flags (make-octets 0) :type octets)
-  (cells #() :type simple-vector)
-  (things (make-list-vector) :type thing-vector)
-  (live-count 0 :type fixnum)
-  (next-serial 1 :type fixnum)
-  (dice-set #() :type simple-vector)
-  (robots '() :type list)
-  (simulation nil)
-  (tick 0 :type tick-count)
-  (move-watchers '() :type list)
-  (kicker-groups '() :type list)
-  (kicker-tick 0 :type tick-count)
-  (kicker-generation 0 :type fixnum)
-  (due-kickers '() :type list)
-  ;; The names of attributes that somebody has been warned of.
-  (noted-names '() :type list))
+(define-kind (world :constructor (%make-world (map)))
+    "Things, dice and kickers on a map, in the state that they have now."
+  (:fixed
+   (map nil map "the map that the world is of")
+   (robots '() list "the list of the world's robots; the layer above keeps it" :part)
+   (kicker-generation 0 fixnum "which definitions of kickers its groups were made by")
+   (timeline nil t "the timeline of the world, once there is one; the layer above keeps it")
+   (move-watchers '() list
+                  "the list of functions (thing old-location new-location) called after a thing has
+moved, been made or been destroyed"))
+  (:state
+   (seed 0 integer "the integer that all chance in the world comes from")
+   (flags (make-octets 0) octets
+          "the flags of the world's cells by index: walls, and things on the floor")
+   (cells #() simple-vector
+          "a vector that has, by cell index, the list of the things on the floor, oldest first")
+   (things (make-list-vector) thing-vector
+           "a vector of the world's things in order of creation; NIL where one has been destroyed.
+WORLD-THING-LIST leaves those out" :part)
+   (live-count 0 fixnum "how many things are alive in the world")
+   (next-serial 1 fixnum "the serial number of the next thing to be made")
+   (dice-set #() simple-vector "a vector of the world's dice, one for each purpose" :part)
+   (kicker-groups '() list "the groups of equal kickers" :part)
+   (kicker-tick 0 tick-count "how many ticks kickers were run in")
+   (due-kickers '() list "the kickers to run in the next tick because somebody asked for it" :part))
+  (:scratch
+   (noted-names '() list "the names of attributes that somebody has been warned of")
+   (writer nil t "the thread that is changing the world, or NIL")))
 
-(addition world-p world-map world-seed world-robots world-simulation world-tick)
+(addition world-p world-map world-seed world-robots)
 (document-functions
- world-p "True of a world."
- world-map "Return the map that the world is of."
- world-seed "Return the integer that all chance in the world comes from."
- world-flags "Return the flags of the world's cells by index: walls, and things on the floor."
- world-cells "Return, by cell index, lists of the things on the floor, in order of arrival."
- world-things "Return a vector of the world's things in order of creation; NIL where one has
-been destroyed. WORLD-THING-LIST leaves those out."
- world-dice-set "Return a vector of the world's dice, one for each purpose."
- world-live-count "Return how many things are alive in the world."
- world-robots "Return the list of the world's robots; the layer above keeps it."
- world-simulation "Return the simulation that owns the world; the layer above keeps it."
- world-tick "Return the number of the current tick; the layer above keeps it."
- world-move-watchers "Return the list of functions (thing old-location new-location) called
-after a thing has moved, been made or been destroyed. Can be set.")
+ world-p "True of a world.")
 
 (defmethod print-object ((world world) stream)
   (print-unreadable-object (world stream :identity t)
@@ -58,6 +53,9 @@ after a thing has moved, been made or been destroyed. Can be set.")
 (define-constant +dice-purposes+
     '(:motion :odometry :place :looking :tracking :handling :kickers :manipulations :user)
   :test #'equal :documentation "What chance decides; each has dice of its own.")
+
+(defmethod digest-state ((dice dice) digest)
+  (digest-add digest (dice-state dice)))
 
 (defun make-dice-set (seed)
   (cl:map 'simple-vector (lambda (purpose) (make-dice seed purpose)) +dice-purposes+))

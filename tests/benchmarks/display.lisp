@@ -37,7 +37,7 @@ timed at once."
 (defvar viewer)
 (robot:define-robot 'viewer 'floor-benchmark '(25 25) 0 :cameras '((1 50)) :hands '(1) :bins '(1))
 
-(robot:with-simulation (viewer)
+(run:with-simulation (viewer)
   (let ((world (robot:robot-world viewer)) (last nil))
     (strew world 500 300 200)
     (say "snapshot of 500 things"
@@ -52,7 +52,7 @@ timed at once."
     (flet ((drive ()
              (robot:drive-tick viewer 1d-3)
              (robot:turn-tick viewer 0.01d0)
-             (time:run-ticks 1)))
+             (run:run-ticks 1)))
       (say "driving without a history" (* 1000000 (milliseconds #'drive 100000)) "ns a tick")
       (display:keep-history)
       (say "driving with a history" (* 1000000 (milliseconds #'drive 100000)) "ns a tick"))))

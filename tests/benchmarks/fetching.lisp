@@ -19,10 +19,10 @@
 (defun fetch (errand seed)
   "Let MARVIN fetch what ERRAND says. Return true if it did, and the ticks that took."
   (destructuring-bind (name description places) errand
-    (robot:with-simulation (ars-worlds:marvin :seed seed)
+    (run:with-simulation (ars-worlds:marvin :seed seed)
       (let ((thing (world:find-thing name)))
         (ars-magna.rpl-robot:run-plan 'ars-worlds:fetch-thing description places)
-        (values (brought-p thing 62 38) (time:simulation-tick))))))
+        (values (brought-p thing 62 38) (run:simulation-tick))))))
 
 (dolist (errand *errands*)
   (let* ((ticks '())

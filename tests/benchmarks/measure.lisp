@@ -5,7 +5,7 @@
   (:use :cl)
   (:local-nicknames (:base :ars-magna.base) (:geo :ars-magna.geometry) (:world :ars-magna.world)
                     (:time :ars-magna.time) (:robot :ars-magna.robot)
-                    (:command :ars-magna.command))
+                    (:command :ars-magna.command) (:run :ars-magna.run))
   (:export #:seconds-for #:median #:per-second #:say #:bytes-for))
 
 (in-package :ars-magna.benchmarks)

@@ -70,7 +70,7 @@
 
 (defun look-each-tick (robots simulation)
   "Let each of ROBOTS search for things in every tick of SIMULATION."
-  (time:add-observer
+  (run:add-observer
    (lambda (simulation)
      (declare (ignore simulation))
      (dolist (robot robots)
@@ -78,7 +78,7 @@
    simulation))
 
 (defun measure-looking (name robot-name world-things near-things robots ticks)
-  (robot:call-with-simulation
+  (run:call-with-simulation
    (lambda ()
      (let* ((dice (base:make-dice 7)) (world world:*world*)
             (robot (first (world:world-robots world))))
@@ -87,7 +87,7 @@
        (strew world world-things dice 0 600 400)
        (loop repeat (1- robots) do (robot::make-robot (robot:robot-body robot) world))
        (look-each-tick (world:world-robots world) (time:current-simulation))
-       (say name (per-second ticks (lambda () (time:run-ticks ticks)) :runs 3) "ticks/s")))
+       (say name (per-second ticks (lambda () (run:run-ticks ticks)) :runs 3) "ticks/s")))
    (list robot-name) :seed 1))
 
 (measure-looking "one robot looks each tick, 75 x 75, 10 in view" 'looker 0 10 1 50000)

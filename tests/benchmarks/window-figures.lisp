@@ -177,9 +177,9 @@ differ from each other."
 
 (defun tick-rate (simulation)
   "Return how many ticks a second the live SIMULATION passes."
-  (let ((before (time:simulation-tick simulation)))
+  (let ((before (run:simulation-tick simulation)))
     (let ((seconds (seconds-for (lambda () (sleep *seconds*)))))
-      (/ (- (time:simulation-tick simulation) before) seconds))))
+      (/ (- (run:simulation-tick simulation) before) seconds))))
 
 (defun cpu-milliseconds (before)
   "Return how long processors have worked for us since BEFORE, in milliseconds a second."
@@ -224,12 +224,12 @@ differ from each other."
   (say-torn "torn frames of 10,000, live" 10000 window)
   (say-idle simulation))
 
-(let* ((simulation (robot:fresh-simulation '(watched) :seed 1))
-       (robot (first (robot:simulation-robots simulation)))
+(let* ((simulation (run:fresh-simulation '(watched) :seed 1))
+       (robot (first (run:simulation-robots simulation)))
        (movers (strew-movers (robot:robot-world robot))))
   (call-with-shown (lambda (window) (say-painting window movers)) robot)
   (move-every-tick movers)
-  (time:start-clock simulation :rate 1000)
+  (run:start-clock simulation :rate 1000)
   (say "live, not shown, at 1000 ticks/s" (tick-rate simulation) "ticks/s")
   (call-with-shown (lambda (window) (say-living window simulation)) robot)
-  (time:stop-clock simulation))
+  (run:stop-clock simulation))

@@ -1,6 +1,6 @@
 ;;;; replaced-maps.lisp -- what becomes of runs and robots when their map is defined anew.
 
-(in-package :ars-magna.robot)
+(in-package :ars-magna.run)
 
 ;;; The run of the old map's world ends. The robots that are defined in the map are made anew in the
 ;;; new one, as far as they fit. Headless runs under way have worlds of their own and go on.
@@ -19,7 +19,7 @@
   (unless (from-this-file-p (body-name body) *robots*)
     (warn-of-definition "The robot ~(~A~) takes no more commands: ~A." (body-name body) reason))
   ;; Not the one that a headless run may have bound the variable to here.
-  (let ((robot (ignore-errors (sb-ext:symbol-global-value (body-name body)))))
+  (let ((robot (ignore-errors (global-value (body-name body)))))
     (when (robot-p robot) (retire-robot robot reason))))
 
 (defun move-robots (map)
@@ -30,12 +30,12 @@
           (leave-out body (format nil "it does not fit into the new map ~(~A~), as ~A; define it ~
                                        anew"
                                   (map-name map) trouble))
-          (set-robot body (settle body))))))
+          (set-robot body (settle-robot body))))))
 
 (defmethod map-replaced ((old map) new)
   (let* ((world (map-resident old))
          ;; Also where there was none: somebody may be asking for it at this moment.
-         (simulation (and world (ensure-simulation world)))
+         (simulation (and world (world-simulation world)))
          (reason (if new "its map has been defined anew" "its map has been taken back")))
     (when world
       (retire-robots (world-robots world) reason)

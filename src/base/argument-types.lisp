@@ -1,6 +1,6 @@
-;;;; argument-types.lisp -- what commands take, and how a wrong argument is told so.
+;;;; argument-types.lisp -- what can be asked with, and how a wrong argument is told so.
 
-(in-package :ars-magna.command)
+(in-package :ars-magna.base)
 
 (defstruct (argument-type (:constructor make-argument-type (name predicate words trouble))
                           (:copier nil))
@@ -30,14 +30,12 @@ function that returns in words what is wrong with a value, or NIL for no more th
                        (funcall (argument-type-trouble type) value))))
     (format nil "~A~@[: ~A~]" (argument-type-words type) trouble)))
 
-(defun continuation-p (value)
-  (or (functionp value) (symbolp value)))
+(defun check-of-type (operator name value type)
+  "Signal WRONG-ARGUMENT, by OPERATOR and of its argument NAME, unless VALUE is of TYPE."
+  (unless (argument-of-type-p value type)
+    (error 'wrong-argument :operator operator :name name :value value
+                           :expected (argument-type-text type value))))
 
-(define-argument-type 'robot #'robot-p "a robot")
-(define-argument-type 'camera #'camera-p "a camera, as (robot-camera ROBOT 0) returns")
-(define-argument-type 'hand #'hand-p "a hand, as (robot-hand ROBOT 0) returns")
-(define-argument-type 'storage-bin #'storage-bin-p
-  "a storage bin, as (robot-storage-bin ROBOT 0) returns")
 (defun within-reason-p (value)
   "True of real numbers small enough that arithmetic on positions and angles keeps its meaning."
   (and (realp value) (< -1d9 value 1d9)))
@@ -45,5 +43,10 @@ function that returns in words what is wrong with a value, or NIL for no more th
 (define-argument-type 'number #'within-reason-p "a number between -1e9 and 1e9")
 (define-argument-type 'angle #'within-reason-p "an angle in radians, between -1e9 and 1e9")
 (define-argument-type 'ticks #'within-reason-p "a number of ticks, between -1e9 and 1e9")
-(define-argument-type 'continuation #'continuation-p
-  "a continuation: a function of an error code and the command's results, or NIL for none")
+(define-argument-type 'integer #'integerp "a whole number")
+(define-argument-type 'truth (constantly t) "anything, of which NIL is false")
+(define-argument-type 'datum (constantly t) "anything")
+(define-argument-type 'name (lambda (value) (and value (typep value '(or symbol string))))
+  "a name, a symbol or string")
+(define-argument-type 'keyword #'keywordp "a keyword")
+(define-argument-type 'function #'functionp "a function")

@@ -1,0 +1,47 @@
+;;;; digesting.lisp -- the state of objects of a kind, in a digest.
+
+(in-package :ars-magna.base)
+
+;;; What belongs to an object is digested with it, by its state; what it only refers to, by what
+;;; tells it apart from others, see REFERENCE.
+
+(defgeneric reference (object)
+  (:documentation
+   "Return plain data that tells OBJECT apart from all others in its run: (KIND argument...), a
+keyword and data. A journal names it so, and DEREFERENCE finds its like in another run. NIL if
+there is nothing to tell it by.")
+  (:method (object) (declare (ignore object)) nil))
+
+(defgeneric digest-state (object digest)
+  (:documentation "Add to DIGEST what tells OBJECT apart, its state, and that of its parts. Return
+DIGEST. A kind may add an :AFTER method.")
+  (:method (object digest)
+    (digest-add digest object))
+  (:method ((object structure-object) digest)
+    (let ((kind (kind-of object)))
+      (digest-mention object digest)
+      (when kind
+        (dolist (slot (kind-slots kind))
+          (when (decisive-p slot)
+            (digest-slot slot (slot-content slot object) digest)))))
+    digest))
+
+(defun decisive-p (slot)
+  "True if SLOT has state in it, or parts."
+  (or (eq :state (kind-slot-role slot))
+      (and (eq :fixed (kind-slot-role slot)) (kind-slot-part-p slot))))
+
+(defun digest-slot (slot value digest)
+  (if (kind-slot-part-p slot)
+      (typecase value
+        (sequence
+         (digest-add digest (length value))
+         (map nil (lambda (part) (digest-state part digest)) value))
+        (t (digest-state value digest)))
+      (digest-add digest value)))
+
+(defun digest-mention (object digest)
+  "Add to DIGEST what tells OBJECT apart from others, or else its type."
+  (digest-add digest (or (reference object)
+                         (first (ensure-list (type-of object)))))
+  digest)

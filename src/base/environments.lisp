@@ -1,0 +1,81 @@
+;;;; environments.lisp -- what Lisp's compiler knows of names, and walks through forms.
+
+(in-package :ars-magna.base)
+
+;;; SB-CLTL2 looks into and extends lexical environments; SB-WALKER visits the expressions of a
+;;; form, each with its true environment.
+
+;;; Variables.
+
+(defun variable-kind (name &optional environment)
+  "Return what variable NAME is in ENVIRONMENT: :special, :lexical, :symbol-macro, :constant and so
+on, or NIL if it is none that is known."
+  (values (sb-cltl2:variable-information name environment)))
+
+(defun local-variable-p (symbol environment)
+  "True if SYMBOL is a local variable or symbol macro in ENVIRONMENT."
+  (nth-value 1 (sb-cltl2:variable-information symbol environment)))
+
+(defun known-variable-p (symbol environment)
+  "True if SYMBOL, as a form in ENVIRONMENT, is a variable or constant that is known."
+  (and (variable-kind symbol environment) t))
+
+(defun special-variable-p (symbol environment)
+  "True if SYMBOL is a special variable in ENVIRONMENT."
+  (eq :special (variable-kind symbol environment)))
+
+;;; Functions and macros.
+
+(defun local-function-p (name environment)
+  "True if NAME is a local function or macro in ENVIRONMENT."
+  (nth-value 1 (sb-cltl2:function-information name environment)))
+
+(defun known-function-p (name environment)
+  "True if NAME is a function, also one defined earlier in the file that is being compiled."
+  (or (fboundp name)
+      (eq :function (sb-cltl2:function-information name environment))))
+
+(defun macro-expander (definition environment)
+  "Return the expander of DEFINITION, (name lambda-list form...) as in MACROLET."
+  (destructuring-bind (name lambda-list &rest body) definition
+    (sb-cltl2:enclose (sb-cltl2:parse-macro name lambda-list body environment) environment)))
+
+(defun lisps-macro-p (name)
+  "True if the symbol NAME is of Common Lisp or its implementation."
+  (let ((package (symbol-package name)))
+    (and package
+         (or (eq package #.(find-package :cl))
+             (starts-with-subseq "SB-" (package-name package))))))
+
+;;; Environments.
+
+(defun extended-environment (environment &rest additions &key &allow-other-keys)
+  "Return ENVIRONMENT with ADDITIONS: :variable and :function and lists of names, :macro and a list
+of (name expander), :symbol-macro and a list of (name expansion)."
+  (apply #'sb-cltl2:augment-environment environment additions))
+
+(defun nested-p (environment)
+  "True if a form in ENVIRONMENT stands inside others that are compiled with it."
+  (and environment (uiop:symbol-call :sb-c '#:lexenv-lambda environment) t))
+
+;;; Forms.
+
+(defun evaluate-form (form &key compile)
+  "Return what FORM does when it is compiled, if COMPILE is true, or else interpreted."
+  (let ((sb-ext:*evaluator-mode* (if compile :compile :interpret)))
+    (eval form)))
+
+(defun form-behind-comma (object)
+  "Return the form behind OBJECT if that is a comma in a backquoted form, or NIL."
+  (and (sb-int:comma-p object) (sb-int:comma-expr object)))
+
+(defun walk-form (form environment visit)
+  "Return FORM with each expression in it replaced by what VISIT returns for it and its environment,
+outermost first; what is put in place is visited in turn. A second value that is true keeps the
+walk out of what is put there."
+  (declare (type function visit))
+  (sb-walker:walk-form form environment
+                       (lambda (form context environment)
+                         (if (eq context :eval)
+                             (funcall visit form environment)
+                             form))))

@@ -1,0 +1,26 @@
+;;;; floats.lisp -- which numbers are finite, and floats as their bits.
+
+(in-package :ars-magna.base)
+
+;;; The library ieee-floats reckons the bits from sign, exponent and fraction. That conses and
+;;; takes three times as long, which digests would feel, and it does not know the infinities.
+
+(defun finite-p (object)
+  "True of real numbers other than the infinities and what is no number."
+  (and (realp object)
+       (not (and (floatp object)
+                 (or (sb-ext:float-infinity-p object) (sb-ext:float-nan-p object))))))
+
+(declaim (inline double-to-bits bits-to-double))
+(defun double-to-bits (number)
+  "Return the 64 bits of NUMBER, a double-float, as an integer that is not negative."
+  (declare (type double-float number))
+  (logior (ash (ldb (byte 32 0) (sb-kernel:double-float-high-bits number)) 32)
+          (sb-kernel:double-float-low-bits number)))
+
+(defun bits-to-double (bits)
+  "Return the double-float with BITS, an integer of 64 bits: DOUBLE-TO-BITS undone."
+  (declare (type (unsigned-byte 64) bits))
+  (let ((high (ldb (byte 32 32) bits)))
+    (sb-kernel:make-double-float (if (logbitp 31 high) (- high (ash 1 32)) high)
+                                 (ldb (byte 32 0) bits))))

@@ -1,0 +1,207 @@
+;;;; kinds.lisp -- what each slot of a kind of object is: said once, for all who need to know.
+
+(in-package :ars-magna.base)
+
+;;; A kind is a structure whose slots say what they are, by role:
+;;;
+;;;   :fixed    the model: how the object was made;
+;;;   :state    what decides the future, or what programs are told of it;
+;;;   :memory   what is shown to people and decides nothing;
+;;;   :scratch  what means nothing between ticks;
+;;;   :link     what ties the object to those who use it, such as continuations.
+;;;
+;;; From that follow the readers' documentation, RESET, DIGEST-STATE, COPY-RUNNING and the
+;;; inspection of an object. Other objects in a slot are referred to, unless the slot is marked as
+;;; a :PART: then they belong to the object, and are reset, digested and shown with it.
+
+(defstruct (kind-slot (:constructor make-kind-slot
+                          (name role type text part-p initial reader writer))
+                      (:copier nil))
+  "What is known of a slot of a kind. INITIAL returns the value that it begins with."
+  (name nil :type symbol :read-only t)
+  (role nil :type (member :fixed :state :memory :scratch :link) :read-only t)
+  (type t :read-only t)
+  (text "" :type string :read-only t)
+  (part-p nil :type boolean :read-only t)
+  (initial nil :type function :read-only t)
+  (reader nil :type function :read-only t)
+  (writer nil :type function :read-only t))
+
+(defstruct (kind (:constructor make-kind (name slots parent)) (:copier nil))
+  "A kind of object: its slots, those of its PARENT first."
+  (name nil :type symbol :read-only t)
+  (slots '() :type list :read-only t)
+  (parent nil :type (or null kind) :read-only t))
+
+(document-functions
+  kind-slot-name "Return the name of the slot, a symbol."
+  kind-slot-role "Return what the slot is: :FIXED, :STATE, :MEMORY, :SCRATCH or :LINK."
+  kind-slot-type "Return the Lisp type of the slot's values."
+  kind-slot-text "Return what is in the slot, in words."
+  kind-slot-part-p "True if what is in the slot belongs to the object."
+  kind-slot-reader "Return the function of an object that returns what is in the slot."
+  kind-slot-writer "Return the function of a value and an object that puts the value into the slot."
+  kind-p "True of kinds."
+  kind-name "Return the name of the kind, the type of its objects."
+  kind-slots "Return a list of what is known of the slots of the kind, inherited ones first."
+  kind-parent "Return the kind that the kind includes, or NIL.")
+
+(defmethod print-object ((kind kind) stream)
+  (print-unreadable-object (kind stream :type t) (princ (kind-name kind) stream)))
+
+(defvar *kinds* '() "All kinds, in order of definition.")
+
+(declaim (inline kind-called))
+(defun kind-called (name)
+  (get name 'kind))
+
+(defun kind-of (object)
+  "Return the kind that OBJECT is of, or NIL."
+  (and (typep object 'structure-object)
+       (kind-called (type-of object))))
+
+(defun all-kinds (&optional base)
+  "Return a list of all kinds, in order of definition; with BASE, the name of one, of those that
+are or include it."
+  (remove-if-not (lambda (kind)
+                   (or (null base)
+                       (loop for each = kind then (kind-parent each)
+                             while each
+                               thereis (eq base (kind-name each)))))
+                 *kinds*))
+
+;;; Defining.
+
+(defun reader-name (conc slot)
+  "Return the symbol of the reader of SLOT in structures whose accessors begin with CONC."
+  (symbolicate conc slot))
+
+(defun reader-text (slot)
+  "Return the documentation of a reader of SLOT."
+  (if (ends-with-subseq "-P" (symbol-name (kind-slot-name slot)))
+      (format nil "True if ~A." (kind-slot-text slot))
+      (format nil "Return ~A." (kind-slot-text slot))))
+
+(defun document-readers (kind conc package)
+  "Document the readers of KIND, whose names in PACKAGE begin with CONC."
+  (dolist (slot (kind-slots kind))
+    (let ((reader (find-symbol (format nil "~A~A" conc (kind-slot-name slot)) package)))
+      (when (and reader (fboundp reader))
+        (setf (documentation reader 'function) (reader-text slot))))))
+
+(defun register-kind (name parent slots conc)
+  "Let NAME be a kind with SLOTS of its own besides those of the kind called PARENT."
+  (let* ((parent (and parent (kind-called parent)))
+         (kind (make-kind name (append (and parent (kind-slots parent)) slots) parent)))
+    (setf *kinds* (append (remove name *kinds* :key #'kind-name) (list kind))
+          (get name 'kind) kind)
+    (document-readers kind conc (symbol-package name))
+    kind))
+
+(defun slots-by-role (groups)
+  "Return a list (role name default type text part-p) for each slot in GROUPS, (role slot...)."
+  (loop for (role . slots) in groups
+        append (loop for (name default type text . options) in slots
+                     collect (list role name default type text
+                                   (and (member :part options) t)))))
+
+(defun check-kind-form (name groups)
+  (loop for (role . slots) in groups
+        do (unless (member role '(:fixed :state :memory :scratch :link))
+             (reject-clause-of-kind name (cons role slots)
+                                    "(role slot...), with one of the roles of kinds"))
+           (dolist (slot slots)
+             (unless (and (consp slot) (<= 4 (length slot)) (symbolp (first slot))
+                          (stringp (fourth slot)) (subsetp (nthcdr 4 slot) '(:part)))
+               (reject-clause-of-kind name slot "(name default type \"what it is\" [:part])")))))
+
+(defun reject-clause-of-kind (name clause expected)
+  (error 'malformed-definition :definition (format nil "define-kind ~(~A~)" name)
+                               :clause clause :expected expected))
+
+(defun slot-forms (name conc slots)
+  "Return the forms that make what is known of SLOTS of the kind NAME."
+  (loop for (role slot default type text part-p) in slots
+        for reader = (reader-name conc slot)
+        collect `(make-kind-slot ',slot ,role ',type ,text ,part-p
+                            (lambda () ,default)
+                            (lambda (object) (,reader (the ,name object)))
+                            (lambda (value object) (setf (,reader (the ,name object)) value)))))
+
+(defmacro define-kind ((name &key include (constructor (symbolicate 'make- name)) print)
+                       documentation &body groups)
+  "Define the structure NAME, which includes the kind INCLUDE if that is given, and say what each
+of its slots is. GROUPS are lists (role slot...), a slot is (name default type \"what it is\"), and
+:PART behind that if what is in it belongs to the object. The roles are
+  :fixed    how the object was made;
+  :state    what decides the future, or what programs are told of it;
+  :memory   what is shown to people and decides nothing;
+  :scratch  what means nothing between ticks;
+  :link     what ties the object to those who use it.
+CONSTRUCTOR is as in DEFSTRUCT; PRINT, a function of object and stream, is how it is printed.
+Return NAME. Signals MALFORMED-DEFINITION."
+  (check-kind-form name groups)
+  (let ((slots (slots-by-role groups))
+        (conc (format nil "~A-" name)))
+    `(progn
+       (defstruct (,name ,@(when include `((:include ,include)))
+                         ,(if (consp constructor)
+                              `(:constructor ,@constructor)
+                              `(:constructor ,constructor))
+                         (:copier nil)
+                         ,@(when print `((:print-function (lambda (object stream depth)
+                                                            (declare (ignore depth))
+                                                            (,print object stream))))))
+         ,documentation
+         ,@(loop for (nil slot default type) in slots
+                 collect `(,slot ,default :type ,type)))
+       (register-kind ',name ',include (list ,@(slot-forms name conc slots)) ,conc)
+       (defmethod describe-object ((object ,name) stream)
+         (describe-by-kind object stream))
+       ',name)))
+
+;;; What is in an object.
+
+(declaim (inline slot-content))
+(defun slot-content (slot object)
+  (funcall (kind-slot-reader slot) object))
+
+(defun object-slots (object &rest roles)
+  "Return a list (name value text) for each slot of OBJECT, of a kind, whose role is among ROLES;
+without ROLES, for each."
+  (loop for slot in (kind-slots (kind-of object))
+        when (or (null roles) (member (kind-slot-role slot) roles))
+          collect (list (kind-slot-name slot) (slot-content slot object) (kind-slot-text slot))))
+
+(defun describe-by-kind (object stream)
+  "Write to STREAM what OBJECT is and what is in it, by role."
+  (format stream "~&~S~%" object)
+  (loop for (role text) in '((:fixed "as it was made") (:state "state") (:memory "memory")
+                             (:scratch "scratch") (:link "links"))
+        for slots = (object-slots object role)
+        do (when slots
+             (format stream "~& ~A:~%~:{  ~(~22A~) ~S  (~A)~%~}" text slots))))
+
+;;; Reset.
+
+(defun map-parts (function value)
+  "Call FUNCTION with the object VALUE, or with each in the list or vector VALUE."
+  (typecase value
+    (list (mapc function value))
+    (vector (map nil function value))
+    (t (funcall function value))))
+
+(defgeneric reset (object)
+  (:documentation "Make OBJECT, of a kind, and its parts as they were when they were made. What its
+:LINKs say stays. Return OBJECT. A kind may add an :AFTER method.")
+  (:method (object) object)
+  (:method ((object structure-object))
+    (let ((kind (kind-of object)))
+      (when kind
+        (dolist (slot (kind-slots kind))
+          (ecase (kind-slot-role slot)
+            ((:state :memory :scratch)
+             (funcall (kind-slot-writer slot) (funcall (kind-slot-initial slot)) object))
+            (:fixed (when (kind-slot-part-p slot) (map-parts #'reset (slot-content slot object))))
+            (:link))))
+      object)))

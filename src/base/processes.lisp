@@ -1,0 +1,20 @@
+;;;; processes.lisp -- other programs and the variables of the environment.
+
+(in-package :ars-magna.base)
+
+(defun environment-value (name)
+  "Return the value of the environment's variable called NAME, a string, or NIL if it is not set."
+  (uiop:getenv name))
+
+(defun run-command (program arguments &key input output)
+  "Run PROGRAM, looked for where programs are, with the strings ARGUMENTS, and wait for its end.
+INPUT is a stream for it to read, :INTERACTIVE to read what this Lisp would, or NIL. Return its exit
+status, or NIL if it cannot be run, and as a string what it wrote if OUTPUT is :STRING."
+  (handler-case
+      (multiple-value-bind (text errors status)
+          (uiop:run-program (cons program arguments)
+                            :input input :output output :ignore-error-status t
+                            :external-format :utf-8)
+        (declare (ignore errors))
+        (values status text))
+    (error () nil)))

@@ -1,0 +1,128 @@
+;;;; headless.lisp -- runs whose ticks pass only when asked for.
+
+(in-package :ars-magna.run)
+
+;;; WITH-SIMULATION makes a fresh world, with fresh robots in it, for its extent.
+
+(defvar *simulation-variables* '()
+  "Symbols that a headless simulation binds, to the values they have, so that what is set in it
+ends with it and simulations side by side do not meet.")
+
+;;; Passing ticks.
+
+(defun check-headless (simulation operator)
+  (when (live-p simulation)
+    (reject-use "~(~A~): this simulation runs live, its ticks pass by themselves. ~
+                 Use (with-simulation (ROBOT) ...) or (stop-simulator)." operator)))
+
+(addition run-ticks)
+(defun run-ticks (count &optional (simulation (current-simulation)))
+  "Pass COUNT ticks of the headless SIMULATION. Return the tick then reached. Signals
+WRONG-ARGUMENT, and MISUSE if SIMULATION runs live or is inside a tick."
+  (check-argument run-ticks count (typep count '(integer 0)) "a number of ticks, 0 or more")
+  (check-headless simulation 'run-ticks)
+  (check-not-over simulation 'run-ticks)
+  (when (simulation-ticking-p simulation)
+    (reject-use "run-ticks: a tick is under way; time cannot pass inside it."))
+  (let ((*simulation* simulation)
+        (*message-queue* (simulation-messages simulation)))
+    (loop repeat count do (tick simulation)))
+  (simulation-tick simulation))
+
+(addition run-until)
+(defun run-until (predicate &key (limit 100000) (simulation (current-simulation)))
+  "Pass ticks of the headless SIMULATION until PREDICATE, a function of no arguments, returns
+true, but at most LIMIT. Return what it returned and the tick reached; NIL means the limit."
+  (check-argument run-until limit (typep limit '(integer 0)) "a number of ticks, 0 or more")
+  (check-headless simulation 'run-until)
+  (check-not-over simulation 'run-until)
+  (let ((answer (loop for left downfrom limit
+                      thereis (funcall predicate)
+                      until (zerop left)
+                      do (run-ticks 1 simulation))))
+    (values answer (simulation-tick simulation))))
+
+(addition step-ticks)
+(defun step-ticks (&optional (count 1) (simulation (current-simulation)))
+  "Pass COUNT ticks and then pause. A headless SIMULATION has passed them on return; a live one
+passes them at its pace. Returns nothing."
+  (check-argument step-ticks count (typep count '(integer 1)) "a number of ticks, 1 or more")
+  (if (live-p simulation)
+      (let-pass count simulation)
+      (run-ticks count simulation))
+  (values))
+
+;;; Fresh runs.
+
+(defun body-of (designator)
+  "Return the body of the robot DESIGNATOR, which may be a robot or its name."
+  (if (robot-p designator) (robot-body designator) (find-body designator)))
+
+(defun fresh-simulation (robots &key (seed 0) journal)
+  "Return a simulation, at tick 0, of a fresh world that holds the things of its map and fresh
+ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
+  (let* ((bodies (mapcar #'body-of robots))
+         (maps (remove-duplicates (mapcar #'find-map (mapcar #'body-map bodies)))))
+    (unless (= (length maps) 1)
+      (reject-use "One simulation has one map, and these robots are defined in ~
+                   ~:[none~;~:*~{~A~^, ~}~]."
+                  maps))
+    (let ((world (make-world (first maps) :seed seed)))
+      (dolist (body bodies) (make-robot body world))
+      (let ((simulation (make-simulation world)))
+        (when journal (begin-journal simulation))
+        simulation))))
+
+(defun call-with-simulation (function robots &key (seed 0) parameters clean journal)
+  "Call FUNCTION in a fresh headless simulation; see WITH-SIMULATION."
+  (check-argument with-simulation seed (integerp seed) "an integer")
+  (call-with-parameters
+   parameters
+   (lambda ()
+     (when clean (clean-simulation))
+     (let* ((*message-queue* (make-message-queue))
+            (names (variables-among robots))
+            (simulation (fresh-simulation (ensure-list robots) :seed seed :journal journal))
+            (*simulation* simulation)
+            (*world* (simulation-world simulation))
+            (robots (simulation-robots simulation)))
+       (progv (append names (mapcar #'robot-name robots) *simulation-variables*)
+           (append (robots-meant names) robots (mapcar #'symbol-value *simulation-variables*))
+         (unwind-protect (funcall function)
+           (end-headless simulation)))))))
+
+(defun end-headless (simulation)
+  (let ((reason "the headless simulation that it was in has ended"))
+    (retire-robots (simulation-robots simulation) reason)
+    (end-simulation simulation reason)))
+
+(defun variables-among (names)
+  "Return the symbols among NAMES, a list or a single name, that can be variables."
+  (remove-if-not (lambda (name) (and (symbolp name) (variable-name-p name)))
+                 (ensure-list names)))
+
+(defun unquoted (form)
+  "Return FORM without the quote that people put before names elsewhere."
+  (if (and (consp form) (eq 'quote (first form))) (second form) form))
+
+(defun robots-meant (names)
+  "Return the robots of the current simulation that NAMES, of any package, mean."
+  (loop for name in names collect (robot-of-body (find-body name) *world*)))
+
+(defun retire-robots (robots reason)
+  (dolist (robot robots) (retire-robot robot reason)))
+
+(addition with-simulation)
+(defmacro with-simulation ((robots &key (seed 0) parameters clean journal) &body body)
+  "Run BODY with ROBOTS, the name of a robot or a list of names, of any package, bound to fresh
+robots in a fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. The
+integer SEED decides all chance. Parameters are bound to what they are here, or as the list
+PARAMETERS of lists (name value) says; with CLEAN the simulation is clean. With JOURNAL it keeps a
+journal. Messages go to a queue of its own. When BODY has ended, the run is over: what the robots
+are doing is interrupted, and they take no more commands. Return the values of BODY."
+  (let ((robots (unquoted robots)))
+    `(call-with-simulation (lambda ()
+                             (declare (special ,@(variables-among robots)))
+                             ,@body)
+                           ',robots
+                           :seed ,seed :parameters ,parameters :clean ,clean :journal ,journal)))

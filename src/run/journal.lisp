@@ -1,0 +1,111 @@
+;;;; journal.lisp -- what was asked of a run, and when, so that it can be repeated exactly.
+
+(in-package :ars-magna.run)
+
+;;; A journal is a header, entries (tick operator argument ...) in the order in which they took
+;;; effect, and the tick at which it ended. An operator is a name that DEFINE-OPERATOR has
+;;; defined; robots, parts, things and designators stand in an entry as lists that name them (see
+;;; references.lisp). What commands do is not in it, and need not be: a run is a function of what
+;;; is.
+
+(addition *journal-limit*)
+(defparameter *journal-limit* 1000000
+  "How many entries a journal holds at most (about 200 bytes each). One that is full says so, and
+repeats the run up to there.")
+
+(defstruct (journal (:constructor make-journal (header)) (:copier nil))
+  "The record of one run."
+  (header '() :type list)
+  (newest-first '() :type list)
+  (length 0 :type fixnum)
+  (end 0 :type tick-count)
+  ;; True once there was something to note and no room for it.
+  (full-p nil :type boolean))
+(addition journal-p journal-header journal-length journal-end)
+(document-functions
+  make-journal "Return an empty journal that begins with HEADER."
+  journal-p "True of journals."
+  journal-header "Return the plist with which the run began: map, robots, seed, parameters, and what
+the definitions were that decide it."
+  journal-length "Return how many entries the journal has."
+  journal-end "Return the tick at which the journal ends.")
+
+(defmethod print-object ((journal journal) stream)
+  (print-unreadable-object (journal stream :type t)
+    (format stream "~D entr~:@P, to tick ~D" (journal-length journal) (journal-end journal))))
+
+(addition journal-entries)
+(defun journal-entries (journal)
+  "Return the entries (tick operator argument ...) of JOURNAL, oldest first."
+  (reverse (journal-newest-first journal)))
+
+(defun close-full-journal (journal tick)
+  "Let JOURNAL end at TICK, and say so."
+  (setf (journal-full-p journal) t
+        (journal-end journal) tick)
+  (warning-set (format nil "The journal is full: with ~D entries it ends at tick ~D. The run goes ~
+                            on, and can be repeated up to there; see *JOURNAL-LIMIT*."
+                       (journal-length journal) tick)))
+
+(defun note (simulation operator arguments)
+  "Enter that OPERATOR, a symbol, was asked for with the list ARGUMENTS into the journal of
+SIMULATION, as of now, if it keeps one."
+  (let ((journal (simulation-journal simulation)))
+    (when (and journal (not (journal-full-p journal)))
+      (let ((tick (simulation-tick simulation)))
+        (cond ((>= (journal-length journal) *journal-limit*) (close-full-journal journal tick))
+              (t (push (list* tick operator (externalize arguments))
+                       (journal-newest-first journal))
+                 (incf (journal-length journal))
+                 (setf (journal-end journal) tick)))))))
+
+;;; Beginning and end.
+
+(defun begin-journal (simulation)
+  "Let SIMULATION keep a journal from now on, at its beginning. Return the journal."
+  (setf (simulation-journal simulation)
+        (make-journal (list :map (qualified-name
+                                  (map-name (world-map (simulation-world simulation))))
+                            :robots (robot-names simulation)
+                            :seed (simulation-seed simulation)
+                            :parameters (loop for (symbol value) in (parameter-settings)
+                                              collect (list (string-downcase symbol) value))
+                            :definitions (definitions-of simulation)))))
+
+(defun qualified-name (symbol)
+  "Return a string that names SYMBOL with its package, for FIND-ROBOT and kin."
+  (format nil "~@[~A::~]~A" (and (symbol-package symbol) (package-name (symbol-package symbol)))
+          symbol))
+
+(defun robot-names (simulation)
+  (mapcar (lambda (robot) (qualified-name (robot-name robot))) (simulation-robots simulation)))
+
+(defun end-of-journal (simulation)
+  "Return the journal of SIMULATION, marked as reaching to now unless it was full before. Signals
+MISUSE if it keeps none."
+  (let ((journal (or (simulation-journal simulation)
+                     (reject-use "This simulation keeps no journal. Ask for one: ~
+                                  (with-simulation (ROBOT :journal t) ...), and do not say ~
+                                  (simulator ROBOT :journal nil)."))))
+    (unless (journal-full-p journal) (setf (journal-end journal) (simulation-tick simulation)))
+    ;; Some may have been defined since it began.
+    (let ((header (journal-header journal)))
+      (setf (getf header :robots) (robot-names simulation)
+            (getf header :definitions) (merge-definitions (getf header :definitions)
+                                                          (definitions-of simulation))
+            (journal-header journal) header))
+    journal))
+
+(defun truncated-journal (journal tick)
+  "Return a journal that ends at TICK and until then is like JOURNAL. Signals WRONG-ARGUMENT for a
+TICK that it does not reach."
+  (unless (typep tick `(integer 0 ,(journal-end journal)))
+    (error 'wrong-argument :operator 'replay :name "until" :value tick
+                           :expected (format nil "a tick of the journal, from 0 to ~D"
+                                             (journal-end journal))))
+  (let ((copy (make-journal (journal-header journal))))
+    (setf (journal-newest-first copy)
+          (remove-if (lambda (entry) (>= (first entry) tick)) (journal-newest-first journal))
+          (journal-length copy) (length (journal-newest-first copy))
+          (journal-end copy) tick)
+    copy))

@@ -1,0 +1,125 @@
+;;;; live.lisp -- runs whose ticks pass by themselves (manual 2.3, A).
+
+(in-package :ars-magna.run)
+
+(defvar *simulator-hooks* '()
+  "Functions of a robot and the plist of SIMULATOR's options, called when it has started.")
+
+(defun call-as-owner (simulation function)
+  "Call FUNCTION with the bindings under which the thread of SIMULATION runs."
+  (let ((*simulation* simulation)
+        (*message-queue* (simulation-messages simulation)))
+    (call-with-parameters '() function)))
+
+(defun start-clock (simulation &key (rate *default-rate*))
+  "Run SIMULATION live, in a thread of its own, at RATE. Return SIMULATION. Signals MISUSE if it
+runs live already, WRONG-ARGUMENT for a rate that is neither a positive number nor :FREE."
+  (check-not-over simulation 'start-clock)
+  (check-parameters)
+  (start-pacing (simulation-timeline simulation)
+                (lambda () (tick simulation))
+                (lambda () (idle-p simulation))
+                rate
+                (lambda (function) (call-as-owner simulation function)))
+  simulation)
+
+(defun stop-clock (simulation)
+  "End the thread of the live SIMULATION after its current tick and wait for that. Commands under
+way stay as they are; START-CLOCK goes on with them. Return SIMULATION."
+  (stop-pacing (simulation-timeline simulation))
+  simulation)
+
+(addition await-idle)
+(defun await-idle (&optional (simulation (current-simulation)) (seconds 60))
+  "Wait until nothing is left to do in the live SIMULATION, at most SECONDS. True if so."
+  (let ((idle (make-semaphore "idle")))
+    (flet ((look (simulation)
+             (when (idle-p simulation) (signal-semaphore idle))))
+      (asking (simulation)
+        (add-observer #'look simulation)
+        (look simulation))
+      (unwind-protect (and (wait-on-semaphore idle seconds) t)
+        (asking (simulation) (remove-observer #'look simulation))))))
+
+;;; Which robot is meant.
+
+(defun bodies-in (map)
+  "Return the bodies of the robots that are defined in MAP."
+  (remove map (all-bodies) :test-not #'eq :key (lambda (body) (find-map (body-map body) nil))))
+
+(defun first-robot-in (map)
+  "Return the robot of MAP that was defined first. Signals MISUSE if there is none."
+  (let ((body (first (bodies-in map))))
+    (if body
+        (body-robot body)
+        (reject-use "Map ~(~A~) has no robot. Define one: (defrobot NAME (~:*~(~A~) (X Y) ANGLE))."
+                    (map-name map)))))
+
+(defun robot-to-start (designator)
+  "Return the robot to run that DESIGNATOR means: a robot, a map with robots, or the name of either.
+One whose map or definition has been replaced means the robot that is called so now."
+  (let ((robot (cond ((map-p designator) (first-robot-in designator))
+                     ((find-robot designator nil))
+                     ((find-map designator nil) (first-robot-in (find-map designator)))
+                     (t (reject-name "robot or map" designator
+                                     (append (mapcar #'body-name (all-bodies))
+                                             (mapcar #'map-name (all-maps))))))))
+    (if (robot-retired robot)
+        (find-again (robot-name robot))
+        robot)))
+
+(defun set-robot (body robot)
+  "Let the variable of BODY's name hold ROBOT at top level."
+  (setf (global-value (body-name body)) robot))
+
+(defun find-again (name)
+  "Return the robot called NAME now, made anew if that has not been possible before."
+  (let* ((body (find-body name))
+         (robot (body-robot body)))
+    (if (or (null robot) (robot-retired robot))
+        (set-robot body (settle-robot body))
+        robot)))
+
+;;; Starting and stopping.
+
+(defun restart-world (world seed)
+  "Make WORLD and its robots what they were at the start, with a timeline and run of their own."
+  (reset-world world :seed seed)
+  (setf (world-timeline world) (make-timeline (map-name (world-map world))))
+  (world-simulation world))
+
+(defun run-to-start (world seed)
+  "Return the simulation of WORLD to run live: a new one if the last has passed ticks, or if SEED
+is given."
+  (let ((simulation (world-simulation world)))
+    (stop-clock simulation)
+    (cond ((or seed (plusp (simulation-tick simulation)) (simulation-over simulation))
+           (end-simulation simulation "it has been started anew")
+           (restart-world world (or seed (simulation-seed simulation))))
+          (t simulation))))
+
+(public simulator)
+(defun simulator (robot &rest options
+                  &key (rate *default-rate*) (seed nil) (journal t) &allow-other-keys)
+  "Run the world of ROBOT live, in a thread of its own, at RATE ticks per second or :FREE, and make
+it the current simulation. ROBOT is a robot or a map with a robot in it, or the name of either. A
+world that has run before starts anew, with SEED if that is given. It keeps a journal unless
+JOURNAL is NIL, as is advisable for busy programs at free rates. Return the robot (manual A).
+STOP-SIMULATOR stops it. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if the robot no longer
+fits into its map."
+  (check-rate rate)
+  (let* ((robot (robot-to-start robot))
+         (simulation (run-to-start (robot-world robot) seed)))
+    (unless journal (setf (simulation-journal simulation) nil))
+    (setf *simulation* simulation
+          *world* (simulation-world simulation))
+    (start-clock simulation :rate rate)
+    (dolist (hook *simulator-hooks*) (funcall hook robot options))
+    robot))
+
+(addition stop-simulator)
+(defun stop-simulator (&optional (simulation (current-simulation)))
+  "Stop the live SIMULATION after its current tick. What is under way stays pending. Return
+nothing."
+  (stop-clock simulation)
+  (values))

@@ -1,0 +1,98 @@
+;;;; replay.lisp -- a run repeated from its journal, to the bit.
+
+(in-package :ars-magna.run)
+
+(addition different-definitions)
+(define-condition different-definitions (ars-magna-error)
+  ((differences :initarg :differences :reader different-definitions-differences))
+  (:report (lambda (condition stream)
+             (format stream "The journal is of a run whose definitions are not those at hand: ~
+                             ~{~A~^; ~}. Load what it was recorded with; or replay it all the ~
+                             same, with :ANYWAY T, and it may go differently."
+                     (different-definitions-differences condition))))
+  (:documentation "A journal was recorded with other definitions than those that are loaded."))
+
+(defun check-definitions (journal simulation)
+  "Signal DIFFERENT-DEFINITIONS, with the restart REPLAY-ANYWAY, if JOURNAL is of a run with other
+definitions than SIMULATION."
+  (let ((differences (differences (getf (journal-header journal) :definitions)
+                                  (definitions-of simulation))))
+    (when differences
+      (restart-case (error 'different-definitions :differences differences)
+        (replay-anyway ()
+          :report "Replay it all the same.")))))
+
+;;; Entries.
+
+(defun entry-text (entry number)
+  "Return what ENTRY is called in messages."
+  (format nil "entry ~D, ~(~A~) at tick ~D" number (second entry) (first entry)))
+
+(defun perform-entry (entry number simulation)
+  "Ask SIMULATION again for what ENTRY says. Signals MISUSE if that cannot be."
+  (destructuring-bind (tick name . arguments) entry
+    (run-ticks (- tick (simulation-tick simulation)) simulation)
+    (handler-case
+        (let ((operator (find-operator name))
+              (arguments (internalize arguments simulation)))
+          (check-operands operator arguments)
+          (apply (operator-function operator) arguments))
+      (error (trouble)
+        (reject-use "The journal cannot be replayed: its ~A: ~A" (entry-text entry number)
+                    trouble)))))
+
+(defun perform-entries (journal simulation)
+  (loop for entry in (journal-entries journal)
+        for number from 1
+        do (perform-entry entry number simulation))
+  (run-ticks (- (journal-end journal) (simulation-tick simulation)) simulation))
+
+(defun full-settings (settings)
+  "Return SETTINGS, a list (name value), with the defaults of the parameters it leaves out."
+  (loop for parameter in (all-parameters)
+        collect (or (find parameter settings :key (lambda (setting)
+                                                    (find-parameter (first setting))))
+                    (list (parameter-name parameter) (parameter-default parameter)))))
+
+(defun call-with-replay (function journal &key until anyway observer)
+  "Call FUNCTION where JOURNAL has been repeated; see WITH-REPLAY. OBSERVER, if given, is called
+after each tick of that, with the simulation."
+  (let* ((journal (if (journal-p journal) journal (read-journal journal)))
+         (journal (if until (truncated-journal journal until) journal)))
+    (destructuring-bind (&key robots seed parameters &allow-other-keys) (journal-header journal)
+      (call-with-simulation
+       (lambda ()
+         (let ((simulation (current-simulation)))
+           (unless anyway (check-definitions journal simulation))
+           (when observer (add-observer observer simulation))
+           (perform-entries journal simulation)
+           (when observer (remove-observer observer simulation))
+           (funcall function)))
+       (mapcar (lambda (name) (body-name (find-body name))) robots)
+       :seed seed :parameters (full-settings parameters) :journal t))))
+
+(addition with-replay)
+(defmacro with-replay ((journal &key until anyway) &body body)
+  "Run BODY in a fresh headless simulation in which JOURNAL (a journal or a file that holds one)
+has been repeated, up to the tick UNTIL or its end, with robots and parameters bound as in
+WITH-SIMULATION: a run can be rewound so, and go on differently. Commands are repeated without
+their continuations. Return the values of BODY. Signals DAMAGED-JOURNAL, WRONG-ARGUMENT for a tick
+beyond its end, UNKNOWN-NAME when the world is not loaded, and DIFFERENT-DEFINITIONS when what is
+loaded is not what the run was recorded with, unless ANYWAY is true."
+  `(call-with-replay (lambda () ,@body) ,journal :until ,until :anyway ,anyway))
+
+(addition replay)
+(defun replay (journal &key until anyway)
+  "Repeat JOURNAL as WITH-REPLAY does. Return the simulation, and its STATE-DIGEST."
+  (with-replay (journal :until until :anyway anyway)
+    (values (current-simulation) (state-digest))))
+
+(addition save-journal)
+(defun save-journal (file &optional (simulation (current-simulation)))
+  "Write the journal of SIMULATION up to now to FILE. Return its truename. Signals MISUSE."
+  (asking (simulation) (write-journal (end-of-journal simulation) file)))
+
+(addition load-journal)
+(defun load-journal (file)
+  "Return the journal in FILE. Signals DAMAGED-JOURNAL."
+  (read-journal file))

@@ -1,0 +1,207 @@
+;;;; run.lisp -- one run: a timeline, a world, and what goes with them.
+
+(in-package :ars-magna.run)
+
+;;; A run has no state of its own but the values of the parameters as it knows them: the rest is its
+;;; timeline's and its world's. Each world has one run. That of a map's resident world is made
+;;; when it is first needed.
+
+(define-kind (simulation :constructor (%make-simulation (timeline world)))
+    "One run: a timeline, a world, and what goes with them."
+  (:fixed
+   (timeline nil (or null timeline) "the timeline of the simulation" :part)
+   (world nil (or null world) "the world that the simulation changes" :part))
+  (:state
+   (known-parameters (parameter-values) simple-vector
+                     "the values of the parameters as the journal knows them"))
+  (:link
+   (journal nil t "the journal that the simulation keeps, or NIL")
+   (messages *message-queue* message-queue "the message queue that the simulation reports to")
+   (observers '() list "the functions that are called after each tick")
+   (participants '() list "what takes part in the simulation, see participant.lisp")))
+
+(addition simulation-p simulation-world simulation-journal)
+(document-functions
+  simulation-p "True of simulations.")
+
+(defmethod timeline-of ((simulation simulation))
+  (simulation-timeline simulation))
+
+(addition simulation-name)
+(defun simulation-name (simulation)
+  "Return what SIMULATION is called, the name of its map."
+  (timeline-name (simulation-timeline simulation)))
+
+(addition simulation-tick)
+(declaim (inline simulation-tick))
+(defun simulation-tick (&optional (simulation (current-simulation)))
+  "Return how many ticks of SIMULATION have passed; inside a tick, its number."
+  (timeline-tick (simulation-timeline simulation)))
+
+(defmethod print-object ((simulation simulation) stream)
+  (print-unreadable-object (simulation stream :type t)
+    (format stream "~A at tick ~D" (simulation-name simulation) (simulation-tick simulation))))
+
+(addition simulation-seed)
+(defun simulation-seed (simulation)
+  "Return the integer from which all chance in SIMULATION comes."
+  (world-seed (simulation-world simulation)))
+
+(addition simulation-rate)
+(defun simulation-rate (simulation)
+  "Return the pace of the live clock of SIMULATION: ticks per second, or :FREE."
+  (pace simulation))
+
+(addition simulation-robots)
+(defun simulation-robots (&optional (simulation (current-simulation)))
+  "Return a list of the robots in SIMULATION."
+  (world-robots (simulation-world simulation)))
+
+(defun simulation-over (simulation)
+  "Return why the run of SIMULATION is over, a string, or NIL as long as it is not."
+  (timeline-over (simulation-timeline simulation)))
+
+(defun simulation-thread (simulation)
+  "Return the thread that passes the ticks of SIMULATION, or NIL if it is headless."
+  (timeline-thread (simulation-timeline simulation)))
+
+(defun simulation-ticking-p (simulation)
+  "True inside a tick of SIMULATION, while its world changes."
+  (timeline-ticking-p (simulation-timeline simulation)))
+
+(defun simulation-agenda (simulation)
+  "Return the agenda of SIMULATION."
+  (timeline-agenda (simulation-timeline simulation)))
+
+;;; Making.
+
+(defun make-simulation (world)
+  "Return a new simulation of WORLD, which has a timeline, instead of any that it had before."
+  (let* ((timeline (world-timeline world))
+         (simulation (%make-simulation timeline world)))
+    (setf (timeline-run timeline) simulation)
+    simulation))
+
+(defvar *simulations-lock* (make-lock "simulations"))
+
+(defun ensure-timeline (world)
+  "Return the timeline of WORLD, also if it has no robot yet."
+  (or (world-timeline world)
+      (setf (world-timeline world) (make-timeline (map-name (world-map world))))))
+
+(defun world-simulation (world)
+  "Return the simulation of WORLD, made if there is none, with a journal."
+  (let ((timeline (ensure-timeline world)))
+    (or (timeline-run timeline)
+        (with-lock (*simulations-lock*)
+          (or (timeline-run timeline)
+              (let ((simulation (make-simulation world)))
+                (begin-journal simulation)
+                simulation))))))
+
+(defun resident-simulation (map)
+  "Return the simulation of the resident world of MAP, or of the map so named."
+  (world-simulation (map-resident-world (find-map map))))
+
+(addition robot-simulation)
+(defun robot-simulation (robot)
+  "Return the simulation of the world that ROBOT is in."
+  (world-simulation (robot-world robot)))
+
+(defun headless-p (simulation)
+  "True if SIMULATION is one of WITH-SIMULATION: not of the world that top-level code works in."
+  (let ((world (simulation-world simulation)))
+    (not (eq world (map-resident (world-map world))))))
+
+;;; Who looks on, and who takes part.
+
+(addition add-observer)
+(defun add-observer (function &optional (simulation (current-simulation)))
+  "Call FUNCTION with SIMULATION after each of its ticks. Return FUNCTION."
+  (setf (simulation-observers simulation)
+        (append (simulation-observers simulation) (list function)))
+  function)
+
+(addition remove-observer)
+(defun remove-observer (function &optional (simulation (current-simulation)))
+  "Stop calling FUNCTION after the ticks of SIMULATION."
+  (setf (simulation-observers simulation) (remove function (simulation-observers simulation)))
+  (values))
+
+(defun add-participant (participant simulation)
+  "Let PARTICIPANT take part in SIMULATION from now on."
+  (setf (simulation-participants simulation)
+        (append (simulation-participants simulation) (list participant)))
+  participant)
+
+(defun remove-participant (participant simulation)
+  "Let PARTICIPANT take part in SIMULATION no more."
+  (removef (simulation-participants simulation) participant)
+  (values))
+
+(addition idle-p)
+(defun idle-p (&optional (simulation (current-simulation)))
+  "True if nothing can happen in SIMULATION until somebody asks for something."
+  (let ((timeline (simulation-timeline simulation)) (world (simulation-world simulation)))
+    (and (zerop (agenda-pending (timeline-agenda timeline)))
+         (null (timeline-inbox timeline))
+         (not (world-has-kickers-p world))
+         (not (tracks-busy-p world))
+         (notany (lambda (participant) (participant-busy-p participant simulation))
+                 (simulation-participants simulation)))))
+
+;;; Chance.
+
+(addition set-seed)
+(defun set-seed (seed &optional (simulation (current-simulation)))
+  "Make all chance in SIMULATION, that of plans too, depend on the integer SEED from now on. Return
+SEED."
+  (check-argument set-seed seed (integerp seed) "an integer")
+  (changing ((simulation-world simulation) set-seed seed)
+    (seed-world (simulation-world simulation) seed)
+    (dolist (participant (simulation-participants simulation))
+      (participant-reseed participant seed)))
+  seed)
+
+(define-operator 'set-seed '(integer) #'set-seed)
+
+;;; A copy.
+
+(defun copy-simulation (simulation)
+  "Return a headless copy of SIMULATION, which must stand still, in its present state: from here on
+it goes as the original would, given the same requests. The continuations of commands under way
+stay with the original, as do observers and the journal; of what takes part in it, what can be
+copied goes along."
+  (asking (simulation)
+    (let* ((table (make-copy-table))
+           (copy (copy-running simulation table)))
+      (setf (timeline-run (simulation-timeline copy)) copy
+            (simulation-messages copy) (make-message-queue)
+            (simulation-participants copy)
+            (loop for participant in (simulation-participants simulation)
+                  for twin = (participant-copy participant copy table)
+                  when twin collect twin))
+      copy)))
+
+;;; The end.
+
+(defun end-timeline (timeline reason)
+  "Let TIMELINE be over for REASON, and its thread end. True unless it has been over before."
+  (unless (timeline-over timeline)
+    (setf (timeline-over timeline) reason)
+    (stop-pacing timeline)
+    t))
+
+(defun end-simulation (simulation reason)
+  "End the run of SIMULATION for good, for REASON, a sentence without its full stop. Whatever was
+asked of its robots, and is under way or has not even begun, is interrupted; nothing can be asked of
+it any more."
+  (let ((timeline (simulation-timeline simulation))
+        (robots (simulation-robots simulation)))
+    (when (end-timeline timeline reason)
+      (let ((*message-queue* (simulation-messages simulation)))
+        (mapc #'close-robot robots)
+        (dolist (participant (simulation-participants simulation))
+          (participant-end participant simulation))
+        (dolist (request (take-requests timeline)) (perform request timeline))
+        (abandon timeline (loop for robot in robots append (cons robot (robot-parts robot))))))))

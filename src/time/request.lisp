@@ -1,0 +1,30 @@
+;;;; request.lisp -- something asked of a run, as data, and how it is carried out.
+
+(in-package :ars-magna.time)
+
+;;; A request names an operator and has its arguments. It waits in a timeline (see timeline.lisp)
+;;; until a tick begins; then it is performed, in the order of asking. Layers above include the
+;;; structure for what they need besides, and add methods.
+
+(define-kind (request :constructor (make-request (operator arguments)))
+    "Something asked of a run."
+  (:fixed
+   (operator nil t "what is asked for: an operator's name, or what has one")
+   (arguments '() list "what it is asked for with")))
+
+(document-functions
+  make-request "Return a request for the operator called OPERATOR with the list ARGUMENTS.")
+
+(defgeneric perform (request timeline)
+  (:documentation
+   "Carry REQUEST out, at the start of a tick of TIMELINE, or when that ends for good. Called by
+the owner."))
+
+(defgeneric request-entry (request)
+  (:documentation "Return what a journal notes of REQUEST: a list of the operator's name, a symbol,
+and what it is asked with.")
+  (:method ((request request))
+    (cons (request-operator request) (request-arguments request))))
+
+(defmethod digest-state :after ((request request) digest)
+  (digest-add digest (request-entry request)))

@@ -1,0 +1,57 @@
+;;;; setting-attributes.lisp -- changing what things in a world are like (manual 5.3).
+
+(in-package :ars-magna.world)
+
+(defun change-attributes (thing descriptor)
+  "Give THING the attributes in DESCRIPTOR and make caches and flags agree."
+  (setf (thing-attributes thing) (merge-descriptors descriptor (thing-attributes thing)))
+  (refresh-physics thing)
+  (when (eq (thing-location thing) :floor)
+    (refresh-cell-flags (thing-world thing) (thing-index thing))))
+
+(defun normal-descriptor (operator descriptor)
+  "Return the object descriptor DESCRIPTOR with keywords as names. Signals WRONG-ARGUMENT."
+  (unless (descriptor-p descriptor)
+    (reject-value operator "descriptor" descriptor
+                  "a list of lists (attribute value), each attribute once"))
+  (loop for (name value) in descriptor
+        for key = (attribute-key name)
+        do (check-attribute-value operator key value)
+        collect (list key value)))
+
+(defun descriptor-p (object)
+  "True if OBJECT has the shape of an object descriptor."
+  (and (proper-list-p object)
+       (loop for entry in object
+             always (and (proper-list-p entry) (= 2 (length entry))
+                         (first entry) (symbolp (first entry))))
+       (loop for ((name) . rest) on object
+             never (find name rest :key #'first :test #'same-name-p))))
+
+(public set-attribute)
+(defun set-attribute (thing attribute new-value)
+  "Set ATTRIBUTE, a keyword, of THING to NEW-VALUE and return that (manual 5.3). NIL means false
+or unspecified. Signals WRONG-ARGUMENT for a value that the attribute cannot have."
+  (check-argument set-attribute thing (thing-p thing) "a thing")
+  (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
+  (let ((descriptor (normal-descriptor 'set-attribute (list (list attribute new-value)))))
+    (changing ((thing-world thing) set-attribute thing attribute new-value)
+      (change-attributes thing descriptor)))
+  new-value)
+
+(define-operator 'set-attribute '(thing name datum) #'set-attribute)
+
+(defun (setf get-attribute) (new-value thing attribute)
+  (set-attribute thing attribute new-value))
+
+(public change-attribute)
+(defun change-attribute (thing descriptor)
+  "Set all attributes of THING that the object descriptor DESCRIPTOR gives; others stay
+(manual 5.3). Signals WRONG-ARGUMENT. Return THING."
+  (check-argument change-attribute thing (thing-p thing) "a thing")
+  (let ((descriptor (normal-descriptor 'change-attribute descriptor)))
+    (changing ((thing-world thing) change-attribute thing descriptor)
+      (change-attributes thing descriptor)))
+  thing)
+
+(define-operator 'change-attribute '(thing datum) #'change-attribute)

@@ -1,0 +1,75 @@
+;;;; base-doors.lisp -- what the doors to SBCL and the operating system promise.
+
+(in-package :ars-magna.tests)
+
+(in-suite base)
+
+(test floats.have-bits-and-back
+  (is (= #x3FF0000000000000 (base:double-to-bits 1d0)))
+  (is (= (ash 1 63) (base:double-to-bits -0d0)))
+  (dolist (number (list 0d0 -0d0 1.37d0 -2.5d-300 pi least-positive-double-float
+                        most-negative-double-float))
+    (is (eql number (base:bits-to-double (base:double-to-bits number))))))
+
+(defvar *bound* :at-top "For GLOBALS.ARE-BENEATH-BINDINGS.")
+
+(test globals.are-beneath-bindings
+  (let ((*bound* :here))
+    (is (eq :at-top (base:global-value '*bound*)))
+    (setf (base:global-value '*bound*) :changed)
+    (is (eq :here *bound*)))
+  (is (eq :changed *bound*))
+  (setf *bound* :at-top))
+
+(defstruct shared
+  (count 0 :type base:atomic-count)
+  (list '() :type list))
+
+(test atomic.swaps-only-what-is-there
+  (let ((shared (make-shared :list '(1))) (list (list 2)))
+    (is (equal '(0 1) (base:atomic-push 0 (shared-list shared))))
+    (is-false (base:swap-if (shared-list shared) nil list))
+    (is-true (base:swap-if (shared-list shared) (shared-list shared) list))
+    (is (eq list (base:compare-and-swap (shared-list shared) list '())))
+    (is (null (shared-list shared)))))
+
+(test atomic.loses-no-count-between-threads
+  (let ((shared (make-shared)))
+    (mapc #'base:join-thread
+          (loop repeat 4
+                collect (base:start-thread (lambda ()
+                                             (loop repeat 1000
+                                                   do (base:atomic-incf (shared-count shared))
+                                                      (base:atomic-push 1 (shared-list shared)))
+                                             (base:atomic-decf (shared-count shared) 10))
+                                           "counting")))
+    (is (= 3960 (shared-count shared)))
+    (is (= 4000 (length (shared-list shared))))))
+
+(test files.take-the-place-of-others
+  (uiop:with-temporary-file (:pathname old)
+    (let ((new (base:native-path (format nil "~A [new]*" (base:native-name old)))))
+      (with-open-file (out new :direction :output) (write-string "new" out))
+      (is-true (base:plain-file-p new))
+      (base:replace-file old new)
+      (is (string= "new" (base:read-file-into-string old)))
+      (is (null (base:existing-path new)))
+      (signals error (base:replace-file old new))
+      (signals error (base:plain-file-p new))))
+  (is-false (base:plain-file-p (uiop:temporary-directory))))
+
+(test commands.run-and-answer
+  (is (equal '(0 "two words") (multiple-value-list
+                               (with-input-from-string (in "two words")
+                                 (base:run-command "cat" '() :input in :output :string)))))
+  (is (= 1 (base:run-command "false" '())))
+  (is (null (base:run-command "no-such-program" '("-x"))))
+  (is (null (base:environment-value "ARS_MAGNA_NO_SUCH_VARIABLE"))))
+
+(test forms.are-seen-through-commas
+  (is (equal '(f x) (base:form-behind-comma (first (last (second '`(a ,(f x))))))))
+  (is (null (base:form-behind-comma '(f x)))))
+
+(test forms.are-evaluated-either-way
+  (is (compiled-function-p (base:evaluate-form '(lambda () 1) :compile t)))
+  (is (not (compiled-function-p (base:evaluate-form '(lambda () 1))))))
