@@ -44,9 +44,10 @@
     :components ((:file "package") (:file "resource") (:file "request") (:file "agenda")
                  (:file "timeline") (:file "pacing") (:file "schedule")))
    (:module "src/robot" :serial t
-    :components ((:file "package") (:file "parts") (:file "odometer") (:file "motion")
+    :components ((:file "package") (:file "blueprint") (:file "parts") (:file "odometer")
+                 (:file "motion")
                  (:file "designator") (:file "place-sense") (:file "sight") (:file "tracks")
-                 (:file "inside") (:file "body") (:file "retiring") (:file "defrobot")
+                 (:file "inside") (:file "making") (:file "retiring") (:file "defrobot")
                  (:file "own-changes")
                  (:file "rays") (:file "noise") (:file "matching") (:file "sightings")
                  (:file "scanning") (:file "views") (:file "tending")))
@@ -59,10 +60,10 @@
                  (:file "looking") (:file "searching") (:file "tracking")
                  (:file "turning-cameras") (:file "approaching")))
    (:module "src/run" :serial t
-    :components ((:file "package") (:file "participant") (:file "run") (:file "fingerprint")
-                 (:file "journal")
-                 (:file "references") (:file "changes") (:file "tick") (:file "headless")
-                 (:file "live") (:file "replaced-maps") (:file "state")
+    :components ((:file "package") (:file "participant") (:file "journal") (:file "run")
+                 (:file "references") (:file "fingerprint") (:file "noting")
+                 (:file "runs-of-worlds") (:file "changes") (:file "tick") (:file "state")
+                 (:file "headless") (:file "live") (:file "replaced-maps")
                  (:file "journal-text") (:file "replay")))
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "gcontext") (:file "canvas")

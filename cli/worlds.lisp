@@ -14,21 +14,21 @@
 (defun load-world (path)
   "Load the Lisp file at PATH. Return the names of the robots that it defines. Signals BAD-LINE if
 there are none."
-  (let ((before (all-bodies)))
+  (let ((before (all-blueprints)))
     (load-lisp path)
-    (or (mapcar #'body-name (remove-if (lambda (body) (member body before)) (all-bodies)))
+    (or (mapcar #'blueprint-name (remove-if (lambda (body) (member body before)) (all-blueprints)))
         (reject-line "~A defines no robot; a world's file has a DEFROBOT."
                      (native-name path)))))
 
 (defun robot-names ()
   "Return the names of all robots."
-  (mapcar #'body-name (all-bodies)))
+  (mapcar #'blueprint-name (all-blueprints)))
 
 (defun robots-of (map)
   "Return the names of the robots that are defined in MAP, or in the map so named."
-  (loop for body in (all-bodies)
-        when (eq (find-map map) (find-map (body-map body) nil))
-          collect (body-name body)))
+  (loop for body in (all-blueprints)
+        when (eq (find-map map) (find-map (blueprint-map body) nil))
+          collect (blueprint-name body)))
 
 (defun all-worlds ()
   "Return a list of all maps that have robots."
@@ -57,7 +57,7 @@ a world. Signals BAD-LINE."
 
 (defun robots-beside (robot-name)
   "Return the names of all robots in the map of ROBOT-NAME, that one first."
-  (cons robot-name (remove robot-name (robots-of (body-map (find-body robot-name))))))
+  (cons robot-name (remove robot-name (robots-of (blueprint-map (find-blueprint robot-name))))))
 
 (defun write-worlds ()
   "List the worlds: their maps, and their robots."

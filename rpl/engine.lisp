@@ -83,7 +83,7 @@ failure, and NIL is returned."
 the budget of steps is spent before; without a budget that is after *RUNAWAY-LIMIT* steps, with a
 warning."
   (let ((*runner* runner)
-        (*agenda* (runner-agenda runner)))
+        (*backlog* (runner-backlog runner)))
     (setf (runner-pause runner)
           (+ (runner-steps runner) (or (runner-budget runner) *runaway-limit*)))
     (loop
@@ -126,7 +126,7 @@ messages."
   (multiple-value-bind (entry there) (next-entry runner)
     (when there
       (let ((*runner* runner)
-            (*agenda* (runner-agenda runner)))
+            (*backlog* (runner-backlog runner)))
         (if (functionp entry)
             (call-user-code entry "a call posted to a plan runner")
             (call-user-code #'apply-settings "a batch posted to a plan runner" entry)))

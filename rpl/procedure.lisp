@@ -33,7 +33,7 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
   (or (gethash name *cells*)
       (setf (gethash name *cells*) (make-procedure name))))
 
-(defun live-p (procedure)
+(defun defined-p (procedure)
   "True if PROCEDURE is defined and its name has not been defined as a Lisp function since."
   (and (procedure-entry procedure)
        (or (null (procedure-stub procedure))
@@ -44,12 +44,12 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
 (addition all-procedures find-procedure)
 (defun all-procedures ()
   "Return a list of all plan procedures that are defined, in order of definition."
-  (remove-if-not #'live-p (registered-procedures)))
+  (remove-if-not #'defined-p (registered-procedures)))
 
 (defun live-namesake (name)
   "Return the live procedure defined last of those called NAME in any package, or NIL."
   (find-if (lambda (procedure)
-             (and (same-name-p name (procedure-name procedure)) (live-p procedure)))
+             (and (same-name-p name (procedure-name procedure)) (defined-p procedure)))
            (registered-procedures) :from-end t))
 
 (defun find-procedure (name &optional (errorp t))
@@ -57,7 +57,7 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
 one defined last of those called the same in other packages. If there is none, signal UNKNOWN-NAME,
 or return NIL if ERRORP is NIL."
   (let ((known (registered-procedure name nil)))
-    (cond ((and known (live-p known)) known)
+    (cond ((and known (defined-p known)) known)
           ((and (typep name '(or symbol string)) (live-namesake name)))
           (errorp (reject-name "plan procedure" name
                                (mapcar #'procedure-name (all-procedures)))))))
@@ -79,7 +79,7 @@ or return NIL if ERRORP is NIL."
   "True if NAME is known to name a plan procedure."
   (and (gethash name *declared-procedures*)
        (let ((procedure (gethash name *cells*)))
-         (or (null procedure) (null (procedure-entry procedure)) (live-p procedure)))))
+         (or (null procedure) (null (procedure-entry procedure)) (defined-p procedure)))))
 
 (defun procedure-stub-for (name)
   "Return the Lisp function called NAME: it says that NAME is a plan."
@@ -108,7 +108,7 @@ this one."
   procedure)
 
 (defmethod take-back ((procedure procedure))
-  (when (live-p procedure) (fmakunbound (procedure-name procedure)))
+  (when (defined-p procedure) (fmakunbound (procedure-name procedure)))
   (setf (procedure-entry procedure) nil))
 
 (defun anonymous-procedure (lambda-list entry body)
@@ -131,7 +131,7 @@ this one."
         (caller (call-caller node))
         (environment (frame-environment frame)))
     (cond ((plusp (frame-counter frame)) (values (frame-up frame) value))
-          ((live-p procedure)
+          ((defined-p procedure)
            (setf (frame-counter frame) 1)
            (enter (the node (procedure-body procedure))
                   (funcall caller environment (procedure-entry procedure))

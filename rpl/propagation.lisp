@@ -7,45 +7,45 @@
 ;;; values and each at most once. Watchers hear only of true values (and of errors). Whoever was
 ;;; heard to be true is committed to waking: what happens to the fluent afterwards is no matter.
 
-(defstruct (agenda (:constructor make-agenda ()) (:copier nil))
+(defstruct (backlog (:constructor make-backlog ()) (:copier nil))
   "Derived fluents to be computed, by height: those of each height in order of arrival."
   (heads (make-array 8 :initial-element nil) :type simple-vector)
   (tails (make-array 8 :initial-element nil) :type simple-vector)
   (highest 0 :type fixnum))
 
-(defvar *agenda* nil
-  "The agenda of the plan runner at work, so that a change need not make one.")
+(defvar *backlog* nil
+  "The backlog of the plan runner at work, so that a change need not make one.")
 
 (defvar *spreading* nil
   "True while a change is being spread: networks must not set fluents.")
 
-(defun grow-agenda (agenda height)
+(defun grow-backlog (backlog height)
   (flet ((grown (vector)
            (replace (make-array (* 2 (1+ height)) :initial-element nil) vector)))
-    (setf (agenda-heads agenda) (grown (agenda-heads agenda))
-          (agenda-tails agenda) (grown (agenda-tails agenda)))))
+    (setf (backlog-heads backlog) (grown (backlog-heads backlog))
+          (backlog-tails backlog) (grown (backlog-tails backlog)))))
 
-(defun enqueue (derived agenda)
+(defun enqueue (derived backlog)
   (let ((height (fluent-height derived)))
     (unless (derived-queued derived)
-      (when (>= height (length (agenda-heads agenda))) (grow-agenda agenda height))
+      (when (>= height (length (backlog-heads backlog))) (grow-backlog backlog height))
       (setf (derived-queued derived) t
             (derived-successor derived) nil
-            (agenda-highest agenda) (max height (agenda-highest agenda)))
-      (let ((tail (svref (agenda-tails agenda) height)))
+            (backlog-highest backlog) (max height (backlog-highest backlog)))
+      (let ((tail (svref (backlog-tails backlog) height)))
         (if tail
             (setf (derived-successor tail) derived)
-            (setf (svref (agenda-heads agenda) height) derived))
-        (setf (svref (agenda-tails agenda) height) derived)))))
+            (setf (svref (backlog-heads backlog) height) derived))
+        (setf (svref (backlog-tails backlog) height) derived)))))
 
-(defun dequeue (height agenda)
+(defun dequeue (height backlog)
   "Return the next derived fluent of HEIGHT, or NIL."
-  (let ((derived (svref (agenda-heads agenda) height)))
+  (let ((derived (svref (backlog-heads backlog) height)))
     (when derived
       (let ((successor (shiftf (derived-successor derived) nil)))
-        (setf (svref (agenda-heads agenda) height) successor
+        (setf (svref (backlog-heads backlog) height) successor
               (derived-queued derived) nil)
-        (unless successor (setf (svref (agenda-tails agenda) height) nil))
+        (unless successor (setf (svref (backlog-tails backlog) height) nil))
         derived))))
 
 (defun announce (fluent)
@@ -58,33 +58,33 @@
             for next = (watcher-next watcher)
             do (funcall (watcher-wake watcher) watcher value trouble)))))
 
-(defun enqueue-dependents (fluent agenda)
+(defun enqueue-dependents (fluent backlog)
   (loop for link = (fluent-first-link fluent) then (link-next link)
         while link
-        do (enqueue (link-dependent link) agenda)))
+        do (enqueue (link-dependent link) backlog)))
 
-(defun spread-by-height (agenda)
-  "Compute all that is in AGENDA, and what depends on it, lowest first."
+(defun spread-by-height (backlog)
+  "Compute all that is in BACKLOG, and what depends on it, lowest first."
   (loop for height from 1
-        while (<= height (agenda-highest agenda))
-        do (loop for derived = (dequeue height agenda)
+        while (<= height (backlog-highest backlog))
+        do (loop for derived = (dequeue height backlog)
                  while derived
                  do (when (and (plusp (derived-users derived)) (recompute derived))
                       (announce derived)
-                      (enqueue-dependents derived agenda))))
-  (setf (agenda-highest agenda) 0))
+                      (enqueue-dependents derived backlog))))
+  (setf (backlog-highest backlog) 0))
 
 (defun spread-to-dependents (fluent)
-  "Compute what depends on FLUENT. As long as only one fluent does, no agenda is needed."
+  "Compute what depends on FLUENT. As long as only one fluent does, no backlog is needed."
   (declare #.*hot*)
   (let ((*spreading* t))
     (loop
       (let ((link (fluent-first-link fluent)))
         (cond ((null link) (return))
               ((link-next link)
-               (let ((agenda (or *agenda* (make-agenda))))
-                 (enqueue-dependents fluent agenda)
-                 (return (spread-by-height agenda))))
+               (let ((backlog (or *backlog* (make-backlog))))
+                 (enqueue-dependents fluent backlog)
+                 (return (spread-by-height backlog))))
               (t (setf fluent (link-dependent link))
                  (if (recompute fluent)
                      (announce fluent)
@@ -100,11 +100,11 @@
   "Let everybody concerned know that the base FLUENTS have changed, all at one instant."
   (if (and fluents (null (rest fluents)))
       (spread (first fluents))
-      (let ((agenda (or *agenda* (make-agenda)))
+      (let ((backlog (or *backlog* (make-backlog)))
             (*spreading* t))
         (mapc #'announce fluents)
-        (dolist (fluent fluents) (enqueue-dependents fluent agenda))
-        (spread-by-height agenda))))
+        (dolist (fluent fluents) (enqueue-dependents fluent backlog))
+        (spread-by-height backlog))))
 
 (defun check-settable (operator fluent)
   (unless (and (fluent-p fluent) (not (derived-p fluent)))

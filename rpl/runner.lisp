@@ -26,7 +26,7 @@
   (blocks 0 :type fixnum)
   (tick 0 :type real)
   (timers (make-timers) :type timers :read-only t)
-  (agenda (make-agenda) :type agenda :read-only t)
+  (backlog (make-backlog) :type backlog :read-only t)
   (serial 0 :type fixnum)
   (steps 0 :type (unsigned-byte 62))
   (pause 0 :type (unsigned-byte 62))

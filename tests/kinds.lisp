@@ -76,8 +76,8 @@
     (is (= 1 (robot:part-index (ears 1))))
     (is (string= "Sonar 1" (princ-to-string (ears 1))))
     (is (member (ears 0) (robot:robot-parts bat)))
-    (is (equal '(sonar:sonar :range 4d0) (subseq (first (robot::body-parts (robot:robot-body bat)))
-                                                 0 3)))
+    (is (equal '(sonar:sonar :range 4d0)
+               (first (robot::blueprint-parts (robot:robot-blueprint bat)))))
     (signals base:wrong-argument (ears 2))
     (signals base:wrong-argument (sonar:sonar-ping bat))))
 

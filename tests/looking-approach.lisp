@@ -99,7 +99,7 @@
 (test goto.with-another-robots-camera
   (with-watcher (:clean t)
     (tracked-ball 9.5 10.5)
-    (let ((other (robot::make-robot (robot:robot-body watcher) world:*world*)))
+    (let ((other (robot::make-robot (robot:robot-blueprint watcher) world:*world*)))
       (is (equal '(:not-tracking)
                  (codes (call-times 10 'command:robot-goto-designator other (eye))))))))
 

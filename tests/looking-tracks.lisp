@@ -87,7 +87,7 @@ returns what the continuation was called with since last asked: (tick code camer
 (test camera-track.of-another-robots-designator
   (with-watcher (:clean t)
     (let ((designator (robot:add-designator
-                       (robot::make-robot (robot:robot-body watcher) world:*world*)
+                       (robot::make-robot (robot:robot-blueprint watcher) world:*world*)
                        :x 15 :y 10)))
       (is (eq :lost-track (end-code 'command:camera-track (eye) designator))))))
 

@@ -51,8 +51,8 @@
     reached))
 
 (defun robot-start (name)
-  (let ((body (robot::find-body name)))
-    (list (robot::body-x body) (robot::body-y body))))
+  (let ((body (robot::find-blueprint name)))
+    (list (robot::blueprint-x body) (robot::blueprint-y body))))
 
 (defun distance-to-cell (x y column row)
   (flet ((gap (coordinate cell) (max 0 (- cell coordinate) (- coordinate (1+ cell)))))
@@ -247,7 +247,7 @@
     (is (eq robbie ars-worlds:robbie))
     (is (eq ars-worlds:watson (world:world-map (robot:robot-world robbie))))
     (is (equalp '(10 5) (robot-start 'robbie)))
-    (is (= 0 (robot::body-angle (robot:robot-body robbie))))
+    (is (= 0 (robot::blueprint-angle (robot:robot-blueprint robbie))))
     (is (equalp (list (list (/ pi 4) 3) (list (/ pi 2) 5))
                 (cl:map 'list (lambda (camera) (list (robot:camera-field-of-view camera)
                                                      (robot:camera-resolution camera)))
@@ -285,8 +285,9 @@
 
 (test porter.is-built-like-robbie
   (flet ((parts (name)
-           (let ((body (robot::find-body name)))
-             (list (robot::body-cameras body) (robot::body-hands body) (robot::body-bins body)))))
+           (let ((blueprint (robot::find-blueprint name)))
+             (list (robot::blueprint-cameras blueprint) (robot::blueprint-hands blueprint)
+                   (robot::blueprint-bins blueprint)))))
     (is (equalp (parts 'robbie) (parts 'porter)))))
 
 (test box.is-as-the-manual-says

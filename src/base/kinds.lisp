@@ -27,11 +27,12 @@
   (reader nil :type function :read-only t)
   (writer nil :type function :read-only t))
 
-(defstruct (kind (:constructor make-kind (name slots parent)) (:copier nil))
+(defstruct (object-kind (:conc-name kind-) (:constructor make-kind (name slots parent))
+                        (:predicate kind-p) (:copier nil))
   "A kind of object: its slots, those of its PARENT first."
   (name nil :type symbol :read-only t)
   (slots '() :type list :read-only t)
-  (parent nil :type (or null kind) :read-only t))
+  (parent nil :type (or null object-kind) :read-only t))
 
 (document-functions
   kind-slot-name "Return the name of the slot, a symbol."
@@ -46,14 +47,14 @@
   kind-slots "Return a list of what is known of the slots of the kind, inherited ones first."
   kind-parent "Return the kind that the kind includes, or NIL.")
 
-(defmethod print-object ((kind kind) stream)
+(defmethod print-object ((kind object-kind) stream)
   (print-unreadable-object (kind stream :type t) (princ (kind-name kind) stream)))
 
 (defvar *kinds* '() "All kinds, in order of definition.")
 
 (declaim (inline kind-called))
 (defun kind-called (name)
-  (get name 'kind))
+  (get name 'object-kind))
 
 (defun kind-of (object)
   "Return the kind that OBJECT is of, or NIL."
@@ -94,7 +95,7 @@ are or include it."
   (let* ((parent (and parent (kind-called parent)))
          (kind (make-kind name (append (and parent (kind-slots parent)) slots) parent)))
     (setf *kinds* (append (remove name *kinds* :key #'kind-name) (list kind))
-          (get name 'kind) kind)
+          (get name 'object-kind) kind)
     (document-readers kind conc (symbol-package name))
     kind))
 

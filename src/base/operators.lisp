@@ -5,7 +5,8 @@
 ;;; An operator says what its arguments are, and how it is done again when a journal is replayed.
 ;;; Nothing else is ever called because a journal says so.
 
-(defstruct (operator (:constructor make-operator (name types rest function)) (:copier nil))
+(defstruct (askable (:conc-name operator-) (:constructor make-operator (name types rest function))
+                    (:predicate operator-p) (:copier nil))
   "Something that can be asked of a run. TYPES are argument types, REST that of any further
 arguments or NIL; FUNCTION, of the arguments, asks it again."
   (name nil :type symbol :read-only t)

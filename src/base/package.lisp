@@ -97,12 +97,12 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; digest
   (:export #:digest #:make-digest #:digest-add #:digest-value)
   ;; kinds, digesting, copying
-  (:export #:define-kind #:kind #:kind-p #:kind-of #:kind-name #:kind-slots #:all-kinds
+  (:export #:define-kind #:kind-p #:kind-of #:kind-name #:kind-slots #:all-kinds
            #:kind-slot-name #:kind-slot-role #:kind-slot-type #:kind-slot-text #:kind-slot-part-p
            #:kind-slot-reader
            #:kind-slot-writer #:object-slots #:reset #:reference #:digest-state #:digest-mention
            #:copy-running #:make-copy-table #:copied)
   ;; argument-types, operators
   (:export #:define-argument-type #:argument-type-text #:argument-of-type-p #:find-argument-type
-           #:check-of-type #:operator #:operator-name #:operator-function #:operator-types
+           #:check-of-type #:operator-name #:operator-function #:operator-types
            #:define-operator #:find-operator #:check-operands))

@@ -189,18 +189,18 @@ MISUSE if it is not there."
 
 (defun code-alone (text)
   "Return TEXT without comments, and with one space for each run of blanks."
-  (with-output-to-string (out)
+  (with-output-to-string (stream)
     (let ((i 0) (blank t))
       (loop while (< i (length text))
             do (let ((end (or (skip-comment text i)
                               (and (find (char text i) '(#\Space #\Tab #\Newline #\Return #\Page))
                                    (1+ i)))))
                  (cond (end
-                        (unless blank (write-char #\Space out))
+                        (unless blank (write-char #\Space stream))
                         (setf blank t i end))
                        (t
                         (let ((end (or (skip-text text i) (1+ i))))
-                          (write-string text out :start i :end (min end (length text)))
+                          (write-string text stream :start i :end (min end (length text)))
                           (setf blank nil i end)))))))))
 
 (defun file-digest (file)

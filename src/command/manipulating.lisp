@@ -118,10 +118,17 @@ none if the manipulation has been undefined since."
                 when (designator-p argument) collect (destination-name argument))
           (operation-resource operation)))
 
+(defstruct (manipulation-command (:include command) (:copier nil)
+                                 (:constructor %make-manipulation-command))
+  "The command by which a manipulation is carried out.")
+
+(defmethod command-entry ((command manipulation-command) operation)
+  (list* 'manipulate (command-name command) (operation-arguments operation)))
+
 (defun make-manipulation-command (name)
   "Return the command by which the manipulation NAME is carried out."
   (let ((prefix (string-downcase name)))
-    (make-command
+    (%make-manipulation-command
      :name name :prompt-name (string-upcase name) :prefix prefix
      :origin (format nil "the continuation of manipulation ~A" prefix)
      :family :manipulating :section "5.5"

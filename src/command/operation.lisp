@@ -48,12 +48,14 @@
   (list :operation (name-string (command-name (operation-command operation)))
         (event-time operation)))
 
+(defgeneric command-entry (command operation)
+  (:documentation "Return what a journal notes of OPERATION, which carries out COMMAND.")
+  (:method ((command command) operation)
+    (list* (command-name command) (operation-resource operation)
+           (operation-arguments operation))))
+
 (defmethod request-entry ((operation operation))
-  (let ((command (operation-command operation)))
-    (if (eq :manipulating (command-family command))
-        (list* 'manipulate (command-name command) (operation-arguments operation))
-        (list* (command-name command) (operation-resource operation)
-               (operation-arguments operation)))))
+  (command-entry (operation-command operation) operation))
 
 ;;; Ending.
 

@@ -49,11 +49,11 @@
                "(kind initarg value ...), a kind of part that DEFINE-KIND has defined"))
     (cons (kind-name kind) (rest specification))))
 
-(defun make-body-from (name environment position angle cameras hands bins parts)
+(defun read-blueprint (name environment position angle cameras hands bins parts)
   (flet ((reject (clause expected)
            (reject-clause (format nil "defrobot ~(~A~)" name) clause expected)))
     (let ((map (parse-place environment position angle #'reject)))
-      (make-body :name name :map (map-name map)
+      (make-blueprint :name name :map (map-name map)
                  :x (double (first position)) :y (double (second position))
                  :angle (double angle)
                  :cameras (loop for camera in cameras collect (parse-camera camera #'reject))
@@ -68,9 +68,9 @@ CAMERAS a list of lists (fov resolution), PARTS one of lists (kind initarg value
 robot."
   (check-robot-name (format nil "defrobot ~(~A~)" name) name)
   (check-robot-variable name)
-  (let* ((body (make-body-from name environment position angle cameras hands bins parts))
-         (robot (settle-robot body)))
-    (register *robots* name body :variable t :value robot)
+  (let* ((blueprint (read-blueprint name environment position angle cameras hands bins parts))
+         (robot (settle-robot blueprint)))
+    (register *robots* name blueprint :variable t :value robot)
     robot))
 
 (defun check-robot-name (definition name)

@@ -1,17 +1,19 @@
-;;;; package.lisp -- the robot layer: the body, what it senses, and its run in a world.
+;;;; package.lisp -- the robot layer: robots and their parts, what they sense, how they move.
 
 (defpackage :ars-magna.robot
-  (:documentation "Robots and their parts, odometers, motion and place sensing; the simulation
-in a world. Manual 2.2, 3.2.2, 3.4 and 5.2.")
+  (:documentation "Robots and their parts, odometers, motion and place sensing; designators, views
+and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
   (:use :cl :ars-magna.base :ars-magna.geometry :ars-magna.world :ars-magna.time)
   (:shadowing-import-from :cl #:equal)
   (:shadowing-import-from :ars-magna.world #:map)
   ;; parts
-  (:export #:robot #:robot-p #:robot-name #:robot-body #:robot-world #:robot-retired #:check-in-run
+  (:export #:robot #:robot-p #:robot-name #:robot-blueprint #:robot-world #:robot-retired
+           #:check-in-run
            #:robot-enders #:retire-robot #:close-robot
-           #:*robots* #:all-bodies #:find-body #:body-robot #:body-x #:body-y
+           #:*robots* #:all-blueprints #:find-blueprint #:blueprint-robot #:blueprint-x
+           #:blueprint-y
            #:make-robot #:settle-robot
-           #:robot-of-body #:start-trouble
+           #:robot-of-blueprint #:start-trouble
            #:robot-x #:robot-y #:robot-angle #:robot-cos #:robot-sin #:robot-position
            #:robot-speed #:robot-turn-angle #:robot-cameras #:robot-hands #:robot-bins
            #:robot-last-place #:robot-drove-tick #:robot-designators
@@ -60,8 +62,8 @@ in a world. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:settle-robots)
   ;; places
   (:export #:robot-place-here #:sense-place-type #:canonical-directions #:nearest-direction)
-  ;; body
+  ;; blueprint, making
   (:export #:defrobot #:define-robot #:find-robot #:all-robots
-           #:body-name #:body-map)
+           #:blueprint-name #:blueprint-map)
   ;; own-changes
   (:export #:place-robot))

@@ -15,7 +15,7 @@
 2.2)."
   (:fixed
    (name nil symbol "the symbol that the robot was defined by")
-   (body nil t "the definition from which the robot was made")
+   (blueprint nil (or null blueprint) "what the robot was made by")
    (world nil (or null world) "the world that the robot is in")
    (cameras #() simple-vector "the vector of the robot's cameras" :part)
    (hands #() simple-vector "the vector of the robot's hands" :part)

@@ -57,30 +57,30 @@
   (dolist (robot (robots-called name))
     (ask-owner (robot-world robot) (lambda () (take-out robot reason)))))
 
-(defun settle-robot (body)
-  "Put a robot made by BODY into the resident world of its map, instead of any that was made by an
-earlier definition of its name, and return it."
-  (let* ((world (map-resident-world (find-map (body-map body))))
+(defun settle-robot (blueprint)
+  "Put a robot made by BLUEPRINT into the resident world of its map, instead of any that was made by
+an earlier definition of its name, and return it."
+  (let* ((world (map-resident-world (find-map (blueprint-map blueprint))))
          (robot nil))
-    (check-start body (world-map world))
-    (take-out-all (body-name body) "it has been defined anew")
-    (ask-owner world (lambda () (setf robot (make-robot body world))))
+    (check-start blueprint (world-map world))
+    (take-out-all (blueprint-name blueprint) "it has been defined anew")
+    (ask-owner world (lambda () (setf robot (make-robot blueprint world))))
     robot))
 
-(defmethod take-back ((body body))
-  (take-out-all (body-name body) "its definition has been taken back"))
+(defmethod take-back ((blueprint blueprint))
+  (take-out-all (blueprint-name blueprint) "its definition has been taken back"))
 
 (defun in-order-of-definition (robots)
   "Return ROBOTS in the order in which they were defined."
   (sort (copy-list robots) #'<
         :key (lambda (robot)
-               (or (position (robot-name robot) (all-bodies) :key #'body-name) -1))))
+               (or (position (robot-name robot) (all-blueprints) :key #'blueprint-name) -1))))
 
-(defmethod reinstate ((body body))
-  (let ((robot (body-robot body)))
+(defmethod reinstate ((blueprint blueprint))
+  (let ((robot (blueprint-robot blueprint)))
     (when (robot-p robot)
       (let ((world (robot-world robot)))
         (setf (robot-retired robot) nil
               (world-robots world) (in-order-of-definition
                                     (adjoin robot (world-robots world)))))))
-  body)
+  blueprint)

@@ -54,21 +54,21 @@ passes them at its pace. Returns nothing."
 
 ;;; Fresh runs.
 
-(defun body-of (designator)
-  "Return the body of the robot DESIGNATOR, which may be a robot or its name."
-  (if (robot-p designator) (robot-body designator) (find-body designator)))
+(defun blueprint-of (designator)
+  "Return the blueprint of the robot DESIGNATOR, which may be a robot or its name."
+  (if (robot-p designator) (robot-blueprint designator) (find-blueprint designator)))
 
 (defun fresh-simulation (robots &key (seed 0) journal)
   "Return a simulation, at tick 0, of a fresh world that holds the things of its map and fresh
 ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
-  (let* ((bodies (mapcar #'body-of robots))
-         (maps (remove-duplicates (mapcar #'find-map (mapcar #'body-map bodies)))))
+  (let* ((blueprints (mapcar #'blueprint-of robots))
+         (maps (remove-duplicates (mapcar #'find-map (mapcar #'blueprint-map blueprints)))))
     (unless (= (length maps) 1)
       (reject-use "One simulation has one map, and these robots are defined in ~
                    ~:[none~;~:*~{~A~^, ~}~]."
                   maps))
     (let ((world (make-world (first maps) :seed seed)))
-      (dolist (body bodies) (make-robot body world))
+      (dolist (blueprint blueprints) (make-robot blueprint world))
       (let ((simulation (make-simulation world)))
         (when journal (begin-journal simulation))
         simulation))))
@@ -107,7 +107,7 @@ ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
 
 (defun robots-meant (names)
   "Return the robots of the current simulation that NAMES, of any package, mean."
-  (loop for name in names collect (robot-of-body (find-body name) *world*)))
+  (loop for name in names collect (robot-of-blueprint (find-blueprint name) *world*)))
 
 (defun retire-robots (robots reason)
   (dolist (robot robots) (retire-robot robot reason)))

@@ -39,68 +39,11 @@ the definitions were that decide it."
   "Return the entries (tick operator argument ...) of JOURNAL, oldest first."
   (reverse (journal-newest-first journal)))
 
-(defun close-full-journal (journal tick)
-  "Let JOURNAL end at TICK, and say so."
-  (setf (journal-full-p journal) t
-        (journal-end journal) tick)
-  (warning-set (format nil "The journal is full: with ~D entries it ends at tick ~D. The run goes ~
-                            on, and can be repeated up to there; see *JOURNAL-LIMIT*."
-                       (journal-length journal) tick)))
-
-(defun note (simulation operator arguments)
-  "Enter that OPERATOR, a symbol, was asked for with the list ARGUMENTS into the journal of
-SIMULATION, as of now, if it keeps one."
-  (let ((journal (simulation-journal simulation)))
-    (when (and journal (not (journal-full-p journal)))
-      (let ((tick (simulation-tick simulation)))
-        (cond ((>= (journal-length journal) *journal-limit*) (close-full-journal journal tick))
-              (t (push (list* tick operator (externalize arguments))
-                       (journal-newest-first journal))
-                 (incf (journal-length journal))
-                 (setf (journal-end journal) tick)))))))
-
-;;; Beginning and end.
-
-(defun begin-journal (simulation)
-  "Let SIMULATION keep a journal from now on, at its beginning. Return the journal."
-  (setf (simulation-journal simulation)
-        (make-journal (list :map (qualified-name
-                                  (map-name (world-map (simulation-world simulation))))
-                            :robots (robot-names simulation)
-                            :seed (simulation-seed simulation)
-                            :parameters (loop for (symbol value) in (parameter-settings)
-                                              collect (list (string-downcase symbol) value))
-                            :definitions (definitions-of simulation)))))
-
-(defun qualified-name (symbol)
-  "Return a string that names SYMBOL with its package, for FIND-ROBOT and kin."
-  (format nil "~@[~A::~]~A" (and (symbol-package symbol) (package-name (symbol-package symbol)))
-          symbol))
-
-(defun robot-names (simulation)
-  (mapcar (lambda (robot) (qualified-name (robot-name robot))) (simulation-robots simulation)))
-
-(defun end-of-journal (simulation)
-  "Return the journal of SIMULATION, marked as reaching to now unless it was full before. Signals
-MISUSE if it keeps none."
-  (let ((journal (or (simulation-journal simulation)
-                     (reject-use "This simulation keeps no journal. Ask for one: ~
-                                  (with-simulation (ROBOT :journal t) ...), and do not say ~
-                                  (simulator ROBOT :journal nil)."))))
-    (unless (journal-full-p journal) (setf (journal-end journal) (simulation-tick simulation)))
-    ;; Some may have been defined since it began.
-    (let ((header (journal-header journal)))
-      (setf (getf header :robots) (robot-names simulation)
-            (getf header :definitions) (merge-definitions (getf header :definitions)
-                                                          (definitions-of simulation))
-            (journal-header journal) header))
-    journal))
-
 (defun truncated-journal (journal tick)
   "Return a journal that ends at TICK and until then is like JOURNAL. Signals WRONG-ARGUMENT for a
 TICK that it does not reach."
   (unless (typep tick `(integer 0 ,(journal-end journal)))
-    (error 'wrong-argument :operator 'replay :name "until" :value tick
+    (error 'wrong-argument :operator "replay" :name "until" :value tick
                            :expected (format nil "a tick of the journal, from 0 to ~D"
                                              (journal-end journal))))
   (let ((copy (make-journal (journal-header journal))))

@@ -43,15 +43,17 @@ way stay as they are; START-CLOCK goes on with them. Return SIMULATION."
 
 ;;; Which robot is meant.
 
-(defun bodies-in (map)
-  "Return the bodies of the robots that are defined in MAP."
-  (remove map (all-bodies) :test-not #'eq :key (lambda (body) (find-map (body-map body) nil))))
+(defun blueprints-in (map)
+  "Return the blueprints of the robots that are defined in MAP."
+  (remove map (all-blueprints)
+          :test-not #'eq
+          :key (lambda (blueprint) (find-map (blueprint-map blueprint) nil))))
 
 (defun first-robot-in (map)
   "Return the robot of MAP that was defined first. Signals MISUSE if there is none."
-  (let ((body (first (bodies-in map))))
-    (if body
-        (body-robot body)
+  (let ((blueprint (first (blueprints-in map))))
+    (if blueprint
+        (blueprint-robot blueprint)
         (reject-use "Map ~(~A~) has no robot. Define one: (defrobot NAME (~:*~(~A~) (X Y) ANGLE))."
                     (map-name map)))))
 
@@ -62,22 +64,22 @@ One whose map or definition has been replaced means the robot that is called so 
                      ((find-robot designator nil))
                      ((find-map designator nil) (first-robot-in (find-map designator)))
                      (t (reject-name "robot or map" designator
-                                     (append (mapcar #'body-name (all-bodies))
+                                     (append (mapcar #'blueprint-name (all-blueprints))
                                              (mapcar #'map-name (all-maps))))))))
     (if (robot-retired robot)
         (find-again (robot-name robot))
         robot)))
 
-(defun set-robot (body robot)
-  "Let the variable of BODY's name hold ROBOT at top level."
-  (setf (global-value (body-name body)) robot))
+(defun set-robot (blueprint robot)
+  "Let the variable of BLUEPRINT's name hold ROBOT at top level."
+  (setf (global-value (blueprint-name blueprint)) robot))
 
 (defun find-again (name)
   "Return the robot called NAME now, made anew if that has not been possible before."
-  (let* ((body (find-body name))
-         (robot (body-robot body)))
+  (let* ((blueprint (find-blueprint name))
+         (robot (blueprint-robot blueprint)))
     (if (or (null robot) (robot-retired robot))
-        (set-robot body (settle-robot body))
+        (set-robot blueprint (settle-robot blueprint))
         robot)))
 
 ;;; Starting and stopping.

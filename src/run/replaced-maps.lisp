@@ -14,23 +14,23 @@
                         (map-name map) new (simulation-tick simulation)
                         (and new (map-name new)))))
 
-(defun leave-out (body reason)
-  "Let there be no robot of BODY in its new map, for REASON."
-  (unless (from-this-file-p (body-name body) *robots*)
-    (warn-of-definition "The robot ~(~A~) takes no more commands: ~A." (body-name body) reason))
+(defun leave-out (name reason)
+  "Let the robot called NAME have no place in its new map, for REASON."
+  (unless (from-this-file-p name *robots*)
+    (warn-of-definition "The robot ~(~A~) takes no more commands: ~A." name reason))
   ;; Not the one that a headless run may have bound the variable to here.
-  (let ((robot (ignore-errors (global-value (body-name body)))))
+  (let ((robot (ignore-errors (global-value name))))
     (when (robot-p robot) (retire-robot robot reason))))
 
 (defun move-robots (map)
-  "Put robots made by the bodies that are defined in MAP, which is new, into it."
-  (dolist (body (bodies-in map))
-    (let ((trouble (start-trouble map (body-x body) (body-y body))))
+  "Put robots made by the blueprints that are defined in MAP, which is new, into it."
+  (dolist (blueprint (blueprints-in map))
+    (let ((trouble (start-trouble map (blueprint-x blueprint) (blueprint-y blueprint))))
       (if trouble
-          (leave-out body (format nil "it does not fit into the new map ~(~A~), as ~A; define it ~
-                                       anew"
-                                  (map-name map) trouble))
-          (set-robot body (settle-robot body))))))
+          (leave-out (blueprint-name blueprint)
+                     (format nil "it does not fit into the new map ~(~A~), as ~A; define it anew"
+                             (map-name map) trouble))
+          (set-robot blueprint (settle-robot blueprint))))))
 
 (defmethod map-replaced ((old map) new)
   (let* ((world (map-resident old))

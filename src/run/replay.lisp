@@ -68,7 +68,7 @@ after each tick of that, with the simulation."
            (perform-entries journal simulation)
            (when observer (remove-observer observer simulation))
            (funcall function)))
-       (mapcar (lambda (name) (body-name (find-body name))) robots)
+       (mapcar (lambda (name) (blueprint-name (find-blueprint name))) robots)
        :seed seed :parameters (full-settings parameters) :journal t))))
 
 (addition with-replay)

@@ -3,8 +3,7 @@
 (in-package :ars-magna.run)
 
 ;;; A run has no state of its own but the values of the parameters as it knows them: the rest is its
-;;; timeline's and its world's. Each world has one run. That of a map's resident world is made
-;;; when it is first needed.
+;;; timeline's and its world's.
 
 (define-kind (simulation :constructor (%make-simulation (timeline world)))
     "One run: a timeline, a world, and what goes with them."
@@ -81,32 +80,6 @@
          (simulation (%make-simulation timeline world)))
     (setf (timeline-run timeline) simulation)
     simulation))
-
-(defvar *simulations-lock* (make-lock "simulations"))
-
-(defun ensure-timeline (world)
-  "Return the timeline of WORLD, also if it has no robot yet."
-  (or (world-timeline world)
-      (setf (world-timeline world) (make-timeline (map-name (world-map world))))))
-
-(defun world-simulation (world)
-  "Return the simulation of WORLD, made if there is none, with a journal."
-  (let ((timeline (ensure-timeline world)))
-    (or (timeline-run timeline)
-        (with-lock (*simulations-lock*)
-          (or (timeline-run timeline)
-              (let ((simulation (make-simulation world)))
-                (begin-journal simulation)
-                simulation))))))
-
-(defun resident-simulation (map)
-  "Return the simulation of the resident world of MAP, or of the map so named."
-  (world-simulation (map-resident-world (find-map map))))
-
-(addition robot-simulation)
-(defun robot-simulation (robot)
-  "Return the simulation of the world that ROBOT is in."
-  (world-simulation (robot-world robot)))
 
 (defun headless-p (simulation)
   "True if SIMULATION is one of WITH-SIMULATION: not of the world that top-level code works in."

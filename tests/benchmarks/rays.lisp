@@ -85,7 +85,7 @@
        (strew world near-things dice (floor (+ 2 (robot:robot-x robot)))
               (- (floor (robot:robot-y robot)) 2) 5)
        (strew world world-things dice 0 600 400)
-       (loop repeat (1- robots) do (robot::make-robot (robot:robot-body robot) world))
+       (loop repeat (1- robots) do (robot::make-robot (robot:robot-blueprint robot) world))
        (look-each-tick (world:world-robots world) (time:current-simulation))
        (say name (per-second ticks (lambda () (run:run-ticks ticks)) :runs 3) "ticks/s")))
    (list robot-name) :seed 1))

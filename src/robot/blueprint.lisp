@@ -1,0 +1,32 @@
+;;;; blueprint.lisp -- what DEFROBOT says of a robot, and the registry of that (manual 5.2).
+
+(in-package :ars-magna.robot)
+
+;;; A blueprint is fixed once DEFROBOT has read it; any number of robots can be made by it, each in
+;;; a world of its own.
+
+(defstruct (blueprint (:copier nil))
+  "What DEFROBOT said of a robot."
+  (name nil :type symbol :read-only t)
+  (map nil :type symbol :read-only t)
+  (x 0d0 :type double-float :read-only t)
+  (y 0d0 :type double-float :read-only t)
+  (angle 0d0 :type double-float :read-only t)
+  (cameras '() :type list :read-only t)
+  (hands '() :type list :read-only t)
+  (bins '() :type list :read-only t)
+  ;; Of other kinds: lists (kind initarg value ...).
+  (parts '() :type list :read-only t))
+
+(document-functions
+  blueprint-p "True of what DEFROBOT said of a robot."
+  blueprint-name "Return the name of the robot."
+  blueprint-map "Return the name of the map that the robot starts in."
+  blueprint-x "Return the x coordinate where the robot starts, in metres."
+  blueprint-y "Return the y coordinate where the robot starts, in metres.")
+
+(defmethod reference ((blueprint blueprint))
+  (list :blueprint (name-string (blueprint-name blueprint))))
+
+(define-registry robot "robot" :object-p blueprint-p :by-symbol t
+  :finder find-blueprint :lister all-blueprints :internal t)

@@ -1,0 +1,116 @@
+;;;; making.lisp -- robots, made by their blueprints and put back to their start (manual 5.2).
+
+(in-package :ars-magna.robot)
+
+;;; DEFROBOT puts a robot made by its blueprint into its map's resident world and binds the robot's
+;;; name; a fresh simulation makes another by the same blueprint.
+
+(defun robot-of-blueprint (blueprint world)
+  "Return the robot in WORLD that is called as BLUEPRINT says, or NIL."
+  (find (blueprint-name blueprint) (world-robots world) :key #'robot-name :test #'eq))
+
+(defun resident-robot (blueprint)
+  "Return the robot made by BLUEPRINT, or an earlier one of its name, that top-level code commands."
+  (let ((map (find-map (blueprint-map blueprint) nil)))
+    (and map (map-resident map) (robot-of-blueprint blueprint (map-resident map)))))
+
+(defun blueprint-robot (blueprint)
+  "Return the robot of BLUEPRINT here and now: the value of its variable."
+  (let* ((name (blueprint-name blueprint)) (value (and (boundp name) (symbol-value name))))
+    (if (robot-p value) value (resident-robot blueprint))))
+
+(addition all-robots)
+(defun all-robots ()
+  "Return a list of all robots, those that the variables of their names hold, in order of
+definition."
+  (remove nil (mapcar #'blueprint-robot (all-blueprints))))
+
+(addition find-robot)
+(defun find-robot (name &optional (errorp t))
+  "Return the robot called NAME, a symbol or string: the one that the variable of that name holds;
+a robot is returned as it is. If there is none, signal UNKNOWN-NAME, or return NIL if ERRORP is
+NIL."
+  (if (robot-p name)
+      name
+      (let ((blueprint (find-blueprint name errorp)))
+        (and blueprint (blueprint-robot blueprint)))))
+
+;;; Making robots.
+
+(defun make-parts (robot constructor specifications)
+  (coerce (loop for specification in specifications
+                for index from 0
+                collect (apply constructor :robot robot :index index specification))
+          'simple-vector))
+
+(defun outfit (robot blueprint)
+  "Give ROBOT the parts that BLUEPRINT lists."
+  (setf (robot-cameras robot)
+        (make-parts robot #'make-camera
+                    (loop for (field-of-view resolution) in (blueprint-cameras blueprint)
+                          collect (list :field-of-view field-of-view :resolution resolution)))
+        (robot-hands robot)
+        (make-parts robot #'make-hand
+                    (loop for strength in (blueprint-hands blueprint)
+                          collect (list :strength strength)))
+        (robot-bins robot)
+        (make-parts robot #'make-storage-bin
+                    (loop for capacity in (blueprint-bins blueprint)
+                          collect (list :capacity capacity)))
+        (robot-sensors robot)
+        (make-sensors robot (blueprint-parts blueprint))))
+
+(defun make-sensors (robot specifications)
+  "Return a vector of parts of ROBOT, made as SPECIFICATIONS, lists (kind initarg value ...), say."
+  (coerce (loop for ((kind . initargs) . rest) on specifications
+                collect (apply (kind-constructor kind)
+                               :robot robot
+                               :index (- (count kind specifications :key #'first)
+                                         (count kind rest :key #'first)
+                                         1)
+                               initargs))
+          'simple-vector))
+
+(defun kind-constructor (kind)
+  "Return the function that makes parts of KIND, a symbol."
+  (find-symbol (format nil "MAKE-~A" kind) (symbol-package kind)))
+
+(defun start-trouble (map x y)
+  "Return in words why a robot cannot start at (X,Y) in MAP, or NIL."
+  (cond ((not (map-index map x y))
+         (format nil "(~F ~F) is outside the map, which is ~D by ~D metres"
+                 x y (map-width map) (map-height map)))
+        ((wall-at-p map x y) (format nil "(~F ~F) is inside a wall" x y))))
+
+(defun check-start (blueprint map)
+  "Signal MISUSE unless a robot made by BLUEPRINT fits into MAP."
+  (let ((trouble (start-trouble map (blueprint-x blueprint) (blueprint-y blueprint))))
+    (when trouble
+      (reject-use "~(~A~) no longer fits into ~(~A~): ~A. Define the robot anew."
+                  (blueprint-name blueprint) (map-name map) trouble))))
+
+(defun make-robot (blueprint world)
+  "Return a robot made by BLUEPRINT, at its start in WORLD. Signals MISUSE if that is in a wall."
+  (check-start blueprint (world-map world))
+  (let ((robot (%make-robot :name (blueprint-name blueprint) :blueprint blueprint :world world)))
+    (unless (world-timeline world)
+      (setf (world-timeline world) (make-timeline (map-name (world-map world)))))
+    (pushnew #'watch-thing (world-move-watchers world))
+    (pushnew #'watch-container (world-move-watchers world))
+    (outfit robot blueprint)
+    (stand-at-start robot)
+    (setf (world-robots world) (append (world-robots world) (list robot)))
+    robot))
+
+(defun stand-at-start (robot)
+  "Put ROBOT where its blueprint says, with a fresh odometer."
+  (let ((blueprint (robot-blueprint robot)))
+    (set-robot-pose robot (blueprint-x blueprint) (blueprint-y blueprint)
+                    (blueprint-angle blueprint))
+    (add-odometer robot 'main)))
+
+(defmethod reset :before ((robot robot))
+  (mapc #'free-number (live-designators robot)))
+
+(defmethod reset :after ((robot robot))
+  (stand-at-start robot))
