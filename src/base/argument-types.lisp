@@ -20,11 +20,12 @@ function that returns in words what is wrong with a value, or NIL for no more th
   name)
 
 (defun argument-of-type-p (value type)
-  "True if VALUE can be an argument of the type named TYPE."
+  "True if VALUE can be an argument of TYPE, an argument type or the name of one."
   (funcall (argument-type-predicate (find-argument-type type)) value))
 
 (defun argument-type-text (type &optional (value nil value-p))
-  "Return in words what an argument of the type named TYPE is, and what is wrong with VALUE."
+  "Return in words what an argument of TYPE, an argument type or the name of one, is, and what is
+wrong with VALUE."
   (let* ((type (find-argument-type type))
          (trouble (and value-p (argument-type-trouble type)
                        (funcall (argument-type-trouble type) value))))

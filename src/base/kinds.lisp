@@ -56,6 +56,7 @@
 (defun kind-called (name)
   (get name 'object-kind))
 
+(declaim (inline kind-of))
 (defun kind-of (object)
   "Return the kind that OBJECT is of, or NIL."
   (and (typep object 'structure-object)

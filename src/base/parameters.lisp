@@ -138,7 +138,8 @@ is now where they say nothing. Changes made inside end with the call."
 
 (defun parameter-values ()
   "Return a vector of the values of all parameters as they are now, for FOLLOW-PARAMETERS."
-  (map 'vector #'parameter-value (registry-objects *parameters*)))
+  (map 'vector (lambda (parameter) (symbol-value (parameter-symbol parameter)))
+       (registry-objects *parameters*)))
 
 (defun usable-value-p (parameter value)
   "True if PARAMETER can have VALUE; if not, queue an error message."

@@ -40,6 +40,7 @@
   "True while THREAD runs."
   (bordeaux-threads:thread-alive-p thread))
 
+(declaim (inline current-thread))
 (defun current-thread ()
   "Return the thread that asks."
   (bordeaux-threads:current-thread))

@@ -47,6 +47,10 @@ storage-bin- (manual E; the rule is inferred)."
 (define-argument-type 'continuation #'continuation-p
   "a continuation: a function of an error code and the command's results, or NIL for none")
 
+(defun check-form (name variable type)
+  "Return a form that checks that VARIABLE, an argument of the command NAME, is of TYPE."
+  `(check-of-type ',name ',variable ,variable (load-time-value (find-argument-type ',type))))
+
 (defmacro define-command (name (operation resource &rest parameters) (&rest results)
                           (&rest options) sentence &body body)
   "Define the function NAME, which issues a command, and all that is known of it.
@@ -95,9 +99,9 @@ BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now o
        (defun ,name (,(first resource) ,@variables &optional continuation)
          ,(describe-command sentence resource parameters results errors
                             (first (option :section options)))
-         (check-of-type ',name ',(first resource) ,(first resource) ',(second resource))
+         ,(check-form name (first resource) (second resource))
          ,@(loop for (variable type) in parameters
-                 collect `(check-of-type ',name ',variable ,variable ',type))
-         (check-of-type ',name 'continuation continuation 'continuation)
+                 collect (check-form name variable type))
+         ,(check-form name 'continuation 'continuation)
          (issue (command-of ',name) ,(first resource) (list ,@variables) continuation))
        ',name)))

@@ -77,6 +77,8 @@ the robot stands."
   "Take PART, a camera or hand, into LOCATION: a thing, a storage bin, or NIL for the open. What
 it holds moves along, what it tracks is lost; warnings say so."
   (let ((old (part-location part)))
+    (when (thing-p location)
+      (pushnew #'watch-container (world-move-watchers (location-world part))))
     (setf (part-location part) location)
     (part-moved part old)))
 

@@ -95,8 +95,6 @@ NIL."
   (let ((robot (%make-robot :name (blueprint-name blueprint) :blueprint blueprint :world world)))
     (unless (world-timeline world)
       (setf (world-timeline world) (make-timeline (map-name (world-map world)))))
-    (pushnew #'watch-thing (world-move-watchers world))
-    (pushnew #'watch-container (world-move-watchers world))
     (outfit robot blueprint)
     (stand-at-start robot)
     (setf (world-robots world) (append (world-robots world) (list robot)))

@@ -146,4 +146,5 @@ DATA, in LOCATION (NIL: in the open)."
       (multiple-value-bind (x y) (designator-position designator)
         (setf (designator-x designator) (double x)
               (designator-y designator) (double y))))
+    (pushnew #'watch-thing (world-move-watchers (robot-world robot)))
     (take-number robot designator)))

@@ -11,7 +11,7 @@ ends with it and simulations side by side do not meet.")
 ;;; Passing ticks.
 
 (defun check-headless (simulation operator)
-  (when (live-p simulation)
+  (when (simulation-thread simulation)
     (reject-use "~(~A~): this simulation runs live, its ticks pass by themselves. ~
                  Use (with-simulation (ROBOT) ...) or (stop-simulator)." operator)))
 
@@ -73,21 +73,21 @@ ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
         (when journal (begin-journal simulation))
         simulation))))
 
-(defun call-with-simulation (function robots &key (seed 0) parameters clean journal)
-  "Call FUNCTION in a fresh headless simulation; see WITH-SIMULATION."
+(defun call-with-simulation (function robots &key (seed 0) parameters clean journal variables)
+  "Call FUNCTION in a fresh headless simulation; see WITH-SIMULATION. VARIABLES are symbols by which
+FUNCTION calls some of the ROBOTS, of other packages than theirs perhaps."
   (check-argument with-simulation seed (integerp seed) "an integer")
   (call-with-parameters
    parameters
    (lambda ()
      (when clean (clean-simulation))
      (let* ((*message-queue* (make-message-queue))
-            (names (variables-among robots))
             (simulation (fresh-simulation (ensure-list robots) :seed seed :journal journal))
             (*simulation* simulation)
             (*world* (simulation-world simulation))
             (robots (simulation-robots simulation)))
-       (progv (append names (mapcar #'robot-name robots) *simulation-variables*)
-           (append (robots-meant names) robots (mapcar #'symbol-value *simulation-variables*))
+       (progv (append variables (mapcar #'robot-name robots) *simulation-variables*)
+           (append (robots-meant variables) robots (mapcar #'symbol-value *simulation-variables*))
          (unwind-protect (funcall function)
            (end-headless simulation)))))))
 
@@ -120,9 +120,10 @@ integer SEED decides all chance. Parameters are bound to what they are here, or 
 PARAMETERS of lists (name value) says; with CLEAN the simulation is clean. With JOURNAL it keeps a
 journal. Messages go to a queue of its own. When BODY has ended, the run is over: what the robots
 are doing is interrupted, and they take no more commands. Return the values of BODY."
-  (let ((robots (unquoted robots)))
+  (let* ((robots (unquoted robots)) (variables (variables-among robots)))
     `(call-with-simulation (lambda ()
-                             (declare (special ,@(variables-among robots)))
+                             (declare (special ,@variables))
                              ,@body)
                            ',robots
+                           :variables ',variables
                            :seed ,seed :parameters ,parameters :clean ,clean :journal ,journal)))

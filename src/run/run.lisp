@@ -56,14 +56,17 @@
   "Return a list of the robots in SIMULATION."
   (world-robots (simulation-world simulation)))
 
+(declaim (inline simulation-over))
 (defun simulation-over (simulation)
   "Return why the run of SIMULATION is over, a string, or NIL as long as it is not."
   (timeline-over (simulation-timeline simulation)))
 
+(declaim (inline simulation-thread))
 (defun simulation-thread (simulation)
   "Return the thread that passes the ticks of SIMULATION, or NIL if it is headless."
   (timeline-thread (simulation-timeline simulation)))
 
+(declaim (inline simulation-ticking-p))
 (defun simulation-ticking-p (simulation)
   "True inside a tick of SIMULATION, while its world changes."
   (timeline-ticking-p (simulation-timeline simulation)))
@@ -162,7 +165,7 @@ copied goes along."
   "Let TIMELINE be over for REASON, and its thread end. True unless it has been over before."
   (unless (timeline-over timeline)
     (setf (timeline-over timeline) reason)
-    (stop-pacing timeline)
+    (when (timeline-thread timeline) (stop-pacing timeline))
     t))
 
 (defun end-simulation (simulation reason)

@@ -17,7 +17,8 @@
 
 (defun follow-settings (simulation)
   "Let the journal of SIMULATION know which parameters somebody has set."
-  (follow-parameters (simulation-known-parameters simulation) (live-p simulation)
+  (follow-parameters (simulation-known-parameters simulation)
+                     (and (simulation-thread simulation) t)
                      (lambda (symbol value)
                        (note simulation 'parameter (list (string-downcase symbol) value)))))
 
