@@ -47,7 +47,7 @@
     :components ((:file "package") (:file "blueprint") (:file "parts") (:file "odometer")
                  (:file "motion")
                  (:file "designator") (:file "place-sense") (:file "sight") (:file "tracks")
-                 (:file "inside") (:file "making") (:file "retiring") (:file "defrobot")
+                 (:file "new-designators") (:file "inside") (:file "making") (:file "retiring") (:file "defrobot")
                  (:file "own-changes")
                  (:file "rays") (:file "noise") (:file "matching") (:file "sightings")
                  (:file "scanning") (:file "views") (:file "tending")))

@@ -1,4 +1,4 @@
-;;;; policy.lisp -- how hot code is compiled, and the few number types that all layers share.
+;;;; policy.lisp -- how code is compiled, and the few number types that all layers share.
 
 (in-package :ars-magna.base)
 
@@ -35,9 +35,3 @@
     (single-float (coerce number 'double-float))
     ;; Not inline, so that the compiler does not complain where it cannot rule out complex numbers.
     (t (other-double number))))
-
-(defmacro document-functions (&rest names-and-texts)
-  "Give the functions NAMES the documentation TEXTS, alternating: for the readers of structures,
-which have no place of their own for it."
-  `(setf ,@(loop for (name text) on names-and-texts by #'cddr
-                 append `((documentation ',name 'function) ,text))))

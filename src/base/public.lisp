@@ -1,4 +1,4 @@
-;;;; public.lisp -- which names users see, and which of them the manual does not have.
+;;;; public.lisp -- which names users see, which of them the manual does not have, and their texts.
 
 (in-package :ars-magna.base)
 
@@ -62,3 +62,9 @@ may be a list (name face...), as for PUBLIC."
   "True if SYMBOL is marked as an addition to the manual."
   (let ((mark (find-mark symbol)))
     (and mark (mark-addition-p mark))))
+
+(defmacro document-functions (&rest names-and-texts)
+  "Give the functions NAMES the documentation TEXTS, alternating: for the readers of structures,
+which have no place of their own for it."
+  `(setf ,@(loop for (name text) on names-and-texts by #'cddr
+                 append `((documentation ',name 'function) ,text))))

@@ -1,4 +1,4 @@
-;;;; hands.lisp -- grasping, and keeping track of the grip (manual 3.6).
+;;;; hands.lisp -- grasping, letting go, feeling, and watching the grip (manual 3.6).
 
 (in-package :ars-magna.command)
 

@@ -9,14 +9,14 @@
   (sb-ext:add-package-local-nickname :display :ars-magna.display))
 
 (defun rooms (width height size)
-  (append `((world::rect (0 0) (,(1- width) ,(1- height)) bricks 0 10 30 25))
+  (append `((rect (0 0) (,(1- width) ,(1- height)) bricks 0 10 30 25))
           (loop for y from 0 below height by size
                 append (loop for x from 0 below width by size
-                             collect `(world::wall (,x ,y) (,(+ x (- size 6)) ,y) wood 40 90)
-                             collect `(world::wall (,(+ x (- size 3)) ,y) (,(+ x size -1) ,y)
+                             collect `(wall (,x ,y) (,(+ x (- size 6)) ,y) wood 40 90)
+                             collect `(wall (,(+ x (- size 3)) ,y) (,(+ x size -1) ,y)
                                                    wood 60)
-                             collect `(world::wall (,x ,y) (,x ,(+ y (- size 8))) slate 10 30)
-                             collect `(world::rect (,(+ x 6) ,(+ y 8)) (,(+ x 10) ,(+ y 11))
+                             collect `(wall (,x ,y) (,x ,(+ y (- size 8))) slate 10 30)
+                             collect `(rect (,(+ x 6) ,(+ y 8)) (,(+ x 10) ,(+ y 11))
                                                    wood 50)))))
 
 (defun strew (world count width height)
