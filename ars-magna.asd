@@ -166,7 +166,7 @@
                  (:file "homes")
                  (:file "listings") (:file "listings-places") (:file "listings-sensing")
                  (:file "listings-programs") (:file "listings-plans")
-                 (:file "architecture") (:file "isolation") (:file "main"))))
+                 (:file "src-readme") (:file "architecture") (:file "isolation") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
              (symbol-call :ars-magna.tests :run-all)))
