@@ -5,6 +5,7 @@
 ;;; Arguments are read by the Lisp reader and not evaluated (manual E); numbers stand for cameras,
 ;;; hands, storage bins and designators. A semicolon begins a comment.
 
+;; As reading 227 says.
 (defgeneric read-argument (type datum robot)
   (:documentation
    "Return the argument of the type called TYPE (a keyword) that DATUM, as typed, stands for with
@@ -98,7 +99,7 @@ method, DATUM is the argument.")
   (string-trim "\"" token))
 
 (defun read-datum (text start line)
-  "Return the Lisp datum in TEXT at START and where it ends."
+  "Return the Lisp datum in TEXT at START and where it ends (reading 196)."
   (handler-case (read-from-string text t nil :start start :preserve-whitespace t)
     (end-of-file ()
       (reject-line "~A is not complete: a parenthesis or quote is missing. ~A"

@@ -43,7 +43,7 @@
   (format nil "~,2F, ~,2F" (designator-distance designator) (designator-angle designator)))
 
 (defun location-text (part)
-  "Return where PART is, if inside something (manual E)."
+  "Return where PART is, if inside something (manual E; reading 202)."
   (let ((location (part-location part)))
     (cond ((null location) nil)
           ((storage-bin-p location) "Located in storage-bin.")

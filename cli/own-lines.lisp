@@ -28,6 +28,7 @@
     "Evaluate EXP as Lisp and print its values; so does a line that begins with a parenthesis."
   (evaluate-text session exp))
 
+;; As reading 204 says.
 (define-line "REPEAT" (session (num count "how often") (cmd :rest "a command, with its arguments"))
     (:general)
     "Give the command CMD, NUM times over, each time when the last has completed."

@@ -4,6 +4,7 @@
 
 ;;; The layouts are those of the session in manual E.
 
+;; As reading 203 says.
 (defun write-bin (bin)
   (put-line "~2D ~9A ~7A ~4,1F  ~{~A~^ ~}"
               (format nil "~2A" (storage-bin-index bin))

@@ -30,6 +30,7 @@ comes of earlier lines if the session waits for that."
   (let ((start (position-if-not #'blank-p text)))
     (or (null start) (find (char text start) ";#"))))
 
+;; As reading 205 says.
 (defun lisp-p (text)
   (char= #\( (char text (position-if-not #'blank-p text))))
 

@@ -92,6 +92,7 @@
     "Insert the hand HAND into the thing whose local designator the camera CAM tracks."
   (send-named session 'hand-insert hand (tracked cam)))
 
+;; As reading 195 says.
 (define-line "HAND-GRASP" (session (hand hand "the hand that is to grasp")
                                    (cam camera "the camera that tracks the thing"))
     (:hand)

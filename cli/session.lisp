@@ -110,6 +110,7 @@ over."
           (when (and *simulation* (not (eq *message-queue* (simulation-messages *simulation*))))
             (take-messages (simulation-messages *simulation*)))))
 
+;; As reading 197 says.
 (defun write-messages (messages console)
   (unless (and (unanswered-p console) (eq (message-kind (first messages)) :message))
     (fresh-line console))

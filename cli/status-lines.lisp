@@ -6,7 +6,8 @@
 ;;; of position, which the manual lists and its session leaves out.
 
 (defun glance (camera)
-  "Return what CAMERA sees now. The run does not notice: dice and last view stay as they were."
+  "Return what CAMERA sees now. The run does not notice: dice and last view stay as they
+were (reading 201)."
   (let* ((dice (world-dice (robot-world (part-robot camera)) :looking))
          (state (dice-state dice))
          (last-view (camera-last-view camera)))
@@ -51,6 +52,7 @@
 (defun write-position (label x y)
   (format t "~19A(~,2F,~,2F)~%" label x y))
 
+;; As readings 17 and 199 say.
 (defun write-status (robot)
   (multiple-value-call #'write-position "Position:" (robot-position robot))
   (multiple-value-call #'write-position "D Position:" (robot-last-move robot))
@@ -77,6 +79,7 @@ speed, the views of its cameras, the place it sensed last, its designators."
         (format nil "@ (~,2F,~,2F)" (thing-x thing) (thing-y thing))
         (format nil "in ~A" (location-name location)))))
 
+;; As reading 206 says.
 (define-line "THINGS" (session)
     (:seeing)
     "List all things in the world with their locations and attributes."

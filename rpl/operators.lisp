@@ -6,7 +6,8 @@
 ;;; plain Lisp, and where the compiler can see that none is, nothing is left of it.
 
 (defmacro lifting (operator &rest arguments &environment environment)
-  "Call OPERATOR, the name of a function, with ARGUMENTS; return a network if any is a fluent."
+  "Call OPERATOR, the name of a function, with ARGUMENTS; return a network if any is a
+fluent (reading 184)."
   (let* ((bindings (loop for argument in arguments
                          unless (constantp argument environment)
                            collect (list (gensym "ARGUMENT") argument)))

@@ -60,6 +60,7 @@ as soon as one fails, and evaporate the others (manual D.7)."
   "The first of BRANCHES to end."
   :step step-parallel :child-ended pursue-part-over)
 
+;; As reading 185 says.
 (defun pursue-part-over (node task frame child how result)
   (declare (ignore node frame child))
   (cond ((fail-or-escape task how result))

@@ -19,6 +19,7 @@
            (park task nil)
            +parked+)))
 
+;; As reading 186 says.
 (defun policed-part-over (node task frame child how result)
   (declare (ignore node frame))
   (unless (fail-or-escape task how result)

@@ -151,7 +151,7 @@ network that is true at that instant, will wake. Return VALUE (manual C)."
 
 (defun apply-settings (settings)
   "Apply SETTINGS at one instant: first each (:set fluent value), then each (:pulse fluent [value]),
-all together. So whoever sees the pulses sees the values that came with them."
+all together. So whoever sees the pulses sees the values that came with them (reading 177)."
   (let ((changed '()) (pulsed '()) (values '()))
     (loop for (kind fluent . more) in settings
           do (check-settable kind fluent)

@@ -42,6 +42,7 @@
   (:set camera-error* err)
   (:pulse camera-input*))
 
+;; As reading 178 says.
 (define-outcome (camera-get-object-designator camera-get-place-designator) (designator)
   (:set camera-designators* (if designator (list designator) '()))
   (:set camera-error* err)
@@ -84,6 +85,7 @@
   (:set hand-error* err)
   (:pulse hand-moved*))
 
+;; As reading 180 says.
 (define-outcome (hand-remove) ()
   (:when (null err) (:set hand-inside* (came-out resource)))
   (:set hand-error* err)
@@ -104,6 +106,7 @@
   (:set hand-error* err)
   (:pulse hand-input*))
 
+;; As reading 23 says.
 (define-outcome (hand-track) ()
   (:when (member err '(:grasp-lost :not-grasping)) (:set hand-grasping* nil))
   (:set hand-error* err)
@@ -115,6 +118,7 @@
   (:set storage-bin-error* err)
   (:pulse storage-bin-moved*))
 
+;; As reading 182 says.
 (define-outcome (storage-bin-close) (jammed-part)
   (:set storage-bin-jammer* jammed-part)
   (:set storage-bin-error* err)

@@ -41,6 +41,7 @@
   (hand-error* "The error code of the last hand command; NIL: success.")
   (hand-lost* "Pulsed when the hand is seen to lose its grasp.")
   (hand-inside* "The designator or bin that the hand is inside of, or NIL.")
+  ;; As reading 24 says.
   (hand-grasping* "The designator of what the hand is grasping, or NIL.")
   (hand-input* "Pulsed when sensory information becomes available."))
 
@@ -50,7 +51,7 @@
   (storage-bin-jammer* "The camera or hand that kept the bin from closing, or NIL."))
 
 (defun make-fluents (robot)
-  "Give all fluent variables fresh fluents that suit ROBOT."
+  "Give all fluent variables fresh fluents that suit ROBOT (reading 183)."
   (loop for (variable kind) in *fluent-variables*
         for name = (string-downcase variable)
         do (setf (symbol-value variable)

@@ -17,7 +17,8 @@
     (and kind (kind-name kind))))
 
 (defun convert-argument (value type operator)
-  "Return what VALUE, perhaps a fluent or an index, stands for as an argument of TYPE."
+  "Return what VALUE, perhaps a fluent or an index, stands for as an argument of
+TYPE (reading 181)."
   (let ((value (fluent-value value)))
     (cond ((part-kind type) (find-part (part-kind type) value operator))
           ((and (same-name-p type 'destination) (integerp value))
@@ -91,7 +92,7 @@ and PARAMETERS, lists (variable type text)."
 (defmacro define-outcome (commands (&rest results) &body clauses)
   "Define the plan functions of COMMANDS. When one ends, CLAUSES are carried out with ERR bound to
 its error code and RESULTS to its results: (:set fluent form), (:pulse fluent), (:when form
-clause...)."
+clause...). See reading 179."
   `(progn
      ,@(loop for command-name in commands
              for (resource specifications sentence) = (command-shape command-name)

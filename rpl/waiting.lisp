@@ -104,7 +104,8 @@ return NIL (manual C)."
 
 (public wait-time)
 (defmacro wait-time (span &key (unit :ticks))
-  "Wait in a plan for SPAN, counted in ticks, or in seconds if UNIT is :seconds (manual D.4)."
+  "Wait in a plan for SPAN, counted in ticks, or in seconds if UNIT is
+:seconds (manual D.4; reading 90)."
   (misplaced 'wait-time (list span :unit unit)))
 
 (define-plan-form "WAIT-TIME" :must (span &key unit) (form scope)

@@ -43,7 +43,8 @@
     (show symbol face)))
 
 (defmacro define-face (face documentation)
-  "Define the package FACE, :ARS or :NISP, which exports what is marked for it (see PUBLIC)."
+  "Define the package FACE, :ARS or :NISP, which exports what is marked for it (see PUBLIC).
+See reading 29."
   `(eval-when (:compile-toplevel :load-toplevel :execute)
      (fill-face ,face ,documentation)))
 

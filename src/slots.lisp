@@ -13,6 +13,7 @@
 (define-nisp-slot ars-magna.world:place canonical-dir ars-magna.world:place-canonical-dir)
 
 ;;; The manual's programs reach these, although it says that robots have no accessible slots.
+;; As reading 216 says.
 (define-nisp-slot ars-magna.robot:robot cameras ars-magna.robot:robot-cameras)
 (define-nisp-slot ars-magna.robot:camera field-of-view ars-magna.robot:camera-field-of-view)
 (define-nisp-slot ars-magna.robot:camera resolution ars-magna.robot:camera-resolution)

@@ -97,6 +97,6 @@ if there are several of a name; not those under the names SETTLED."
   "Define the package NAME, ready to work in, as DEFPACKAGE does with OPTIONS. Unless they contain
 (:use ...), it uses CL, ARS and NISP; what its packages export under a name of Common Lisp's, such
 as ARS:EQUAL or NISP:LOOP, wins over that unless OPTIONS say otherwise. In it XLIB is our canvas:
-ARS-MAGNA.CANVAS. Signals MALFORMED-DEFINITION."
+ARS-MAGNA.CANVAS. Signals MALFORMED-DEFINITION. See reading 213."
   `(defpackage ,name
      ,@(user-package-options (format nil "define-user-package ~(~A~)" name) options)))

@@ -10,6 +10,7 @@
 
 ;;; Furniture: it blocks the way; what is tall blocks the view too.
 
+;; As reading 60 says.
 (defvar table* (new-thing table nil
                  ((:obsmove #t) (:size 30) (:weight 20) (:color lightgreen) (:substance wood)))
   "A table: things lie on it that are in its cell.")

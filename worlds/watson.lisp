@@ -195,6 +195,7 @@
   (obj broom (32.5 18.5) ((:size 6) (:weight 1) (:color lightgreen) (:substance wood)))
   (obj (paint-pot :prototype tin*) (38.5 27.5) ((:size 2) (:weight 2) (:color blue))))
 
+;; As reading 10 says.
 (defrobot robbie (watson (10 5) 0)
   :cameras (((/ pi 4) 3) ((/ pi 2) 5))
   :hands (10 4)

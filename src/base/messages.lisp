@@ -84,7 +84,8 @@ ones were forgotten, a warning that says how many comes first."
 ;;; Printing.
 
 (defun write-item (item stream)
-  "Write ITEM as OUT does: no quotes, floats without an exponent marker, T as a new line."
+  "Write ITEM as OUT does: no quotes, floats without an exponent marker, T as a new
+line (reading 36)."
   (cond ((eq item t) (terpri stream))
         ((floatp item)
          (let ((*read-default-float-format* (type-of item)))
@@ -116,7 +117,7 @@ ones were forgotten, a warning that says how many comes first."
 (public error-display)
 (defun error-display (&optional (stream *standard-output*))
   "Write all queued messages to STREAM, oldest first, and flush the queue. Writes nothing
-when FLUSH-ALL-ERRORS* is true. Return nothing (manual 3.7)."
+when FLUSH-ALL-ERRORS* is true. Return nothing (manual 3.7). See reading 207."
   (let ((messages (take-messages)))
     (unless flush-all-errors*
       (dolist (message messages) (write-message message stream))

@@ -15,7 +15,8 @@
   (or (eq a b) (string-equal a b)))
 
 (defun value-equal (a b)
-  "True if A and B are the same attribute value: symbols by name, numbers by value, lists by both."
+  "True if A and B are the same attribute value: symbols by name, numbers by value, lists by
+both (reading 38)."
   (cond ((eq a b) t)
         ((and (symbolp a) (symbolp b)) (and a b (same-name-p a b)))
         ((and (numberp a) (numberp b)) (= a b))

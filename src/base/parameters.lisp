@@ -103,7 +103,7 @@ WRONG-ARGUMENT if the new value is of the wrong type or out of range."
 (defun clean-simulation ()
   "Remove all noise and error: set every noise parameter to its noiseless value and
 NO-SENSOR-ERROR* to T. Delays and limits stay. A second call changes nothing. Returns nothing
-(manual, chapter 4)."
+(manual, chapter 4). See reading 117."
   (unless *noise-before-cleaning*
     (setf *noise-before-cleaning*
           (loop for parameter in (registry-objects *parameters*)

@@ -14,8 +14,10 @@
        `(progn ,@(loop for group in groups collect `(define-group ,@group)))))
   (define-physics
     ("Robot movement"
+     ;; As reading 217 says.
      (max-speed* 1 "cells per tick" :limit (real 0)
       "The fastest the robot can drive. Motion is swept, so values above 1 skip no cell.")
+     ;; As reading 228 says.
      (max-turn-angle* (/ pi 8) "radians per tick" :limit (real 0)
       "The fastest the robot can turn.")
      (min-turn-angle* 0.05d0 "radians per tick" :limit (real 0)
@@ -45,6 +47,7 @@
       "The chance that the track of a false designator is lost.")
      (false-desig-drift-dist* 1 "cells per tick" :noise (real 0)
       "How far the perceived distance of a tracked false designator may drift.")
+     ;; As reading 21 says.
      (false-desig-drift-ang* 0.2d0 "radians per tick" :noise (real 0)
       "How far the perceived angle of a tracked false designator may drift.")
      (camera-insert-miss-prob* 0.05d0 "probability" :noise (real 0 1)
@@ -64,10 +67,12 @@
       "The chance of not sensing the place type that is there.")
      (prob-stop* 0.07d0 "probability per cell" :limit (real 0 1)
       "The chance that the walk along a ray that places a false designator stops.")
+     ;; As reading 8 says.
      (miss-thing-prob* 0.05d0 "probability" :noise (real 0 1)
       "The chance that a search overlooks a thing.")
      (miss-place-prob* 0.1d0 "probability" :noise (real 0 1)
       "The chance that a search overlooks a place.")
+     ;; As reading 135 says.
      (false-thing-prob* 0.01d0 "probability" :noise (real 0 1)
       "The chance that a search for things finds one that is not there. The manual has false
 designators of things, but no parameter for them." :addition t)

@@ -87,6 +87,7 @@
 (define-constant +scroll-step+ (* 3 +line-height+)
   :documentation "How far a click or a turn of the wheel scrolls, in pixels.")
 
+;; As readings 26 and 28 say.
 (defgeneric click (pane button x y)
   (:documentation "The mouse's BUTTON, :LEFT, :MIDDLE or :RIGHT, was pressed at X, Y of PANE."))
 

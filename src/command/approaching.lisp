@@ -8,7 +8,7 @@
 ;;; false designator cannot be arrived at: the track is lost there.
 
 (defun at-designator-p (robot designator)
-  "True if ROBOT is in the cell of what DESIGNATOR denotes."
+  "True if ROBOT is in the cell of what DESIGNATOR denotes (reading 110)."
   (and (designator-denotation designator)
        (multiple-value-bind (x y) (designator-position designator)
          (and x (in-same-cell-p robot x y)))))
@@ -21,7 +21,8 @@ can be told."
         (< (abs (turn-step robot angle)) +facing+))))
 
 (defun approach-step (operation robot camera designator)
-  "Take ROBOT one tick nearer to DESIGNATOR, tracked by CAMERA, and end OPERATION if that ends it."
+  "Take ROBOT one tick nearer to DESIGNATOR, tracked by CAMERA, and end OPERATION if that ends
+it (reading 111)."
   (cond ((at-designator-p robot designator) (succeed operation camera designator))
         ((not (tracking-p camera designator))
          (fail-with operation :not-tracking camera designator))
@@ -43,6 +44,7 @@ can be told."
   (setf (operation-subject operation) designator)
   (go-on-now operation 'approach-on))
 
+;; As reading 109 says.
 (define-command robot-goto-designator (operation (robot robot)
                                        (camera camera "the camera that tracks the designator"))
     ((camera "the camera")

@@ -15,10 +15,11 @@
         (t (fail-with operation :bin-open))))
 
 (defun bin-jams-p (bin)
-  "True if something in BIN happens to be in the way of its door."
+  "True if something in BIN happens to be in the way of its door (reading 166)."
   (and (storage-bin-contents bin)
        (chance bin-close-jam-prob* (handling-dice bin))))
 
+;; As reading 163 says.
 (define-command storage-bin-close (operation (storage-bin storage-bin))
     ((jammed-part "the camera or hand that keeps the bin from closing, or NIL"))
     ((:family :handling) (:section "3.6") (:delay bin-delay*)

@@ -9,7 +9,7 @@
 
 (defun default-prompt-name (name)
   "Return what the prompt calls the command NAME: without robot-, cam- for camera-, bin- for
-storage-bin- (manual E; the rule is inferred)."
+storage-bin- (manual E; the rule is inferred; reading 194)."
   (let ((name (symbol-name name)))
     (or (replace-start "ROBOT-" "" name)
         (replace-start "CAMERA-" "CAM-" name)
@@ -64,7 +64,8 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
                                        function of the operation, for the error message
   (:report lambda-list form)           what the message of success says, from the results
   (:prompt name) (:prefix string)      unlike the rule of DEFAULT-PROMPT-NAME
-BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now or later."
+BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now or
+later (reading 149)."
   (let ((errors (option :errors options))
         (variables (mapcar #'first parameters))
         (report (option :report options)))

@@ -42,6 +42,7 @@ blocked."
   (drive-on (block operation)
     (when (or block (zerop (decf (operation-count operation)))) (succeed operation))))
 
+;; As reading 233 says.
 (define-command robot-go-forward (operation (robot robot)
                                   (time ticks "for how many ticks"))
     ()
@@ -55,6 +56,7 @@ blocked."
       (drive operation robot 'drive-count)
       (succeed operation)))
 
+;; As reading 102 says.
 (define-command robot-goto-wall (operation (robot robot))
     ()
     ((:family :moving) (:section "3.5") (:delay robot-move-delay*)
@@ -68,6 +70,7 @@ blocked."
   "True if ROBOT drove in the last tick, or in this."
   (>= (robot-drove-tick robot) (1- (world-tick (robot-world robot)))))
 
+;; As reading 95 says.
 (define-command robot-stop (operation (robot robot))
     ()
     ((:family :moving) (:section "3.5") (:delay 1)

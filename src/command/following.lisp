@@ -57,6 +57,7 @@ then looks there, but for the error of turning."
             ((zerop (robot-speed-now robot)) (fail-with operation :not-moving))
             (t (drive-along operation robot side))))))
 
+;; As reading 107 says.
 (define-command robot-follow-wall (operation (robot robot))
     ()
     ((:family :moving) (:section "C") (:delay robot-move-delay*)

@@ -70,6 +70,7 @@
       (thing-capacity container)))
 
 (defun has-room-p (container size)
-  "True if CONTAINER can hold anything, and SIZE more than is in it; rounding is forgiven."
+  "True if CONTAINER can hold anything, and SIZE more than is in it; rounding is
+forgiven (readings 153 and 237)."
   (and (plusp (container-capacity container))
        (<= size (+ (remaining-capacity container) 1d-9))))

@@ -12,7 +12,7 @@
        (eq (hand-location hand) (camera-location camera))))
 
 (defun grasp-obstacle (hand camera designator)
-  "Return the error code that keeps HAND from trying to grasp, or NIL."
+  "Return the error code that keeps HAND from trying to grasp, or NIL (reading 164)."
   (cond ((hand-holding hand) :hand-grasping)
         ((not (same-location-p hand camera)) :different-location)
         ((not (own-designator-p hand designator)) :bad-designator)
@@ -20,14 +20,15 @@
         ((not (tracking-p camera designator)) :not-tracked)))
 
 (defun grasp (hand thing dice)
-  "Let HAND grasp THING, NIL for one that only seems to be there. Return an error code or NIL."
+  "Let HAND grasp THING, NIL for one that only seems to be there. Return an error code or NIL.
+See reading 151."
   (cond ((or (null thing) (chance prob-miss-grasp* dice)) :missed-grasp)
         ((> (thing-total-weight thing) (hand-strength hand)) :insufficient-strength)
         (t (take-up hand thing)
            nil)))
 
 (defun try-grasp (hand designator dice)
-  "Let HAND grasp what DESIGNATOR denotes. Return an error code or NIL."
+  "Let HAND grasp what DESIGNATOR denotes. Return an error code or NIL. See reading 165."
   (let ((thing (designator-thing designator)))
     (if (and thing (not (part-reaches-p hand thing)))
         :missed-grasp
@@ -86,6 +87,7 @@ designators silently."
   (setf (operation-finished-p operation) t)
   (notify operation code '()))
 
+;; As reading 150 says.
 (define-command hand-grasp-check (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6")
@@ -100,13 +102,15 @@ designators silently."
   "How long the event of a watch waits, in ticks, before it is queued anew.")
 
 (defun watch-grip (operation)
-  "Let OPERATION occupy its hand until that no longer holds its subject, what it held at first."
+  "Let OPERATION occupy its hand until that no longer holds its subject, what it held at
+first (reading 162)."
   (let ((hand (operation-resource operation)))
     (cond ((not (eq (operation-subject operation) (hand-holding hand)))
            (fail-with operation :grasp-lost))
           ((not (event-pending-p operation))
            (go-on operation 'watch-grip +watch-period+)))))
 
+;; As readings 222 and 239 say.
 (define-command hand-track (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6") (:delay 1)

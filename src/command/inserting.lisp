@@ -27,7 +27,7 @@
   (if (hand-holding hand) (thing-size (hand-holding hand)) 0d0))
 
 (defun hand-obstacle (hand container)
-  "Return the error code that keeps HAND out of CONTAINER, a thing or bin, or NIL."
+  "Return the error code that keeps HAND out of CONTAINER, a thing or bin, or NIL (reading 155)."
   (cond ((location-closed-p container) :bin-closed)
         ((not (has-room-p container (held-size hand))) :insufficient-capacity)
         ((held-inside-p hand container) :holding-thing)
@@ -41,12 +41,13 @@
            nil)))
 
 (defun insert-hand (operation hand destination)
-  "Insert HAND into DESTINATION, a designator that is valid and local or a bin."
+  "Insert HAND into DESTINATION, a designator that is valid and local or a bin (reading 157)."
   (let ((code (try-hand-insertion hand (destination-container destination))))
     (when (and (eq code :hand-bump) (designator-p destination))
       (perhaps-lose-designators destination hand-insert-lose-desig-prob* (handling-dice hand)))
     (finish operation code destination)))
 
+;; As reading 156 says.
 (define-command hand-insert (operation (hand hand)
                              (destination destination
                               "a local designator of a container, or a storage bin"))
@@ -85,7 +86,7 @@
 ;;; Out again.
 
 (defun take-out (operation part)
-  "Take PART one level out of what it is inside of and end OPERATION."
+  "Take PART one level out of what it is inside of and end OPERATION (reading 160)."
   (let ((location (part-location part)))
     (cond (location
            (move-part part (space-around part))
@@ -110,7 +111,8 @@
 ;;; Cameras.
 
 (defun camera-obstacle (camera destination container)
-  "Return the error code that keeps CAMERA from trying to enter CONTAINER, NIL if there is none."
+  "Return the error code that keeps CAMERA from trying to enter CONTAINER, NIL if there is
+none (reading 159)."
   (cond ((and container (location-closed-p container)) :bin-closed)
         ((storage-bin-p destination) nil)
         ((null (camera-tracks camera)) :not-tracking)
@@ -135,7 +137,7 @@ cannot reach it cannot bump."
            nil)))
 
 (defun settle-designator (camera designator code)
-  "Drop DESIGNATOR if the insertion of CAMERA, which ended with CODE, loses it."
+  "Drop DESIGNATOR if the insertion of CAMERA, which ended with CODE, loses it (reading 158)."
   (when (or (eq code :camera-bump)
             (and (null code) (chance camera-insert-lose-desig-prob* (handling-dice camera))))
     (drop-designator designator)))

@@ -6,7 +6,8 @@
 ;;; another robot designates nothing that could be manipulated.
 
 (defun designated-thing (designator resource)
-  "Return the thing that DESIGNATOR of the robot of RESOURCE denotes and that is local, or NIL."
+  "Return the thing that DESIGNATOR of the robot of RESOURCE denotes and that is local, or
+NIL (reading 175)."
   (and (own-designator-p resource designator)
        (eq (designator-type designator) :local)
        (designator-local-p* designator)
@@ -47,6 +48,7 @@
                                     robot or part, and then a continuation"
                                (mapcar #'method-usage (manipulation-methods manipulation))))))
 
+;; As reading 176 says.
 (defun method-resource (method arguments)
   (nth (length (parameter-list-objects (method-parameters method))) arguments))
 

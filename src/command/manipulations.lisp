@@ -136,7 +136,7 @@ it still has it, it will come yet, unless loading fails before."
 
 (defun with-method (name methods method)
   "Return METHODS, a list of those of NAME, with METHOD before them, without one that has the same
-parameter list or of which it is a new version."
+parameter list or of which it is a new version (reading 174)."
   (let* ((current (remove-if (lambda (old) (outdated-p name old (method-source method))) methods))
          (old (or (find (method-form method) current :key #'method-form :test #'value-equal)
                   (find-if (lambda (old) (retyped-p old method)) current))))

@@ -72,7 +72,7 @@
       (function (funcall text operation)))))
 
 (defun report (operation code results)
-  "Queue the message that OPERATION ends with."
+  "Queue the message that OPERATION ends with (reading 229)."
   (let* ((command (operation-command operation))
          (report (command-report command)))
     (cond ((eq code :interrupt) (warning-set (interrupted-text operation)))
@@ -82,11 +82,12 @@
                       (message-set (command-prefix command) ": " text)))))))
 
 (defun fit-results (operation results)
-  "Return RESULTS, with NIL for each of the command's results that is missing."
+  "Return RESULTS, with NIL for each of the command's results that is missing (reading 85)."
   (loop for nil in (command-results (operation-command operation))
         for rest = results then (rest rest)
         collect (first rest)))
 
+;; As reading 86 says.
 (defun call-continuation (operation code results)
   (let ((origin (command-origin (operation-command operation))))
     (call-watched (operation-timeline operation)
@@ -145,6 +146,7 @@ the resource and RESULTS. The second end of an operation changes nothing."
   (setf (operation-step operation) step)
   (funcall step operation))
 
+;; As reading 78 says.
 (defun start-body (operation)
   (apply (command-body (operation-command operation))
          operation (operation-resource operation) (operation-arguments operation)))
@@ -152,7 +154,7 @@ the resource and RESULTS. The second end of an operation changes nothing."
 (defun make-way (agenda rival)
   "Free the resource of RIVAL, the event pending on it: a command that takes no time and has only
 just been issued is carried out first, anything else is interrupted. So (robot-set-speed ...)
-followed by (robot-go-forward ...) sets the speed."
+followed by (robot-go-forward ...) sets the speed (reading 77)."
   (cond ((and (operation-p rival) (command-instant-p (operation-command rival)))
          (cancel-event agenda rival)
          (start-body rival))

@@ -42,7 +42,7 @@
 
 (defun parse-pattern (definition specification)
   "Return the pattern that SPECIFICATION, a list of lists (attribute value [threshold]), stands
-for. Signals MALFORMED-DEFINITION about DEFINITION."
+for. Signals MALFORMED-DEFINITION about DEFINITION. See reading 126."
   (unless (and (proper-list-p specification) (every #'asking-form-p specification))
     (reject-clause definition
                    (if (proper-list-p specification)

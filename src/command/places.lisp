@@ -9,6 +9,7 @@
   "Return the name of the place type TYPE, as the author of the map that ROBOT is in writes it."
   (own-symbol (place-type-name type) (map-package (world-map (robot-world robot)))))
 
+;; As reading 106 says.
 (define-command robot-place (operation (robot robot))
     ((place-type "the name of the place type sensed, or NIL"))
     ((:family :moving) (:section "2.2, C")
@@ -23,11 +24,12 @@
   (turn-by operation robot (angle-difference direction (robot-angle robot))))
 
 (defun judged-right-p (robot type)
-  "True if ROBOT takes TYPE, which it has sensed, for right: if it is, or by mistake."
+  "True if ROBOT takes TYPE, which it has sensed, for right: if it is, or by mistake (reading 103)."
   (let ((place (robot-place-here robot)))
     (or (and place (eq type (place-type place)))
         (chance robot-align-error-prob* (world-dice (robot-world robot) :place)))))
 
+;; As reading 104 says.
 (define-command robot-align-place (operation (robot robot))
     ((angle "a reading of the angle turned"))
     ((:family :moving) (:section "3.5") (:delay (+ robot-turn-delay* robot-align-delay*))
@@ -46,13 +48,14 @@
 (defun corner-direction (robot type directions)
   "Return the heading in which ROBOT, coming along one wall of a corner, follows the other. At
 a convex corner it came along one of DIRECTIONS and turns against the other; at a concave one it
-came against one of them and turns along the other."
+came against one of them and turns along the other (reading 105)."
   (let* ((convex (same-name-p (place-type-name type) 'convex))
          (ways (if convex directions (mapcar (lambda (d) (+ d pi)) directions)))
          (came (position (nearest-direction ways (robot-angle robot)) ways))
          (other (elt directions (- 1 came))))
     (if convex (+ other pi) other)))
 
+;; As reading 236 says.
 (define-command robot-turn-corner (operation (robot robot))
     ((angle "a reading of the angle turned"))
     ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)

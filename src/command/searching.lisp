@@ -42,7 +42,8 @@ that the attributes can have, and of a range the lower end first"
         (fail-with operation :designator-not-found))))
 
 (defun designate-all (operation sightings)
-  "End OPERATION with designators for all of SIGHTINGS, when it has had the time to name them."
+  "End OPERATION with designators for all of SIGHTINGS, when it has had the time to name
+them (reading 134)."
   (setf (operation-subject operation) sightings)
   (if (rest sightings)
       (go-on operation 'designate-found (length (rest sightings)))
@@ -51,7 +52,8 @@ that the attributes can have, and of a range the lower end first"
 ;;; Places.
 
 (defun place-search-obstacle (camera place-type)
-  "Return the error code that keeps CAMERA from a search for places of PLACE-TYPE, or NIL."
+  "Return the error code that keeps CAMERA from a search for places of PLACE-TYPE, or
+NIL (reading 69)."
   (let ((type (find-place-type place-type nil)))
     (cond ((camera-tracking camera) :already-tracking)
           ((null type) :invalid-place-type)

@@ -15,7 +15,8 @@
           ((not (or local (trackable-p designator))) :lost-track))))
 
 (defun local-to-camera-p (camera designator)
-  "True if what the local DESIGNATOR denotes is where CAMERA is, and next to the robot."
+  "True if what the local DESIGNATOR denotes is where CAMERA is, and next to the
+robot (reading 140)."
   (and (own-designator-p camera designator)
        (eq (designator-location designator) (camera-location camera))
        (designator-local-p* designator)))
@@ -26,11 +27,13 @@
   (when (eq code :interrupt) (report operation code '()))
   (notify operation code (list designator)))
 
+;; As reading 83 says.
 (defun begin-track (operation camera designator)
   (report operation nil (list designator))
   (notify operation nil (list designator))
   (start-track camera designator operation))
 
+;; As reading 5 says.
 (define-command camera-track (operation (camera camera)
                               (designator designator "what to track"))
     ((designator "the designator"))
@@ -48,6 +51,7 @@ track begins, with NIL, and again when it ends, with the error code that says ho
         (fail-with operation obstacle designator)
         (begin-track operation camera designator))))
 
+;; As reading 84 says.
 (define-command camera-untrack (operation (camera camera))
     ()
     ((:family :looking) (:section "3.4.3")

@@ -6,7 +6,7 @@
 ;;; angle is relative to the robot and never normalised. Turning a camera interrupts its track.
 
 (defun turn-camera (camera angle)
-  "Turn CAMERA by ANGLE, in radians; return an estimate of that."
+  "Turn CAMERA by ANGLE, in radians; return an estimate of that (reading 144)."
   (let ((world (robot-world (camera-robot camera))))
     (end-track camera :interrupt)
     (incf (camera-angle camera) (double angle))

@@ -6,11 +6,13 @@
 ;;; as the turn angle goes into the angle.
 
 (defun set-within (value low high)
-  "Return VALUE as a double within LOW and HIGH, and whether it was too :LOW or :HIGH for them."
+  "Return VALUE as a double within LOW and HIGH, and whether it was too :LOW or :HIGH for
+them (reading 91)."
   (cond ((< value low) (values (double low) :low))
         ((> value high) (values (double high) :high))
         (t (values (double value) nil))))
 
+;; As reading 94 says.
 (define-command robot-set-speed (operation (robot robot)
                                  (speed number "the new speed, metres per tick"))
     ((speed "the speed set"))
@@ -55,7 +57,7 @@
 
 (defun turn-step (robot left)
   "Turn ROBOT for a tick, of the angle LEFT to be turned. Return what is then left, and the
-odometry's reading of the step."
+odometry's reading of the step. See reading 99."
   (let* ((most (* (robot-turn-angle-now robot) (double tick-quantum*)))
          (step (clamp left (- most) most)))
     (turn-tick robot step)
@@ -99,5 +101,6 @@ odometry's reading of the step."
                   ,(format nil "Turn ROBOT in place by about ~A." words)
                 (turn-by operation robot ,angle))))
   (define-turn robot-about-face pi "half a circle")
+  ;; As reading 49 says.
   (define-turn robot-turn-left (/ pi -2) "a quarter circle to the left")
   (define-turn robot-turn-right (/ pi 2) "a quarter circle to the right"))

@@ -60,6 +60,6 @@
 
 (defun shade (name &optional (index 9))
   "Return shade INDEX (0, dark, to 11, light) of the colour NAME, the value of a :color
-attribute. Black if NAME is none (manual B)."
+attribute. Black if NAME is none (manual B; reading 212)."
   (let ((shades (color-called name)))
     (if shades (aref shades index) black*)))

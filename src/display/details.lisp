@@ -46,7 +46,8 @@
                          (list x y (+ x width -1) bottom x bottom (+ x width -1) y)))))))
 
 (defun draw-object (canvas image x y width)
-  "Draw the thing whose image is IMAGE, by its own :draw-function if it has one, and its name."
+  "Draw the thing whose image is IMAGE, by its own :draw-function if it has one, and its
+name (reading 211)."
   (let ((function (thing-image-draw-function image)))
     (with-subject (canvas image)
       (if (typep function '(or function (and symbol (not null))))

@@ -2,6 +2,7 @@
 
 (in-package :ars-magna.display)
 
+;; As reading 27 says.
 (define-constant +displays+ '(:world :state :designators :cameras :hands :bins)
   :test #'cl:equal
   :documentation "The displays: bird's eye view, robot state, robot designators, cameras, hands and

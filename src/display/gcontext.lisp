@@ -32,6 +32,7 @@
   "The graphics context that :graphics and :draw-function bodies draw with (manual B.1).")
 
 (public (graphics-scale* :ars))
+;; As reading 208 says.
 (defvar graphics-scale* 8
   "How many pixels there are to the side of a grid cell in the display of the world. Default 8
 (manual B; the default is ours).")

@@ -9,11 +9,13 @@
   (with-color color
     (draw-rectangle canvas draw-gcontext* x y graphics-scale* graphics-scale* t)))
 
+;; As reading 209 says.
 (defun draw-dot (canvas x y)
   (let* ((size (max 2 (floor graphics-scale* 3)))
          (margin (/ (- graphics-scale* size) 2)))
     (draw-arc canvas draw-gcontext* (+ x margin) (+ y margin) size size 0 2pi t)))
 
+;; As reading 68 says.
 (defun draw-convex (canvas x y)
   (if in-color*
       (fill-cell canvas x y (svref lightred* 9))

@@ -97,7 +97,7 @@ the same parameter are dark."
 
 (defun draw-by-user (canvas function origin x y width height &rest arguments)
   "Have FUNCTION draw in a box of CANVAS, called with CANVAS and ARGUMENTS. ORIGIN, an item or list
-of items, says whose it is."
+of items, says whose it is (reading 214)."
   (unless (gethash function *broken-graphics*)
     (let ((finished-p nil))
       (with-clipping (canvas x y width height)
@@ -118,6 +118,7 @@ of items, says whose it is."
                   (list "the :graphics of place type " (place-type-name type))
                   x y graphics-scale* graphics-scale* x y)))
 
+;; As reading 210 says.
 (defun drawn-place-type-p (type)
   (and type (place-type-graphics type) (not (place-type-invisible-p type))))
 

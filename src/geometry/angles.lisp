@@ -6,6 +6,7 @@
 ;;; never normalised; only differences are reduced, to (-pi, pi].
 
 (public (2pi :ars :nisp))
+;; As reading 35 says.
 (defconstant 2pi (* 2 pi)
   "Two pi, a full turn in radians (manual 3.2).")
 
@@ -36,7 +37,7 @@
 (addition angle-difference)
 (defun angle-difference (a b)
   "Return the angle A minus the angle B without whole turns: the signed turn, in (-pi, pi]
-radians, that leads from B to A."
+radians, that leads from B to A (reading 50)."
   (check-argument angle-difference a (realp a) "a real number")
   (check-argument angle-difference b (realp b) "a real number")
   (reduced-angle (- (double a) (double b))))

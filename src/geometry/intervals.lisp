@@ -41,6 +41,7 @@ along both axes (manual, Table 3.2)."
 intervals along both axes (manual, Table 3.2)."
   (> low-a high-b))
 
+;; As reading 46 says.
 (define-comparison interval-dist max (low-a high-a low-b high-b)
   "Return the gap between the intervals A and B, of point intervals the wider of the gaps along
 the two axes; 0 just if they intersect (manual, Table 3.2)."
@@ -64,7 +65,7 @@ the two axes; 0 just if they intersect (manual, Table 3.2)."
 (public interval-width)
 (defun interval-width (interval)
   "Return the largest distance between two elements of INTERVAL: of a point interval, its
-diagonal (manual, Table 3.2)."
+diagonal (manual, Table 3.2; reading 45)."
   (dispatch interval-width (interval) "an INTERVAL or PT-INTERVAL"
     ((span) (- (high interval) (low interval)))
     ((region) (length-of (- (high-x interval) (low-x interval))
@@ -72,7 +73,8 @@ diagonal (manual, Table 3.2)."
 
 (public interval-overlap-width)
 (defun interval-overlap-width (a b)
-  "Return the width of what the intervals A and B have in common; 0 if nothing (manual, Table 3.2)."
+  "Return the width of what the intervals A and B have in common; 0 if
+nothing (manual, Table 3.2; reading 47)."
   (let ((common (interval-intersect a b)))
     (if common (interval-width common) 0d0)))
 
@@ -93,7 +95,7 @@ diagonal (manual, Table 3.2)."
 (public interval-intersect!)
 (defun interval-intersect! (a b)
   "Change A into what the intervals A and B have in common, and return A. If that is nothing,
-leave A as it is and return NIL (manual, Table 3.2)."
+leave A as it is and return NIL (manual, Table 3.2; reading 44)."
   (dispatch interval-intersect! (a b) "an INTERVAL or PT-INTERVAL and one like it"
     ((interval span)
      (when (interval-intersect? a b)

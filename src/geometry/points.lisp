@@ -46,7 +46,7 @@ of which one may be an element (manual, Table 3.1)."
 (public subtract!)
 (defun subtract! (a b)
   "Change A into A minus B, and return A. Of intervals, the result holds every difference of
-their elements (manual, Table 3.1)."
+their elements (manual, Table 3.1; reading 48)."
   (dispatch subtract! (a b) "a PT and a PT, or an INTERVAL or PT-INTERVAL and one like it"
     ((pt pt) (set-pt! a (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((interval span) (%add! a (- (high b)) (- (low b))))
@@ -139,7 +139,8 @@ interval, the INTERVAL of the lengths of its elements (manual, Table 3.1)."
 (public dist)
 (defun dist (a b)
   "Return the Euclidean distance between the points A and B, in metres; if either is an interval
-or point interval, the INTERVAL of the distances between their elements (manual, Table 3.1)."
+or point interval, the INTERVAL of the distances between their
+elements (manual, Table 3.1; reading 42)."
   (dispatch dist (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (length-of (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((span span) (norm (subtract a b)))

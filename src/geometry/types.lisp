@@ -114,7 +114,7 @@
 (defun make-pt-interval (a b)
   "Return the box whose sides are the intervals A (along x) and B (along y), or whose opposite
 corners are the points A and B, in any order. The intervals are copied; a number stands for the
-interval that holds only it. Written (make PT-INTERVAL A B) in Nisp."
+interval that holds only it. Written (make PT-INTERVAL A B) in Nisp. See reading 43."
   (cond ((and (pt-p a) (pt-p b))
          (%make-pt-interval (span-between (%pt-x a) (%pt-x b))
                             (span-between (%pt-y a) (%pt-y b))))
@@ -193,7 +193,7 @@ it copies the bounds of an interval."
 (public copy-obj)
 (defun copy-obj (object)
   "Return a fresh copy of OBJECT, a PT, INTERVAL or PT-INTERVAL (its sides copied too); a number
-is its own copy (manual 3.2.1)."
+is its own copy (manual 3.2.1; reading 234)."
   (typecase object
     (real object)
     (pt (%make-pt (%pt-x object) (%pt-y object)))
@@ -203,7 +203,7 @@ is its own copy (manual 3.2.1)."
 (public equal)
 (defun equal (a b)
   "True if A and B are the same PT, INTERVAL or PT-INTERVAL value, exactly; of anything else, if
-they are CL:EQUAL (manual 3.2.1)."
+they are CL:EQUAL (manual 3.2.1; reading 30)."
   (typecase a
     (pt (and (pt-p b) (= (%pt-x a) (%pt-x b)) (= (%pt-y a) (%pt-y b))))
     (interval (and (interval-p b)

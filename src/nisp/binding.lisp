@@ -13,14 +13,14 @@
 (public \\)
 (defmacro \\ (lambda-list &body body)
   "Return the function (lambda LAMBDA-LIST BODY...); a hyphen and a type may follow each parameter
-(manual 3.1). The name is one backslash, typed as two."
+(manual 3.1). The name is one backslash, typed as two. See reading 4."
   `#'(lambda ,(untyped-lambda-list lambda-list "\\") ,@body))
 
 (public continuation)
 (defmacro continuation (lambda-list &body body)
   "Return a function for a robot command to call with an error code (NIL: none) and what else it
 reports. Like LAMBDA, but types may follow the parameters and unused ones are no matter
-(manual 3.1.1)."
+(manual 3.1.1; reading 39)."
   (let ((lambda-list (untyped-lambda-list lambda-list "continuation")))
     `#'(lambda ,lambda-list
          (declare (ignorable ,@(lambda-list-variables lambda-list)))

@@ -7,7 +7,7 @@
 (public if)
 (defmacro if (test then &rest else)
   "Evaluate THEN if TEST is true, otherwise the forms ELSE, of which there may be any number
-(manual, Figure D.5)."
+(manual, Figure D.5; reading 40)."
   `(cl:if ,test ,then ,@(cl:if (rest else) `((progn ,@else)) else)))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
@@ -31,7 +31,7 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
 
 (public !=)
 (defmacro != (place value &rest more)
-  "Set PLACE to VALUE, and so on through MORE pairs: SETF (manual 3.1)."
+  "Set PLACE to VALUE, and so on through MORE pairs: SETF (manual 3.1; reading 14)."
   `(setf ,place ,value ,@more))
 
 (public nop)

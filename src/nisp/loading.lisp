@@ -14,7 +14,8 @@
 (public dsklap)
 (defun dsklap (path)
   "Load the Lisp file at PATH, or the ASDF system named by the last component of PATH, as in
-(dsklap \"ars-dir/ars-magna\"). Return true. It is an error if there is neither (manual A)."
+(dsklap \"ars-dir/ars-magna\"). Return true. It is an error if there is
+neither (manual A; reading 41)."
   (check-argument dsklap path (typep path '(or string pathname symbol)) "a path or a system's name")
   (let* ((path (if (pathnamep path) (namestring path) (string path)))
          (file (lisp-file path))

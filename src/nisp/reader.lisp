@@ -63,7 +63,7 @@
             :initial-value (token-object (first parts)))))
 
 (defun read-typed-accessor (stream)
-  "Return the reader function's name for the (TYPE slot) that comes next on STREAM."
+  "Return the reader function's name for the (TYPE slot) that comes next on STREAM (reading 33)."
   (let ((form (read stream t nil t)))
     (unless *read-suppress*
       (unless (typep form '(cons symbol (cons symbol null)))
@@ -74,7 +74,7 @@
   (eql char (peek-char nil stream nil nil t)))
 
 (defun read-bang (stream char)
-  "Read what follows the ! that has just been read from STREAM."
+  "Read what follows the ! that has just been read from STREAM (reading 32)."
   (declare (ignore char))
   (let* ((token (read-token stream))
          (head (and (plusp (length token)) (char token 0)))

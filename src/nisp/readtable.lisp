@@ -3,7 +3,7 @@
 (in-package :ars-magna.nisp)
 
 (defun ensure-nisp-readtable ()
-  "Return the readtable :NISP: standard syntax plus #t, #f, ! and ?."
+  "Return the readtable :NISP: standard syntax plus #t, #f, ! and ? (reading 31)."
   (let ((readtable (or (find-readtable :nisp)
                        (make-readtable :nisp :merge '(:standard)))))
     (set-macro-character #\! 'read-bang t readtable)

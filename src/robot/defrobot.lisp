@@ -146,7 +146,7 @@ becomes a special variable bound to the robot, which stands in the resident worl
 ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in radians. Numbers are
 evaluated. Parts of kinds of one's own, which the manual does not have, are made as their KIND says
 \(see DEFINE-KIND). A robot that was called NAME before takes no more commands. Signals
-MALFORMED-DEFINITION (manual 5.2)."
+MALFORMED-DEFINITION (manual 5.2). See reading 9."
   (let ((definition (format nil "defrobot ~(~A~)" name)))
     (expand-definition form environment
                        (lambda ()

@@ -9,6 +9,7 @@
 ;;; container, a storage bin, or NIL in the open.
 
 (public designator)
+;; As reading 138 says.
 (define-kind (designator)
     "A handle on a thing or place that a camera has seen, or believes that it has (manual 3.4.1)."
   (:fixed
@@ -71,7 +72,7 @@ robot's heading, in radians, not normalised (manual 3.4.1)")
           collect designator))
 
 (defun take-number (robot designator)
-  "Give DESIGNATOR the smallest free number of ROBOT, and a serial number."
+  "Give DESIGNATOR the smallest free number of ROBOT, and a serial number (reading 198)."
   (let* ((designators (robot-designators robot))
          (number (or (position nil designators)
                      (vector-push-extend nil designators))))
@@ -103,7 +104,7 @@ a hand is where the hand is."
 
 (defun within-reach-p (robot x y)
   "True if (X,Y), in metres, is local to ROBOT: less than a metre away or in the same cell (manual
-2.1, 3.5)."
+2.1, 3.5; reading 108)."
   (let ((dx (- x (robot-x robot))) (dy (- y (robot-y robot))))
     (or (< (+ (* dx dx) (* dy dy)) 1d0)
         (in-same-cell-p robot x y))))
@@ -116,7 +117,7 @@ a hand is where the hand is."
 (addition designator-position)
 (defun designator-position (designator)
   "Return, as two values, where what DESIGNATOR denotes really is, or seems to be, in metres; NIL
-and NIL if it is nowhere."
+and NIL if it is nowhere (reading 54)."
   (let ((denotation (designator-denotation designator)))
     (etypecase denotation
       (thing (thing-position denotation))

@@ -41,10 +41,12 @@
          (and x (within-reach-p (part-robot part) x y)))))
 
 (defun part-reaches-bin-p (part bin)
-  "True if PART can get at the storage BIN: it is its robot's, and the part is in the open."
+  "True if PART can get at the storage BIN: it is its robot's, and the part is in the
+open (reading 230)."
   (and (eq (part-robot part) (storage-bin-robot bin))
        (null (part-location part))))
 
+;; As reading 154 says.
 (defmethod remaining-capacity ((bin storage-bin))
   (max 0d0 (- (storage-bin-capacity bin)
               (loop for thing in (storage-bin-contents bin) sum (thing-size thing)))))
@@ -60,12 +62,12 @@
 ;;; Things into and out of hands.
 
 (defun take-up (hand thing)
-  "Let HAND hold THING, wherever that was."
+  "Let HAND hold THING, wherever that was (reading 231)."
   (move-thing thing hand))
 
 (defun set-down (hand thing)
   "Leave THING, which HAND holds, where the hand is: in what it is inside of, or on the floor where
-the robot stands."
+the robot stands (reading 152)."
   (let ((robot (hand-robot hand)))
     (if (hand-location hand)
         (move-thing thing (hand-location hand))
@@ -109,6 +111,7 @@ into a closed bin or that of another robot."
                (and bin (or (storage-bin-closed-p bin)
                             (not (eq (part-robot part) (storage-bin-robot bin))))))))))
 
+;; As reading 113 says.
 (defun settle-part (part)
   (when (astray-p part) (pull-out part)))
 

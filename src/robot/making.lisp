@@ -90,7 +90,8 @@ NIL."
                   (blueprint-name blueprint) (map-name map) trouble))))
 
 (defun make-robot (blueprint world)
-  "Return a robot made by BLUEPRINT, at its start in WORLD. Signals MISUSE if that is in a wall."
+  "Return a robot made by BLUEPRINT, at its start in WORLD. Signals MISUSE if that is in a wall.
+See reading 215."
   (check-start blueprint (world-map world))
   (let ((robot (%make-robot :name (blueprint-name blueprint) :blueprint blueprint :world world)))
     (unless (world-timeline world)

@@ -16,12 +16,14 @@ are NIL, if it is one of CHOICES."
   (high nil :type (or null real) :read-only t)
   (choices '() :type list :read-only t))
 
+;; As reading 125 says.
 (defun numeric-demand (key attribute value threshold)
   (let ((threshold (or threshold standard-match-threshold*)))
     (multiple-value-bind (low high) (value-limits value)
       (make-demand :key key :attribute attribute
                    :low (- low threshold) :high (+ high threshold)))))
 
+;; As readings 123 and 124 say.
 (defun parse-demand (specification)
   (destructuring-bind (name value &optional threshold) specification
     (let* ((key (attribute-key name)) (attribute (attribute-of key)))
@@ -121,14 +123,15 @@ asked for, the one that the world's author writes."
   (second (assoc key (thing-attributes thing) :test #'eq)))
 
 (defun says-nothing-p (attribute value)
-  "True if VALUE, which a thing has for ATTRIBUTE (NIL: an undefined one), means none."
+  "True if VALUE, which a thing has for ATTRIBUTE (NIL: an undefined one), means
+none (reading 122)."
   (and (null value)
        attribute
        (not (can-be-false-p attribute))))
 
 (defun match-thing (thing demands distance dice)
   "Return true if readings of THING from DISTANCE metres away meet all DEMANDS, and those readings
-as an object descriptor."
+as an object descriptor (reading 127)."
   (let ((readings '()))
     (dolist (demand demands (values t (nreverse readings)))
       (let* ((key (demand-key demand)) (attribute (demand-attribute demand))
@@ -142,7 +145,7 @@ as an object descriptor."
 
 (defun notice-probability (attribute keys)
   "Return the probability that ATTRIBUTE is sensed unasked when the attributes KEYS were asked for:
-1 - (1-p)^(n+1), n of them being its supporters (manual 3.4.2)."
+1 - (1-p)^(n+1), n of them being its supporters (manual 3.4.2; reading 224)."
   (let* ((supporters (attribute-supporters attribute))
          (given (count-if (lambda (key) (member key supporters :test #'eq)) keys)))
     (- 1d0 (expt (- 1d0 (attribute-noticed attribute)) (1+ given)))))
@@ -170,7 +173,8 @@ function of an attribute, returns its value, and secondly whether there is anyth
                                                      (map-package map))))))))
 
 (defun describe-thing (thing readings distance dice)
-  "Return the description of THING that a search reports: what is noticed, then READINGS."
+  "Return the description of THING that a search reports: what is noticed, then
+READINGS (reading 128)."
   (append (notice-attributes (thing-map thing) (mapcar #'first readings)
                              (lambda (attribute)
                                (values (thing-value thing (attribute-name attribute)) t))

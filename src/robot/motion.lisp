@@ -35,7 +35,7 @@
 
 (declaim (inline robot-speed-now))
 (defun robot-speed-now (robot)
-  "Return the speed of ROBOT within MAX-SPEED* as it is now, in metres per tick."
+  "Return the speed of ROBOT within MAX-SPEED* as it is now, in metres per tick (reading 93)."
   (min (robot-speed robot) (double max-speed*)))
 
 (defun robot-turn-angle-now (robot)
@@ -46,7 +46,7 @@
 
 (declaim (inline what-blocks))
 (defun what-blocks (flag)
-  "Return what keeps a robot out of a cell with FLAG: :WALL, :THING or NIL."
+  "Return what keeps a robot out of a cell with FLAG: :WALL, :THING or NIL (reading 101)."
   (declare (type (unsigned-byte 8) flag))
   (cond ((logtest flag +wall+) :wall)
         ((logtest flag +obsmove+) :thing)))
@@ -104,7 +104,7 @@ the metres in ROBOT-MOVED; return :WALL, :THING or NIL. From outside the map the
 (declaim (inline sweep))
 (defun sweep (robot distance)
   "Move ROBOT along its heading by DISTANCE, or to what blocks it. Leave the metres in
-ROBOT-MOVED; return :WALL, :THING or NIL."
+ROBOT-MOVED; return :WALL, :THING or NIL (reading 100)."
   (declare #.*hot* (type robot robot) (type double-float distance))
   (let* ((x (robot-x robot)) (y (robot-y robot))
          (cell-x (whole-part x)) (cell-y (whole-part y))
@@ -127,7 +127,7 @@ ROBOT-MOVED; return :WALL, :THING or NIL."
         (robot-estimate-y robot) 0d0))
 
 (defun robot-last-move (robot)
-  "Return how far the last movement has taken ROBOT, in x and in y, in metres."
+  "Return how far the last movement has taken ROBOT, in x and in y, in metres (reading 200)."
   (values (- (robot-x robot) (robot-start-x robot))
           (- (robot-y robot) (robot-start-y robot))))
 
@@ -148,7 +148,7 @@ ROBOT-MOVED; return :WALL, :THING or NIL."
 (defun drive-tick (robot &optional (limit +endless+))
   "Drive ROBOT for one tick at its speed, but not much more than LIMIT metres. Return :WALL or
 :THING if that blocked it, else NIL. The distance is uniform within MOTION-NOISE* of the
-speed; the odometers read an interval that contains it."
+speed; the odometers read an interval that contains it (reading 96)."
   (declare #.*hot* (type robot robot) (type double-float limit))
   (let* ((world (robot-world robot))
          (noise (double motion-noise*))

@@ -10,20 +10,21 @@
 
 (defun reading-reliability (attribute distance)
   "Return the probability that the discrete ATTRIBUTE is read right DISTANCE metres away: p / max(1,
-f d (1-p)), p being its base probability and f DISCRETE-NOISE-FACTOR* (manual 3.4.2)."
+f d (1-p)), p being its base probability and f DISCRETE-NOISE-FACTOR* (manual 3.4.2; reading 115)."
   (let ((p (attribute-success attribute)))
     (/ p (max 1d0 (* (double discrete-noise-factor*) (double distance) (- 1d0 p))))))
 
 (defun reading-deviation (attribute distance)
   "Return the standard deviation of readings of the numeric ATTRIBUTE from DISTANCE metres away: the
 larger of s and m s d / (d+f), s being its base deviation, m its largest multiplier and f
-CONTINUOUS-NOISE-FACTOR* (manual 3.4.2)."
+CONTINUOUS-NOISE-FACTOR* (manual 3.4.2; reading 116)."
   (let ((base (attribute-base attribute)) (distance (double distance)))
     (if (plusp distance)
         (max base (/ (* (attribute-max-mult attribute) base distance)
                      (+ distance (double continuous-noise-factor*))))
         base)))
 
+;; As reading 225 says.
 (defun noisy-number (attribute value distance dice)
   (roll-gaussian value (reading-deviation attribute distance) dice))
 
@@ -66,7 +67,7 @@ by name."
         (t value)))
 
 (defun sensing-chance (probability)
-  "Return PROBABILITY of a sensing error, or 0 while there is none."
+  "Return PROBABILITY of a sensing error, or 0 while there is none (reading 118)."
   (if no-sensor-error* 0d0 (double probability)))
 
 (defun angle-error (dice)

@@ -87,7 +87,7 @@ metres on the map, and the heading in radians. For displays: no program of the r
 
 (declaim (inline odometer-drive))
 (defun odometer-drive (odometer low high)
-  "Count a distance between LOW and HIGH, neither negative, along the heading."
+  "Count a distance between LOW and HIGH, neither negative, along the heading (reading 97)."
   (declare (type odometer odometer) (type double-float low high))
   (flet ((least (factor) (* factor (if (minusp factor) high low)))
          (most (factor) (* factor (if (minusp factor) low high))))
@@ -111,7 +111,7 @@ metres on the map, and the heading in radians. For displays: no program of the r
                            :expected "an odometer, as (robot-main-odometer ROBOT) returns")))
 
 (defun reset-reading (odometer part)
-  "Let PART of ODOMETER, :POS or :ANG, count from here."
+  "Let PART of ODOMETER, :POS or :ANG, count from here (reading 98)."
   (let ((robot (odometer-robot odometer)))
     (ecase part
       (:pos (setf (odometer-x-min odometer) 0d0 (odometer-x-max odometer) 0d0
@@ -168,5 +168,5 @@ INTERVAL, if given, is modified and returned (manual 3.2.2)."
 
 (public robot-main-odometer)
 (defun robot-main-odometer (robot)
-  "Return the odometer that ROBOT started with; it is called MAIN (manual 3.2.2)."
+  "Return the odometer that ROBOT started with; it is called MAIN (manual 3.2.2; reading 232)."
   (robot-odometer robot 'main))

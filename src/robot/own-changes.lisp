@@ -55,7 +55,7 @@ no part of the robot any more."
 (addition place-robot)
 (defun place-robot (robot x y angle)
   "Put ROBOT at (X,Y) heading ANGLE at once, without error and ignoring obstacles: a change from
-outside, as the prompt's POS and ANGLE make. Signals WRONG-ARGUMENT (manual E)."
+outside, as the prompt's POS and ANGLE make. Signals WRONG-ARGUMENT (manual E). See reading 114."
   (check-argument place-robot robot (robot-p robot) "a robot")
   (check-argument place-robot x (finite-p x) "a number of metres")
   (check-argument place-robot y (finite-p y) "a number of metres")

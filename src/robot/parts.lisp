@@ -10,6 +10,7 @@
   "How far a robot turns in a tick unless told otherwise, in radians.")
 
 (public robot)
+;; As reading 92 says.
 (define-kind (robot :include resource :constructor %make-robot)
     "A point robot: it turns in place, drives straight ahead, and carries its parts along (manual
 2.2)."

@@ -16,7 +16,8 @@
 
 (defun sense-place-type (robot)
   "Return the place type that ROBOT senses where it is, or NIL. Where there is one it is missed
-with TYPE-FALSE-NEG*, where there is none a random one is sensed with TYPE-FALSE-POS*."
+with TYPE-FALSE-NEG*, where there is none a random one is sensed with
+TYPE-FALSE-POS* (reading 221)."
   (let ((place (robot-place-here robot))
         (dice (world-dice (robot-world robot) :place)))
     (cond (no-sensor-error* (and place (place-type place)))
@@ -25,7 +26,7 @@ with TYPE-FALSE-NEG*, where there is none a random one is sensed with TYPE-FALSE
 
 (defun canonical-directions (robot type)
   "Return a list of the two canonical directions, in radians, that TYPE gives the cell in which
-ROBOT is. In a cell that is no place there are none, and the heading stands for both."
+ROBOT is. In a cell that is no place there are none, and the heading stands for both (reading 223)."
   (let ((place (robot-place-here robot)))
     (if place
         (multiple-value-list
@@ -33,7 +34,7 @@ ROBOT is. In a cell that is no place there are none, and the heading stands for 
         (list (robot-angle robot) (robot-angle robot)))))
 
 (defun nearest-direction (directions heading)
-  "Return the one of DIRECTIONS, a list of angles, that differs least from HEADING."
+  "Return the one of DIRECTIONS, a list of angles, that differs least from HEADING (reading 73)."
   (let ((best (first directions)))
     (dolist (direction (rest directions) best)
       (when (< (abs (angle-difference direction heading)) (abs (angle-difference best heading)))

@@ -33,7 +33,8 @@ crossed."
              width height x y (nonzero dx) (nonzero dy) reach))
 
 (defmacro do-fan ((dx dy) (angle width count) &body body)
-  "Run BODY for each of COUNT directions DX, DY, evenly spaced over WIDTH radians around ANGLE."
+  "Run BODY for each of COUNT directions DX, DY, evenly spaced over WIDTH radians around
+ANGLE (reading 146)."
   (with-gensyms (spacing first cos sin)
     `(let* ((,spacing (/ ,width ,count))
             (,first (- ,angle (* 0.5d0 (- ,width ,spacing))))

@@ -20,7 +20,7 @@
 
 (defun occupied-cells (world x y angle width count reach)
   "Return a list of the cells of WORLD with things on their floor that a fan of COUNT rays from
-(X,Y) meets, of WIDTH radians around ANGLE, within REACH columns and rows."
+(X,Y) meets, of WIDTH radians around ANGLE, within REACH columns and rows (reading 130)."
   (declare #.*hot* (type world world) (type double-float x y angle width)
            (type (unsigned-byte 15) reach) (type (unsigned-byte 30) count))
   (let* ((flags (world-flags world)) (map (world-map world))
@@ -61,7 +61,7 @@ place type has NUMBER in the map."
 ;;; Which things are in view.
 
 (defun camera-heading (camera)
-  "Return the direction in which CAMERA points, in radians, in the world."
+  "Return the direction in which CAMERA points, in radians, in the world (reading 145)."
   (+ (robot-angle (camera-robot camera)) (camera-angle camera)))
 
 (defun held-things (robot location)
@@ -81,7 +81,7 @@ meet within REACH columns and rows."
 
 (defun things-in-open-view (camera local)
   "Return the things on the floor that CAMERA has in view, those within reach if LOCAL, else the
-others."
+others (reading 131)."
   (let* ((robot (camera-robot camera)) (cells (world-cells (robot-world robot))))
     (loop for index in (cells-in-view camera (if local 1 +no-limit+))
           append (loop for thing in (svref cells index)
@@ -89,7 +89,8 @@ others."
                          collect thing))))
 
 (defun things-in-view (camera type)
-  "Return the things that CAMERA has in view and that are of TYPE, :LOCAL or :NON-LOCAL."
+  "Return the things that CAMERA has in view and that are of TYPE, :LOCAL or
+:NON-LOCAL (reading 132)."
   (let ((location (camera-location camera)) (local (eq type :local)))
     (append (cond ((null location) (things-in-open-view camera local))
                   (local (location-contents location)))
@@ -106,12 +107,12 @@ others."
         finally (return count)))
 
 (defun some-of (finds all dice)
-  "Return FINDS if ALL, else a list of any one of them; () if there are none."
+  "Return FINDS if ALL, else a list of any one of them; () if there are none (reading 133)."
   (if (or all (null finds)) finds (list (roll-element finds dice))))
 
 (defun matching-things (camera type demands dice)
   "Return a list of (thing . readings) for what CAMERA has in view, does not overlook and takes
-for what DEMANDS describe."
+for what DEMANDS describe (reading 129)."
   (loop with missing = (sensing-chance miss-thing-prob*)
         for thing in (things-in-view camera type)
         for distance = (seen-from camera thing)
@@ -173,7 +174,7 @@ finds. What is not there may be among them."
 (defun look-for-places (camera type &key all (name (place-type-name type)))
   "Return sightings by CAMERA, in the open, of places of the place type TYPE: of one, or of ALL
 that it finds. What is not there may be among them. They are described by NAME, the symbol by which
-somebody has asked for TYPE."
+somebody has asked for TYPE (reading 74)."
   (let* ((dice (world-dice (robot-world (camera-robot camera)) :looking))
          (missing (sensing-chance miss-place-prob*))
          (finds (remove-if (lambda (place) (declare (ignore place)) (chance missing dice))

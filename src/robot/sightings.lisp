@@ -41,7 +41,7 @@
 
 (defun walk-to-phantom (robot angle dice)
   "Return where a walk from ROBOT in the direction ANGLE ends: metre by metre, outside the robot's
-cell, with the chance PROB-STOP* at each, or at the edge of the map."
+cell, with the chance PROB-STOP* at each, or at the edge of the map (reading 136)."
   (let ((map (world-map (robot-world robot)))
         (dx (cos angle)) (dy (sin angle)))
     (loop for metres from 1d0 by 1d0
@@ -71,7 +71,7 @@ cell, with the chance PROB-STOP* at each, or at the edge of the map."
      (roll-within (* 0.5d0 (camera-field-of-view camera)) dice)))
 
 (defun imagine (camera type data dice)
-  "Return a false sighting of TYPE with DATA."
+  "Return a false sighting of TYPE with DATA (reading 137)."
   (let ((robot (camera-robot camera)))
     (multiple-value-bind (x y)
         (if (eq type :local)

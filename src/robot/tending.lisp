@@ -16,7 +16,7 @@
   (chance (per-tick-probability probability) dice))
 
 (defun drift (designator dice)
-  "Let the false DESIGNATOR wander: if non-local, nearer or farther and to the side."
+  "Let the false DESIGNATOR wander: if non-local, nearer or farther and to the side (reading 143)."
   (let* ((robot (designator-robot designator))
          (map (world-map (robot-world robot)))
          (x (designator-x designator)) (y (designator-y designator)))
@@ -34,7 +34,7 @@
 
 (defun refresh-designator (designator dice)
   "Bring the tracked DESIGNATOR up to date; DESIGNATOR-SWING is then how far its direction has
-changed."
+changed (reading 226)."
   (let ((robot (designator-robot designator)))
     (unless (designator-denotation designator) (drift designator dice))
     (multiple-value-bind (x y) (designator-position designator)
@@ -85,6 +85,7 @@ changed."
   (in-same-cell-p (designator-robot designator)
                   (designator-x designator) (designator-y designator)))
 
+;; As reading 220 says.
 (defun lost-by-chance-p (designator dice)
   (and (not no-sensor-error*)
        (quantum-chance (if (designator-denotation designator)
@@ -99,11 +100,12 @@ changed."
        (not (arrived-p designator))
        (visible-p designator)))
 
+;; As reading 141 says.
 (defun too-fast-p (camera designator)
   (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))
 
 (defun keep-or-lose (camera designator dice)
-  "Point CAMERA at DESIGNATOR, unless chance makes it lose that."
+  "Point CAMERA at DESIGNATOR, unless chance makes it lose that (reading 235)."
   (if (lost-by-chance-p designator dice)
       (lose-track camera)
       (setf (camera-angle camera) (designator-angle designator))))
@@ -141,10 +143,12 @@ changed."
                           (not (tracked-p designator)))
                  (drop-designator designator))))))
 
+;; As reading 87 says.
 (defun tell-ended-tracks (robot)
   (loop for (track . code) in (reverse (shiftf (robot-ended-tracks robot) '()))
         do (tell-track-ended track code)))
 
+;; As reading 112 says.
 (defun tend-robot (robot tick)
   (when (plusp (length (robot-designators robot)))
     (loop with dice = (world-dice (robot-world robot) :tracking)
@@ -169,7 +173,8 @@ changed."
 ;;; Starting.
 
 (defun start-track (camera designator operation)
-  "Let CAMERA track DESIGNATOR from now on; OPERATION is told when that ends, by TRACK-ENDED."
+  "Let CAMERA track DESIGNATOR from now on; OPERATION is told when that ends, by
+TRACK-ENDED (reading 142)."
   (unless (tracked-p designator)
     (let ((world (robot-world (camera-robot camera))))
       (refresh-once designator (world-tick world) (world-dice world :tracking))

@@ -10,6 +10,7 @@
 ;;; survive the loss of its last track; one that was not does not survive that its denotation
 ;;; moves, or that a local one is out of reach.
 
+;; As reading 82 says.
 (define-kind (track :constructor (make-track (designator operation)))
     "What a camera does while it tracks a designator."
   (:state
@@ -50,7 +51,8 @@ CODE."))
     (track-ended (track-operation track) code (track-designator track))))
 
 (defun stop-track (camera code warning)
-  "End the track of CAMERA and nothing else. Return its designator, or NIL if it had no track."
+  "End the track of CAMERA and nothing else. Return its designator, or NIL if it had no track.
+See reading 161."
   (let ((track (camera-tracking camera)))
     (when track
       (setf (camera-tracking camera) nil)
@@ -98,7 +100,7 @@ is lost and no other camera tracks the designator, that is dropped."
             (designators-on robot thing)))))
 
 (defun denotation-moved (designator)
-  "Drop DESIGNATOR if it does not survive that its denotation has moved."
+  "Drop DESIGNATOR if it does not survive that its denotation has moved (reading 139)."
   (let ((thing (designator-denotation designator)))
     (unless (if (tracked-p designator)
                 (eq (thing-space thing) (designator-location designator))

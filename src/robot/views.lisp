@@ -9,7 +9,7 @@
 ;;; container.
 
 (defun obstructing-thing (things)
-  "Return the largest of THINGS that obstructs vision, the first of equals, or NIL."
+  "Return the largest of THINGS that obstructs vision, the first of equals, or NIL (reading 240)."
   (let ((best nil))
     (dolist (thing things best)
       (when (and (thing-obsview-p thing)
@@ -17,7 +17,7 @@
         (setf best thing)))))
 
 (defun true-pixel (world x y dx dy)
-  "Return what a ray from (X,Y) in direction DX, DY sees, without noise."
+  "Return what a ray from (X,Y) in direction DX, DY sees, without noise (reading 65)."
   (let* ((flags (world-flags world)) (map (world-map world)) (cells (world-cells world))
          (sum 0d0) (count 1) (last 0d0))
     (flet ((visit (index flag)
@@ -38,7 +38,7 @@
 
 (defun noisy-pixel (value map dice)
   "Return a reading of VALUE: uniform within PIXEL-ERROR-RANGE* of it, or now and then anything
-from the least to the greatest parameter of the walls of MAP."
+from the least to the greatest parameter of the walls of MAP (reading 147)."
   (cond (no-sensor-error* value)
         ((chance pixel-outlier-prob* dice)
          (roll-between (map-least-parameter map) (map-greatest-parameter map) dice))
@@ -52,6 +52,7 @@ from the least to the greatest parameter of the walls of MAP."
       (push (true-pixel world (robot-x robot) (robot-y robot) dx dy) pixels))
     (nreverse pixels)))
 
+;; As reading 148 says.
 (defun inside-view (camera)
   (let ((location (camera-location camera)))
     (make-list (camera-resolution camera)

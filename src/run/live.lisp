@@ -108,7 +108,7 @@ it the current simulation. ROBOT is a robot or a map with a robot in it, or the 
 world that has run before starts anew, with SEED if that is given. It keeps a journal unless
 JOURNAL is NIL, as is advisable for busy programs at free rates. Return the robot (manual A).
 STOP-SIMULATOR stops it. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if the robot no longer
-fits into its map."
+fits into its map. See reading 238."
   (check-rate rate)
   (let* ((robot (robot-to-start robot))
          (simulation (run-to-start (robot-world robot) seed)))
@@ -122,6 +122,6 @@ fits into its map."
 (addition stop-simulator)
 (defun stop-simulator (&optional (simulation (current-simulation)))
   "Stop the live SIMULATION after its current tick. What is under way stays pending. Return
-nothing."
+nothing. See reading 89."
   (stop-clock simulation)
   (values))

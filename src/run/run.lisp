@@ -131,7 +131,7 @@
 (addition set-seed)
 (defun set-seed (seed &optional (simulation (current-simulation)))
   "Make all chance in SIMULATION, that of plans too, depend on the integer SEED from now on. Return
-SEED."
+SEED. See reading 218."
   (check-argument set-seed seed (integerp seed) "an integer")
   (changing ((simulation-world simulation) set-seed seed)
     (seed-world (simulation-world simulation) seed)

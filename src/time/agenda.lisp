@@ -112,6 +112,7 @@
       (resource-event resource)
       (values (gethash resource (agenda-claims agenda)))))
 
+;; As reading 81 says.
 (defun claim (agenda event resource)
   (cond ((null resource))
         ((resource-p resource) (setf (resource-event resource) event))
@@ -138,7 +139,7 @@
 
 (declaim (inline queue-again))
 (defun queue-again (agenda event delay)
-  "Queue EVENT, which is not pending, to run DELAY ticks from now (at least 1)."
+  "Queue EVENT, which is not pending, to run DELAY ticks from now (at least 1). See reading 79."
   (declare (type tick-count delay))
   (when (event-queued-p event)
     (reject-use "An event that still waits in its bucket cannot be queued again."))

@@ -62,7 +62,7 @@
       (funcall (pacing-idle-p pacing))))
 
 (defun rest-thread (timeline pacing)
-  "Sleep for as long as there is nothing to do."
+  "Sleep for as long as there is nothing to do (reading 88)."
   (setf (timeline-asleep-p timeline) t)
   (memory-barrier)
   (when (and (nothing-to-do-p pacing)

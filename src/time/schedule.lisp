@@ -34,7 +34,7 @@
       1))
 
 (defun run-scheduled (event)
-  "Do what EVENT is to do if its test is true; if not, try again in the next tick."
+  "Do what EVENT is to do if its test is true; if not, try again in the next tick (reading 80)."
   (let ((test (scheduled-test event)) (left (time-left event)))
     (cond ((minusp left))
           ((or (null test) (call-user-code test "a scheduled event's :when"))
@@ -89,7 +89,7 @@ form WHEN, the event happens in the first tick from then on in which WHEN is tru
 TIMEOUT ticks from now; then it evaporates. Both forms, like BODY, run inside ticks. Resources that
 are EQUAL are the same. What is asked of a resource, by commands too, is taken in the order of
 asking, at the start of the next tick; a command has the priority 0, and takes over whatever is
-there. Returns nothing (manual 3.8)."
+there. Returns nothing (manual 3.8). See reading 7."
   `(call-scheduled (lambda () ,@body) ,resource
                    :priority ,(or priority 0)
                    :timer ,(or timer 1)
@@ -117,7 +117,7 @@ a tick, by the owner. A layer that adds background activities adds a method.")
 (public grab-resource)
 (defun grab-resource (resource &optional (simulation (current-simulation)))
   "Interrupt the command or event that occupies RESOURCE, and a track that it keeps, at the
-start of the next tick. Returns nothing (manual, figure D.3)."
+start of the next tick. Returns nothing (manual, figure D.3). See reading 37."
   (post (make-grab (list resource)) simulation))
 
 (define-operator 'grab '(datum) #'grab-resource)

@@ -82,7 +82,8 @@ given to SIMULATOR.")
 
 (defun post (request object)
   "Have REQUEST performed at the start of the next tick of the timeline of OBJECT, after those
-posted before. Any thread may post. Return nothing. Signals MISUSE if the run is over."
+posted before. Any thread may post. Return nothing. Signals MISUSE if the run is over.
+See reading 219."
   (let ((timeline (timeline-of object)))
     (check-not-over timeline)
     (atomic-push request (timeline-inbox timeline))

@@ -28,7 +28,8 @@
 (public set-kicker)
 (defun set-kicker (thing kicker-name)
   "Attach to THING the kicker called KICKER-NAME, a symbol, or given as itself (manual 5.3.1).
-Signals WRONG-ARGUMENT and UNKNOWN-NAME. Return it as attached, what SELF is when it runs."
+Signals WRONG-ARGUMENT and UNKNOWN-NAME. Return it as attached, what SELF is when it runs.
+See reading 171."
   (check-argument set-kicker thing (thing-p thing) "a thing")
   (let ((kicker (find-kicker kicker-name)))
     (changing ((thing-world thing) set-kicker thing (kicker-name kicker))

@@ -95,7 +95,8 @@
 
 (defun define-attribute (name domain &key (success 1) (base 0) (max-mult 1) (noticed 0)
                                        supported-by)
-  "Define or redefine the attribute NAME; what DEFATTRIBUTE expands to. Return NAME."
+  "Define or redefine the attribute NAME; what DEFATTRIBUTE expands to. Return NAME.
+See reading 120."
   (let ((definition (format nil "defattribute ~(~S~)" name))
         (old (attribute-of name)))
     (check-attribute-clauses definition domain base max-mult supported-by)
@@ -118,7 +119,7 @@
     name))
 
 (defun attribute-forms (name domain options)
-  "Return the forms that DEFATTRIBUTE expands to."
+  "Return the forms that DEFATTRIBUTE expands to (reading 119)."
   (let ((definition (format nil "defattribute ~(~S~)" name)))
     (unless (and name (symbolp name))
       (reject-clause definition name "a symbol as the name of the attribute"))

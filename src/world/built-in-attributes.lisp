@@ -7,6 +7,7 @@
 ;;; looks for it; weight and capacity are guesses from afar; a substance that is a symbol is read
 ;;; right in :success of all cases.
 
+;; As reading 121 says.
 (defattribute :obsmove (t nil)
   :success .95 :noticed .3 :supported-by (:size :weight))
 (defattribute :obsview (t nil)

@@ -7,6 +7,7 @@
 ;;; names, are ours. Angles grow clockwise from the right, y points down.
 
 (public doorway)
+;; As reading 66 says.
 (def-place-type doorway (cell)
   :confusion 0.05
   :check-matchers ((((- - -)
@@ -44,6 +45,7 @@
 ;;; The empty cell where two walls meet, facing away from either. The corner itself must be
 ;;; filled, or every cell along an oblique wall would count.
 (public concave)
+;; As reading 67 says.
 (def-place-type concave (cell)
   :confusion 0.03
   :check-matchers ((((* * x)

@@ -25,6 +25,7 @@
   (destructuring-bind (form direction &optional (dx 0) (dy 0)) matcher
     `(make-rule ',(normal-form form definition) (double ,direction) ,dx ,dy)))
 
+;; As reading 76 says.
 (defun graphics-form (graphics definition)
   (when graphics
     (unless (and (proper-list-p graphics) (proper-list-p (first graphics))

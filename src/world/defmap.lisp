@@ -106,7 +106,7 @@ signals, the user may replace the clause by another, of which COMPILER makes a f
       (reject-clause definition clause ":kickers (name ...)"))))
 
 (defun prototype-form (definition clause prototype)
-  "Return a form for the value of the form PROTOTYPE, which stands in CLAUSE."
+  "Return a form for the value of the form PROTOTYPE, which stands in CLAUSE (reading 59)."
   (and prototype
        `(call-for-value (lambda () ,prototype) ,definition ',clause
                         "a prototype: a form whose value is a thing")))

@@ -178,7 +178,8 @@ Return nothing."
 (public run-kicker)
 (defun run-kicker (attachment)
   "Run ATTACHMENT, which should be given as SELF, once more on the next tick, whatever its
-probability and test say; its own trial is left out that tick (manual 5.3.1). Return nothing."
+probability and test say; its own trial is left out that tick (manual 5.3.1). Return nothing.
+See reading 170."
   (check-argument run-kicker attachment (attachment-p attachment) "SELF, while a kicker runs")
   (let ((world (thing-world (attachment-thing attachment))))
     (when (and world (attachment-alive-p attachment))

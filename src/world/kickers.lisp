@@ -80,7 +80,7 @@ a thing. Return the kicker."
     (register *kickers* name (if old (become old new) new) :variable t)))
 
 (defun kicker-functions (definition variable options body)
-  "Return the keyword arguments, as forms, for a kicker with OPTIONS and BODY."
+  "Return the keyword arguments, as forms, for a kicker with OPTIONS and BODY (reading 169)."
   (unless (and variable (symbolp variable) (not (constantp variable)))
     (reject-clause definition variable "a variable, to be bound to the kicker's thing"))
   (check-options definition options '(:prob :test))

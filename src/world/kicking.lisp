@@ -39,7 +39,7 @@ FROM-Y, as two values; NIL if all eight are filled."
 (defun kick-thing (thing dx dy kick-if-wall)
   "Move THING by DX, DY metres (manual 5.3.1). If that ends in a wall, move it to an empty cell
 beside that one (the nearest to where it was) if KICK-IF-WALL is true, or else not at all. True
-if it moved; NIL also if it is inside something closed or has been destroyed."
+if it moved; NIL also if it is inside something closed or has been destroyed (reading 172)."
   (check-argument kick-thing thing (thing-p thing) "a thing")
   (check-argument kick-thing dx (realp dx) "a number")
   (check-argument kick-thing dy (realp dy) "a number")

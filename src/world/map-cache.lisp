@@ -17,7 +17,7 @@
 (deftype words () '(simple-array (unsigned-byte 64) (*)))
 
 (defun cache-key (map)
-  "Return the 64-bit key of MAP's grid."
+  "Return the 64-bit key of MAP's grid (reading 62)."
   (digest-value
    (digest-add (make-digest)
                (list (map-width map) (map-height map) (map-clauses map)

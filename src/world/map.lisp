@@ -90,7 +90,7 @@ NEW if OLD was undefined. The layer above ends what goes on in OLD.")
   (:method (old new) (declare (ignore old new)) nil))
 
 (defun register-map (map)
-  "Let the name of MAP mean MAP."
+  "Let the name of MAP mean MAP (reading 61)."
   (let ((old (definition-to-replace (map-name map) *maps*)))
     (register *maps* (map-name map) map :variable t)
     (map-replaced old map)
@@ -128,7 +128,8 @@ or if it is a symbol that has none, such as ROOM, or one that is no map, the map
          (the cell-index (+ x (the cell-index (* y width)))))))
 
 (defun point-index (map x y)
-  "Return the index of the cell of MAP that holds X, Y (double-floats), or NIL outside."
+  "Return the index of the cell of MAP that holds X, Y (double-floats), or NIL
+outside (reading 51)."
   (declare (type double-float x y))
   (let ((width (map-width map)))
     (and (<= 0d0 x) (<= 0d0 y) (< x (double width)) (< y (double (map-height map)))
@@ -139,6 +140,7 @@ or if it is a symbol that has none, such as ROOM, or one that is no map, the map
   "Return the index of the cell of MAP that holds the point (X, Y), in metres, or NIL outside."
   (point-index map (double x) (double y)))
 
+;; As reading 53 says.
 (defun filled-at-p (map x y)
   (let ((index (cell-index-at map x y)))
     (or (null index) (logtest +wall+ (aref (map-flags map) index)))))

@@ -18,7 +18,7 @@
   (dy 0 :type fixnum :read-only t))
 
 (defun normal-entry (entry)
-  "Return T, NIL or :ANY for ENTRY of a match form, or :BAD."
+  "Return T, NIL or :ANY for ENTRY of a match form, or :BAD (reading 75)."
   (cond ((matchvar-p entry) :any)
         ((not (symbolp entry)) :bad)
         ((or (null entry) (same-name-p entry "-")) nil)

@@ -71,7 +71,8 @@ LOCATION is one of
   (map x y) -- in a map, at coordinates in metres; all three are forms, but a symbol that is no
     variable is the name of a map.
 PROTOTYPE is a form whose value is a thing; its attributes and contents are copied first, its
-kickers are not. To compute name or descriptor use MAKE-NEW-THING. Signals WRONG-ARGUMENT."
+kickers are not. To compute name or descriptor use MAKE-NEW-THING. Signals WRONG-ARGUMENT.
+See readings 12 and 167."
   (unless (and name (symbolp name))
     (reject-clause "new-thing" name "a symbol as the name of the thing"))
   (unless (descriptor-p descriptor)

@@ -40,7 +40,7 @@
 (declaim (inline classify-cell))
 (defun classify-cell (map number x y direction)
   "Make the cell X, Y of MAP a place of the type NUMBER, unless it is one already, filled or
-outside."
+outside (reading 71)."
   (declare (type (signed-byte 20) x y) (type (unsigned-byte 8) number))
   (when (and (< -1 x (map-width map)) (< -1 y (map-height map)))
     (let ((index (+ x (* y (map-width map)))))
@@ -165,7 +165,7 @@ outside."
 
 (defun classify-places (map)
   "Find the places of MAP anew, by the place types known now. A type whose code fails is left out,
-with a warning. Return MAP, and true if no type was left out."
+with a warning. Return MAP, and true if no type was left out. See reading 70."
   (clear-places map)
   (let ((codes (neighbourhood-codes map)) (whole t))
     (loop for type in (registry-objects *place-types*) for number from 1
@@ -211,7 +211,8 @@ with a warning. Return MAP, and true if no type was left out."
 (addition place-directions)
 (defun place-directions (place)
   "Return the two canonical directions of PLACE, radians: what its type's :directions form says,
-or its basic direction and the opposite. Trouble in the form is queued as an error message."
+or its basic direction and the opposite. Trouble in the form is queued as an error
+message (reading 72)."
   (let* ((basic (place-canonical-dir place))
          (type (place-type place))
          (function (place-type-directions type))

@@ -140,7 +140,7 @@ destroyed, and a container put into itself. Return THING."
 (addition destroy-thing)
 (defun destroy-thing (thing)
   "Destroy THING; what it contains stays where it was. Destroying it again does nothing.
-Signals MISUSE for prototypes. Return nothing."
+Signals MISUSE for prototypes. Return nothing. See reading 168."
   (unless (and (thing-p thing) (not (thing-alive-p thing)))
     (check-movable 'destroy-thing thing)
     (changing ((thing-world thing) destroy-thing thing)

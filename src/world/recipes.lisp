@@ -24,7 +24,7 @@
 
 (defun write-recipe (operator name descriptor &key prototype contents kickers x y)
   "Return the recipe of a thing NAME: the attributes of the thing PROTOTYPE, if any, overridden by
-DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMENT."
+DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMENT. See reading 58."
   (unless (and name (symbolp name)) (reject-value operator "name" name "a symbol"))
   (unless (or (null prototype) (thing-p prototype))
     (reject-value operator "prototype" prototype "a thing, made by NEW-THING"))
@@ -49,7 +49,8 @@ DESCRIPTOR; its contents followed by the recipes CONTENTS. Signals WRONG-ARGUMEN
         (warning-set thing " goes without the kicker " kicker ", which is no longer defined."))))
 
 (defun follow-recipe (recipe world)
-  "Return a new thing made by RECIPE, nowhere yet, in WORLD, or a prototype if WORLD is NIL."
+  "Return a new thing made by RECIPE, nowhere yet, in WORLD, or a prototype if WORLD is
+NIL (reading 63)."
   (let* ((contents (loop for inside in (recipe-contents recipe)
                          collect (follow-recipe inside world)))
          (thing (%make-thing (recipe-name recipe) (if world (take-serial world) 0) world)))

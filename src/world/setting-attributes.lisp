@@ -47,7 +47,7 @@ or unspecified. Signals WRONG-ARGUMENT for a value that the attribute cannot hav
 (public change-attribute)
 (defun change-attribute (thing descriptor)
   "Set all attributes of THING that the object descriptor DESCRIPTOR gives; others stay
-(manual 5.3). Signals WRONG-ARGUMENT. Return THING."
+(manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
   (check-argument change-attribute thing (thing-p thing) "a thing")
   (let ((descriptor (normal-descriptor 'change-attribute descriptor)))
     (changing ((thing-world thing) change-attribute thing descriptor)

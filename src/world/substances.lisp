@@ -48,7 +48,7 @@ PARAMETER, a number. Our addition to manual 2.1 and 3.3. Return the name."
     (if substance (substance-%parameter substance) 0d0)))
 
 (defun substance-value-p (value)
-  "True if VALUE can be the value of a thing's :substance."
+  "True if VALUE can be the value of a thing's :substance (reading 64)."
   (or (realp value)
       (and value (symbolp value))
       (and (proper-list-p value) (= 2 (length value))

@@ -6,6 +6,7 @@
 ;;; map's edge, in the last cell on that side, so that a room as wide as the map is closed.
 ;;; Later clauses overwrite earlier ones. Manual 5.1.
 
+;; As reading 52 says.
 (defun column-in (map x) (clamp (floor x) 0 (1- (map-width map))))
 (defun row-in (map y) (clamp (floor y) 0 (1- (map-height map))))
 
@@ -22,7 +23,7 @@
 
 (defun draw-line (map x0 y0 x1 y1 substance from to)
   "Fill the cells from X0, Y0 to X1, Y1 (Bresenham); the parameter goes from FROM to TO by
-steps."
+steps (reading 57)."
   (let* ((dx (abs (- x1 x0))) (dy (- (abs (- y1 y0))))
          (step-x (signum (- x1 x0))) (step-y (signum (- y1 y0)))
          (steps (max dx (- dy) 1))
@@ -40,7 +41,8 @@ steps."
              (substance-number map type) (double from) (double to)))
 
 (defun draw-rect (map corner opposite type &rest parameters)
-  "Draw the outline; the second corner is beside the first, the third opposite it."
+  "Draw the outline; the second corner is beside the first, the third opposite
+it (readings 55 and 56)."
   (destructuring-bind (p0 &optional (p1 p0) (p2 p0) (p3 p0)) parameters
     (destructuring-bind ((x0 y0) (x1 y1)) (list corner opposite)
       (loop for (start end from to) in `(((,x0 ,y0) (,x1 ,y0) ,p0 ,p1)
@@ -50,7 +52,7 @@ steps."
             do (draw-wall map start end type from to)))))
 
 (defun draw-circle (map center radius type parameter)
-  "Draw the digitised outline (midpoint algorithm), pressed against the map's edges."
+  "Draw the digitised outline (midpoint algorithm), pressed against the map's edges (reading 22)."
   (let ((cx (floor (first center))) (cy (floor (second center))))
     (if (encloses-map-p map cx cy radius)
         (draw-rect map '(0 0) (list (map-width map) (map-height map)) type parameter)
