@@ -36,7 +36,7 @@
                           (mapcar #'spec-text (command-results command)))))
           (when (command-errors command)
             (list (format nil "Errors: ~{~A~^; ~}." (error-details command))))
-          (list (format nil "In Lisp: ~(~A~). Manual ~A."
+          (list (format nil "In Lisp: ~(~A~).~@[ Manual ~A.~]"
                         (command-name command) (command-section command)))))
 
 (defun send-line (command)

@@ -7,6 +7,8 @@
 
 (defvar *fluent-variables* '() "A list (variable kind) of all fluent variables.")
 
+(pushnew '*fluent-variables* *kept-variables*)
+
 (defmacro define-fluents (kind &body definitions)
   "Define fluent variables for KIND, ROBOT or a kind of part such as CAMERA: (name documentation)."
   `(progn

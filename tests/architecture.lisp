@@ -52,7 +52,7 @@
       (is (char= #\. (char line (1- (length line)))) "~A begins ~S" path line))))
 
 (test files.are-of-a-size-to-be-read
-  (dolist (path (lisp-files "src/" "rpl/" "cli/" "tests/"))
+  (dolist (path (lisp-files "src/" "rpl/" "cli/" "worlds/" "tests/"))
     (let ((lines (file-lines path)))
       (is (<= (length lines) 400) "~A has ~D lines" path (length lines))
       (is (notany (lambda (line) (> (length line) 100)) lines) "~A has long lines" path)

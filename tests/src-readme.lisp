@@ -60,11 +60,8 @@
                    form (shown value) promise)))))
 
 (defun call-with-examples (function)
-  "Call FUNCTION; forget the package of the README, and the kinds and fluents defined there."
-  (let ((*package* (find-package :ars-user))
-        (base::*kinds* base::*kinds*)
-        (driver::*fluent-variables* driver::*fluent-variables*)
-        (run:*simulation-variables* run:*simulation-variables*))
+  "Call FUNCTION; forget the package of the README, and what is defined there."
+  (let ((*package* (find-package :ars-user)))
     (unwind-protect (base:with-own-definitions () (funcall function))
       (when (find-package :glasshouse) (delete-package :glasshouse)))))
 

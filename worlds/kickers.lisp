@@ -1,9 +1,10 @@
 ;;;; kickers.lisp -- what makes things in the shipped worlds move and change by themselves.
 
 ;;; Good for any world: write (obj (ball :prototype ars-worlds:ball* :kickers (roll-away)) ...).
-;;; Kickers go by name, whatever the package. Steps are shorter than a cell, so nothing is kicked through a wall. Where a movement goes on, what it
-;;; was doing is an attribute of the thing, which no robot senses. All chance comes from the
-;;; world's dice for users: a run with the same seed repeats itself. Manual 5.3.1.
+;;; Kickers go by name, whatever the package. Steps are shorter than a cell, so nothing is kicked
+;;; through a wall. Where a movement goes on, what it was doing is an attribute of the thing, which
+;;; no robot senses. All chance comes from the world's dice for users: a run with the same seed
+;;; repeats itself. Manual 5.3.1.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)

@@ -1,9 +1,9 @@
 ;;;; prototypes.lisp -- the kinds of things that the shipped worlds are furnished with.
 
 ;;; Good for any world: write (obj (stool :prototype ars-worlds:chair*) (3.5 4.5) ((:color red))).
-;;; Sizes, capacities and weights are in the units of the robots' bins and hands: what is up to 5 in size
-;;; goes into any bin, what weighs up to 4 into any hand of ROBBIE's. No prototype has more in it
-;;; than it holds. Manual 5.3.
+;;; Sizes, capacities and weights are in the units of the robots' bins and hands: what is up to 5 in
+;;; size goes into any bin, what weighs up to 4 into any hand of ROBBIE's. No prototype has more in
+;;; it than it holds. Manual 5.3.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)

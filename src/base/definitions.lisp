@@ -24,8 +24,11 @@
   "The definition that is being expanded or carried out, or NIL.")
 
 (defun current-source ()
-  "Return the source of the definition that is being carried out, or NIL if it was typed."
-  (and *definition* (defining-source *definition*)))
+  "Return the source of the definition that is being carried out, or else of the form that is being
+loaded; NIL if it was typed."
+  (if *definition*
+      (defining-source *definition*)
+      (source-here)))
 
 (defun current-form-digest ()
   "Return a number for the form of the definition that is being carried out, or NIL."

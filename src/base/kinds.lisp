@@ -50,7 +50,8 @@
 (defmethod print-object ((kind object-kind) stream)
   (print-unreadable-object (kind stream :type t) (princ (kind-name kind) stream)))
 
-(defvar *kinds* '() "All kinds, in order of definition.")
+(define-registry object-kind "kind of object"
+  :object-p kind-p :by-symbol t :fixed t :internal t)
 
 (declaim (inline kind-called))
 (defun kind-called (name)
@@ -70,7 +71,7 @@ are or include it."
                        (loop for each = kind then (kind-parent each)
                              while each
                                thereis (eq base (kind-name each)))))
-                 *kinds*))
+                 (all-object-kinds)))
 
 ;;; Defining.
 
@@ -87,7 +88,8 @@ are or include it."
 (defun document-readers (kind conc package)
   "Document the readers of KIND, whose names in PACKAGE begin with CONC."
   (dolist (slot (kind-slots kind))
-    (let ((reader (find-symbol (format nil "~A~A" conc (kind-slot-name slot)) package)))
+    (let ((reader (find-symbol (concatenate 'string conc (symbol-name (kind-slot-name slot)))
+                               package)))
       (when (and reader (fboundp reader))
         (setf (documentation reader 'function) (reader-text slot))))))
 
@@ -95,8 +97,8 @@ are or include it."
   "Let NAME be a kind with SLOTS of its own besides those of the kind called PARENT."
   (let* ((parent (and parent (kind-called parent)))
          (kind (make-kind name (append (and parent (kind-slots parent)) slots) parent)))
-    (setf *kinds* (append (remove name *kinds* :key #'kind-name) (list kind))
-          (get name 'object-kind) kind)
+    (register *object-kinds* name kind)
+    (setf (get name 'object-kind) kind)
     (document-readers kind conc (symbol-package name))
     kind))
 
@@ -144,7 +146,7 @@ CONSTRUCTOR is as in DEFSTRUCT; PRINT, a function of object and stream, is how i
 Return NAME. Signals MALFORMED-DEFINITION."
   (check-kind-form name groups)
   (let ((slots (slots-by-role groups))
-        (conc (format nil "~A-" name)))
+        (conc (concatenate 'string (symbol-name name) "-")))
     `(progn
        (defstruct (,name ,@(when include `((:include ,include)))
                          ,(if (consp constructor)

@@ -26,7 +26,7 @@ function of the operation that returns one."
   ;; What messages call the command's continuations.
   (origin "" :type string :read-only t)
   (family nil :type symbol :read-only t)
-  (section "" :type string :read-only t)
+  (section nil :type (or null string) :read-only t)
   (documentation "" :type string :read-only t)
   (resource nil :type parameter-spec :read-only t)
   (parameters '() :type list :read-only t)
@@ -52,7 +52,7 @@ function of the operation that returns one."
   command-prompt-name "Return what the command is called at the prompt, in upper case."
   command-prefix "Return the word that the command's messages begin with."
   command-family "Return :MOVING, :LOOKING, :HANDLING or :MANIPULATING."
-  command-section "Return the section of the manual that describes the command."
+  command-section "Return the section of the manual that describes the command, or NIL."
   command-documentation "Return the sentence that says what the command does."
   command-resource "Return the specification of the command's first argument, its resource."
   command-parameters "Return the specifications of its arguments but resource and continuation."

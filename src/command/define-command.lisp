@@ -29,7 +29,7 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
   "Return the documentation of the function that issues a command."
   (format nil "~A Returns nothing; takes effect in the next tick.~%~A~
                The continuation gets an error code or NIL, the ~(~A~)~{, ~A~}.~%~
-               Error codes: ~{~S, ~}:INTERRUPT. (Manual ~A.)"
+               Error codes: ~{~S, ~}:INTERRUPT.~@[ (Manual ~A.)~]"
           sentence
           (describe-arguments parameters)
           (first resource)
@@ -57,7 +57,7 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
 
 OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each of PARAMETERS
 (variable type text) with a type of DEFINE-ARGUMENT-TYPE, each of RESULTS (name text). OPTIONS:
-  (:family keyword) (:section string)  where it belongs
+  (:family keyword) (:section string)  where it belongs; the section is the manual's, if any
   (:delay form)                        ticks until BODY runs, evaluated when the command begins;
                                        without it the command is done in the next tick
   (:errors (keyword text)...)          its error codes; TEXT, a form, gives a string or a

@@ -40,6 +40,11 @@
         (funcall reject angle "a heading in radians, between -1e9 and 1e9"))
       map)))
 
+(defun trouble-with-part (kind initargs)
+  "Return what keeps a part of KIND, a symbol, from being made with INITARGS, a string, or NIL."
+  (handler-case (progn (apply (kind-constructor kind) :robot nil :index 0 initargs) nil)
+    (error (trouble) (string-right-trim "." (princ-to-string trouble)))))
+
 (defun parse-part (specification reject)
   "Return SPECIFICATION, (kind initarg value ...), as the kind's name and the rest."
   (let ((kind (and (consp specification) (symbolp (first specification))
@@ -47,6 +52,10 @@
     (unless (and kind (proper-list-p specification) (evenp (length (rest specification))))
       (funcall reject specification
                "(kind initarg value ...), a kind of part that DEFINE-KIND has defined"))
+    (let ((trouble (trouble-with-part (kind-name kind) (rest specification))))
+      (when trouble
+        (funcall reject specification
+                 (format nil "what a ~(~A~) can be made with (~A)" (kind-name kind) trouble))))
     (cons (kind-name kind) (rest specification))))
 
 (defun read-blueprint (name environment position angle cameras hands bins parts)

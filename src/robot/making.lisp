@@ -72,8 +72,12 @@ NIL."
           'simple-vector))
 
 (defun kind-constructor (kind)
-  "Return the function that makes parts of KIND, a symbol."
-  (find-symbol (format nil "MAKE-~A" kind) (symbol-package kind)))
+  "Return the function that makes parts of KIND, a symbol. Signals MISUSE if there is none."
+  (let ((name (find-symbol (concatenate 'string "MAKE-" (symbol-name kind))
+                           (symbol-package kind))))
+    (if (and name (fboundp name))
+        name
+        (reject-use "Nothing makes a ~(~A~): there is no function make-~(~:*~A~)." kind))))
 
 (defun start-trouble (map x y)
   "Return in words why a robot cannot start at (X,Y) in MAP, or NIL."

@@ -8,6 +8,8 @@
   "Symbols that a headless simulation binds, to the values they have, so that what is set in it
 ends with it and simulations side by side do not meet.")
 
+(pushnew '*simulation-variables* *kept-variables*)
+
 ;;; Passing ticks.
 
 (defun check-headless (simulation operator)
