@@ -130,8 +130,16 @@ VALUE."
                   (state-digest simulation)))
       (format t "~A: ~A" (native-name path) (moment-text tick digest)))))
 
-(define-line "REPLAY" (session (file :token "the name of a file that SAVE-JOURNAL wrote"))
+(defun anyway-p (word)
+  "True if WORD is ANYWAY, NIL if it was left out. Signals BAD-LINE for another."
+  (cond ((null word) nil)
+        ((string-equal word "anyway") t)
+        (t (reject-line "REPLAY does not know ~A. After the file you may say ANYWAY." word))))
+
+(define-line "REPLAY" (session (file :token "the name of a file that SAVE-JOURNAL wrote")
+                               (anyway :token "the word ANYWAY" :optional))
     (:running)
-    "Repeat the run in FILE in a world of its own; show the tick and the state that it comes to."
-  (multiple-value-bind (simulation digest) (replay file)
+    "Repeat the run in FILE in a world of its own; show the tick and the state that it comes to. With
+ANYWAY also if what is defined here is not what the run was recorded with."
+  (multiple-value-bind (simulation digest) (replay file :anyway (anyway-p anyway))
     (format t "~A: ~A" file (moment-text (simulation-tick simulation) digest))))

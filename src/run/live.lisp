@@ -112,7 +112,8 @@ fits into its map. See reading 238."
   (check-rate rate)
   (let* ((robot (robot-to-start robot))
          (simulation (run-to-start (robot-world robot) seed)))
-    (unless journal (setf (simulation-journal simulation) nil))
+    (cond ((not journal) (setf (simulation-journal simulation) nil))
+          ((null (simulation-journal simulation)) (begin-journal simulation)))
     (setf *simulation* simulation
           *world* (simulation-world simulation))
     (start-clock simulation :rate rate)

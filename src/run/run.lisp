@@ -149,6 +149,8 @@ it goes as the original would, given the same requests. The continuations of com
 stay with the original, as do observers and the journal; of what takes part in it, what can be
 copied goes along."
   (asking (simulation)
+    (when (simulation-ticking-p simulation)
+      (reject-use "copy-simulation: a tick is under way. Copy the run between ticks."))
     (let* ((table (make-copy-table))
            (copy (copy-running simulation table)))
       (setf (timeline-run (simulation-timeline copy)) copy
