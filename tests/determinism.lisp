@@ -192,6 +192,44 @@ the office, its kickers or the order of chance does; then it is to be replaced k
       (run:run-ticks 100000 simulation)
       (is (= *office-digest* (run:state-digest simulation))))))
 
+;;; What happens in the shipped worlds, whatever a digest may cover.
+
+(defun look-and-pace-about (robot)
+  "Let ROBOT turn, drive, look and sense for ever, by a fixed rule."
+  (let ((count 0) (camera (robot:robot-camera robot 0)))
+    (labels ((next (&rest ignore)
+               (declare (ignore ignore))
+               (case (mod (incf count) 5)
+                 (0 (command:robot-turn robot (- (* 0.7d0 (mod count 9)) 2.5d0) #'next))
+                 (1 (command:robot-go-forward robot (mod count 13) #'next))
+                 (2 (command:camera-get-all-object-designators camera :non-local '() #'next))
+                 (3 (command:camera-view camera #'next))
+                 (4 (command:robot-place robot #'next)))))
+      (next))))
+
+(defun drive-history (name ticks)
+  "Return a number for where the robot NAME is after each of TICKS ticks, and for what is said."
+  (let* ((simulation (run:fresh-simulation (list (robot:find-robot name)) :seed 7))
+         (robot (first (run:simulation-robots simulation)))
+         (digest (base:make-digest)))
+    (look-and-pace-about robot)
+    (dotimes (tick ticks (base:digest-value digest))
+      (run:run-ticks 1 simulation)
+      (base:digest-add digest (list (robot:robot-x robot) (robot:robot-y robot)
+                                    (robot:robot-angle robot)
+                                    (mapcar #'base:message-text (base:take-messages)))))))
+
+(defparameter *golden-traces*
+  '((ars-worlds:robbie 1978701751953978119) (ars-worlds:marvin 6850106491755807755)
+    (ars-worlds:porter 13560305606757584002) (ars-worlds:dot 4450482852790235868))
+  "What DRIVE-HISTORY returns for the robots of the shipped worlds, 5,000 ticks each. It changes when the
+worlds, their kickers, the messages or the order of chance do; then it is to be replaced knowingly.")
+
+(test traces.are-the-same-in-every-process
+  (loop for (name trace) in *golden-traces*
+        do (with-messages
+             (is (= trace (drive-history name 5000)) "~A" name))))
+
 (test office.live-replays-headless
   "100,000 ticks of the office floor, live, then its journal."
   (with-messages
