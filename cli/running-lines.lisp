@@ -139,7 +139,7 @@ VALUE."
 (define-line "REPLAY" (session (file :token "the name of a file that SAVE-JOURNAL wrote")
                                (anyway :token "the word ANYWAY" :optional))
     (:running)
-    "Repeat the run in FILE in a world of its own; show the tick and the state that it comes to. With
-ANYWAY also if what is defined here is not what the run was recorded with."
+    "Repeat the run in FILE in a world of its own; show the tick and the state that it comes to.
+With ANYWAY also if what is defined here is not what the run was recorded with."
   (multiple-value-bind (simulation digest) (replay file :anyway (anyway-p anyway))
     (format t "~A: ~A" file (moment-text (simulation-tick simulation) digest))))

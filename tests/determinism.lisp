@@ -222,8 +222,9 @@ the office, its kickers or the order of chance does; then it is to be replaced k
 (defparameter *golden-traces*
   '((ars-worlds:robbie 1978701751953978119) (ars-worlds:marvin 6850106491755807755)
     (ars-worlds:porter 13560305606757584002) (ars-worlds:dot 4450482852790235868))
-  "What DRIVE-HISTORY returns for the robots of the shipped worlds, 5,000 ticks each. It changes when the
-worlds, their kickers, the messages or the order of chance do; then it is to be replaced knowingly.")
+  "What DRIVE-HISTORY returns for the robots of the shipped worlds, 5,000 ticks each. It changes
+when the worlds, their kickers, the messages or the order of chance do; then it is to be replaced
+knowingly.")
 
 (test traces.are-the-same-in-every-process
   (loop for (name trace) in *golden-traces*

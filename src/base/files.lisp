@@ -27,3 +27,26 @@ as they are, with nothing to be filled in. Signals an error if the system refuse
 nothing."
   (= sb-posix:s-ifreg
      (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (native-name path))))))
+
+(defun new-file-for (file)
+  "Return the absolute path of the file that is to be written for FILE: where a link leads to, if it
+is one. Signals an error if there is something that is no file of bytes, or no directory for it."
+  (let ((path (or (probe-file file)
+                  (uiop:ensure-absolute-pathname (merge-pathnames file) #'uiop:getcwd))))
+    (when (and (probe-file path) (not (plain-file-p path)))
+      (error "it is a directory or a device"))
+    (unless (probe-file (uiop:pathname-directory-pathname path))
+      (error "there is no such directory"))
+    path))
+
+(defun call-replacing-file (function file)
+  "Call FUNCTION with a stream to a new file of UTF-8, which takes the place of FILE at one stroke
+when FUNCTION has returned; if that or anything else fails, FILE is as it was. Return its truename."
+  (let ((path (new-file-for file)))
+    (uiop:with-temporary-file (:stream out :pathname new :external-format :utf-8
+                               :directory (uiop:pathname-directory-pathname path)
+                               :prefix "ars-magna" :type :unspecific)
+      (funcall function out)
+      :close-stream
+      (replace-file path new))
+    (truename path)))

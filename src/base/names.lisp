@@ -49,8 +49,10 @@ into B."
        (char-equal (char a (- i 2)) (char b (- j 1)))))
 
 (defun nearest-name (name names)
-  "Return the one of NAMES most like NAME, or NIL if none is at all like it."
-  (let ((best nil)
+  "Return the one of NAMES most like NAME, or NIL if none is at all like it, as none is like a NAME
+of more than 100 characters."
+  (let ((names (and (<= (length (string name)) 100) names))
+        (best nil)
         (least (max 2 (floor (length (string name)) 2))))
     (dolist (candidate names best)
       (let ((distance (edit-distance (string name) (string candidate))))

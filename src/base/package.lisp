@@ -29,6 +29,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:copy-nicknames)
   ;; files, processes, backtraces
   (:export #:native-name #:native-path #:existing-path #:replace-file #:plain-file-p
+           #:call-replacing-file
            #:environment-value #:run-command #:calls-under-way)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p

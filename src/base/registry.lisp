@@ -72,12 +72,15 @@ DIGEST is a number for the form of the definition, or NIL if there was none."
               :test #'same-name-p)))
 
 (defun qualified-symbol (name)
-  "Return the symbol that NAME, a string such as \"PACKAGE:NAME\", stands for, or NIL."
+  "Return the symbol that NAME, a string such as \"PACKAGE:NAME\", stands for, or NIL. What is not
+called just so is looked for in upper case."
   (let ((colon (and (stringp name) (position #\: name))))
     (when (and colon (plusp colon))
-      (let ((package (find-package (string-upcase (subseq name 0 colon)))))
+      (let* ((prefix (subseq name 0 colon))
+             (package (or (find-package prefix) (find-package (string-upcase prefix))))
+             (name (string-left-trim ":" (subseq name colon))))
         (and package
-             (find-symbol (string-upcase (string-left-trim ":" (subseq name colon))) package))))))
+             (or (find-symbol name package) (find-symbol (string-upcase name) package)))))))
 
 (defun lookup-entry (name registry)
   "Return the entry of REGISTRY for NAME, a symbol or string, perhaps PACKAGE:NAME, or NIL."

@@ -187,35 +187,87 @@ MISUSE if it is not there."
 
 ;;; What a text or form says, as a number.
 
+(defun blank-p (char)
+  (find char '(#\Space #\Tab #\Newline #\Return #\Page)))
+
+(defun paren-p (char)
+  (find char "()"))
+
 (defun code-alone (text)
-  "Return TEXT without comments, and with one space for each run of blanks."
+  "Return TEXT without comments, and with one space for each run of blanks; none beside parentheses,
+at the beginning and at the end."
   (with-output-to-string (stream)
-    (let ((i 0) (blank t))
+    (let ((i 0) (last #\() (blank nil))
       (loop while (< i (length text))
-            do (let ((end (or (skip-comment text i)
-                              (and (find (char text i) '(#\Space #\Tab #\Newline #\Return #\Page))
-                                   (1+ i)))))
-                 (cond (end
-                        (unless blank (write-char #\Space stream))
-                        (setf blank t i end))
-                       (t
-                        (let ((end (or (skip-text text i) (1+ i))))
-                          (write-string text stream :start i :end (min end (length text)))
-                          (setf blank nil i end)))))))))
+            do (let* ((char (char text i)) (code (not (or (blank-p char) (skip-comment text i))))
+                      (end (or (skip-text text i) (1+ i))))
+                 (when code
+                   (unless (or (not blank) (paren-p last) (paren-p char))
+                     (write-char #\Space stream))
+                   (write-string text stream :start i :end (min end (length text)))
+                   (setf last char))
+                 (setf blank (not code) i end))))))
+
+(defun text-digest (text)
+  "Return a number for the characters of TEXT."
+  (let ((digest (make-digest)))
+    (loop for char across text do (digest-add digest char))
+    (digest-value digest)))
+
+(defvar *last-digest* '("" 0)
+  "A list of the text and number that FILE-DIGEST had last: each definition in a file asks again.")
 
 (defun file-digest (file)
   "Return a number for the code in FILE; comments and layout do not count."
-  (digest-value (digest-add (make-digest) (code-alone (read-file-into-string file)))))
+  ;; Any file can be read so, and what its bytes mean does not matter here.
+  (let ((text (read-file-into-string file :external-format :latin-1)) (last *last-digest*))
+    (if (string= text (first last))
+        (second last)
+        (let ((number (text-digest (code-alone text))))
+          (setf *last-digest* (list text number))
+          number))))
 
 (defun form-digest (form)
-  "Return a number for FORM: for what its symbols are called, and its data."
-  (digest-value (digest-add (make-digest) (without-commas form))))
+  "Return a number for FORM: for its shape, what its symbols are called, and its data."
+  (let ((digest (make-digest)))
+    (add-form form digest (make-hash-table :test 'eq))
+    (digest-value digest)))
 
-(defun without-commas (form)
-  "Return FORM with each comma in it as a list."
-  (cond ((form-behind-comma form) (list 'comma (without-commas (form-behind-comma form))))
-        ((consp form) (loop with copies = '()
-                            while (consp form)
-                            do (push (without-commas (pop form)) copies)
-                            finally (return (nreconc copies (and form (without-commas form))))))
-        (t form)))
+(defun add-integer (integer digest)
+  (loop for rest = integer then (ash rest -64)
+        do (digest-add digest rest)
+        until (<= -1 rest 0)))
+
+(defun kind-of-atom (atom)
+  "Return the name of the type of ATOM, the same for all that are read alike."
+  (typecase atom
+    (symbol 'symbol)
+    (string 'string)
+    (integer 'integer)
+    (t (first (ensure-list (type-of atom))))))
+
+(defun add-atom (atom digest known)
+  "Add ATOM, of a form, to DIGEST. Symbols without a home, whose names macros make up, count by the
+order in which they come up; KNOWN has those that have."
+  (digest-add digest (kind-of-atom atom))
+  (typecase atom
+    (symbol (digest-add digest (if (symbol-package atom)
+                                   (symbol-name atom)
+                                   (or (gethash atom known)
+                                       (setf (gethash atom known) (hash-table-count known))))))
+    (string (loop for char across atom do (digest-add digest char)))
+    (integer (add-integer atom digest))
+    (ratio (add-integer (numerator atom) digest) (add-integer (denominator atom) digest))
+    (t (digest-add digest atom))))
+
+(defun add-form (form digest known)
+  "Add FORM to DIGEST; see ADD-ATOM."
+  (cond ((form-behind-comma form)
+         (digest-add digest "comma")
+         (add-form (form-behind-comma form) digest known))
+        ((consp form)
+         (digest-add digest "list")
+         (loop while (consp form) do (add-form (pop form) digest known))
+         (digest-add digest "end")
+         (when form (add-form form digest known)))
+        (t (add-atom form digest known))))

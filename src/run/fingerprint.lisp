@@ -6,12 +6,27 @@
 ;;; number stands for the form that was read, and (:file name number) for each file that they are
 ;;; from, whose other forms may decide it too. Comments and layout do not count. What has no form,
 ;;; because a function made it, has no number and is not compared.
+;;;
+;;; What a run uses decides it: its map and robots; the kickers on its things, the attributes that
+;;; these have, the place types and substances in the map; the kickers and manipulations that it was
+;;; asked for. So does all that stands in the files that these are from. Of functions that stand in
+;;; other files, or were typed, nothing is known.
 
-(defun entries-for (simulation)
-  "Return the registry entries of the map and the robots of SIMULATION."
-  (remove nil (cons (lookup-entry (map-name (world-map (simulation-world simulation))) *maps*)
-                    (loop for robot in (simulation-robots simulation)
-                          collect (lookup-entry (robot-name robot) *robots*)))))
+(defparameter *definition-kinds*
+  (list (cons :map *maps*) (cons :robot *robots*) (cons :kicker *kickers*)
+        (cons :place-type *place-types*) (cons :attribute *attributes*)
+        (cons :substance *substances*))
+  "The kinds of definitions, and the registry of each. Manipulations have methods instead.")
+
+(defun registry-of (kind)
+  (cdr (assoc kind *definition-kinds* :test #'same-name-p)))
+
+(defun qualified-name (symbol)
+  "Return a string that names SYMBOL with its package, for FIND-ROBOT and kin."
+  (format nil "~@[~A::~]~A" (and (symbol-package symbol) (package-name (symbol-package symbol)))
+          (symbol-name symbol)))
+
+;;; What is used. A definition is here a list (kind name).
 
 (defun kickers-at-work (simulation)
   "Return the names of the kickers in SIMULATION."
@@ -21,78 +36,168 @@
         (pushnew (kicker-name (attachment-kicker attachment)) names)))
     names))
 
-(defun files-of (entries)
-  "Return a list of the sources of ENTRIES, (file number), each once; NIL for what was typed."
-  (remove-duplicates (mapcar #'entry-source entries) :test #'equal))
+(defun attributes-at-work (simulation)
+  "Return the names of the attributes that things in SIMULATION have."
+  (let ((names '()))
+    (do-things (thing (simulation-world simulation))
+      (dolist (attribute (thing-attributes thing))
+        (pushnew (first attribute) names)))
+    names))
 
-(defun entries-from (registry sources &optional names)
-  "Return the entries of REGISTRY, of users' definitions, that are from SOURCES or called by NAMES."
-  (remove-if-not (lambda (entry)
-                   (and (users-p entry)
-                        (or (member (entry-source entry) sources :test #'equal)
-                            (member (entry-name entry) names :test #'same-name-p))))
-                 (registry-entries registry)))
+(defun elements-in-use (numbers elements)
+  "Return those of the vector ELEMENTS, but the first, whose indices are among NUMBERS, a vector."
+  (let ((used (make-array (length elements) :element-type 'bit :initial-element 0)))
+    (loop for number across numbers do (setf (sbit used number) 1))
+    (loop for index from 1 below (length elements)
+          when (plusp (sbit used index)) collect (aref elements index))))
 
-(defun describe-entries (kind entries)
-  (loop for entry in entries
-        collect (list kind (name-string (entry-name entry)) (entry-digest entry))))
+(defun asked-for (operator position simulation)
+  "Return the arguments at POSITION of the entries for OPERATOR in the journal of SIMULATION."
+  (let ((journal (simulation-journal simulation)))
+    (and journal
+         (remove-duplicates
+          (loop for entry in (journal-newest-first journal)
+                when (eq operator (second entry)) collect (nth (+ 2 position) entry))))))
 
-(defun describe-methods (sources)
-  "Return what stands for the methods of manipulations that are from SOURCES."
-  (loop for manipulation in (all-manipulations)
-        for methods = (remove-if-not (lambda (method)
-                                       (member (method-source method) sources :test #'equal))
-                                     (manipulation-methods manipulation))
-        when methods
-          collect (list :manipulation (name-string (manipulation-name manipulation))
-                        (reduce #'logxor methods
-                                :key (lambda (method) (or (method-digest method) 0))))))
+(defun name-of-place-type (type)
+  (if (place-type-p type) (place-type-name type) type))
 
-(defun describe-files (sources)
-  (loop for source in sources
-        when (cdr source)
-          collect (list :file (file-namestring (first source)) (second source))))
+(defun names-in-use (kind simulation)
+  "Return the names of definitions of KIND that SIMULATION uses."
+  (let ((map (world-map (simulation-world simulation))))
+    (ecase kind
+      (:map (list (map-name map)))
+      (:robot (mapcar #'robot-name (simulation-robots simulation)))
+      (:kicker (append (kickers-at-work simulation) (asked-for 'set-kicker 1 simulation)))
+      (:place-type (mapcar #'name-of-place-type
+                           (elements-in-use (map-places map) (map-place-types map))))
+      (:attribute (attributes-at-work simulation))
+      (:substance (elements-in-use (map-substances map) (map-substance-types map))))))
 
-(defun definitions-of (simulation)
-  "Return what stands for the definitions that decide SIMULATION, lists (kind name number)."
-  (let* ((entries (entries-for simulation))
-         (sources (files-of entries))
-         (map (lookup-entry (map-name (world-map (simulation-world simulation))) *maps*)))
-    (append (and map (describe-entries :map (list map)))
-            (describe-entries :robot (remove map entries))
-            (describe-entries :kicker
-                              (entries-from *kickers* sources (kickers-at-work simulation)))
-            (describe-entries :place-type (entries-from *place-types* sources))
-            (describe-entries :attribute (entries-from *attributes* sources))
-            (describe-entries :substance (entries-from *substances* sources))
-            (describe-methods sources)
-            (describe-files sources))))
+(defun definition-of (kind entry)
+  (list kind (qualified-name (entry-name entry))))
+
+(defun definitions-in-use (simulation)
+  "Return the definitions that SIMULATION uses."
+  (append (loop for (kind . registry) in *definition-kinds*
+                append (loop for name in (names-in-use kind simulation)
+                             for entry = (lookup-entry name registry)
+                             when entry collect (definition-of kind entry)))
+          (loop for name in (asked-for 'manipulate 0 simulation)
+                collect (list :manipulation (name-string name)))))
+
+;;; Where they are from.
+
+(defun entry-of (definition)
+  "Return the registry entry of DEFINITION, (kind name ...), or NIL."
+  (let ((registry (registry-of (first definition))))
+    (and registry (lookup-entry (second definition) registry))))
+
+(defun methods-of (definition)
+  "Return the methods of DEFINITION if that is of a manipulation."
+  (let ((manipulation (and (same-name-p :manipulation (first definition))
+                           (find-manipulation (second definition) nil))))
+    (and manipulation (manipulation-methods manipulation))))
+
+(defun sources-of (definitions)
+  "Return the sources of DEFINITIONS that are files, each once."
+  (remove-duplicates
+   (loop for definition in definitions
+         for entry = (entry-of definition)
+         append (remove-if-not #'rest
+                               (cons (and entry (entry-source entry))
+                                     (mapcar #'method-source (methods-of definition)))))
+   :test #'equal))
+
+(defun definitions-from (sources)
+  "Return the definitions, but maps and robots, that are from SOURCES."
+  (append (loop for (kind . registry) in *definition-kinds*
+                unless (member kind '(:map :robot))
+                  append (loop for entry in (registry-entries registry)
+                               when (member (entry-source entry) sources :test #'equal)
+                                 collect (definition-of kind entry)))
+          (loop for manipulation in (all-manipulations)
+                when (intersection (mapcar #'method-source (manipulation-methods manipulation))
+                                   sources :test #'equal)
+                  collect (list :manipulation (name-string (manipulation-name manipulation))))))
+
+(defun file-name-of (source)
+  (file-namestring (native-path (source-file source))))
+
+;;; What they are.
+
+(defun sum-of (numbers)
+  "Return one number for NUMBERS, whatever their order."
+  (ldb (byte 64 0) (reduce #'+ numbers)))
+
+(defun number-at-hand (definition sources)
+  "Return the number of DEFINITION as it is now, and whether there is one. SOURCES are those of all
+definitions that are looked at."
+  (destructuring-bind (kind name &rest number) definition
+    (declare (ignore number))
+    (let ((entry (entry-of definition))
+          (methods (methods-of definition))
+          (files (and (same-name-p :file kind)
+                      (remove name sources :key #'file-name-of :test-not #'string=))))
+      (values (cond (entry (entry-digest entry))
+                    (methods (sum-of (remove nil (mapcar #'method-digest methods))))
+                    (files (sum-of (mapcar #'second files))))
+              (or entry methods files)))))
+
+(defun at-hand (definitions)
+  "Return those of DEFINITIONS that are loaded, with their numbers as they are now."
+  (loop with sources = (sources-of definitions)
+        for definition in definitions
+        for (number there) = (multiple-value-list (number-at-hand definition sources))
+        when there collect (list (first definition) (second definition) number)))
 
 (defun same-definition-p (a b)
   (and (same-name-p (first a) (first b))
-       (string-equal (second a) (second b))))
+       (string= (second a) (second b))))
+
+(defun definitions-of (simulation)
+  "Return what stands for the definitions that decide SIMULATION, lists (kind name number)."
+  (let* ((used (definitions-in-use simulation)) (sources (sources-of used)))
+    (at-hand (remove-duplicates
+              (append used
+                      (definitions-from sources)
+                      (mapcar (lambda (source) (list :file (file-name-of source))) sources))
+              :test #'same-definition-p :from-end t))))
+
+;;; How they differ.
 
 (defun merge-definitions (before after)
-  "Return the definitions BEFORE with those AFTER that they lack. One that has changed has :CHANGED
-for its number."
-  (append (loop for (kind name number) in before
-                for other = (find (list kind name) after :test #'same-definition-p)
-                collect (list kind name (if (and other (not (equal number (third other))))
-                                            :changed
-                                            number)))
-          (set-difference after before :test #'same-definition-p)))
+  "Return the definitions BEFORE with those AFTER that they lack. One that is not what it was has
+:CHANGED for its number."
+  (let ((now (at-hand before)))
+    (append (loop for definition in before
+                  for (kind name number) = definition
+                  collect (if (member definition now :test #'equal)
+                              definition
+                              (list kind name :changed)))
+            (remove-if (lambda (definition) (member definition before :test #'same-definition-p))
+                       after))))
+
+(defun definition-words (definition)
+  "Return what DEFINITION, (kind name ...), is called in messages."
+  (destructuring-bind (kind name &rest number) definition
+    (declare (ignore number))
+    (let* ((colons (search "::" name)) (bare (if colons (subseq name (+ 2 colons)) name)))
+      (format nil "~(~A~) ~:[~(~A~)~;~A~]" (substitute #\Space #\- (string kind))
+              (same-name-p :file kind) bare))))
 
 (defun difference-text (definition others)
   "Return in words how DEFINITION, (kind name number), differs from what OTHERS say, or NIL."
-  (destructuring-bind (kind name number) definition
-    (let* ((other (find definition others :test #'same-definition-p))
-           (what (format nil "~(~A ~A~)" (substitute #\Space #\- (string kind)) name)))
-      (cond ((null other) (format nil "~A is not loaded" what))
-            ((same-name-p :changed (or (and (symbolp number) number) ""))
-             (format nil "~A was defined anew while it was recorded" what))
-            ((and (integerp number) (integerp (third other)) (/= number (third other)))
-             (format nil "~A is not as it was" what))))))
+  (let ((other (find definition others :test #'same-definition-p))
+        (number (third definition)))
+    (cond ((null other)
+           (format nil "~A is not loaded" (definition-words definition)))
+          ((and number (symbolp number))
+           (format nil "~A was defined anew while it was recorded" (definition-words definition)))
+          ((and number (third other) (/= number (third other)))
+           (format nil "~A is not as it was" (definition-words definition))))))
 
-(defun differences (definitions others)
-  "Return in words, in a list, how DEFINITIONS of a journal differ from OTHERS, those at hand."
-  (remove nil (mapcar (lambda (definition) (difference-text definition others)) definitions)))
+(defun differences (definitions)
+  "Return in words, in a list, how DEFINITIONS of a journal differ from those at hand."
+  (let ((others (at-hand definitions)))
+    (remove nil (mapcar (lambda (definition) (difference-text definition others)) definitions))))

@@ -2,13 +2,14 @@
 
 (in-package :ars-magna.run)
 
-;;; The first form is the head, then comes one for each entry, and then the end. Behind each form a
-;;; comment has a check sum of it and all before it, so that damage is found, and where. Data are
-;;; lists, numbers, strings and names. A bare name is a keyword; other symbols stand between bars,
-;;; with their package. They are read into a package of their own, where nothing can go wrong,
-;;; and then looked up; one that does not exist becomes a symbol without a home.
+;;; The first line is a comment, then comes the head, one line for each entry, and the end. Behind
+;;; each a comment has a check sum of it and all before it, so that damage is found, and where. See
+;;; plain-data.lisp for what they look like.
 
 (defconstant +journal-version+ 2)
+(defconstant +longest-line+ 1000000 "How many characters a line of a journal has at most.")
+(defconstant +longest-file+ (expt 2 28) "How many bytes a journal has at most.")
+(defconstant +latest-end+ (expt 10 9) "The last tick that a journal on file can end at.")
 
 (addition damaged-journal)
 (define-condition damaged-journal (ars-magna-error)
@@ -22,63 +23,30 @@
 
 ;;; Writing.
 
-(defun unprintable-in (datum)
-  "Return something in DATUM that could not be read back, or NIL."
-  (typecase datum
-    (cons (or (unprintable-in (car datum)) (unprintable-in (cdr datum))))
-    ((or symbol string integer ratio) nil)
-    (float (unless (finite-p datum) datum))
-    (t datum)))
-
 (defun check-printable (journal)
+  "Signal MISUSE if JOURNAL has something that could not be read from a file again."
   (dolist (entry (journal-entries journal))
     (let ((object (unprintable-in (cddr entry))))
       (when object
         (reject-use "The journal cannot be written to a file: at tick ~D, ~(~A~) was given ~A, ~
                      which has no printed form that can be read again. Replay it in memory instead."
-                    (first entry) (second entry) object)))))
+                    (first entry) (second entry) (short-text object)))))
+  (when (unprintable-in (journal-header journal))
+    (reject-use "The journal cannot be written to a file: ~A in its head has no printed form that ~
+                 can be read again. Replay it in memory instead."
+                (short-text (unprintable-in (journal-header journal)))))
+  (when (< +latest-end+ (journal-end journal))
+    (reject-use "The journal cannot be written to a file: it ends at tick ~D, and files hold runs ~
+                 up to tick ~D. Replay it in memory instead."
+                (journal-end journal) +latest-end+)))
 
-(defun bare-name-p (name)
-  "True if NAME, a string, can stand in a journal as it is, for a keyword."
-  (and (plusp (length name))
-       (alpha-char-p (char name 0))
-       (every (lambda (char) (or (char<= #\A char #\Z) (digit-char-p char) (find char "-*+/<>=!?")))
-              name)
-       (not (member name '("NIL" "T") :test #'string=))))
-
-(defun write-barred (text stream)
-  (write-char #\| stream)
-  (loop for char across text
-        do (when (find char "|\\") (write-char #\\ stream))
-           (write-char char stream))
-  (write-char #\| stream))
-
-(defun write-symbol (symbol stream)
-  (let ((name (symbol-name symbol)) (package (symbol-package symbol)))
-    (cond ((null symbol) (write-string "nil" stream))
-          ((eq t symbol) (write-string "t" stream))
-          ((and (keywordp symbol) (bare-name-p name)) (write-string (string-downcase name) stream))
-          (t (write-barred (format nil "~@[~A~]::~A" (and package (package-name package)) name)
-                           stream)))))
-
-(defun write-datum (datum stream)
-  (typecase datum
-    (symbol (write-symbol datum stream))
-    (cons (write-char #\( stream)
-     (loop for tail = datum then (cdr tail)
-           do (write-datum (car tail) stream)
-              (cond ((consp (cdr tail)) (write-char #\Space stream))
-                    ((null (cdr tail)) (return))
-                    (t (write-string " . " stream)
-                       (write-datum (cdr tail) stream)
-                       (return))))
-     (write-char #\) stream))
-    (t (prin1 datum stream))))
-
-(defun datum-text (datum)
-  (with-standard-io-syntax
-    (let ((*read-default-float-format* 'double-float) (*print-readably* nil))
-      (with-output-to-string (out) (write-datum datum out)))))
+(defun short-text (object)
+  "Return OBJECT as text, the beginning of it if it is long or has no end."
+  (let* ((*print-length* 8) (*print-level* 4) (*print-circle* nil)
+         (text (if (and (integerp object) (< 1000 (integer-length object)))
+                   (format nil "an integer of ~D bits" (integer-length object))
+                   (princ-to-string object))))
+    (subseq text 0 (min 80 (length text)))))
 
 (defun entry-datum (entry)
   "Return ENTRY as it stands in a file: the operator by name."
@@ -90,119 +58,113 @@
           (mapcar #'entry-datum (journal-entries journal))
           (list (list :end (journal-end journal)))))
 
+(defun write-data (data out)
+  "Write DATA, a line for each, with check sums to OUT."
+  (format out ";;;; A journal of ARS MAGNA.~%")
+  (let ((sum 0))
+    (dolist (datum data)
+      (let ((text (datum-text datum)))
+        (when (< (- +longest-line+ 10) (length text))
+          (error "one of its entries takes ~D characters" (length text)))
+        (setf sum (text-checksum text sum))
+        (format out "~A ;~8,'0X~%" text sum)))))
+
 (defun write-journal (journal file)
   "Write JOURNAL to FILE, replacing it when all is written. Return the file's truename. Signals
-MISUSE if an entry holds a function, or another object without a readable form."
+MISUSE if that cannot be, as when an entry holds a function, or another object without a readable
+form; then FILE is as it was."
   (check-printable journal)
-  (with-open-file (out file :direction :output :if-exists :supersede :external-format :utf-8)
-    (format out ";;;; A journal of ARS MAGNA.~%")
-    (let ((sum 0))
-      (dolist (datum (journal-data journal))
-        (let ((text (datum-text datum)))
-          (setf sum (text-checksum text sum))
-          (format out "~A ;~8,'0X~%" text sum)))))
-  (truename file))
+  (handler-case
+      (call-replacing-file (lambda (out) (write-data (journal-data journal) out)) file)
+    (error (trouble)
+      (reject-use "The journal cannot be written to ~A: ~A. What was there is as before."
+                  file (one-line-text trouble)))))
 
 ;;; Reading.
 
-(defun refuse-character (stream char)
-  (declare (ignore stream))
-  (error "it has a ~A where none can be" char))
-
-(defparameter *journal-readtable*
-  (let ((readtable (copy-readtable nil)))
-    (dolist (char '(#\: #\# #\' #\` #\, #\;) readtable)
-      (set-macro-character char 'refuse-character nil readtable)))
-  "How journals are read: lists, numbers, strings and names.")
-
-(defun looked-up (symbol)
-  "Return the symbol that SYMBOL, as it was read, stands for."
-  (let* ((name (symbol-name symbol)) (colons (search "::" name)))
-    (cond ((string= name "NIL") nil)
-          ((string= name "T") t)
-          ((null colons) (or (find-symbol name :keyword) (make-symbol name)))
-          (t (let ((package (find-package (subseq name 0 colons)))
-                   (name (subseq name (+ 2 colons))))
-               (or (and package (find-symbol name package)) (make-symbol name)))))))
-
-(defun look-up-names (datum known)
-  "Return DATUM with each symbol replaced by what it stands for. KNOWN has those met before."
-  (typecase datum
-    (cons (cons (look-up-names (car datum) known) (look-up-names (cdr datum) known)))
-    (symbol (multiple-value-bind (symbol there) (gethash datum known)
-              (if there symbol (setf (gethash datum known) (looked-up datum)))))
-    (t datum)))
-
-(defun call-reading (function)
-  "Call FUNCTION with the Lisp reader set up to read journals, into a package of their own."
-  (let ((package (make-package (gensym "JOURNAL") :use '())))
-    (unwind-protect
-         (with-standard-io-syntax
-           (let ((*package* package) (*readtable* *journal-readtable*) (*read-eval* nil)
-                 (*read-default-float-format* 'double-float))
-             (funcall function)))
-      (delete-package package))))
-
-(defun read-checksum (text start)
-  "Return the check sum that stands in TEXT from START on, and where the next line begins."
-  (let ((end (or (position #\Newline text :start start) (length text))))
-    (values (and (<= (+ start 10) end)
-                 (string= " ;" text :start2 start :end2 (+ 2 start))
-                 (parse-integer text :start (+ 2 start) :end end :radix 16 :junk-allowed t))
-            (min (1+ end) (length text)))))
-
-(defun first-opening (text)
-  "Return where the first line of TEXT that is no comment begins, or NIL."
-  (loop for start = 0 then (1+ end)
-        for end = (position #\Newline text :start start)
-        while (< start (length text))
-        when (char= #\( (char text start)) return start
-        while end))
-
-(defun read-checked (text start sum)
-  "Return the datum in TEXT at START, where the next begins and its check sum. SUM is that of what
-comes before. Signals an error that says what is wrong."
-  (multiple-value-bind (datum end)
-      (handler-case (read-from-string text t nil :start start :preserve-whitespace t)
-        ((or error storage-condition) (trouble) (error "~A" (one-line-text trouble))))
-    (let ((sum (text-checksum (subseq text start end) sum)))
-      (multiple-value-bind (expected next) (read-checksum text end)
-        (unless (eql sum expected) (error "it is not as it was written"))
-        (values datum next sum)))))
-
 (defun one-line-text (condition)
+  "Return what CONDITION says as the part of a sentence."
   (let ((text (substitute #\Space #\Newline (princ-to-string condition))))
-    (string-right-trim "." (subseq text 0 (min 80 (length text))))))
+    (string-right-trim "." (subseq text 0 (min 400 (length text))))))
 
-(defun read-data (text)
-  "Return a list of all data in the journal TEXT. Signals an error that says what is wrong, and in
-which entry."
-  (let ((known (make-hash-table :test 'eq))
-        (next (or (first-opening text) (error "it does not begin like one")))
-        (sum 0)
-        (data '()))
-    (call-reading
-     (lambda ()
-       (loop while (< next (length text))
-             do (multiple-value-bind (datum end new-sum)
-                    (handler-case (read-checked text next sum)
-                      (error (trouble)
-                        (error "~[its head~:;~:*entry ~D~] (line ~D) is damaged: ~A"
-                               (length data) (1+ (count #\Newline text :end next)) trouble)))
-                  (push (look-up-names datum known) data)
-                  (setf next end sum new-sum)))))
-    (nreverse data)))
+(defun read-short-line (in)
+  "Return the next line of IN, or NIL; of one that is too long, no more than its beginning."
+  (let* ((last nil)
+         (line (with-output-to-string (out)
+                 (loop repeat +longest-line+
+                       do (setf last (read-char in nil))
+                       until (member last '(nil #\Newline))
+                       do (write-char last out)))))
+    (when (or last (plusp (length line))) (string-right-trim '(#\Return) line))))
+
+(defun comment-line-p (line)
+  "True if LINE is a comment or empty; an editor may have put a byte order mark before it."
+  (let ((text (string-left-trim '(#\Space #\Tab #.(code-char #xFEFF)) line)))
+    (or (string= "" text) (char= #\; (char text 0)))))
+
+(defun begins-with-p (text line)
+  (and (<= (length text) (length line))
+       (string-equal text line :end2 (length text))))
+
+(defun check-head-line (line)
+  "Signal an error unless LINE begins as the head of a journal of this version does."
+  (when (or (begins-with-p "(:ars-magna-journal 1 " line)
+            (begins-with-p "(ars-magna-journal 1 " line))
+    (error "it is of the old format 1, whose entries could call any function, and is not read any ~
+            more: repeat the run, with the version that recorded it, or record it anew"))
+  (unless (begins-with-p "(ars-magna-journal " line) (error "it does not begin like one")))
+
+(defun line-checksum (line start)
+  "Return the check sum that stands in LINE from START on, or NIL."
+  (and (<= 0 start)
+       (string= " ;" line :start2 start :end2 (+ 2 start))
+       (parse-integer line :start (+ 2 start) :radix 16 :junk-allowed t)))
+
+(defun checked-datum (line sum)
+  "Return the datum in LINE and its check sum. SUM is that of what comes before."
+  (when (= +longest-line+ (length line)) (error "it has ~D characters or more" +longest-line+))
+  (let* ((start (- (length line) 10))
+         (text (subseq line 0 (max 0 start)))
+         (sum (text-checksum text sum)))
+    (unless (eql sum (line-checksum line start)) (error "it is not as it was written"))
+    (multiple-value-bind (datum end) (read-datum text)
+      (unless (= end (length text)) (error "something stands behind it"))
+      (values datum sum))))
+
+(defun numbered-datum (number line sum)
+  "Return what CHECKED-DATUM does. Signals an error that names the entry by its NUMBER."
+  (handler-case (checked-datum line sum)
+    (error (trouble)
+      (error "~[its head~:;~:*entry ~D~] is damaged: ~A" number (one-line-text trouble)))))
+
+(defun next-line (in)
+  "Return the next line of IN that is no comment, or NIL."
+  (loop for line = (read-short-line in)
+        unless (and line (comment-line-p line)) return line))
+
+(defun read-data (in)
+  "Return a list of all data of the journal that the stream IN has. Signals an error that says what
+is wrong, and in which entry."
+  (loop with sum = 0
+        for number from 0
+        for line = (next-line in)
+        while line
+        when (zerop number) do (check-head-line line)
+        collect (multiple-value-bind (datum new) (numbered-datum number line sum)
+                  (setf sum new)
+                  datum)))
 
 ;;; What the data come to.
 
 (defun plist-p (object)
-  (and (listp object) (ignore-errors (evenp (length object)))
+  (and (listp object)
+       (evenp (length object))
        (loop for key in object by #'cddr always (keywordp key))))
 
 (defun strings-p (object)
   (and (listp object) (every #'stringp object)))
 
-(defun parameters-p (object)
+(defun settings-p (object)
   (and (listp object)
        (every (lambda (setting) (typep setting '(cons string (cons (or real boolean) null))))
               object)))
@@ -210,25 +172,46 @@ which entry."
 (defun definitions-p (object)
   (and (listp object)
        (every (lambda (definition)
-                (typep definition '(cons symbol (cons string (cons t null)))))
+                (typep definition '(cons symbol (cons string (cons (or integer symbol) null)))))
               object)))
+
+(defun settings-trouble (settings)
+  "Return what is wrong with SETTINGS of parameters, lists (name value), or NIL."
+  (handler-case (call-with-parameters settings (constantly nil))
+    (ars-magna-error (trouble) (one-line-text trouble))))
+
+(defun twice-p (names)
+  "True if NAMES, strings, has a name twice."
+  (/= (length names) (length (remove-duplicates names :test #'string-equal))))
 
 (defun header-trouble (header)
   "Return what is wrong with HEADER, or NIL."
   (flet ((wrong-p (key predicate) (not (funcall predicate (getf header key)))))
-    (cond ((not (plist-p header)) "its head is no list of names and values")
-          ((wrong-p :map #'stringp) "its head names no map")
-          ((wrong-p :robots #'strings-p) "its head names no robots")
+    (cond ((not (plist-p header)) "it is no list of names and values")
+          ((wrong-p :map #'stringp) "it names no map")
+          ((or (wrong-p :robots #'consp) (wrong-p :robots #'strings-p)) "it names no robots")
+          ((twice-p (getf header :robots)) "it names a robot twice")
           ((wrong-p :seed #'integerp) "its seed is no integer")
-          ((wrong-p :parameters #'parameters-p) "the parameters in its head make no sense")
-          ((wrong-p :definitions #'definitions-p) "the definitions in its head make no sense"))))
+          ((wrong-p :parameters #'settings-p) "its parameters make no sense")
+          ((wrong-p :definitions #'definitions-p) "its definitions make no sense")
+          ((undescribed header) (format nil "it does not say what ~A was" (undescribed header)))
+          ((settings-trouble (getf header :parameters))))))
+
+(defun undescribed (header)
+  "Return the name in HEADER, of the map or a robot, for which it has no definition, or NIL."
+  (flet ((described-p (kind name)
+           (find (list kind name) (getf header :definitions) :test #'same-definition-p)))
+    (if (described-p :map (getf header :map))
+        (find-if-not (lambda (name) (described-p :robot name)) (getf header :robots))
+        (getf header :map))))
 
 (defun entry-trouble (entry tick)
   "Return what is wrong with ENTRY, which comes after one at TICK, or NIL."
   (cond ((not (typep entry '(cons tick-count (cons symbol list)))) "it is no list (tick name ...)")
         ((< (first entry) tick) (format nil "its tick, ~D, comes after ~D" (first entry) tick))
         ((null (find-operator (second entry) nil))
-         (format nil "nothing that can be asked of a run is called ~(~A~)" (second entry)))))
+         (format nil "nothing that can be asked of a run is called ~A"
+                 (short-text (plain-name (second entry)))))))
 
 (defun operator-entry (entry)
   "Return ENTRY with the name of its operator as that was defined."
@@ -244,35 +227,45 @@ which entry."
         do (setf tick (first entry))
         collect (operator-entry entry)))
 
+(defun check-head (head)
+  (unless (typep head '(cons (eql :ars-magna-journal) (cons t (cons t null))))
+    (error "it does not begin like one"))
+  (unless (eql +journal-version+ (second head)) (error "another version wrote it"))
+  (when (header-trouble (third head))
+    (error "its head makes no sense: ~A" (header-trouble (third head)))))
+
+(defun check-end (end entries)
+  "Signal an error unless END is a datum (:end tick) that may come after ENTRIES."
+  (unless (typep end '(cons (eql :end) (cons tick-count null))) (error "its end is missing"))
+  (when (< +latest-end+ (second end))
+    (error "it ends at tick ~D, and files hold runs up to tick ~D" (second end) +latest-end+))
+  (when (and entries (< (second end) (first (first (last entries)))))
+    (error "it ends at tick ~D, before its last entry" (second end))))
+
 (defun journal-from (data)
   "Return the journal that DATA, all that its file has, come to. Signals an error if it is none."
-  (destructuring-bind (&optional start &rest rest) data
-    (let ((end (first (last rest))))
-      (unless (typep start '(cons (eql :ars-magna-journal) (cons t (cons t null))))
-        (error "it does not begin like one"))
-      (unless (eql +journal-version+ (second start)) (error "another version wrote it"))
-      (unless (typep end '(cons (eql :end) (cons tick-count null))) (error "its end is missing"))
-      (let ((journal (make-journal (third start))) (entries (entries-of (butlast rest))))
-        (when (header-trouble (third start)) (error "~A" (header-trouble (third start))))
-        (when (and entries (< (second end) (first (first (last entries)))))
-          (error "it ends before its last entry"))
-        (setf (journal-newest-first journal) (reverse entries)
-              (journal-length journal) (length entries)
-              (journal-end journal) (second end))
-        journal))))
+  (check-head (first data))
+  (let ((journal (make-journal (third (first data))))
+        (entries (entries-of (butlast (rest data))))
+        (end (first (last (rest data)))))
+    (check-end end entries)
+    (setf (journal-newest-first journal) (reverse entries)
+          (journal-length journal) (length entries)
+          (journal-end journal) (second end))
+    journal))
 
-(defun check-new-enough (text)
-  (when (search "(:ARS-MAGNA-JOURNAL 1 " text :end2 (min 200 (length text)))
-    (error "it is of the old format 1, whose entries could call any function, and is not read any ~
-            more: repeat the run, with the version that recorded it, or record it anew")))
+(defun read-journal-file (file)
+  "Return the journal in FILE. Signals an error if it is none."
+  (unless (probe-file file) (error "there is no such file"))
+  (unless (plain-file-p file) (error "it is a directory or a device"))
+  (with-open-file (in file :external-format '(:utf-8 :replacement #\?))
+    (when (< +longest-file+ (file-length in))
+      (error "it has ~D bytes, more than journals have" (file-length in)))
+    (journal-from (read-data in))))
 
 (defun read-journal (file)
   "Return the journal in FILE. Signals DAMAGED-JOURNAL if it is none, or incomplete, and says which
 entry is to blame."
-  (handler-case
-      (let ((text (read-file-into-string file :external-format :utf-8)))
-        (check-new-enough text)
-        (journal-from (read-data text)))
-    (error (trouble)
-      (error 'damaged-journal :file file
-                              :reason (string-right-trim "." (princ-to-string trouble))))))
+  (handler-case (read-journal-file file)
+    ((or error storage-condition) (trouble)
+      (error 'damaged-journal :file file :reason (one-line-text trouble)))))

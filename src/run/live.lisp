@@ -90,12 +90,18 @@ One whose map or definition has been replaced means the robot that is called so 
   (setf (world-timeline world) (make-timeline (map-name (world-map world))))
   (world-simulation world))
 
-(defun run-to-start (world seed)
+(defun fresh-p (simulation journal)
+  "True if SIMULATION can begin, with a journal if JOURNAL is true."
+  (and (zerop (simulation-tick simulation))
+       (not (simulation-over simulation))
+       (or (not journal) (simulation-journal simulation))))
+
+(defun run-to-start (world seed journal)
   "Return the simulation of WORLD to run live: a new one if the last has passed ticks, or if SEED
-is given."
+is given, or if JOURNAL is true and it keeps none."
   (let ((simulation (world-simulation world)))
     (stop-clock simulation)
-    (cond ((or seed (plusp (simulation-tick simulation)) (simulation-over simulation))
+    (cond ((or seed (not (fresh-p simulation journal)))
            (end-simulation simulation "it has been started anew")
            (restart-world world (or seed (simulation-seed simulation))))
           (t simulation))))
@@ -111,9 +117,10 @@ STOP-SIMULATOR stops it. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if the
 fits into its map. See reading 238."
   (check-rate rate)
   (let* ((robot (robot-to-start robot))
-         (simulation (run-to-start (robot-world robot) seed)))
-    (cond ((not journal) (setf (simulation-journal simulation) nil))
-          ((null (simulation-journal simulation)) (begin-journal simulation)))
+         (simulation (run-to-start (robot-world robot) seed journal)))
+    (if journal
+        (renew-definitions simulation)
+        (setf (simulation-journal simulation) nil))
     (setf *simulation* simulation
           *world* (simulation-world simulation))
     (start-clock simulation :rate rate)

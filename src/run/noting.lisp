@@ -35,10 +35,12 @@ SIMULATION, as of now, if it keeps one."
                                               collect (list (string-downcase symbol) value))
                             :definitions (definitions-of simulation)))))
 
-(defun qualified-name (symbol)
-  "Return a string that names SYMBOL with its package, for FIND-ROBOT and kin."
-  (format nil "~@[~A::~]~A" (and (symbol-package symbol) (package-name (symbol-package symbol)))
-          symbol))
+(defun renew-definitions (simulation)
+  "Let the journal of SIMULATION, which has passed no tick, say what the definitions are now: until
+then they may change."
+  (let ((header (copy-list (journal-header (simulation-journal simulation)))))
+    (setf (getf header :definitions) (definitions-of simulation)
+          (journal-header (simulation-journal simulation)) header)))
 
 (defun robot-names (simulation)
   (mapcar (lambda (robot) (qualified-name (robot-name robot))) (simulation-robots simulation)))
@@ -52,7 +54,7 @@ MISUSE if it keeps none."
                                   (simulator ROBOT :journal nil)."))))
     (unless (journal-full-p journal) (setf (journal-end journal) (simulation-tick simulation)))
     ;; Some may have been defined since it began.
-    (let ((header (journal-header journal)))
+    (let ((header (copy-list (journal-header journal))))
       (setf (getf header :robots) (robot-names simulation)
             (getf header :definitions) (merge-definitions (getf header :definitions)
                                                           (definitions-of simulation))

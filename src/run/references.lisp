@@ -3,16 +3,38 @@
 (in-package :ars-magna.run)
 
 ;;; A journal outlives its run, so robots, parts and things stand in it as (:the KIND ARGUMENT...),
-;;; by name, index or serial number.
+;;; by name, index or serial number. Lists that begin with :THE themselves are written as (:the
+;;; :list ...), those that do not end in NIL as (:the :list* ...).
+
+(defun nameable-p (object)
+  "True if OBJECT is of a kind that DEREFERENCE finds by its reference."
+  (typep object '(or thing robot part designator odometer map kicker recipe)))
+
+(defun externalize-list (list)
+  (let ((elements (loop for tail = list then (cdr tail)
+                        while (consp tail) collect (externalize-tree (car tail)) into elements
+                        finally (return (if tail
+                                            (append elements (list (externalize-tree tail)))
+                                            elements)))))
+    (cond ((not (proper-list-p list)) (list* :the :list* elements))
+          ((eq :the (first list)) (list* :the :list elements))
+          (t elements))))
+
+(defun externalize-tree (tree)
+  (typecase tree
+    (string (copy-seq tree))
+    ((or number symbol function) tree)
+    (cons (externalize-list tree))
+    (t (let ((reference (and (nameable-p tree) (reference tree))))
+         (if reference
+             (list* :the (first reference) (mapcar #'externalize-tree (rest reference)))
+             tree)))))
 
 (defun externalize (datum)
   "Return DATUM with each object of a run in it replaced by what names it, for INTERNALIZE to find
-its like in another run. What cannot be named stands for itself."
-  (typecase datum
-    ((or number symbol string function) datum)
-    (cons (cons (externalize (car datum)) (externalize (cdr datum))))
-    (t (let ((reference (reference datum)))
-         (if reference (cons :the reference) datum)))))
+its like in another run. What cannot be named stands for itself, as do circular and very large
+lists."
+  (if (tree-p datum) (externalize-tree datum) datum))
 
 (defgeneric dereference (kind arguments simulation)
   (:documentation
@@ -30,12 +52,31 @@ SIMULATION, which BODY may refer to."
      (declare (ignorable simulation))
      (destructuring-bind ,lambda-list arguments ,@body)))
 
+(defun find-referent (reference simulation)
+  "Return what REFERENCE, (kind argument...), names in SIMULATION. Signals MISUSE."
+  (handler-case (dereference (first reference) (internalize-all (rest reference) simulation)
+                             simulation)
+    (ars-magna-error (trouble) (error trouble))
+    (error () (reject-use "~A names nothing that a run has." (short-text reference)))))
+
+(defun internalize-all (list simulation)
+  (mapcar (lambda (tree) (internalize-tree tree simulation)) list))
+
+(defun internalize-tree (tree simulation)
+  (cond ((atom tree) tree)
+        ((not (proper-list-p tree)) tree)
+        ((eq :the (first tree)) (find-referent (rest tree) simulation))
+        (t (internalize-all tree simulation))))
+
 (defun internalize (datum simulation)
-  "Return DATUM with each reference in it replaced by what it names in SIMULATION."
-  (cond ((atom datum) datum)
-        ((eq (first datum) :the)
-         (dereference (second datum) (cddr datum) simulation))
-        (t (cons (internalize (car datum) simulation) (internalize (cdr datum) simulation)))))
+  "Return DATUM, what EXTERNALIZE has returned, with what it names in SIMULATION."
+  (if (tree-p datum) (internalize-tree datum simulation) datum))
+
+(define-dereference :list (&rest elements)
+  elements)
+
+(define-dereference :list* (first &rest elements)
+  (append (list first) (butlast elements) (first (last elements))))
 
 (defun robot-in (simulation name)
   (or (find name (simulation-robots simulation) :key #'robot-name :test #'same-name-p)
@@ -46,10 +87,14 @@ SIMULATION, which BODY may refer to."
   (robot-in simulation name))
 
 (define-dereference :thing (serial)
-  (find-thing serial (simulation-world simulation)))
+  (check-type serial unsigned-byte)
+  (or (find-thing serial (simulation-world simulation))
+      (reject-use "There is no thing with the number ~D." serial)))
 
 (define-dereference :map (name)
-  (find-map name))
+  (let ((map (world-map (simulation-world simulation))))
+    (unless (same-name-p name (map-name map)) (reject-name "map here" name (list (map-name map))))
+    map))
 
 (define-dereference :kicker (name)
   (find-kicker name))
@@ -58,6 +103,9 @@ SIMULATION, which BODY may refer to."
   (robot-odometer (robot-in simulation robot) name))
 
 ;; One that had been dropped when the journal was told of it is made up.
+(define-dereference :recipe (name attributes contents kickers)
+  (make-recipe name attributes contents :kickers kickers))
+
 (define-dereference :designator (name serial number type)
   (let ((robot (robot-in simulation name)))
     (or (serial-designator robot serial)

@@ -12,11 +12,21 @@
                      (different-definitions-differences condition))))
   (:documentation "A journal was recorded with other definitions than those that are loaded."))
 
-(defun check-definitions (journal simulation)
-  "Signal DIFFERENT-DEFINITIONS, with the restart REPLAY-ANYWAY, if JOURNAL is of a run with other
-definitions than SIMULATION."
-  (let ((differences (differences (getf (journal-header journal) :definitions)
-                                  (definitions-of simulation))))
+(defun map-difference (header blueprints)
+  "Return in words, in a list, which of BLUEPRINTS, robots as they are defined now, are in another
+map than HEADER says."
+  (let ((map (find-map (getf header :map) nil)))
+    (loop for blueprint in blueprints
+          for other = (find-map (blueprint-map blueprint) nil)
+          unless (eq map other)
+            collect (format nil "robot ~(~A~) is in another map, ~(~A~)"
+                            (blueprint-name blueprint) (and other (map-name other))))))
+
+(defun check-definitions (header blueprints)
+  "Signal DIFFERENT-DEFINITIONS, with the restart REPLAY-ANYWAY, if HEADER is of a run with other
+definitions than those at hand."
+  (let ((differences (append (differences (getf header :definitions))
+                             (map-difference header blueprints))))
     (when differences
       (restart-case (error 'different-definitions :differences differences)
         (replay-anyway ()
@@ -38,8 +48,8 @@ definitions than SIMULATION."
           (check-operands operator arguments)
           (apply (operator-function operator) arguments))
       (error (trouble)
-        (reject-use "The journal cannot be replayed: its ~A: ~A" (entry-text entry number)
-                    trouble)))))
+        (reject-use "The journal cannot be replayed: its ~A: ~A."
+                    (entry-text entry number) (one-line-text trouble))))))
 
 (defun perform-entries (journal simulation)
   (loop for entry in (journal-entries journal)
@@ -58,18 +68,19 @@ definitions than SIMULATION."
   "Call FUNCTION where JOURNAL has been repeated; see WITH-REPLAY. OBSERVER, if given, is called
 after each tick of that, with the simulation."
   (let* ((journal (if (journal-p journal) journal (read-journal journal)))
-         (journal (if until (truncated-journal journal until) journal)))
-    (destructuring-bind (&key robots seed parameters &allow-other-keys) (journal-header journal)
-      (call-with-simulation
-       (lambda ()
-         (let ((simulation (current-simulation)))
-           (unless anyway (check-definitions journal simulation))
-           (when observer (add-observer observer simulation))
-           (perform-entries journal simulation)
-           (when observer (remove-observer observer simulation))
-           (funcall function)))
-       (mapcar (lambda (name) (blueprint-name (find-blueprint name))) robots)
-       :seed seed :parameters (full-settings parameters) :journal t))))
+         (journal (if until (truncated-journal journal until) journal))
+         (header (journal-header journal))
+         (blueprints (mapcar #'find-blueprint (getf header :robots))))
+    (unless anyway (check-definitions header blueprints))
+    (call-with-simulation
+     (lambda ()
+       (let ((simulation (current-simulation)))
+         (when observer (add-observer observer simulation))
+         (perform-entries journal simulation)
+         (when observer (remove-observer observer simulation))
+         (funcall function)))
+     (mapcar #'blueprint-name blueprints)
+     :seed (getf header :seed) :parameters (full-settings (getf header :parameters)) :journal t)))
 
 (addition with-replay)
 (defmacro with-replay ((journal &key until anyway) &body body)

@@ -41,8 +41,8 @@ FROM-Y, as two values; NIL if all eight are filled."
 beside that one (the nearest to where it was) if KICK-IF-WALL is true, or else not at all. True
 if it moved; NIL also if it is inside something closed or has been destroyed (reading 172)."
   (check-argument kick-thing thing (thing-p thing) "a thing")
-  (check-argument kick-thing dx (realp dx) "a number")
-  (check-argument kick-thing dy (realp dy) "a number")
+  (check-of-type 'kick-thing 'dx dx 'number)
+  (check-of-type 'kick-thing 'dy dy 'number)
   (changing ((thing-world thing) kick-thing thing dx dy kick-if-wall)
     (and (thing-location (thing-outermost thing))
          (not (enclosed-p thing))

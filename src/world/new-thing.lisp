@@ -29,6 +29,13 @@ but evaluated, stands for."
                        "NIL, what holds things, (:with thing) or (map x y)"))
         (t (values (check-holder 'new-thing nil location) location))))
 
+;; What is noted does not depend on what becomes of a prototype, or of a map's name.
+(defun noted-location (location world)
+  "Return LOCATION, in WORLD, for MAKE-THING-AGAIN."
+  (if (and (consp location) (not (eq :with (first location))))
+      (cons (world-map world) (rest location))
+      location))
+
 (addition make-new-thing)
 (defun make-new-thing (name location descriptor &key prototype contents kickers)
   "Return a new thing NAME, a symbol, with the attributes of DESCRIPTOR; NEW-THING as a function.
@@ -42,14 +49,21 @@ ours, a list of kickers or their names. Signals WRONG-ARGUMENT and UNKNOWN-NAME.
       (if world
           (note-slips name descriptor world)
           (warn-of-slips "new-thing" name descriptor))
-      (changing (world make-new-thing name location descriptor
-                                :prototype prototype :contents contents :kickers kickers)
+      (changing (world make-new-thing name (noted-location location world)
+                       (recipe-attributes recipe)
+                       :contents (recipe-contents recipe) :kickers (recipe-kickers recipe))
         (let ((thing (follow-recipe recipe world)))
           (cond (world (relocate thing place x y))
                 (place (place-thing thing place x y)))
           thing)))))
 
-(define-operator 'make-new-thing '(name datum datum) #'make-new-thing :rest 'datum)
+(defun make-thing-again (name location descriptor &rest more)
+  "Do as MAKE-NEW-THING does, in the world at hand and in no other."
+  (unless (eq *world* (resolve-location location))
+    (reject-value 'make-new-thing "location" location "a location in the world of this run"))
+  (apply #'make-new-thing name location descriptor more))
+
+(define-operator 'make-new-thing '(name datum datum) #'make-thing-again :rest 'datum)
 
 (defun position-form-p (form environment)
   "True if FORM, three elements long, means (map x y) rather than a call in ENVIRONMENT: it does if

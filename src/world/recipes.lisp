@@ -17,6 +17,14 @@
   (x nil :type (or null double-float) :read-only t)
   (y nil :type (or null double-float) :read-only t))
 
+(document-functions
+  make-recipe "Return the recipe of a thing NAME with ATTRIBUTES, CONTENTS, recipes, and KICKERS,
+at X, Y if they are given.")
+
+(defmethod reference ((recipe recipe))
+  (list :recipe (recipe-name recipe) (recipe-attributes recipe) (recipe-contents recipe)
+        (recipe-kickers recipe)))
+
 (defun thing-recipe (thing)
   "Return the recipe of things like THING: attributes and contents, but no kickers."
   (make-recipe (thing-name thing) (thing-attributes thing)

@@ -1,0 +1,211 @@
+;;;; plain-data.lisp -- lists, numbers, strings and names as text, to be written and read again.
+
+(in-package :ars-magna.run)
+
+;;; A bare name is a keyword, NIL or T; other symbols stand between bars, with their package. In
+;;; strings and between bars a backslash begins the code of a character, in hexadecimal, up to a
+;;; semicolon; so every datum is one line. The Lisp reader sees nothing but numbers. Reading interns
+;;; nothing: a symbol that does not exist becomes one without a home.
+
+(defconstant +deepest+ 200 "How deep lists stand in lists at most.")
+(defconstant +largest-datum+ 100000 "How many conses a datum has at most.")
+(defconstant +longest-number+ 1000 "How many characters a number has at most.")
+
+(defun tree-p (datum)
+  "True if DATUM is a tree of conses within these bounds, and so not circular."
+  (let ((left +largest-datum+))
+    (labels ((visit (datum depth)
+               (loop while (consp datum)
+                     do (when (or (minusp (decf left)) (> depth +deepest+))
+                          (return-from tree-p nil))
+                        (visit (pop datum) (1+ depth)))))
+      (visit datum 1)
+      t)))
+
+;;; Writing.
+
+(defun unprintable-atom-p (atom)
+  (typecase atom
+    ((or symbol string) nil)
+    (rational (< (* 3 +longest-number+)
+                 (+ (integer-length (numerator atom)) (integer-length (denominator atom)))))
+    (float (not (finite-p atom)))
+    (t t)))
+
+(defun unprintable-part (tree)
+  (cond ((atom tree) (and (unprintable-atom-p tree) tree))
+        ((proper-list-p tree) (some #'unprintable-part tree))
+        (t tree)))
+
+(defun unprintable-in (datum)
+  "Return something in DATUM that could not be read back, or NIL."
+  (if (tree-p datum) (unprintable-part datum) datum))
+
+(defun ascii-digit-p (char)
+  (char<= #\0 char #\9))
+
+(defun bare-name-p (name)
+  "True if NAME, a string, can stand in a text as it is, for a keyword."
+  (and (plusp (length name))
+       (char<= #\A (char name 0) #\Z)
+       (every (lambda (char)
+                (or (char<= #\A char #\Z) (ascii-digit-p char) (find char "-*+/<>=!?")))
+              name)
+       (not (member name '("NIL" "T") :test #'string=))))
+
+(defun plain-char-p (char)
+  "True if CHAR, other than a quote, can stand in a string as it is."
+  (let ((code (char-code char)))
+    (not (or (< code 32) (<= 127 code 159) (<= #xD800 code #xDFFF) (char= char #\\)))))
+
+(defun write-quoted (text quote stream)
+  (write-char quote stream)
+  (loop for char across text
+        do (if (and (plain-char-p char) (char/= char quote))
+               (write-char char stream)
+               (format stream "\\~X;" (char-code char))))
+  (write-char quote stream))
+
+(defun write-symbol (symbol stream)
+  (let ((name (symbol-name symbol)) (package (symbol-package symbol)))
+    (cond ((null symbol) (write-string "nil" stream))
+          ((eq t symbol) (write-string "t" stream))
+          ((and (keywordp symbol) (bare-name-p name)) (write-string (string-downcase name) stream))
+          (t (write-quoted (format nil "~@[~A~]::~A" (and package (package-name package)) name)
+                           #\| stream)))))
+
+(defun write-datum (datum stream)
+  (typecase datum
+    (symbol (write-symbol datum stream))
+    (string (write-quoted datum #\" stream))
+    (cons (write-char #\( stream)
+     (loop for (element . more) on datum
+           do (write-datum element stream)
+              (when more (write-char #\Space stream)))
+     (write-char #\) stream))
+    (t (prin1 datum stream))))
+
+(defmacro with-plain-syntax (&body body)
+  "Run BODY, in which numbers are printed and read in one way, whatever the user has set."
+  `(with-standard-io-syntax
+     (let ((*read-default-float-format* 'double-float) (*read-eval* nil) (*print-readably* nil))
+       ,@body)))
+
+(defun datum-text (datum)
+  "Return the text of DATUM, in which nothing is unprintable, for READ-DATUM."
+  (with-plain-syntax
+    (with-output-to-string (out) (write-datum datum out))))
+
+;;; Numbers.
+
+(defun skip-digits (word start)
+  (or (position-if-not #'ascii-digit-p word :start start) (length word)))
+
+(defun skip-sign (word start)
+  (if (and (< start (length word)) (find (char word start) "+-")) (1+ start) start))
+
+(defun digits-p (word start)
+  "True if WORD has digits from START to its end, at least one."
+  (and (< start (length word)) (= (length word) (skip-digits word start))))
+
+(defun exponent-p (word start)
+  "True if WORD ends at START with an exponent, not too long to be reckoned with."
+  (and (find (char word start) "desfDESF")
+       (< (- (length word) start) 7)
+       (digits-p word (skip-sign word (1+ start)))))
+
+(defun fraction-p (word start)
+  (let ((end (skip-digits word start)))
+    (and (< start end)
+         (or (= end (length word)) (exponent-p word end)))))
+
+(defun number-text-p (word)
+  "True if WORD is an integer, ratio or float."
+  (let* ((start (skip-sign word 0)) (end (skip-digits word start)))
+    (and (< start end)
+         (or (= end (length word))
+             (case (char word end)
+               (#\/ (digits-p word (1+ end)))
+               (#\. (fraction-p word (1+ end))))))))
+
+(defun read-number (word)
+  (when (< +longest-number+ (length word))
+    (error "it has a number of ~D characters" (length word)))
+  (handler-case (with-plain-syntax (values (read-from-string word)))
+    (error () (error "it has ~A, a number that Lisp does not have" word))))
+
+;;; Reading. Each function returns what it has read in TEXT from START on, and where that ends.
+
+(defun char-at (text position)
+  (if (< position (length text))
+      (char text position)
+      (error "it is cut short")))
+
+(defun read-coded-char (text start)
+  (let* ((end (position #\; text :start start))
+         (code (and end
+                    (< 1 (- end start) 8)
+                    (parse-integer text :start (1+ start) :end end :radix 16 :junk-allowed t))))
+    (unless (and code (<= 0 code (1- char-code-limit)))
+      (error "it has a backslash where none can be"))
+    (values (code-char code) (1+ end))))
+
+(defun read-quoted (text start)
+  (let ((position (1+ start)))
+    (values (with-output-to-string (out)
+              (loop for char = (char-at text position)
+                    until (char= char (char text start))
+                    do (multiple-value-bind (char end)
+                           (if (char= char #\\)
+                               (read-coded-char text position)
+                               (values char (1+ position)))
+                         (write-char char out)
+                         (setf position end))))
+            (1+ position))))
+
+(defun symbol-called (text)
+  "Return the symbol that TEXT, PACKAGE::NAME, stands for, or one without a home."
+  (let* ((colons (or (search "::" text) (error "it has a name without its package")))
+         (package (find-package (subseq text 0 colons)))
+         (name (subseq text (+ 2 colons))))
+    (or (and package (find-symbol name package))
+        (make-symbol name))))
+
+(defun word-meaning (word)
+  "Return the number, NIL, T or keyword that WORD stands for."
+  (cond ((number-text-p word) (read-number word))
+        ((string= word "nil") nil)
+        ((string= word "t") t)
+        ((bare-name-p (string-upcase word))
+         (or (find-symbol (string-upcase word) :keyword) (make-symbol (string-upcase word))))
+        (t (error "it has ~S, neither number nor name"
+                  (subseq word 0 (min 40 (length word)))))))
+
+(defun read-word (text start)
+  (let ((end (or (position-if (lambda (char) (find char " ()\"|")) text :start start)
+                 (length text))))
+    (when (= start end) (error "it has a ~A where none can be" (char-at text start)))
+    (values (word-meaning (subseq text start end)) end)))
+
+(defun read-list (text start depth)
+  (when (> depth +deepest+) (error "its lists are more than ~D deep" +deepest+))
+  (let ((position (1+ start)))
+    (values (loop for char = (char-at text position)
+                  until (char= char #\))
+                  if (char= char #\Space)
+                    do (incf position)
+                  else
+                    collect (multiple-value-bind (datum end) (read-datum text position depth)
+                              (setf position end)
+                              datum))
+            (1+ position))))
+
+(defun read-datum (text &optional (start 0) (depth 0))
+  "Return the datum in TEXT from START on, and where it ends. Signals an error that says what is
+wrong."
+  (case (char-at text start)
+    (#\( (read-list text start (1+ depth)))
+    (#\" (read-quoted text start))
+    (#\| (multiple-value-bind (name end) (read-quoted text start)
+           (values (symbol-called name) end)))
+    (t (read-word text start))))
