@@ -98,7 +98,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; digest
   (:export #:digest #:make-digest #:digest-add #:digest-value)
   ;; kinds, digesting, copying
-  (:export #:define-kind #:kind-p #:kind-of #:kind-name #:kind-slots #:all-kinds
+  (:export #:define-kind #:*object-kinds* #:kind-p #:kind-of #:kind-name #:kind-slots #:all-kinds
            #:kind-slot-name #:kind-slot-role #:kind-slot-type #:kind-slot-text #:kind-slot-part-p
            #:kind-slot-reader
            #:kind-slot-writer #:object-slots #:reset #:reference #:digest-state #:digest-mention

@@ -13,7 +13,7 @@
            #:command-errors #:command-documentation #:command-prefix
            #:parameter-spec #:spec-name #:spec-type #:spec-text
            #:error-code #:error-code-keyword #:error-code-text
-           #:all-commands #:find-command #:command-of #:command-shape)
+           #:all-commands #:*commands* #:find-command #:command-of #:command-shape)
   ;; operation
   (:export #:operation #:operation-command #:operation-resource #:operation-arguments
            #:operation-p #:operation-world #:operation-finished-p #:operation-continuation

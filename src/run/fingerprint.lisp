@@ -8,14 +8,16 @@
 ;;; because a function made it, has no number and is not compared.
 ;;;
 ;;; What a run uses decides it: its map and robots; the kickers on its things, the attributes that
-;;; these have, the place types and substances in the map; the kickers and manipulations that it was
-;;; asked for. So does all that stands in the files that these are from. Of functions that stand in
-;;; other files, or were typed, nothing is known.
+;;; these have, the place types and substances in the map; the robots' parts of users' kinds; the
+;;; kickers, manipulations and users' commands that it was asked for. So does all that stands in the
+;;; files that these are from. Of functions that stand in other files, or were typed, nothing is
+;;; known.
 
 (defparameter *definition-kinds*
   (list (cons :map *maps*) (cons :robot *robots*) (cons :kicker *kickers*)
         (cons :place-type *place-types*) (cons :attribute *attributes*)
-        (cons :substance *substances*))
+        (cons :substance *substances*)
+        (cons :part *object-kinds*) (cons :command *commands*))
   "The kinds of definitions, and the registry of each. Manipulations have methods instead.")
 
 (defun registry-of (kind)
@@ -59,6 +61,21 @@
           (loop for entry in (journal-newest-first journal)
                 when (eq operator (second entry)) collect (nth (+ 2 position) entry))))))
 
+(defun sensor-kinds (simulation)
+  "Return the names of the kinds of the robots' parts in SIMULATION that are users' own."
+  (remove-duplicates
+   (loop for robot in (simulation-robots simulation)
+         append (cl:map 'list #'type-of (robot-sensors robot)))))
+
+(defun users-commands (simulation)
+  "Return the names of users' commands in the journal of SIMULATION."
+  (let ((journal (simulation-journal simulation)))
+    (and journal
+         (remove-if-not (lambda (name)
+                          (let ((entry (lookup-entry name *commands*)))
+                            (and entry (users-p entry))))
+                        (remove-duplicates (mapcar #'second (journal-newest-first journal)))))))
+
 (defun name-of-place-type (type)
   (if (place-type-p type) (place-type-name type) type))
 
@@ -72,6 +89,8 @@
       (:place-type (mapcar #'name-of-place-type
                            (elements-in-use (map-places map) (map-place-types map))))
       (:attribute (attributes-at-work simulation))
+      (:part (sensor-kinds simulation))
+      (:command (users-commands simulation))
       (:substance (elements-in-use (map-substances map) (map-substance-types map))))))
 
 (defun definition-of (kind entry)
