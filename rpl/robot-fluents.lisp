@@ -10,7 +10,8 @@
 (pushnew '*fluent-variables* *kept-variables*)
 
 (defmacro define-fluents (kind &body definitions)
-  "Define fluent variables for KIND, ROBOT or a kind of part such as CAMERA: (name documentation)."
+  "Define fluent variables for KIND, ROBOT or a kind of part such as CAMERA: (name documentation).
+Return their names."
   `(progn
      ,@(loop for (name text) in definitions
              collect `(public ,name)
@@ -18,7 +19,8 @@
                                                  (unless (same-name-p kind 'robot)
                                                    (format nil " A vector, by ~(~A~)." kind))))
              collect `(pushnew '(,name ,kind) *fluent-variables* :key #'first)
-             collect `(pushnew ',name *simulation-variables*))))
+             collect `(pushnew ',name *simulation-variables*))
+     ',(mapcar #'first definitions)))
 
 (define-fluents robot
   (robot-stopped* "Pulsed when the robot stops moving, whether or not it succeeded.")

@@ -74,18 +74,26 @@ and PARAMETERS, lists (variable type text)."
   (append (unless (same-name-p 'robot (second resource)) (list (first resource)))
           (mapcar #'first parameters)))
 
+(defun check-fluent (name clause)
+  (unless (or (assoc name *fluent-variables*) (known-variable-p name nil))
+    (reject-clause "define-outcome" clause "a fluent variable, as DEFINE-FLUENTS defines")))
+
 (defun clause-form (clause)
   "Return a form that makes a list of settings from CLAUSE of DEFINE-OUTCOME."
-  (ecase (first clause)
+  (case (and (consp clause) (first clause))
     (:set (destructuring-bind (fluent value) (rest clause)
+            (check-fluent fluent clause)
             `(list (list :set (fluent-of ',fluent resource) ,value))))
-    (:pulse `(list (list :pulse (fluent-of ',(second clause) resource))))
+    (:pulse (check-fluent (second clause) clause)
+     `(list (list :pulse (fluent-of ',(second clause) resource))))
     (:when (destructuring-bind (test . clauses) (rest clause)
-             `(when ,test (append ,@(mapcar #'clause-form clauses)))))))
+             `(when ,test (append ,@(mapcar #'clause-form clauses)))))
+    (t (reject-clause "define-outcome" clause
+                      "(:set fluent form), (:pulse fluent) or (:when form clause...)"))))
 
 (defun clause-fluents (clauses)
   (loop for clause in clauses
-        append (ecase (first clause)
+        append (case (first clause)
                  ((:set :pulse) (list (second clause)))
                  (:when (clause-fluents (cddr clause))))))
 

@@ -40,8 +40,34 @@ DIGEST. A kind may add an :AFTER method.")
         (t (digest-state value digest)))
       (digest-add digest value)))
 
+(defvar *digest-depth* 0 "How many objects, one in the other, are being digested.")
+
 (defun digest-mention (object digest)
-  "Add to DIGEST what tells OBJECT apart from others, or else its type."
-  (digest-add digest (or (reference object)
-                         (first (ensure-list (type-of object)))))
+  "Add to DIGEST what tells OBJECT apart from others, or else what is in it. Return DIGEST."
+  (let ((reference (reference object)))
+    (if reference
+        (digest-add digest reference)
+        (let ((*digest-depth* (1+ *digest-depth*)))
+          (digest-add digest (first (ensure-list (type-of object))))
+          ;; What contains itself ends somewhere.
+          (when (< *digest-depth* 20) (digest-contents object digest)))))
   digest)
+
+(defun digest-contents (object digest)
+  "Add to DIGEST what is in OBJECT, an array, table or structure of a user's."
+  (typecase object
+    (array (digest-add digest (array-dimensions object))
+     (dotimes (i (array-total-size object)) (digest-add digest (row-major-aref object i))))
+    (hash-table (digest-table object digest))
+    (structure-object
+     (unless (kind-of object)
+       (dolist (slot (class-slot-names (class-of object)))
+         (digest-add digest (slot-value object slot)))))))
+
+(defun digest-table (table digest)
+  "Add to DIGEST what is in the hash TABLE, in whatever order."
+  (let ((sum 0))
+    (maphash (lambda (key value)
+               (incf sum (digest-value (digest-add (make-digest) (list key value)))))
+             table)
+    (digest-add digest (list (hash-table-count table) (ldb (byte 64 0) sum)))))

@@ -95,7 +95,10 @@ are or include it."
 
 (defun register-kind (name parent slots conc)
   "Let NAME be a kind with SLOTS of its own besides those of the kind called PARENT."
-  (let* ((parent (and parent (kind-called parent)))
+  (let* ((parent (and parent
+                      (or (kind-called parent)
+                          (reject-clause-of-kind name (list :include parent)
+                                                 "a kind to include"))))
          (kind (make-kind name (append (and parent (kind-slots parent)) slots) parent)))
     (register *object-kinds* name kind)
     (setf (get name 'object-kind) kind)
@@ -109,15 +112,35 @@ are or include it."
                      collect (list role name default type text
                                    (and (member :part options) t)))))
 
-(defun check-kind-form (name groups)
-  (loop for (role . slots) in groups
-        do (unless (member role '(:fixed :state :memory :scratch :link))
-             (reject-clause-of-kind name (cons role slots)
-                                    "(role slot...), with one of the roles of kinds"))
-           (dolist (slot slots)
-             (unless (and (consp slot) (<= 4 (length slot)) (symbolp (first slot))
-                          (stringp (fourth slot)) (subsetp (nthcdr 4 slot) '(:part)))
-               (reject-clause-of-kind name slot "(name default type \"what it is\" [:part])")))))
+(defun check-kind-name (name include documentation)
+  (unless (and (symbolp name) name (symbol-package name) (not (keywordp name)))
+    (reject-clause-of-kind name name "a symbol of a package as the name of the kind"))
+  (unless (symbolp include)
+    (reject-clause-of-kind name (list :include include) "the name of a kind after :include"))
+  (unless (stringp documentation)
+    (reject-clause-of-kind name documentation
+                           "a string that says what the kind is, before the slots")))
+
+(defun check-kind-slot (name slot known)
+  "Signal MALFORMED-DEFINITION unless SLOT of the kind NAME makes sense beside KNOWN, other names."
+  (unless (and (proper-list-p slot) (<= 4 (length slot))
+               (symbolp (first slot)) (first slot)
+               (stringp (fourth slot)) (subsetp (nthcdr 4 slot) '(:part)))
+    (reject-clause-of-kind name slot "(name default type \"what it is\" [:part])"))
+  (when (member (first slot) known :test #'same-name-p)
+    (reject-clause-of-kind name slot "a name that no other slot has, also of what is included")))
+
+(defun check-kind-form (name include documentation groups)
+  (check-kind-name name include documentation)
+  (let ((known (and include (kind-called include)
+                    (mapcar #'kind-slot-name (kind-slots (kind-called include))))))
+    (loop for group in groups
+          do (unless (and (proper-list-p group)
+                          (member (first group) '(:fixed :state :memory :scratch :link)))
+               (reject-clause-of-kind name group "(role slot...), with one of the roles of kinds"))
+             (dolist (slot (rest group))
+               (check-kind-slot name slot known)
+               (push (first slot) known)))))
 
 (defun reject-clause-of-kind (name clause expected)
   (error 'malformed-definition :definition (format nil "define-kind ~(~A~)" name)
@@ -144,7 +167,7 @@ of its slots is. GROUPS are lists (role slot...), a slot is (name default type \
   :link     what ties the object to those who use it.
 CONSTRUCTOR is as in DEFSTRUCT; PRINT, a function of object and stream, is how it is printed.
 Return NAME. Signals MALFORMED-DEFINITION."
-  (check-kind-form name groups)
+  (check-kind-form name include documentation groups)
   (let ((slots (slots-by-role groups))
         (conc (concatenate 'string (symbol-name name) "-")))
     `(progn

@@ -77,7 +77,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:parameter-kind #:parameter-group #:parameter-sentence #:parameter-value
            #:define-parameter
            #:all-parameters #:find-parameter #:call-with-parameters #:parameter-settings
-           #:check-parameters #:parameter-values #:follow-parameters
+           #:check-parameters #:call-with-parameter-values #:parameter-values #:follow-parameters
            #:clean-simulation #:dirty-simulation #:*noise-before-cleaning*)
   ;; physics: the parameters of chapter 4, and chance
   (:export #:max-speed* #:max-turn-angle* #:min-turn-angle* #:braking* #:motion-noise*

@@ -91,7 +91,7 @@ WRONG-ARGUMENT if the new value is of the wrong type or out of range."
   "Return a list (symbol value) for each parameter whose value is not its default."
   (loop for parameter in (registry-objects *parameters*)
         for value = (parameter-value parameter)
-        unless (value-equal value (parameter-default parameter))
+        unless (eql value (parameter-default parameter))
           collect (list (parameter-symbol parameter) value)))
 
 ;;; Noise on and off.
@@ -135,6 +135,13 @@ is now where they say nothing. Changes made inside end with the call."
                        collect (if setting (cdr setting) (symbol-value symbol)))))
     (progv (cons '*noise-before-cleaning* symbols) (cons *noise-before-cleaning* values)
       (funcall function))))
+
+(defun call-with-parameter-values (values function)
+  "Call FUNCTION with the parameters bound to VALUES, a vector as PARAMETER-VALUES returns, and
+leave in it what they are afterwards. Return the values of FUNCTION."
+  (progv (mapcar #'parameter-symbol (registry-objects *parameters*)) (coerce values 'list)
+    (multiple-value-prog1 (funcall function)
+      (replace values (parameter-values)))))
 
 (defun parameter-values ()
   "Return a vector of the values of all parameters as they are now, for FOLLOW-PARAMETERS."

@@ -36,6 +36,8 @@ function of the operation that returns one."
   ;; True if it is done in the tick after it was issued, whatever is issued with it.
   (instant-p nil :type boolean :read-only t)
   (report nil :type (or null function) :read-only t)
+  ;; True of users' commands: trouble in them is a message.
+  (guarded-p nil :type boolean :read-only t)
   (body nil :type function :read-only t))
 
 (addition spec-name spec-type spec-text error-code-keyword error-code-text command-p command-name

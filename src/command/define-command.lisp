@@ -94,6 +94,7 @@ later (reading 149)."
                     `(lambda (,operation ,@(first report))
                        (declare (ignorable ,operation ,@(first report)))
                        ,@(rest report)))
+         :guarded-p (not *marking-p*)
          :body (lambda (,operation ,(first resource) ,@variables)
                  (declare (ignorable ,operation ,(first resource)))
                  ,@body)))

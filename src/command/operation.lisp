@@ -110,8 +110,9 @@ the resource and RESULTS. The second end of an operation changes nothing."
     (when (event-pending-p operation)
       (cancel-event (operation-agenda operation) operation))
     (let ((results (fit-results operation results)))
-      (report operation code results)
-      (notify operation code results))))
+      ;; A user's command may fail in its report.
+      (unwind-protect (report operation code results)
+        (notify operation code results)))))
 
 (defun succeed (operation &rest results)
   "End OPERATION successfully; its continuation gets NIL, the resource and RESULTS."
@@ -126,10 +127,30 @@ the resource and RESULTS. The second end of an operation changes nothing."
 
 ;;; Beginning and going on.
 
+(defun call-guarded (operation step)
+  "Call STEP, of a user's command. Trouble in it, and that it neither ends OPERATION nor lets it go
+on, are messages and end that with :FAILED."
+  (let ((origin (list "command " (command-prefix (operation-command operation))))
+        (returned nil))
+    (call-user-code (lambda ()
+                      (funcall step operation)
+                      (setf returned t))
+                    origin)
+    (unless (or (operation-finished-p operation)
+                (and returned (event-pending-p operation)))
+      (when returned (apply #'error-set (append origin '(" neither ended nor went on"))))
+      (finish operation :failed))))
+
+(declaim (inline call-step))
+(defun call-step (operation step)
+  (if (command-guarded-p (operation-command operation))
+      (call-guarded operation step)
+      (funcall (the symbol step) operation)))
+
 (defun run-operation (operation)
   "Call the step of OPERATION: what is to be done in this tick."
   (unless (operation-finished-p operation)
-    (funcall (the symbol (operation-step operation)) operation)))
+    (call-step operation (operation-step operation))))
 
 (declaim (inline once-more))
 (defun once-more (operation)
@@ -139,7 +160,7 @@ the resource and RESULTS. The second end of an operation changes nothing."
 (defun go-on (operation step &optional (delay 1))
   "Let STEP, the name of a function of OPERATION, be called DELAY ticks from now to carry it on."
   (setf (operation-step operation) step)
-  (queue-again (operation-agenda operation) operation delay))
+  (queue-again (operation-agenda operation) operation (clamp delay 1 +longest-delay+)))
 
 (defun go-on-now (operation step)
   "Let STEP, the name of a function of OPERATION, carry it on in this tick and all that follow."
@@ -157,7 +178,7 @@ just been issued is carried out first, anything else is interrupted. So (robot-s
 followed by (robot-go-forward ...) sets the speed (reading 77)."
   (cond ((and (operation-p rival) (command-instant-p (operation-command rival)))
          (cancel-event agenda rival)
-         (start-body rival))
+         (call-step rival 'start-body))
         (t (interrupt-event agenda rival))))
 
 (defun begin (operation)

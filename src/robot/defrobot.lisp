@@ -40,23 +40,53 @@
         (funcall reject angle "a heading in radians, between -1e9 and 1e9"))
       map)))
 
-(defun trouble-with-part (kind initargs)
-  "Return what keeps a part of KIND, a symbol, from being made with INITARGS, a string, or NIL."
-  (handler-case (progn (apply (kind-constructor kind) :robot nil :index 0 initargs) nil)
-    (error (trouble) (string-right-trim "." (princ-to-string trouble)))))
+(defun settable-slots (kind)
+  "Return what is known of the slots of KIND, a kind of part, that DEFROBOT may give values to: its
+own fixed ones."
+  (remove-if-not (lambda (slot)
+                   (and (eq :fixed (kind-slot-role slot))
+                        (not (member (kind-slot-name slot) '(robot index)))))
+                 (kind-slots kind)))
+
+(defun slot-value-text (slot)
+  (format nil "~(~S~), ~A" (make-keyword (kind-slot-name slot)) (kind-slot-text slot)))
+
+(defun parse-initarg (kind initarg value)
+  "Return INITARG and VALUE, for a part of KIND, as a list; NIL if they make no sense."
+  (let ((slot (and (keywordp initarg)
+                   (find initarg (settable-slots kind)
+                         :key #'kind-slot-name :test #'same-name-p))))
+    (when slot
+      (let ((value (if (and (realp value) (eq 'double-float (kind-slot-type slot)))
+                       (double value)
+                       value)))
+        (when (typep value (kind-slot-type slot))
+          (list initarg value))))))
+
+(defun find-part-kind (name)
+  "Return the kind of part of users' own that is called NAME, or NIL."
+  (let ((kind (and name (symbolp name) (find name (all-kinds 'part) :key #'kind-name))))
+    (and kind
+         (not (member (kind-name kind) '(part camera hand storage-bin)))
+         kind)))
+
+(defun parse-values (kind specification reject)
+  "Return the initargs and values in SPECIFICATION of a part of KIND."
+  (loop for (initarg value) on (rest specification) by #'cddr
+        append (or (parse-initarg kind initarg value)
+                   (funcall reject specification
+                            (format nil "of a ~(~A~) only ~:[its name~;~:*~{~A~^; ~}~]"
+                                    (kind-name kind)
+                                    (mapcar #'slot-value-text (settable-slots kind)))))))
 
 (defun parse-part (specification reject)
-  "Return SPECIFICATION, (kind initarg value ...), as the kind's name and the rest."
-  (let ((kind (and (consp specification) (symbolp (first specification))
-                   (find (first specification) (all-kinds 'part) :key #'kind-name))))
-    (unless (and kind (proper-list-p specification) (evenp (length (rest specification))))
+  "Return SPECIFICATION, (kind initarg value ...), with values of the types that are wanted."
+  (let ((kind (and (proper-list-p specification) (find-part-kind (first specification)))))
+    (unless (and kind (evenp (length (rest specification))))
       (funcall reject specification
-               "(kind initarg value ...), a kind of part that DEFINE-KIND has defined"))
-    (let ((trouble (trouble-with-part (kind-name kind) (rest specification))))
-      (when trouble
-        (funcall reject specification
-                 (format nil "what a ~(~A~) can be made with (~A)" (kind-name kind) trouble))))
-    (cons (kind-name kind) (rest specification))))
+               (format nil "(kind initarg value ...), a kind of part that DEFINE-KIND has defined; ~
+                            cameras, hands and bins have options of their own")))
+    (cons (kind-name kind) (parse-values kind specification reject))))
 
 (defun read-blueprint (name environment position angle cameras hands bins parts)
   (flet ((reject (clause expected)

@@ -17,6 +17,18 @@ ends with it and simulations side by side do not meet.")
     (reject-use "~(~A~): this simulation runs live, its ticks pass by themselves. ~
                  Use (with-simulation (ROBOT) ...) or (stop-simulator)." operator)))
 
+(defun call-inside (simulation function)
+  "Call FUNCTION where SIMULATION is the current one: with its world, its message queue and, if it
+is not the current one out here, its parameters."
+  (flet ((call ()
+           (let ((*simulation* simulation)
+                 (*world* (simulation-world simulation))
+                 (*message-queue* (simulation-messages simulation)))
+             (funcall function))))
+    (if (eq simulation *simulation*)
+        (call)
+        (call-with-parameter-values (simulation-known-parameters simulation) #'call))))
+
 (addition run-ticks)
 (defun run-ticks (count &optional (simulation (current-simulation)))
   "Pass COUNT ticks of the headless SIMULATION. Return the tick then reached. Signals
@@ -26,15 +38,14 @@ WRONG-ARGUMENT, and MISUSE if SIMULATION runs live or is inside a tick."
   (check-not-over simulation 'run-ticks)
   (when (simulation-ticking-p simulation)
     (reject-use "run-ticks: a tick is under way; time cannot pass inside it."))
-  (let ((*simulation* simulation)
-        (*message-queue* (simulation-messages simulation)))
-    (loop repeat count do (tick simulation)))
+  (call-inside simulation (lambda () (loop repeat count do (tick simulation))))
   (simulation-tick simulation))
 
 (addition run-until)
 (defun run-until (predicate &key (limit 100000) (simulation (current-simulation)))
   "Pass ticks of the headless SIMULATION until PREDICATE, a function of no arguments, returns
 true, but at most LIMIT. Return what it returned and the tick reached; NIL means the limit."
+  (check-argument run-until predicate (typep predicate '(or function symbol)) "a function")
   (check-argument run-until limit (typep limit '(integer 0)) "a number of ticks, 0 or more")
   (check-headless simulation 'run-until)
   (check-not-over simulation 'run-until)

@@ -8,6 +8,7 @@
 (defun call-as-owner (simulation function)
   "Call FUNCTION with the bindings under which the thread of SIMULATION runs."
   (let ((*simulation* simulation)
+        (*world* (simulation-world simulation))
         (*message-queue* (simulation-messages simulation)))
     (call-with-parameters '() function)))
 
@@ -31,7 +32,10 @@ way stay as they are; START-CLOCK goes on with them. Return SIMULATION."
 
 (addition await-idle)
 (defun await-idle (&optional (simulation (current-simulation)) (seconds 60))
-  "Wait until nothing is left to do in the live SIMULATION, at most SECONDS. True if so."
+  "Wait until nothing is left to do in the live SIMULATION, at most SECONDS. True if so. Where
+things have kickers, something is always left to do. Of one that is not live, return at once whether
+nothing is left."
+  (unless (live-p simulation) (return-from await-idle (idle-p simulation)))
   (let ((idle (make-semaphore "idle")))
     (flet ((look (simulation)
              (when (idle-p simulation) (signal-semaphore idle))))
@@ -96,15 +100,35 @@ One whose map or definition has been replaced means the robot that is called so 
        (not (simulation-over simulation))
        (or (not journal) (simulation-journal simulation))))
 
+(defun start-seed (simulation seed)
+  "Let all chance in SIMULATION, which has passed no tick, come from SEED from the beginning."
+  (seed-world (simulation-world simulation) seed)
+  (when (simulation-journal simulation)
+    (setf (getf (journal-header (simulation-journal simulation)) :seed) seed)))
+
 (defun run-to-start (world seed journal)
-  "Return the simulation of WORLD to run live: a new one if the last has passed ticks, or if SEED
-is given, or if JOURNAL is true and it keeps none."
+  "Return the simulation of WORLD to run live: a new one if the last has passed ticks, or if JOURNAL
+is true and it keeps none. With SEED, all chance in it comes from that."
   (let ((simulation (world-simulation world)))
     (stop-clock simulation)
-    (cond ((or seed (not (fresh-p simulation journal)))
+    (cond ((not (fresh-p simulation journal))
            (end-simulation simulation "it has been started anew")
            (restart-world world (or seed (simulation-seed simulation))))
-          (t simulation))))
+          (t (when seed (start-seed simulation seed))
+             simulation))))
+
+(defun passing-ticks-p ()
+  "True if this thread is one that passes the ticks of the current simulation."
+  (and *simulation*
+       (eq (simulation-thread *simulation*) (current-thread))))
+
+(defun make-current (simulation everywhere)
+  "Let SIMULATION be the current one; EVERYWHERE, not only where this thread has bound that."
+  (setf *simulation* simulation
+        *world* (simulation-world simulation))
+  (when everywhere
+    (setf (global-value '*simulation*) simulation
+          (global-value '*world*) (simulation-world simulation))))
 
 (public simulator)
 (defun simulator (robot &rest options
@@ -116,13 +140,14 @@ JOURNAL is NIL, as is advisable for busy programs at free rates. Return the robo
 STOP-SIMULATOR stops it. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if the robot no longer
 fits into its map. See reading 238."
   (check-rate rate)
+  (check-argument simulator seed (typep seed '(or null integer)) "an integer, or NIL")
   (let* ((robot (robot-to-start robot))
+         (everywhere (passing-ticks-p))
          (simulation (run-to-start (robot-world robot) seed journal)))
     (if journal
         (renew-definitions simulation)
         (setf (simulation-journal simulation) nil))
-    (setf *simulation* simulation
-          *world* (simulation-world simulation))
+    (make-current simulation everywhere)
     (start-clock simulation :rate rate)
     (dolist (hook *simulator-hooks*) (funcall hook robot options))
     robot))

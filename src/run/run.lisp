@@ -141,26 +141,6 @@ SEED. See reading 218."
 
 (define-operator 'set-seed '(integer) #'set-seed)
 
-;;; A copy.
-
-(defun copy-simulation (simulation)
-  "Return a headless copy of SIMULATION, which must stand still, in its present state: from here on
-it goes as the original would, given the same requests. The continuations of commands under way
-stay with the original, as do observers and the journal; of what takes part in it, what can be
-copied goes along."
-  (asking (simulation)
-    (when (simulation-ticking-p simulation)
-      (reject-use "copy-simulation: a tick is under way. Copy the run between ticks."))
-    (let* ((table (make-copy-table))
-           (copy (copy-running simulation table)))
-      (setf (timeline-run (simulation-timeline copy)) copy
-            (simulation-messages copy) (make-message-queue)
-            (simulation-participants copy)
-            (loop for participant in (simulation-participants simulation)
-                  for twin = (participant-copy participant copy table)
-                  when twin collect twin))
-      copy)))
-
 ;;; The end.
 
 (defun end-timeline (timeline reason)

@@ -40,12 +40,18 @@
   (destructuring-bind (operator . arguments) (request-entry request)
     (note simulation operator arguments)))
 
+;; What signals or throws is no reason to forget what was asked for after it.
 (defun perform-all (simulation timeline)
-  (dolist (request (take-requests timeline))
-    (when (simulation-journal simulation) (note-request simulation request))
-    (perform request timeline)))
+  (let ((requests (take-requests timeline)))
+    (unwind-protect
+         (loop while requests
+               do (let ((request (pop requests)))
+                    (when (simulation-journal simulation) (note-request simulation request))
+                    (perform request timeline)))
+      (when requests (put-back requests timeline)))))
 
-(declaim (inline perform-requests run-due-events tell-observers let-participants-act))
+(declaim (inline perform-requests run-due-events prolong-journal tell-observers
+                 let-participants-act))
 (defun perform-requests (simulation timeline)
   "Perform what has been asked of SIMULATION since the last tick, in the order of asking."
   (when (timeline-inbox timeline) (perform-all simulation timeline)))
@@ -53,6 +59,12 @@
 (defun run-due-events (timeline)
   "Let the tick begin that TIMELINE is to pass, and run what is due in it."
   (advance-agenda (timeline-agenda timeline)))
+
+(defun prolong-journal (simulation)
+  "Let the journal of SIMULATION, if it keeps one that is not full, reach to now."
+  (let ((journal (simulation-journal simulation)))
+    (when (and journal (not (journal-full-p journal)))
+      (setf (journal-end journal) (simulation-tick simulation)))))
 
 (defun tell-observers (simulation)
   (dolist (observer (simulation-observers simulation))
@@ -76,6 +88,7 @@
       (settle-robots world)
       (tend-tracks world)
       (check-grips world))
+    (prolong-journal simulation)
     (deliver-notifications timeline)
     (tell-observers simulation)
     (let-participants-act simulation)))

@@ -137,6 +137,8 @@
   (decf (agenda-pending agenda))
   (unless (zerop (event-priority event)) (decf (agenda-unequal agenda))))
 
+(defconstant +longest-delay+ (ash 1 59) "For how many ticks an event waits at most.")
+
 (declaim (inline queue-again))
 (defun queue-again (agenda event delay)
   "Queue EVENT, which is not pending, to run DELAY ticks from now (at least 1). See reading 79."

@@ -7,7 +7,8 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
   ;; resource, event, agenda
   (:export #:resource #:resource-event #:event #:event-pending-p #:event-resource #:event-time
            #:event-priority #:agenda #:make-agenda #:agenda-tick #:agenda-pending #:queue-event
-           #:queue-again #:cancel-event #:interrupt-event #:pending-event #:advance-agenda
+           #:queue-again #:+longest-delay+ #:cancel-event #:interrupt-event
+           #:pending-event #:advance-agenda
            #:pending-events)
   ;; request
   (:export #:request #:make-request #:request-operator #:request-arguments #:request-entry
@@ -18,7 +19,8 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
            #:timeline-ticking-p #:timeline-notifications
            #:timeline-inbox #:timeline-pacing #:check-not-over
            #:*simulation* #:current-simulation
-           #:wake-owner #:post #:take-requests #:ask #:asking #:owner-p #:answer-questions
+           #:wake-owner #:post #:put-back #:take-requests #:ask #:asking #:owner-p
+           #:answer-questions
            #:notify-later #:deliver-notifications)
   ;; pacing
   (:export #:start-pacing #:stop-pacing #:check-rate #:live-p #:paused-p #:pause #:resume

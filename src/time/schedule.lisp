@@ -63,8 +63,10 @@
   "Ask for an event that calls FUNCTION. See SCHEDULE, of which this is the function. Returns
 nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
   (check-argument schedule priority (typep priority 'fixnum) "an integer")
-  (check-argument schedule timer (typep timer '(integer 0)) "a number of ticks, 0 or more")
-  (check-argument schedule timeout (typep timeout '(or null (integer 0))) "a number of ticks")
+  (check-argument schedule timer (typep timer `(integer 0 ,+longest-delay+))
+                  "a number of ticks, from 0 to 2^59")
+  (check-argument schedule timeout (typep timeout `(or null (integer 0 ,+longest-delay+)))
+                  "a number of ticks, from 0 to 2^59")
   (post (make-scheduled function resource priority interrupt when timeout timer) simulation))
 
 ;; Only in memory: a function cannot be written to a file.

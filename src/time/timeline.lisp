@@ -44,8 +44,11 @@
 
 (defgeneric timeline-of (object)
   (:documentation "Return the timeline of OBJECT: a run, a world with robots in it, a robot or a
-part of one. A timeline is its own.")
-  (:method ((timeline timeline)) timeline))
+part of one. A timeline is its own. Signals WRONG-ARGUMENT for what has none.")
+  (:method ((timeline timeline)) timeline)
+  (:method (object)
+    (error 'wrong-argument :operator "ask" :name "simulation" :value object
+                           :expected "a simulation, or a robot in one")))
 
 (addition *simulation*)
 (defvar *simulation* nil
@@ -105,6 +108,12 @@ See reading 219."
   (loop for inbox = (timeline-inbox timeline)
         when (swap-if (timeline-inbox timeline) inbox '())
           return (reverse inbox)))
+
+(defun put-back (requests timeline)
+  "Leave REQUESTS, oldest first, for the next tick of TIMELINE, before those posted meanwhile."
+  (let ((newest-first (reverse requests)))
+    (loop for inbox = (timeline-inbox timeline)
+          until (swap-if (timeline-inbox timeline) inbox (append inbox newest-first)))))
 
 ;;; Questions.
 

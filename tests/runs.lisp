@@ -1,0 +1,253 @@
+;;;; runs.lisp -- runs beside one another, requests that go wrong, and what users add of their own.
+
+(in-package :ars-magna.tests)
+
+(def-suite* runs :in ars-magna)
+
+(world:defmap paddock (12 12)
+  (obj ball (6 6) ((:size 1) (:color world:red))))
+(world:defmap meadow (12 12)
+  (obj ball (3 3) ((:size 1) (:color world:blue))))
+(robot:defrobot pony (paddock (4 10) 0) :cameras ((1 5)) :hands (10))
+(robot:defrobot foal (meadow (4 10) 0))
+
+(defmacro with-pony ((&rest options) &body body)
+  `(run:with-simulation (pony ,@options) ,@body))
+
+(defun ball () (world:find-thing 'ball))
+(defun ball-in (simulation) (world:find-thing 'ball (run:simulation-world simulation)))
+
+(defun replays-p (simulation)
+  "True if the journal of SIMULATION gives its digest, from a file."
+  (with-temporary-file (file)
+    (run:save-journal file simulation)
+    (= (run:state-digest simulation) (nth-value 1 (run:replay file)))))
+
+;;; The world that code works in is that of the run it runs for.
+
+(test run.binds-its-world-in-what-it-calls
+  (with-pony ()
+    (time:schedule ('x :timer 2) (world:kick-thing (ball) 1 0 nil))
+    (run:run-ticks 1)
+    (let ((copy (run:copy-simulation time:*simulation*)))
+      (run:run-ticks 5 copy)
+      (is (= 6 (world:thing-x (ball))) "the original's ball stays")
+      (is (= 7 (world:thing-x (ball-in copy))))))
+  (let ((seen '()))
+    (with-pony ()
+      (let ((outer time:*simulation*) (robot pony))
+        (time:schedule ('x) (push (world:thing-world (ball)) seen))
+        (command:robot-turn pony .5 (lambda (&rest ignore)
+                                      (declare (ignore ignore))
+                                      (push (world:thing-world (ball)) seen)))
+        (run:with-simulation (foal)
+          (run:run-ticks 9 outer))
+        (is (equal (list (robot:robot-world robot) (robot:robot-world robot)) seen))))))
+
+(test live.runs-side-by-side-have-their-own-worlds
+  (with-messages
+    (let ((done (base:make-semaphore "done")) seen)
+      (unwind-protect
+           (progn
+             (run:simulator 'pony :display nil :rate :free)
+             (time:pause)
+             (command:robot-turn pony .5 (lambda (err robot angle)
+                                           (declare (ignore err angle))
+                                           (setf seen (eq (world:thing-world (ball))
+                                                          (robot:robot-world robot)))
+                                           (base:signal-semaphore done)))
+             (let ((first time:*simulation*))
+               (run:simulator 'foal :display nil)
+               (time:resume first)
+               (is-true (base:wait-on-semaphore done 60))
+               (is-true seen)
+               (run:stop-simulator first)))
+        (run:stop-simulator)))))
+
+(test live.can-be-started-anew-from-a-continuation
+  (with-messages
+    (let ((done (base:make-semaphore "done")))
+      (unwind-protect
+           (progn
+             (run:simulator 'pony :display nil :rate :free)
+             (command:robot-turn pony .1 (lambda (&rest ignore)
+                                           (declare (ignore ignore))
+                                           (run:simulator 'pony :display nil :rate :free)
+                                           (base:signal-semaphore done)))
+             (let ((first time:*simulation*))
+               (is-true (base:wait-on-semaphore done 60))
+               (is (not (eq first time:*simulation*)))
+               (is-true (time:live-p time:*simulation*))))
+        (run:stop-simulator)))))
+
+(test parameters.of-a-run-are-its-own
+  (let (copy digest)
+    (with-pony (:clean t)
+      (command:robot-goto-wall pony)
+      (run:run-ticks 2)
+      (setf copy (run:copy-simulation time:*simulation*))
+      (run:run-ticks 50)
+      (setf digest (run:state-digest)))
+    (run:run-ticks 50 copy)
+    (is (= digest (run:state-digest copy)) "also of a copy, out here"))
+  (with-pony (:journal t :parameters '((base:max-speed* 1d0)))
+    (run:run-ticks 20)
+    (is-true (replays-p time:*simulation*) "1.0 is not 1, to a digest")))
+
+;;; Requests.
+
+(test requests.behind-one-that-fails-are-not-lost
+  (with-pony (:clean t)
+    (let ((turned 0))
+      (time:post (make-errand (lambda () (error "An errand that fails."))) time:*simulation*)
+      (command:robot-turn pony 1 (lambda (&rest ignore)
+                                   (declare (ignore ignore))
+                                   (incf turned)))
+      (signals error (run:run-ticks 1))
+      (run:run-ticks 20)
+      (is (= 1 turned))
+      (is (< .9 (robot:robot-angle pony) 1.1)))))
+
+(test requests.for-ages-hence-are-refused-or-wait
+  (with-pony ()
+    (signals base:wrong-argument (time:schedule ('x :timer (expt 10 30)) nil))
+    (signals base:wrong-argument (time:schedule ('x :timeout (expt 10 30) :when nil) nil))
+    (setf base:robot-turn-delay* most-positive-fixnum)
+    (command:robot-turn pony 1)
+    (run:run-ticks 5)
+    (is (= 1 (time:agenda-pending (run:simulation-agenda time:*simulation*))))))
+
+(test journal.reaches-to-the-end-of-its-run
+  (let ((journal (with-pony (:journal t)
+                   (command:robot-turn pony 1)
+                   (run:run-ticks 50)
+                   (run:simulation-journal time:*simulation*))))
+    (is (= 50 (run:journal-end journal)))
+    (is (= 50 (run:simulation-tick (run:replay journal))))
+    (is (= 30 (run:with-replay (journal :until 30) (run:simulation-tick))))))
+
+(test seed.given-at-the-first-start-loses-nothing
+  (with-messages
+    (unwind-protect
+         (progn
+           (world:move-thing (world:find-thing 'ball (world:find-map 'meadow)) 5 5)
+           (run:simulator 'foal :display nil :seed 5 :rate :free)
+           (time:pause)
+           (is (= 5 (world:thing-x (ball))))
+           (is (= 5 (run:simulation-seed time:*simulation*)))
+           (is (find 'world:move-thing (run:journal-entries
+                                        (run:simulation-journal time:*simulation*))
+                     :key #'second))
+           (run:stop-simulator)
+           (is-true (replays-p time:*simulation*)))
+      (run:stop-simulator))))
+
+;;; What users add.
+
+(base:define-kind (probe :include robot:part)
+    "A part that keeps all sorts of things."
+  (:fixed
+   (reach 1d0 double-float "how far the probe reaches, in metres"))
+  (:state
+   (history '() list "what the probe has met")
+   (spot nil (or null geo:pt) "a spot that it remembers")
+   (chart (make-array '(2 2) :initial-element 0) array "a chart of what is around")
+   (table (make-hash-table) hash-table "what it knows of what")))
+
+(base:define-argument-type 'probe #'probe-p "a probe")
+
+(command:define-command probe-fail (operation (probe probe)) ((depth "how deep"))
+    ((:family :handling) (:report (depth) (format nil "~D deep" depth)))
+    "Fail in the body."
+  (error "The probe broke."))
+
+(command:define-command probe-forget (operation (probe probe)) ()
+    ((:family :handling))
+    "Neither end nor go on."
+  operation)
+
+(command:define-command probe-misreport (operation (probe probe)) ((depth "how deep"))
+    ((:family :handling) (:report () "deep"))
+    "Report with too few variables."
+  (command:succeed operation 3))
+
+(robot:defrobot diver (meadow (4 10) 0) :cameras ((1 5)) :parts ((probe :reach 2)))
+
+(defmacro with-diver ((&rest options) &body body)
+  `(run:with-simulation (diver ,@options) ,@body))
+
+(defun the-probe (&optional (robot diver)) (robot:robot-part robot 'probe 0))
+
+(test command.of-a-users-that-fails-is-a-message
+  (loop for (command says . expected) in '((probe-fail "The probe broke." :failed)
+                                           (probe-forget "neither ended nor went on" :failed)
+                                           (probe-misreport "invalid number of arguments" nil))
+        do (with-diver (:journal t)
+             (let ((answers '()) (viewed nil))
+               (funcall command (the-probe) (lambda (err &rest ignore)
+                                              (declare (ignore ignore))
+                                              (push err answers)))
+               (command:camera-view (robot:robot-camera diver 0)
+                                    (lambda (&rest ignore)
+                                      (declare (ignore ignore))
+                                      (setf viewed t)))
+               (run:run-ticks 5)
+               (is (equal expected answers) "~A" command)
+               (is-true viewed)
+               (is (search says (displayed)) "~A" command)
+               (is-true (replays-p time:*simulation*))))))
+
+(test state.of-all-sorts-is-digested-and-copied
+  (with-diver ()
+    (let ((digest (run:state-digest)) (digests '()))
+      (flet ((change (function)
+               (funcall function (the-probe))
+               (push (run:state-digest) digests)))
+        (change (lambda (probe) (setf (probe-history probe) (list 1 2 3))))
+        (change (lambda (probe) (setf (probe-spot probe) (geo:make-pt 1 2))))
+        (change (lambda (probe) (setf (probe-spot probe) (geo:make-pt 7 8))))
+        (change (lambda (probe) (setf (aref (probe-chart probe) 1 1) 5)))
+        (change (lambda (probe) (setf (gethash :a (probe-table probe)) 5)))
+        (change (lambda (probe) (setf (gethash :a (probe-table probe)) 6))))
+      (is (= 7 (length (remove-duplicates (cons digest digests)))))
+      (let* ((copy (run:copy-simulation time:*simulation*))
+             (other (the-probe (first (run:simulation-robots copy)))))
+        (is (= (first digests) (run:state-digest copy)))
+        (setf (second (probe-history other)) :changed
+              (aref (probe-chart other) 0 0) :changed
+              (gethash :a (probe-table other)) :changed)
+        (geo:set-pt! (probe-spot other) 0 0)
+        (is (= (first digests) (run:state-digest)) "the original is not disturbed")))))
+
+(test parts.are-made-with-what-is-fixed-only
+  (with-diver () (is (= 2d0 (probe-reach (the-probe)))))
+  (loop for (parts word) in '((((probe :rang 2)) "reach") (((probe :reach "far")) "reach")
+                              (((probe 2)) "kind of part") (((probe :history (1))) "reach")
+                              (((probe :location 3)) "reach") (((camera :resolution 3)) "cameras")
+                              (((robot:part)) "cameras") (((nothing-known)) "kind of part"))
+        do (handler-case
+               (progn (robot:define-robot 'newt 'meadow '(4 4) 0 :parts parts)
+                      (fail "~S was taken" parts))
+             (base:malformed-definition (trouble)
+               (is (search word (princ-to-string trouble)) "~A" trouble)
+               (is (search (prin1-to-string (first (first parts))) (princ-to-string trouble)
+                           :test #'char-equal)
+                   "~A" trouble)))))
+
+(test parts.of-unknown-kinds-are-told-so
+  (with-diver ()
+    (signals base:unknown-name (robot:robot-part diver 'nosuch 0))
+    (signals base:wrong-argument (robot:robot-part diver 'probe 1))
+    (signals base:wrong-argument (time:ask 3 (lambda () nil)))
+    (signals base:wrong-argument (run:run-until 3))))
+
+(test kinds.are-checked-where-they-are-defined
+  (dolist (form '((base:define-kind (k :include robot:part) (:state (a 0 fixnum "x")))
+                  (base:define-kind ("k") "K.")
+                  (base:define-kind (:k) "K.")
+                  (base:define-kind (k) "K." (:state (a 0 fixnum "x") (a 1 fixnum "y")))
+                  (base:define-kind (k :include robot:part) "K." (:state (index 0 fixnum "x")))))
+    (signals base:malformed-definition (macroexpand-1 form)))
+  (dolist (form '((driver:define-outcome (probe-fail) (n) (:set nofluent* n))
+                  (driver:define-outcome (probe-fail) (n) (:sett driver:robot-place* n))))
+    (signals base:malformed-definition (macroexpand-1 form))))
