@@ -251,3 +251,64 @@
   (dolist (form '((driver:define-outcome (probe-fail) (n) (:set nofluent* n))
                   (driver:define-outcome (probe-fail) (n) (:sett driver:robot-place* n))))
     (signals base:malformed-definition (macroexpand-1 form))))
+
+;;; Journals on file.
+
+(test journal.has-what-was-set-just-now
+  (with-pony (:seed 1 :journal t)
+    (run:run-ticks 1)
+    (setf base:max-speed* 1/2)
+    (is-true (replays-p time:*simulation*))))
+
+(test journal.knows-what-has-been-destroyed
+  (with-pony (:seed 1 :journal t)
+    (let ((ball (ball)))
+      (world:destroy-thing ball)
+      (run:run-ticks 1)
+      (world:set-attribute ball :size 5)
+      (world:kick-thing ball 1 0 nil)
+      (run:run-ticks 1)
+      (is-true (replays-p time:*simulation*)))))
+
+(test journal.tells-when-an-attribute-has-been-defined-since
+  (with-pony (:seed 1 :journal t)
+    (world:set-attribute (ball) :sweetness 5)
+    (run:run-ticks 1)
+    (with-temporary-file (file)
+      (run:save-journal file)
+      (run:replay file)
+      (world:define-attribute 'sweetness :numeric :base 3 :max-mult 9)
+      (handler-case (progn (run:replay file) (fail "was replayed"))
+        (run:different-definitions (trouble)
+          (is (search "attribute sweetness has been defined since" (princ-to-string trouble))))))))
+
+(test journal.can-be-read-when-it-could-be-saved
+  (with-pony (:seed 1 :journal t)
+    (loop for length in '(999940 999949 999950 999951)
+          do (setf (run:simulation-journal time:*simulation*) nil)
+             (run:begin-journal time:*simulation*)
+             (world:set-attribute (ball) :label (make-string length :initial-element #\a))
+             (with-temporary-file (file)
+               (when (tolerating (base:misuse) (run:save-journal file) t)
+                 (is (run:journal-p (run:load-journal file)) "~D" length))))))
+
+(test journal.names-that-are-not-known-are-one-symbol-each
+  (with-temporary-file (file)
+    (with-pony (:seed 1 :journal t)
+      (let ((word (intern "NEVER-HEARD-OF" :keyword)))
+        (world:set-attribute (ball) :label word)
+        (world:set-attribute (ball) :owner word)
+        (run:save-journal file)
+        (unintern word :keyword)))
+    (let ((entries (run:journal-entries (run:load-journal file))))
+      (is (string= "NEVER-HEARD-OF" (fifth (first entries))))
+      (is (eq (fifth (first entries)) (fifth (second entries))))
+      (is (null (find-symbol "NEVER-HEARD-OF" :keyword))))))
+
+(test parameters.are-checked-when-a-run-begins
+  (let ((base:max-speed* -1))
+    (signals base:wrong-argument (with-pony () (run:run-ticks 1))))
+  (with-pony ()
+    (signals base:wrong-argument (setf (base:parameter-value 'base:max-speed*) (expt 10 400)))
+    (signals base:wrong-argument (robot:place-robot pony (expt 10 400) 5 1))
+    (signals base:wrong-argument (world:set-attribute (ball) :size (expt 10 400)))))

@@ -86,6 +86,32 @@
       (eval `(world:defmap test-map (3 3 :cache ,name)))
       (is (search "is no cache" (first (message-texts))) "~A" name))))
 
+(test cache.leaves-short-files-alone-too
+  (with-fresh-cache
+    (loop for length from 1 to 7
+          for octets = (make-array length :element-type '(unsigned-byte 8) :initial-element 65)
+          do (ensure-directories-exist (cache-file))
+             (write-octets octets)
+             (apply #'cached-map *cached-clauses*)
+             (is (equalp octets (cache-octets)) "~D" length)
+             (base:take-messages))))
+
+(test cache.is-stale-when-a-direction-has-another-value
+  (with-own-definitions
+    (with-fresh-cache
+      (flet ((direction (value)
+               (eval `(world:def-place-type cranny (cell)
+                        :before t
+                        :check-matchers ((((x x x) (x - x) (x x x)) ,value))))
+               (let ((map (cached-map '(rect (0 0) (8 8) bricks 1)
+                                      '(rect (3 3) (5 5) bricks 4))))
+                 (aref (world:map-directions map)
+                       (world:map-index map 4.5 4.5)))))
+        (is (= 0 (direction 0)))
+        (is (= 1.5 (direction '(progn 1.5))))
+        (is (= 2 (direction '(+ 1 1))))
+        (is (= 3 (direction '(let ((x 3)) x))))))))
+
 (defun cache-octets ()
   (coerce (with-open-file (in (cache-file) :element-type '(unsigned-byte 8))
             (loop for octet = (read-byte in nil) while octet collect octet))

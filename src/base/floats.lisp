@@ -6,10 +6,11 @@
 ;;; takes three times as long, which digests would feel, and it does not know the infinities.
 
 (defun finite-p (object)
-  "True of real numbers other than the infinities and what is no number."
-  (and (realp object)
-       (not (and (floatp object)
-                 (or (sb-ext:float-infinity-p object) (sb-ext:float-nan-p object))))))
+  "True of real numbers that are, or could be made, finite floats: not of the infinities, what is no
+number, and integers and ratios that are too large."
+  (typecase object
+    (float (not (or (sb-ext:float-infinity-p object) (sb-ext:float-nan-p object))))
+    (real (<= (abs object) most-positive-double-float))))
 
 (declaim (inline double-to-bits bits-to-double))
 (defun double-to-bits (number)

@@ -66,7 +66,8 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
         (t (format nil "a value of type ~(~S~)" type))))
 
 (defun check-parameter-value (parameter value)
-  (unless (typep value (parameter-type parameter))
+  (unless (and (typep value (parameter-type parameter))
+               (or (not (realp value)) (finite-p value)))
     (error 'wrong-argument :operator "set parameter" :name (parameter-name parameter)
                            :value value
                            :expected (describe-type (parameter-type parameter)))))

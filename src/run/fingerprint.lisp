@@ -174,16 +174,33 @@ definitions that are looked at."
   (and (same-name-p (first a) (first b))
        (string= (second a) (second b))))
 
+(defun undefined-attributes (simulation)
+  "Return, as definitions, the attributes that things in SIMULATION have and nobody has defined."
+  (loop for name in (attributes-at-work simulation)
+        unless (lookup-entry name *attributes*)
+          collect (list :attribute (name-string name) :undefined)))
+
+(defun undefined-p (definition)
+  (same-name-p :undefined (or (and (symbolp (third definition)) (third definition)) "")))
+
 (defun definitions-of (simulation)
   "Return what stands for the definitions that decide SIMULATION, lists (kind name number)."
   (let* ((used (definitions-in-use simulation)) (sources (sources-of used)))
-    (at-hand (remove-duplicates
-              (append used
-                      (definitions-from sources)
-                      (mapcar (lambda (source) (list :file (file-name-of source))) sources))
-              :test #'same-definition-p :from-end t))))
+    (append (at-hand (remove-duplicates
+                      (append used
+                              (definitions-from sources)
+                              (mapcar (lambda (source) (list :file (file-name-of source)))
+                                      sources))
+                      :test #'same-definition-p :from-end t))
+            (undefined-attributes simulation))))
 
 ;;; How they differ.
+
+(defun unchanged-p (definition now)
+  "True if DEFINITION is among those that are at hand NOW, or still undefined as it was."
+  (if (undefined-p definition)
+      (not (member definition now :test #'same-definition-p))
+      (member definition now :test #'equal)))
 
 (defun merge-definitions (before after)
   "Return the definitions BEFORE with those AFTER that they lack. One that is not what it was has
@@ -191,7 +208,7 @@ definitions that are looked at."
   (let ((now (at-hand before)))
     (append (loop for definition in before
                   for (kind name number) = definition
-                  collect (if (member definition now :test #'equal)
+                  collect (if (unchanged-p definition now)
                               definition
                               (list kind name :changed)))
             (remove-if (lambda (definition) (member definition before :test #'same-definition-p))
@@ -209,7 +226,9 @@ definitions that are looked at."
   "Return in words how DEFINITION, (kind name number), differs from what OTHERS say, or NIL."
   (let ((other (find definition others :test #'same-definition-p))
         (number (third definition)))
-    (cond ((null other)
+    (cond ((undefined-p definition)
+           (and other (format nil "~A has been defined since" (definition-words definition))))
+          ((null other)
            (format nil "~A is not loaded" (definition-words definition)))
           ((and number (symbolp number))
            (format nil "~A was defined anew while it was recorded" (definition-words definition)))

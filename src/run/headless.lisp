@@ -93,6 +93,7 @@ FUNCTION calls some of the ROBOTS, of other packages than theirs perhaps."
   (call-with-parameters
    parameters
    (lambda ()
+     (check-parameters)
      (when clean (clean-simulation))
      (let* ((*message-queue* (make-message-queue))
             (simulation (fresh-simulation (ensure-list robots) :seed seed :journal journal))

@@ -64,10 +64,12 @@
   (let ((sum 0))
     (dolist (datum data)
       (let ((text (datum-text datum)))
-        (when (< (- +longest-line+ 10) (length text))
+        (when (<= (- +longest-line+ 10) (length text))
           (error "one of its entries takes ~D characters" (length text)))
         (setf sum (text-checksum text sum))
-        (format out "~A ;~8,'0X~%" text sum)))))
+        (format out "~A ;~8,'0X~%" text sum)
+        (when (< (- +longest-file+ (expt 2 20)) (file-position out))
+          (error "it takes more than ~D bytes" (- +longest-file+ (expt 2 20))))))))
 
 (defun write-journal (journal file)
   "Write JOURNAL to FILE, replacing it when all is written. Return the file's truename. Signals
@@ -261,11 +263,13 @@ is wrong, and in which entry."
   (with-open-file (in file :external-format '(:utf-8 :replacement #\?))
     (when (< +longest-file+ (file-length in))
       (error "it has ~D bytes, more than journals have" (file-length in)))
-    (journal-from (read-data in))))
+    (with-homeless-symbols () (journal-from (read-data in)))))
 
 (defun read-journal (file)
   "Return the journal in FILE. Signals DAMAGED-JOURNAL if it is none, or incomplete, and says which
-entry is to blame."
+entry is to blame; WRONG-ARGUMENT unless FILE is a name."
+  (check-argument read-journal file (typep file '(or string pathname))
+                  "a journal, or the name of a file that holds one")
   (handler-case (read-journal-file file)
     ((or error storage-condition) (trouble)
       (error 'damaged-journal :file file :reason (one-line-text trouble)))))

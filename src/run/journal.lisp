@@ -36,7 +36,9 @@ the definitions were that decide it."
 
 (addition journal-entries)
 (defun journal-entries (journal)
-  "Return the entries (tick operator argument ...) of JOURNAL, oldest first."
+  "Return the entries (tick operator argument ...) of JOURNAL, oldest first; do not alter them.
+Signals WRONG-ARGUMENT."
+  (check-argument journal-entries journal (journal-p journal) "a journal, as LOAD-JOURNAL returns")
   (reverse (journal-newest-first journal)))
 
 (defun truncated-journal (journal tick)

@@ -10,17 +10,29 @@
                             on, and can be repeated up to there; see *JOURNAL-LIMIT*."
                        (journal-length journal) tick)))
 
+(defun room-left-p (journal)
+  "True if JOURNAL may have another entry. A limit that is no number does not count."
+  (not (and (realp *journal-limit*)
+            (>= (journal-length journal) *journal-limit*))))
+
 (defun note (simulation operator arguments)
   "Enter that OPERATOR, a symbol, was asked for with the list ARGUMENTS into the journal of
 SIMULATION, as of now, if it keeps one."
   (let ((journal (simulation-journal simulation)))
     (when (and journal (not (journal-full-p journal)))
       (let ((tick (simulation-tick simulation)))
-        (cond ((>= (journal-length journal) *journal-limit*) (close-full-journal journal tick))
+        (cond ((not (room-left-p journal)) (close-full-journal journal tick))
               (t (push (list* tick operator (externalize arguments))
                        (journal-newest-first journal))
                  (incf (journal-length journal))
                  (setf (journal-end journal) tick)))))))
+
+(defun follow-settings (simulation)
+  "Let the journal of SIMULATION know which parameters somebody has set."
+  (follow-parameters (simulation-known-parameters simulation)
+                     (and (simulation-thread simulation) t)
+                     (lambda (symbol value)
+                       (note simulation 'parameter (list (string-downcase symbol) value)))))
 
 ;;; Beginning and end.
 
@@ -52,6 +64,7 @@ MISUSE if it keeps none."
                      (reject-use "This simulation keeps no journal. Ask for one: ~
                                   (with-simulation (ROBOT :journal t) ...), and do not say ~
                                   (simulator ROBOT :journal nil)."))))
+    (when (eq simulation *simulation*) (follow-settings simulation))
     (unless (journal-full-p journal) (setf (journal-end journal) (simulation-tick simulation)))
     ;; Some may have been defined since it began.
     (let ((header (copy-list (journal-header journal))))

@@ -26,7 +26,8 @@
 
 (defun unprintable-atom-p (atom)
   (typecase atom
-    ((or symbol string) nil)
+    (string nil)
+    (symbol (and (symbol-package atom) (search "::" (package-name (symbol-package atom)))))
     (rational (< (* 3 +longest-number+)
                  (+ (integer-length (numerator atom)) (integer-length (denominator atom)))))
     (float (not (finite-p atom)))
@@ -163,13 +164,25 @@
                          (setf position end))))
             (1+ position))))
 
+(defvar *homeless* (make-hash-table :test 'equal)
+  "The symbols without a home that were made for names, by what was read.")
+
+(defun homeless-symbol (text name)
+  "Return the symbol called NAME that stands for TEXT: always the same, as long as *HOMELESS* is."
+  (or (gethash text *homeless*)
+      (setf (gethash text *homeless*) (make-symbol name))))
+
+(defmacro with-homeless-symbols (() &body body)
+  "Run BODY, in which each name that Lisp does not know is one symbol."
+  `(let ((*homeless* (make-hash-table :test 'equal))) ,@body))
+
 (defun symbol-called (text)
   "Return the symbol that TEXT, PACKAGE::NAME, stands for, or one without a home."
   (let* ((colons (or (search "::" text) (error "it has a name without its package")))
          (package (find-package (subseq text 0 colons)))
          (name (subseq text (+ 2 colons))))
     (or (and package (find-symbol name package))
-        (make-symbol name))))
+        (homeless-symbol text name))))
 
 (defun word-meaning (word)
   "Return the number, NIL, T or keyword that WORD stands for."
@@ -177,7 +190,8 @@
         ((string= word "nil") nil)
         ((string= word "t") t)
         ((bare-name-p (string-upcase word))
-         (or (find-symbol (string-upcase word) :keyword) (make-symbol (string-upcase word))))
+         (or (find-symbol (string-upcase word) :keyword)
+             (homeless-symbol word (string-upcase word))))
         (t (error "it has ~S, neither number nor name"
                   (subseq word 0 (min 40 (length word)))))))
 

@@ -86,10 +86,13 @@ SIMULATION, which BODY may refer to."
 (define-dereference :robot (name)
   (robot-in simulation name))
 
+;; One that had been destroyed when the journal was told of it is made up.
 (define-dereference :thing (serial)
   (check-type serial unsigned-byte)
-  (or (find-thing serial (simulation-world simulation))
-      (reject-use "There is no thing with the number ~D." serial)))
+  (let ((world (simulation-world simulation)))
+    (or (find-thing serial world)
+        (destroyed-thing serial world)
+        (reject-use "There is no thing with the number ~D." serial))))
 
 (define-dereference :map (name)
   (let ((map (world-map (simulation-world simulation))))

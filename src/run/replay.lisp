@@ -100,7 +100,9 @@ loaded is not what the run was recorded with, unless ANYWAY is true."
 
 (addition save-journal)
 (defun save-journal (file &optional (simulation (current-simulation)))
-  "Write the journal of SIMULATION up to now to FILE. Return its truename. Signals MISUSE."
+  "Write the journal of SIMULATION up to now to FILE. Return its truename. Signals MISUSE, and
+WRONG-ARGUMENT unless FILE is a name."
+  (check-argument save-journal file (typep file '(or string pathname)) "the name of a file")
   (asking (simulation) (write-journal (end-of-journal simulation) file)))
 
 (addition load-journal)

@@ -15,13 +15,6 @@
        (setf (timeline-ticking-p ,timeline) nil
              (world-writer ,world) nil))))
 
-(defun follow-settings (simulation)
-  "Let the journal of SIMULATION know which parameters somebody has set."
-  (follow-parameters (simulation-known-parameters simulation)
-                     (and (simulation-thread simulation) t)
-                     (lambda (symbol value)
-                       (note simulation 'parameter (list (string-downcase symbol) value)))))
-
 (declaim (inline notice-parameters))
 (defun notice-parameters (simulation timeline)
   "Look after the parameters of SIMULATION, at least when there is a command that may read them."

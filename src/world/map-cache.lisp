@@ -22,7 +22,8 @@
    (digest-add (make-digest)
                (list (map-width map) (map-height map) (map-clauses map)
                      (loop for type in (registry-objects *place-types*)
-                           collect (list (place-type-name type) (place-type-key type)))))))
+                           collect (list (place-type-name type) (place-type-key type)
+                                         (place-type-rules type)))))))
 
 (defun words-sum (words)
   "Return a check sum of WORDS but for the first and the sum itself, the last of the header."
@@ -116,10 +117,12 @@
 
 (defun begins-as-cache-p (path)
   "True if the file PATH is empty or begins as caches do."
-  (let ((words (make-array 1 :element-type '(unsigned-byte 64))))
+  (let ((octets (with-open-file (in path :element-type '(unsigned-byte 8)) (file-length in)))
+        (words (make-array 1 :element-type '(unsigned-byte 64))))
     (with-open-file (in path :element-type '(unsigned-byte 64))
-      (or (zerop (file-length in))
-          (and (= 1 (read-sequence words in))
+      (or (zerop octets)
+          (and (<= 8 octets)
+               (= 1 (read-sequence words in))
                (= +cache-magic+ (aref words 0)))))))
 
 (defun foreign-p (path)

@@ -65,6 +65,14 @@ ours, a list of kickers or their names. Signals WRONG-ARGUMENT and UNKNOWN-NAME.
 
 (define-operator 'make-new-thing '(name datum datum) #'make-thing-again :rest 'datum)
 
+(defun destroyed-thing (serial world)
+  "Return what stands for the thing of WORLD that had the number SERIAL and was destroyed; NIL if
+there never was one."
+  (when (< 0 serial (world-next-serial world))
+    (let ((thing (%make-thing 'destroyed serial world)))
+      (setf (thing-alive-p thing) nil)
+      thing)))
+
 (defun position-form-p (form environment)
   "True if FORM, three elements long, means (map x y) rather than a call in ENVIRONMENT: it does if
 it begins with a variable or the name of a map, and unless it begins with that of a function."

@@ -66,7 +66,8 @@
   ;; recipes
   (:export #:recipe #:make-recipe)
   ;; placing
-  (:export #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing)
+  (:export #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing
+           #:destroyed-thing)
   ;; undeclared
   (:export #:note-strange-name #:warn-of-slips #:value-like)
   ;; kickers
