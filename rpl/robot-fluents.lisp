@@ -9,10 +9,17 @@
 
 (pushnew '*fluent-variables* *kept-variables*)
 
+(defun check-fluent-kind (kind)
+  "Signal MALFORMED-DEFINITION unless KIND is ROBOT or a kind of part."
+  (unless (or (same-name-p kind 'robot)
+              (find kind (all-kinds 'part) :key #'kind-name :test #'same-name-p))
+    (reject-clause "define-fluents" kind "ROBOT, or a kind of part such as CAMERA")))
+
 (defmacro define-fluents (kind &body definitions)
   "Define fluent variables for KIND, ROBOT or a kind of part such as CAMERA: (name documentation).
 Return their names."
   `(progn
+     (check-fluent-kind ',kind)
      ,@(loop for (name text) in definitions
              collect `(public ,name)
              collect `(defvar ,name nil ,(format nil "~A~@[~A~] (Manual C.)" text

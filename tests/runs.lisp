@@ -312,3 +312,89 @@
     (signals base:wrong-argument (setf (base:parameter-value 'base:max-speed*) (expt 10 400)))
     (signals base:wrong-argument (robot:place-robot pony (expt 10 400) 5 1))
     (signals base:wrong-argument (world:set-attribute (ball) :size (expt 10 400)))))
+
+;;; Who may wait, and who is told.
+
+(test journal.has-kickers-that-were-asked-for
+  (with-pony (:seed 1 :journal t)
+    (world:put-kicker hop (thing (ball)) (:prob 0) (world:kick-thing thing 1 0 nil))
+    (let ((hop (first (world:thing-kickers (ball)))))
+      (world:run-kicker hop)
+      (run:run-ticks 2)
+      (command:robot-turn pony 1 (lambda (&rest ignore)
+                                   (declare (ignore ignore))
+                                   (world:run-kicker hop)))
+      (run:run-ticks 9)
+      (is (= 8 (world:thing-x (ball))))
+      (is (= (run:state-digest)
+             (nth-value 1 (run:replay (run:simulation-journal time:*simulation*))))))))
+
+(test messages.of-a-live-run-reach-who-started-it
+  (with-messages
+    (unwind-protect
+         (progn
+           (with-pony () (run:robot-simulation foal))
+           (run:simulator 'foal :display nil :rate :free)
+           (command:robot-turn foal 1)
+           (run:await-idle)
+           (is (search "Robot turned" (displayed))))
+      (run:stop-simulator))))
+
+(test ticks.do-not-pass-inside-themselves
+  (with-pony ()
+    (let ((ticks '()))
+      (run:add-observer (lambda (simulation) (push (run:simulation-tick simulation) ticks)))
+      (command:robot-turn pony 1 (lambda (&rest ignore)
+                                   (declare (ignore ignore))
+                                   (run:run-ticks 3)))
+      (run:run-ticks 10)
+      (is (search "a tick is under way" (displayed)))
+      (is (equal '(1 2 3 4 5 6 7 8 9 10) (reverse ticks)))
+      (is (= 11 (run:run-ticks 1)) "and go on passing"))))
+
+(test live.nobody-waits-for-himself
+  (with-messages
+    (let ((done (base:make-semaphore "done")))
+      (unwind-protect
+           (progn
+             (run:simulator 'foal :display nil :rate :free)
+             (command:robot-turn foal 1 (lambda (&rest ignore)
+                                          (declare (ignore ignore))
+                                          (unwind-protect (run:await-idle)
+                                            (base:signal-semaphore done))))
+             (is-true (base:wait-on-semaphore done 60))
+             (is-true (run:await-idle foal))
+             (is (search "would wait for itself" (displayed))))
+        (run:stop-simulator foal)))))
+
+(defclass saboteur () ())
+
+(defmethod run:participant-after-tick ((saboteur saboteur) simulation)
+  (declare (ignore simulation))
+  (error "A participant that fails."))
+
+(test participant.that-fails-is-a-message
+  (with-pony ()
+    (run:add-participant (make-instance 'saboteur) time:*simulation*)
+    (is (= 2 (run:run-ticks 2)))
+    (is (search "A participant that fails." (displayed)))))
+
+(test command.is-checked-where-it-is-defined
+  (loop for (clause word) in '((((:famly :moving)) ":famly") (((:family :flying)) ":flying")
+                               (((:family :moving) (:delya 5)) ":delya"))
+        do (handler-case
+               (progn (macroexpand-1 `(command:define-command nap (operation (robot robot:robot)) ()
+                                          ,clause "Nap." (command:succeed operation)))
+                      (fail "~S was taken" clause))
+             (base:malformed-definition (trouble)
+               (is (search word (princ-to-string trouble)) "~A" trouble))))
+  (signals base:malformed-definition
+    (macroexpand-1 '(command:define-command nap (operation (robot robot:robot) x) ()
+                     ((:family :moving)) "Nap." (command:succeed operation))))
+  (handler-case (progn (eval '(command:define-command nap
+                               (operation (robot robot:robot) (x nosuch-type "an x")) ()
+                               ((:family :moving)) "Nap." (command:succeed operation)))
+                       (fail "was taken"))
+    (base:malformed-definition (trouble)
+      (is (search "define-command nap" (princ-to-string trouble)))
+      (is (search "nosuch-type" (princ-to-string trouble))))))

@@ -155,19 +155,38 @@ are or include it."
                             (lambda (object) (,reader (the ,name object)))
                             (lambda (value object) (setf (,reader (the ,name object)) value)))))
 
-(defmacro define-kind ((name &key include (constructor (symbolicate 'make- name)) print)
-                       documentation &body groups)
-  "Define the structure NAME, which includes the kind INCLUDE if that is given, and say what each
-of its slots is. GROUPS are lists (role slot...), a slot is (name default type \"what it is\"), and
-:PART behind that if what is in it belongs to the object. The roles are
+(defun kind-options (form)
+  "Return the name, the included kind or NIL, and the constructor that FORM, what DEFINE-KIND begins
+with, says."
+  (destructuring-bind (name &rest options) (ensure-list form)
+    (unless (and (proper-list-p options) (evenp (length options))
+                 (loop for key in options by #'cddr always (member key '(:include :constructor))))
+      (reject-clause-of-kind name form "a name, or (name [:include kind] [:constructor c])"))
+    (values name
+            (getf options :include)
+            (getf options :constructor
+                  (and (symbolp name) (symbolicate 'make- name))))))
+
+(defmacro define-kind (name-and-options documentation &body groups &environment environment)
+  "Define a structure and say what each of its slots is. NAME-AND-OPTIONS is its name, or (name
+[:include kind] [:constructor constructor]), as in DEFSTRUCT. GROUPS are lists (role slot...), a
+slot is (name default type \"what it is\"), and :PART behind that if what is in it belongs to the
+object. The roles are
   :fixed    how the object was made;
   :state    what decides the future, or what programs are told of it;
   :memory   what is shown to people and decides nothing;
   :scratch  what means nothing between ticks;
   :link     what ties the object to those who use it.
-CONSTRUCTOR is as in DEFSTRUCT; PRINT, a function of object and stream, is how it is printed.
-Return NAME. Signals MALFORMED-DEFINITION."
-  (check-kind-form name include documentation groups)
+Lisp cannot give a kind other slots while it runs: start it anew for that. Return the name. Signals
+MALFORMED-DEFINITION."
+  (multiple-value-bind (name include constructor) (kind-options name-and-options)
+    (check-kind-form name include documentation groups)
+    (unless (or (null include) (kind-called include) (find-class include nil environment))
+      (reject-clause-of-kind name (list :include include) "a kind to include"))
+    (kind-definition name include constructor documentation groups)))
+
+(defun kind-definition (name include constructor documentation groups)
+  "Return the form that defines the kind NAME."
   (let ((slots (slots-by-role groups))
         (conc (concatenate 'string (symbol-name name) "-")))
     `(progn
@@ -175,10 +194,7 @@ Return NAME. Signals MALFORMED-DEFINITION."
                          ,(if (consp constructor)
                               `(:constructor ,@constructor)
                               `(:constructor ,constructor))
-                         (:copier nil)
-                         ,@(when print `((:print-function (lambda (object stream depth)
-                                                            (declare (ignore depth))
-                                                            (,print object stream))))))
+                         (:copier nil))
          ,documentation
          ,@(loop for (nil slot default type) in slots
                  collect `(,slot ,default :type ,type)))

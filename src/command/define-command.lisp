@@ -51,6 +51,40 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
   "Return a form that checks that VARIABLE, an argument of the command NAME, is of TYPE."
   `(check-of-type ',name ',variable ,variable (load-time-value (find-argument-type ',type))))
 
+(defparameter *command-families* '(:moving :looking :handling :manipulating)
+  "Where commands belong.")
+
+(defun check-command-form (name resource parameters results options)
+  "Signal MALFORMED-DEFINITION unless DEFINE-COMMAND can use these parts of its form."
+  (flet ((check (test clause expected)
+           (unless test
+             (reject-clause (format nil "define-command ~(~A~)" name) clause expected))))
+    (check (and name (symbolp name) (not (keywordp name))) name "a symbol as the command's name")
+    (check (and (proper-list-p resource) (= 2 (length resource))) resource "(variable type)")
+    (dolist (parameter parameters)
+      (check (and (proper-list-p parameter) (<= 2 (length parameter) 3)) parameter
+             "(variable type \"what it is\")"))
+    (dolist (result results)
+      (check (and (proper-list-p result) (= 2 (length result)) (stringp (second result))) result
+             "(name \"what it is\")"))
+    (dolist (option options)
+      (check (and (consp option)
+                  (member (first option)
+                          '(:family :section :delay :errors :report :prompt :prefix)))
+             option
+             (format nil "(:family ...), (:section ...), (:delay ...), (:errors ...), ~
+                          (:report ...), (:prompt ...) or (:prefix ...)")))
+    (let ((family (assoc :family options)))
+      (check (and family (member (second family) *command-families*)) (or family options)
+             (format nil "(:family family), one of ~{~(~S~)~^, ~}" *command-families*)))))
+
+(defun check-types-known (name types)
+  "Signal MALFORMED-DEFINITION unless each of TYPES, of the command NAME, is an argument type."
+  (dolist (type types)
+    (unless (find-argument-type type nil)
+      (reject-clause (format nil "define-command ~(~A~)" name) type
+                     "an argument type, as DEFINE-ARGUMENT-TYPE defines"))))
+
 (defmacro define-command (name (operation resource &rest parameters) (&rest results)
                           (&rest options) sentence &body body)
   "Define the function NAME, which issues a command, and all that is known of it.
@@ -66,11 +100,13 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
   (:prompt name) (:prefix string)      unlike the rule of DEFAULT-PROMPT-NAME
 BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now or
 later (reading 149)."
+  (check-command-form name resource parameters results options)
   (let ((errors (option :errors options))
         (variables (mapcar #'first parameters))
         (report (option :report options)))
     `(progn
        (public ,name)
+       (check-types-known ',name '(,(second resource) ,@(mapcar #'second parameters)))
        (eval-when (:compile-toplevel :load-toplevel :execute)
          (setf (get ',name 'command-shape) '(,resource ,parameters ,sentence)))
        (register-command

@@ -49,7 +49,8 @@ own fixed ones."
                  (kind-slots kind)))
 
 (defun slot-value-text (slot)
-  (format nil "~(~S~), ~A" (make-keyword (kind-slot-name slot)) (kind-slot-text slot)))
+  (format nil "~(~S~), of type ~(~S~), ~A" (make-keyword (kind-slot-name slot))
+          (kind-slot-type slot) (kind-slot-text slot)))
 
 (defun parse-initarg (kind initarg value)
   "Return INITARG and VALUE, for a part of KIND, as a list; NIL if they make no sense."

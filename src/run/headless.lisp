@@ -29,6 +29,13 @@ is not the current one out here, its parameters."
         (call)
         (call-with-parameter-values (simulation-known-parameters simulation) #'call))))
 
+(defun pass-ticks (count simulation)
+  "Pass COUNT ticks of SIMULATION. Nobody else can do that meanwhile, continuations neither."
+  (let ((timeline (simulation-timeline simulation)))
+    (setf (timeline-passing-p timeline) t)
+    (unwind-protect (loop repeat count do (tick simulation))
+      (setf (timeline-passing-p timeline) nil))))
+
 (addition run-ticks)
 (defun run-ticks (count &optional (simulation (current-simulation)))
   "Pass COUNT ticks of the headless SIMULATION. Return the tick then reached. Signals
@@ -36,9 +43,10 @@ WRONG-ARGUMENT, and MISUSE if SIMULATION runs live or is inside a tick."
   (check-argument run-ticks count (typep count '(integer 0)) "a number of ticks, 0 or more")
   (check-headless simulation 'run-ticks)
   (check-not-over simulation 'run-ticks)
-  (when (simulation-ticking-p simulation)
+  (when (or (simulation-ticking-p simulation)
+            (timeline-passing-p (simulation-timeline simulation)))
     (reject-use "run-ticks: a tick is under way; time cannot pass inside it."))
-  (call-inside simulation (lambda () (loop repeat count do (tick simulation))))
+  (call-inside simulation (lambda () (pass-ticks count simulation)))
   (simulation-tick simulation))
 
 (addition run-until)

@@ -35,7 +35,14 @@ way stay as they are; START-CLOCK goes on with them. Return SIMULATION."
   "Wait until nothing is left to do in the live SIMULATION, at most SECONDS. True if so. Where
 things have kickers, something is always left to do. Of one that is not live, return at once whether
 nothing is left."
-  (unless (live-p simulation) (return-from await-idle (idle-p simulation)))
+  (let ((simulation (simulation-meant simulation)))
+    (cond ((not (live-p simulation)) (idle-p simulation))
+          ((eq (current-thread) (simulation-thread simulation))
+           (reject-use "await-idle: the simulator would wait for itself. Go on in a continuation."))
+          (t (wait-until-idle simulation seconds)))))
+
+(defun wait-until-idle (simulation seconds)
+  "Do what AWAIT-IDLE says, for one that is live and passes its ticks in another thread."
   (let ((idle (make-semaphore "idle")))
     (flet ((look (simulation)
              (when (idle-p simulation) (signal-semaphore idle))))
@@ -147,6 +154,7 @@ fits into its map. See reading 238."
     (if journal
         (renew-definitions simulation)
         (setf (simulation-journal simulation) nil))
+    (setf (simulation-messages simulation) (residents-queue))
     (make-current simulation everywhere)
     (start-clock simulation :rate rate)
     (dolist (hook *simulator-hooks*) (funcall hook robot options))
@@ -154,7 +162,7 @@ fits into its map. See reading 238."
 
 (addition stop-simulator)
 (defun stop-simulator (&optional (simulation (current-simulation)))
-  "Stop the live SIMULATION after its current tick. What is under way stays pending. Return
-nothing. See reading 89."
-  (stop-clock simulation)
+  "Stop the live SIMULATION, which may be given as one of its robots, after its current tick. What
+is under way stays pending. Return nothing. See reading 89."
+  (stop-clock (simulation-meant simulation))
   (values))

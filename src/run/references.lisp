@@ -8,7 +8,7 @@
 
 (defun nameable-p (object)
   "True if OBJECT is of a kind that DEREFERENCE finds by its reference."
-  (typep object '(or thing robot part designator odometer map kicker recipe)))
+  (typep object '(or thing attachment robot part designator odometer map kicker recipe)))
 
 (defun externalize-list (list)
   (let ((elements (loop for tail = list then (cdr tail)
@@ -101,6 +101,11 @@ SIMULATION, which BODY may refer to."
 
 (define-dereference :kicker (name)
   (find-kicker name))
+
+(define-dereference :attachment (serial name)
+  (let ((thing (dereference :thing (list serial) simulation)))
+    (or (find-attachment thing name)
+        (reject-use "~A has no kicker ~A." thing name))))
 
 (define-dereference :odometer (robot name)
   (robot-odometer (robot-in simulation robot) name))

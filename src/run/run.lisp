@@ -47,7 +47,7 @@
   (world-seed (simulation-world simulation)))
 
 (addition simulation-rate)
-(defun simulation-rate (simulation)
+(defun simulation-rate (&optional (simulation (current-simulation)))
   "Return the pace of the live clock of SIMULATION: ticks per second, or :FREE."
   (pace simulation))
 

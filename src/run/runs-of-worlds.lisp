@@ -9,6 +9,13 @@
   (or (world-timeline world)
       (setf (world-timeline world) (make-timeline (map-name (world-map world))))))
 
+(defun residents-queue ()
+  "Return the message queue for the runs of resident worlds: not that of a headless run which may be
+the first to need one."
+  (if (and *simulation* (headless-p *simulation*))
+      (global-value '*message-queue*)
+      *message-queue*))
+
 (defun world-simulation (world)
   "Return the simulation of WORLD, made if there is none, with a journal."
   (let ((timeline (ensure-timeline world)))
@@ -16,12 +23,20 @@
         (with-lock (*simulations-lock*)
           (or (timeline-run timeline)
               (let ((simulation (make-simulation world)))
+                (setf (simulation-messages simulation) (residents-queue))
                 (begin-journal simulation)
                 simulation))))))
 
 (defun resident-simulation (map)
   "Return the simulation of the resident world of MAP, or of the map so named."
   (world-simulation (map-resident-world (find-map map))))
+
+(defun simulation-meant (designator)
+  "Return the simulation DESIGNATOR, or that of the robot DESIGNATOR. Signals WRONG-ARGUMENT."
+  (cond ((simulation-p designator) designator)
+        ((robot-p designator) (robot-simulation designator))
+        (t (error 'wrong-argument :operator "simulator" :name "simulation" :value designator
+                                  :expected "a simulation, or a robot in one"))))
 
 (addition robot-simulation)
 (defun robot-simulation (robot)

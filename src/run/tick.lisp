@@ -65,7 +65,7 @@
 
 (defun let-participants-act (simulation)
   (dolist (participant (simulation-participants simulation))
-    (participant-after-tick participant simulation)))
+    (call-user-code #'participant-after-tick "a participant" participant simulation)))
 
 (defun tick (simulation)
   "Pass one tick of SIMULATION. To be called by its owner only."

@@ -31,12 +31,12 @@
   (/ (float (get-internal-real-time) 1d0) internal-time-units-per-second))
 
 (addition live-p)
-(defun live-p (simulation)
+(defun live-p (&optional (simulation (current-simulation)))
   "True if SIMULATION runs in a thread of its own."
   (and (timeline-thread (timeline-of simulation)) t))
 
 (addition paused-p)
-(defun paused-p (simulation)
+(defun paused-p (&optional (simulation (current-simulation)))
   "True if the live SIMULATION has been told to pause."
   (let ((pacing (timeline-pacing (timeline-of simulation))))
     (and pacing (pacing-paused-p pacing))))

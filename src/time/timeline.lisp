@@ -21,6 +21,7 @@
    (notifications '() list "functions to call at the end of the tick, newest first"))
   (:link
    (ticking-p nil boolean "a tick is under way")
+   (passing-p nil boolean "somebody passes ticks without a clock")
    (run nil t "the run that the timeline is of, NIL as long as there is none")
    (over nil (or null string) "why the run is over, a sentence without its full stop, or NIL")
    (questions '() t "what ASK has been called with, newest first")

@@ -3,6 +3,7 @@
 (in-package :ars-magna.world)
 
 (defun find-attachment (thing name)
+  "Return the kicker called NAME on THING, as attached, or NIL."
   (find name (thing-kickers thing) :key #'attachment-name :test #'same-name-p))
 
 (defun detach-kicker (thing name)

@@ -183,11 +183,15 @@ See reading 170."
   (check-argument run-kicker attachment (attachment-p attachment) "SELF, while a kicker runs")
   (let ((world (thing-world (attachment-thing attachment))))
     (when (and world (attachment-alive-p attachment))
-      (let ((next (1+ (world-kicker-tick world))))
-        (unless (= next (attachment-due attachment))
-          (setf (attachment-due attachment) next)
-          (push attachment (world-due-kickers world))))))
+      (changing (world run-kicker attachment)
+        (let ((next (1+ (world-kicker-tick world))))
+          (unless (= next (attachment-due attachment))
+            (setf (attachment-due attachment) next)
+            (push attachment (world-due-kickers world)))))))
   (values))
+
+(define-argument-type 'attachment #'attachment-p "a kicker on a thing, as SET-KICKER returns")
+(define-operator 'run-kicker '(attachment) #'run-kicker)
 
 (defun world-has-kickers-p (world)
   "True if any kicker in WORLD may run, so that its ticks can matter."
