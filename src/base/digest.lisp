@@ -13,6 +13,10 @@
   (setf (digest-value digest)
         (mix-word (ldb (byte 64 0) (* (logxor (digest-value digest) word) #x100000001B3)))))
 
+(defgeneric digest-mention (object digest)
+  (:documentation "Add to DIGEST what tells OBJECT apart from others, or else what is in it. Return
+DIGEST."))
+
 (defun digest-add (digest datum)
   "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by
 their elements, functions as such, other objects by what tells them apart. Return DIGEST."

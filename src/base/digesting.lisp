@@ -42,8 +42,7 @@ DIGEST. A kind may add an :AFTER method.")
 
 (defvar *digest-depth* 0 "How many objects, one in the other, are being digested.")
 
-(defun digest-mention (object digest)
-  "Add to DIGEST what tells OBJECT apart from others, or else what is in it. Return DIGEST."
+(defmethod digest-mention (object digest)
   (let ((reference (reference object)))
     (if reference
         (digest-add digest reference)

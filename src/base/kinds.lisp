@@ -227,6 +227,7 @@ without ROLES, for each."
 
 ;;; Reset.
 
+(declaim (inline map-parts))
 (defun map-parts (function value)
   "Call FUNCTION with the object VALUE, or with each in the list or vector VALUE."
   (typecase value

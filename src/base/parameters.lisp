@@ -86,7 +86,7 @@ WRONG-ARGUMENT if the new value is of the wrong type or out of range."
 (defun check-parameters ()
   "Signal WRONG-ARGUMENT if any parameter has a value of the wrong type or out of range."
   (dolist (parameter (registry-objects *parameters*))
-    (check-parameter-value parameter (parameter-value parameter))))
+    (check-parameter-value parameter (symbol-value (parameter-symbol parameter)))))
 
 (defun parameter-settings ()
   "Return a list (symbol value) for each parameter whose value is not its default."

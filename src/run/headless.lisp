@@ -29,6 +29,7 @@ is not the current one out here, its parameters."
         (call)
         (call-with-parameter-values (simulation-known-parameters simulation) #'call))))
 
+(declaim (inline pass-ticks))
 (defun pass-ticks (count simulation)
   "Pass COUNT ticks of SIMULATION. Nobody else can do that meanwhile, continuations neither."
   (let ((timeline (simulation-timeline simulation)))

@@ -40,14 +40,6 @@
                  up to tick ~D. Replay it in memory instead."
                 (journal-end journal) +latest-end+)))
 
-(defun short-text (object)
-  "Return OBJECT as text, the beginning of it if it is long or has no end."
-  (let* ((*print-length* 8) (*print-level* 4) (*print-circle* nil)
-         (text (if (and (integerp object) (< 1000 (integer-length object)))
-                   (format nil "an integer of ~D bits" (integer-length object))
-                   (princ-to-string object))))
-    (subseq text 0 (min 80 (length text)))))
-
 (defun entry-datum (entry)
   "Return ENTRY as it stands in a file: the operator by name."
   (list* (first entry) (make-keyword (symbol-name (second entry))) (cddr entry)))

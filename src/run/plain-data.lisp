@@ -22,6 +22,14 @@
       (visit datum 1)
       t)))
 
+(defun short-text (object)
+  "Return OBJECT as text, the beginning of it if it is long or has no end."
+  (let* ((*print-length* 8) (*print-level* 4) (*print-circle* nil)
+         (text (if (and (integerp object) (< 1000 (integer-length object)))
+                   (format nil "an integer of ~D bits" (integer-length object))
+                   (princ-to-string object))))
+    (subseq text 0 (min 80 (length text)))))
+
 ;;; Writing.
 
 (defun unprintable-atom-p (atom)

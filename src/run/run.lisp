@@ -52,6 +52,7 @@
   (pace simulation))
 
 (addition simulation-robots)
+(declaim (inline simulation-robots))
 (defun simulation-robots (&optional (simulation (current-simulation)))
   "Return a list of the robots in SIMULATION."
   (world-robots (simulation-world simulation)))
