@@ -102,10 +102,12 @@ SIMULATION, which BODY may refer to."
 (define-dereference :kicker (name)
   (find-kicker name))
 
+;; Nor need a kicker be there any more.
 (define-dereference :attachment (serial name)
+  (check-type name (and symbol (not null)))
   (let ((thing (dereference :thing (list serial) simulation)))
     (or (find-attachment thing name)
-        (reject-use "~A has no kicker ~A." thing name))))
+        (detached-kicker thing name))))
 
 (define-dereference :odometer (robot name)
   (robot-odometer (robot-in simulation robot) name))

@@ -68,7 +68,9 @@ definitions than those at hand."
   "Call FUNCTION where JOURNAL has been repeated; see WITH-REPLAY. OBSERVER, if given, is called
 after each tick of that, with the simulation."
   (let* ((journal (if (journal-p journal) journal (read-journal journal)))
-         (journal (if until (truncated-journal journal until) journal))
+         (journal (if (and until (not (eql until (journal-end journal))))
+                      (truncated-journal journal until)
+                      journal))
          (header (journal-header journal))
          (blueprints (mapcar #'find-blueprint (getf header :robots))))
     (unless anyway (check-definitions header blueprints))
@@ -84,12 +86,13 @@ after each tick of that, with the simulation."
 
 (addition with-replay)
 (defmacro with-replay ((journal &key until anyway) &body body)
-  "Run BODY in a fresh headless simulation in which JOURNAL (a journal or a file that holds one)
-has been repeated, up to the tick UNTIL or its end, with robots and parameters bound as in
-WITH-SIMULATION: a run can be rewound so, and go on differently. Commands are repeated without
-their continuations. Return the values of BODY. Signals DAMAGED-JOURNAL, WRONG-ARGUMENT for a tick
-beyond its end, UNKNOWN-NAME when the world is not loaded, and DIFFERENT-DEFINITIONS when what is
-loaded is not what the run was recorded with, unless ANYWAY is true."
+  "Run BODY in a fresh headless simulation in which JOURNAL (a journal or a file that holds one) has
+been repeated, up to the tick UNTIL or its end, with robots and parameters bound as in
+WITH-SIMULATION: a run can be rewound so, and go on differently. At UNTIL, what was asked for or
+changed when that tick had passed, also by continuations, has not happened. Commands are repeated
+without their continuations. Return the values of BODY. Signals DAMAGED-JOURNAL, WRONG-ARGUMENT
+for a tick beyond its end, UNKNOWN-NAME when the world is not loaded, and DIFFERENT-DEFINITIONS
+when what is loaded is not what the run was recorded with, unless ANYWAY is true."
   `(call-with-replay (lambda () ,@body) ,journal :until ,until :anyway ,anyway))
 
 (addition replay)

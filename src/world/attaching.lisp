@@ -6,6 +6,12 @@
   "Return the kicker called NAME on THING, as attached, or NIL."
   (find name (thing-kickers thing) :key #'attachment-name :test #'same-name-p))
 
+(defun detached-kicker (thing name)
+  "Return what stands for a kicker called NAME that was on THING, as attached, and is no more."
+  (let ((attachment (make-attachment (make-kicker name) thing)))
+    (setf (attachment-alive-p attachment) nil)
+    attachment))
+
 (defun detach-kicker (thing name)
   "Take the kicker called NAME, if any, from THING."
   (let ((attachment (find-attachment thing name)))

@@ -74,6 +74,7 @@
   (:export #:kicker #:kicker-p #:kicker-name #:kicker-prob #:defkicker #:define-kicker #:find-kicker
            #:all-kickers #:set-kicker #:put-kicker #:call-put-kicker #:run-kicker
            #:run-kickers #:kick-thing
-           #:find-attachment #:attachment #:attachment-kicker #:attachment-thing #:self)
+           #:find-attachment #:detached-kicker
+           #:attachment #:attachment-kicker #:attachment-thing #:self)
   ;; check
   (:export #:world-invariant-violations))

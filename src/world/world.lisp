@@ -64,7 +64,9 @@ WORLD-THING-LIST leaves those out" :part)
 (addition world-dice)
 (defun world-dice (world purpose)
   "Return the dice of WORLD for PURPOSE: :motion, :odometry, :place, :looking, :tracking,
-:handling, :kickers, :manipulations or :user."
+:handling, :kickers, :manipulations or :user. Users roll those for :user, and only in what runs
+within ticks: kickers, manipulations and events. What is rolled outside, as in continuations and
+plans, is not repeated when a journal is replayed."
   (the dice (svref (world-dice-set world)
                    (ecase purpose
                      (:motion 0) (:odometry 1) (:place 2) (:looking 3) (:tracking 4)
