@@ -136,11 +136,12 @@ a container or in a bin, and within reach. False of places."
          (multiple-value-bind (x y) (designator-position designator)
            (and x (within-reach-p (designator-robot designator) x y))))))
 
-;;; In a journal: also one that has been dropped can be named.
+;;; In a journal: also one that has been dropped can be named, perhaps in a run before this one,
+;;; whose serial numbers are given again. So it has none.
 
 (defmethod reference ((designator designator))
   (list :designator (string (robot-name (designator-robot designator)))
-        (designator-serial designator)
+        (if (designator-valid-p designator) (designator-serial designator) -1)
         (designator-number designator)
         (designator-type designator)))
 

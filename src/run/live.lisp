@@ -17,11 +17,12 @@
 runs live already, WRONG-ARGUMENT for a rate that is neither a positive number nor :FREE."
   (check-not-over simulation 'start-clock)
   (check-parameters)
-  (start-pacing (simulation-timeline simulation)
-                (lambda () (tick simulation))
-                (lambda () (idle-p simulation))
-                rate
-                (lambda (function) (call-as-owner simulation function)))
+  (with-lock ((timeline-lock (simulation-timeline simulation)))
+    (start-pacing (simulation-timeline simulation)
+                  (lambda () (tick simulation))
+                  (lambda () (idle-p simulation))
+                  rate
+                  (lambda (function) (call-as-owner simulation function))))
   simulation)
 
 (defun stop-clock (simulation)
@@ -97,8 +98,9 @@ One whose map or definition has been replaced means the robot that is called so 
 
 (defun restart-world (world seed)
   "Make WORLD and its robots what they were at the start, with a timeline and run of their own."
-  (reset-world world :seed seed)
-  (setf (world-timeline world) (make-timeline (map-name (world-map world))))
+  (with-lock ((timeline-lock (world-timeline world)))
+    (writing (world) (reset-world world :seed seed))
+    (setf (world-timeline world) (make-timeline (map-name (world-map world)))))
   (world-simulation world))
 
 (defun fresh-p (simulation journal)

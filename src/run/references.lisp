@@ -112,10 +112,10 @@ SIMULATION, which BODY may refer to."
 (define-dereference :odometer (robot name)
   (robot-odometer (robot-in simulation robot) name))
 
-;; One that had been dropped when the journal was told of it is made up.
 (define-dereference :recipe (name attributes contents kickers)
   (make-recipe name attributes contents :kickers kickers))
 
+;; One that had been dropped when the journal was told of it is made up.
 (define-dereference :designator (name serial number type)
   (let ((robot (robot-in simulation name)))
     (or (serial-designator robot serial)

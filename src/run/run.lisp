@@ -78,12 +78,13 @@
 
 ;;; Making.
 
-(defun make-simulation (world)
-  "Return a new simulation of WORLD, which has a timeline, instead of any that it had before."
+(defun make-simulation (world &optional (prepare (constantly nil)))
+  "Return a new simulation of WORLD, which has a timeline, instead of any that it had before. No
+other thread can find it before PREPARE, a function, has been called with it."
   (let* ((timeline (world-timeline world))
          (simulation (%make-simulation timeline world)))
-    (setf (timeline-run timeline) simulation)
-    simulation))
+    (funcall prepare simulation)
+    (setf (timeline-run timeline) simulation)))
 
 (defun headless-p (simulation)
   "True if SIMULATION is one of WITH-SIMULATION: not of the world that top-level code works in."

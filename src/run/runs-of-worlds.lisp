@@ -22,10 +22,9 @@ the first to need one."
     (or (timeline-run timeline)
         (with-lock (*simulations-lock*)
           (or (timeline-run timeline)
-              (let ((simulation (make-simulation world)))
-                (setf (simulation-messages simulation) (residents-queue))
-                (begin-journal simulation)
-                simulation))))))
+              (make-simulation world (lambda (simulation)
+                                       (setf (simulation-messages simulation) (residents-queue))
+                                       (begin-journal simulation))))))))
 
 (defun resident-simulation (map)
   "Return the simulation of the resident world of MAP, or of the map so named."

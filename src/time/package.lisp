@@ -16,6 +16,7 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
   ;; timeline
   (:export #:timeline #:make-timeline #:timeline-p #:timeline-of #:timeline-name #:timeline-tick
            #:timeline-agenda #:timeline-run #:timeline-over #:timeline-thread
+           #:timeline-lock
            #:timeline-ticking-p #:timeline-passing-p #:timeline-notifications
            #:timeline-inbox #:timeline-pacing #:check-not-over
            #:*simulation* #:current-simulation

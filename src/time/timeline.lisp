@@ -28,6 +28,7 @@
    (thread nil t "the thread that paces the timeline, or NIL")
    (wake-up (make-semaphore "timeline") t "what that thread waits on while it sleeps")
    (asleep-p nil boolean "that thread sleeps")
+   (lock (make-lock "timeline") t "held by whoever changes what no thread paces")
    (pacing nil t "how the timeline is paced, or NIL")))
 
 (document-functions
