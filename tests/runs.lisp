@@ -323,3 +323,11 @@
             journal (run:simulation-journal time:*simulation*)))
     (is (= digest (nth-value 1 (run:replay journal))))
     (is (= digest (nth-value 1 (run:replay journal :until (run:journal-end journal)))))))
+
+(test journal.knows-designators-of-earlier-runs-as-dropped
+  (with-pony (:journal t)
+    (let ((old (robot:make-designator :robot pony :serial 0 :number 0 :valid-p nil)))
+      (command:camera-track (elt (robot:robot-cameras pony) 0) old (constantly nil))
+      (run:run-ticks 1)
+      ;; In a replay its reference must not mean the designator that has its number by then.
+      (is (equal '(-1 0) (subseq (ars-magna.base:reference old) 2 4))))))
