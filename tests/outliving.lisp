@@ -352,3 +352,17 @@ far these have come to the east."
       (run:simulator 'shrew :rate :free :display nil)
       (is-true (goes-on-p (live-shrew)))
       (is-true (replays-p (progn (run:stop-simulator) time:*simulation*))))))
+
+(test changes.of-what-has-been-destroyed-are-nobodys-business
+  "They are made, and are not in the journal, where nothing would be called so."
+  (with-shrew (:journal t)
+    (let ((thing (world:make-new-thing 'twig '(dell 2 2) '())))
+      (world:destroy-thing thing)
+      (let ((count (length (run:journal-entries (run:simulation-journal time:*simulation*)))))
+        (world:set-attribute thing :size 3)
+        (world:change-attribute thing '((:color world:red)))
+        (world:put-kicker nag (it thing) (:prob 1) (world:kick-thing it 1 0 nil))
+        (is (= 3 (world:get-attribute thing :size)))
+        (is (= count (length (run:journal-entries (run:simulation-journal time:*simulation*)))))
+        (run:run-ticks 3)
+        (is-true (replays-p time:*simulation*))))))
