@@ -10,7 +10,7 @@
   :components
   ((:module "src/base" :serial t
     :components ((:file "package") (:file "policy") (:file "public")
-                 (:file "floats") (:file "globals") (:file "atomic") (:file "classes")
+                 (:file "floats") (:file "numbers") (:file "globals") (:file "atomic") (:file "classes")
                  (:file "packages") (:file "files") (:file "processes") (:file "backtraces")
                  (:file "environments")
                  (:file "conditions") (:file "threads") (:file "dice") (:file "names")
@@ -170,7 +170,8 @@
                  (:file "homes")
                  (:file "listings") (:file "listings-places") (:file "listings-sensing")
                  (:file "listings-programs") (:file "listings-plans")
-                 (:file "src-readme") (:file "architecture") (:file "isolation") (:file "main"))))
+                 (:file "src-readme") (:file "architecture")
+                 (:file "hostile-numbers") (:file "isolation") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
              (symbol-call :ars-magna.tests :run-all)))

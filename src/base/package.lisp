@@ -20,6 +20,9 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:public #:addition #:addition-p #:public-symbols #:*marking-p*)
   ;; floats, globals
   (:export #:finite-p #:double-to-bits #:bits-to-double #:global-value #:define-global)
+  ;; numbers
+  (:export #:+largest+ #:+largest-quantity+ #:within-reason-p #:quantity-p #:amount-p
+           #:probability-p #:tick-span-p #:whole-p)
   ;; atomic
   (:export #:atomic-count #:compare-and-swap #:swap-if #:atomic-push #:atomic-incf #:atomic-decf
            #:memory-barrier)
@@ -36,7 +39,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:local-function-p #:known-function-p #:macro-expander #:lisps-macro-p
            #:extended-environment #:nested-p #:evaluate-form #:form-behind-comma #:walk-form)
   ;; conditions
-  (:export #:ars-magna-error #:wrong-argument #:check-argument #:malformed-definition
+  (:export #:ars-magna-error #:wrong-argument #:check-argument #:reject-argument
+           #:malformed-definition
            #:malformed-definition-place
            #:definition-warning #:definition-warning-text #:warn-of-definition
            #:unknown-name #:plain-name #:misuse #:reject-use)

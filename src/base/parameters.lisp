@@ -66,8 +66,9 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
         (t (format nil "a value of type ~(~S~)" type))))
 
 (defun check-parameter-value (parameter value)
-  (unless (and (typep value (parameter-type parameter))
-               (or (not (realp value)) (finite-p value)))
+  ;; Of a number that is none not even the type can be asked.
+  (unless (and (or (not (realp value)) (finite-p value))
+               (typep value (parameter-type parameter)))
     (error 'wrong-argument :operator "set parameter" :name (parameter-name parameter)
                            :value value
                            :expected (describe-type (parameter-type parameter)))))

@@ -39,9 +39,9 @@ is not the current one out here, its parameters."
 
 (addition run-ticks)
 (defun run-ticks (count &optional (simulation (current-simulation)))
-  "Pass COUNT ticks of the headless SIMULATION. Return the tick then reached. Signals
+  "Pass COUNT ticks of the headless SIMULATION, at most 1e9. Return the tick then reached. Signals
 WRONG-ARGUMENT, and MISUSE if SIMULATION runs live or is inside a tick."
-  (check-argument run-ticks count (typep count '(integer 0)) "a number of ticks, 0 or more")
+  (check-of-type 'run-ticks 'count count 'tick-span)
   (check-headless simulation 'run-ticks)
   (check-not-over simulation 'run-ticks)
   (when (or (simulation-ticking-p simulation)
@@ -68,7 +68,7 @@ true, but at most LIMIT. Return what it returned and the tick reached; NIL means
 (defun step-ticks (&optional (count 1) (simulation (current-simulation)))
   "Pass COUNT ticks and then pause. A headless SIMULATION has passed them on return; a live one
 passes them at its pace. Returns nothing."
-  (check-argument step-ticks count (typep count '(integer 1)) "a number of ticks, 1 or more")
+  (check-argument step-ticks count (whole-p count 1) "a whole number of ticks, from 1 to 1e9")
   (if (live-p simulation)
       (let-pass count simulation)
       (run-ticks count simulation))

@@ -114,8 +114,8 @@
 (defun start-pacing (timeline tick idle-p rate caller)
   "Let a new thread pass ticks of TIMELINE at RATE by calling TICK, as long as IDLE-P is false, both
 functions of no arguments. The thread works inside CALLER, a function of a function that calls it.
-Signals MISUSE if it is live already, WRONG-ARGUMENT for a rate that is neither a positive number
-nor :FREE."
+Signals MISUSE if it is live already, WRONG-ARGUMENT for a rate that is neither a number from
+0.001 to 1000000 nor :FREE."
   (check-rate rate)
   (when (live-p timeline) (reject-use "~A runs live already." (timeline-name timeline)))
   (let ((started (make-semaphore "started"))
@@ -152,10 +152,13 @@ nor :FREE."
 
 ;;; Steering.
 
+(define-argument-type 'rate
+  (lambda (value) (or (eq value :free) (and (finite-p value) (<= 1/1000 value 1000000))))
+  "a number of ticks per second, from 0.001 to 1000000, or :free")
+
 (defun check-rate (rate)
-  "Signal WRONG-ARGUMENT unless RATE is a positive number or :FREE."
-  (check-argument rate rate (or (eq rate :free) (and (realp rate) (plusp rate)))
-                  "a positive number of ticks per second, or :free"))
+  "Signal WRONG-ARGUMENT unless RATE can be the pace of a clock."
+  (check-of-type 'set-rate 'rate rate 'rate))
 
 (defun steer (simulation &key (rate nil rate-p) (paused-p nil paused-p-p) steps)
   "Change how SIMULATION is paced, and wake it. Without effect if it never ran live."
@@ -183,8 +186,8 @@ nor :FREE."
 
 (addition set-rate)
 (defun set-rate (rate &optional (simulation (current-simulation)))
-  "Set the pace of SIMULATION to RATE, ticks per second or :FREE. Returns RATE. Signals
-WRONG-ARGUMENT."
+  "Set the pace of SIMULATION to RATE, from 0.001 to 1000000 ticks per second, or :FREE. Returns
+RATE. Signals WRONG-ARGUMENT."
   (check-rate rate)
   (steer simulation :rate rate)
   rate)

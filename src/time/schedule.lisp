@@ -63,10 +63,8 @@
   "Ask for an event that calls FUNCTION. See SCHEDULE, of which this is the function. Returns
 nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
   (check-argument schedule priority (typep priority 'fixnum) "an integer")
-  (check-argument schedule timer (typep timer `(integer 0 ,+longest-delay+))
-                  "a number of ticks, from 0 to 2^59")
-  (check-argument schedule timeout (typep timeout `(or null (integer 0 ,+longest-delay+)))
-                  "a number of ticks, from 0 to 2^59")
+  (check-of-type 'schedule 'timer timer 'tick-span)
+  (when timeout (check-of-type 'schedule 'timeout timeout 'tick-span))
   (post (make-scheduled function resource priority interrupt when timeout timer) simulation))
 
 ;; Only in memory: a function cannot be written to a file.
@@ -88,10 +86,10 @@ nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an 
 now. On a resource that has an event, the one with the higher :PRIORITY (an integer, default 0)
 stays, of equal ones the first; the form INTERRUPT is evaluated if this event loses. With the
 form WHEN, the event happens in the first tick from then on in which WHEN is true, at most
-TIMEOUT ticks from now; then it evaporates. Both forms, like BODY, run inside ticks. Resources that
-are EQUAL are the same. What is asked of a resource, by commands too, is taken in the order of
-asking, at the start of the next tick; a command has the priority 0, and takes over whatever is
-there. Returns nothing (manual 3.8). See reading 7."
+TIMEOUT ticks from now; then it evaporates. TIMER and TIMEOUT are integers from 0 to 1e9. INTERRUPT
+and WHEN, like BODY, run inside ticks. Resources that are EQUAL are the same. What is asked of a
+resource, by commands too, is taken in the order of asking, at the start of the next tick; a command
+has the priority 0, and takes over whatever is there. Returns nothing (manual 3.8). See reading 7."
   `(call-scheduled (lambda () ,@body) ,resource
                    :priority ,(or priority 0)
                    :timer ,(or timer 1)

@@ -73,8 +73,7 @@ REBUILD-MAP. Signals MALFORMED-DEFINITION. Return the name."
                      (lambda () (place-type-forms name lambda-list options))))
 
 (defun check-place-type (definition confusion rules)
-  (unless (typep confusion '(real 0 1))
-    (reject-clause definition (list :confusion confusion) "a probability from 0 to 1"))
+  (check-probability definition :confusion confusion)
   (when (> (length rules) 255)
     (reject-clause definition (list :check-matchers '|...|) "at most 255 matchers")))
 
