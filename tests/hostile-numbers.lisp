@@ -223,7 +223,9 @@ what went wrong after it."
   (run:with-simulation (counter)
     (dolist (number (list* *no-number* *infinities*))
       (signals base:wrong-argument (world:set-attribute (bead) :luck number)))
-    (is (= (expt 10 400) (world:set-attribute (bead) :luck (expt 10 400))))))
+    (dolist (number (list (expt 10 400) (+ 1/3 (expt 10 400)) #c(1 2)))
+      (is (= number (world:set-attribute (bead) :luck number)))
+      (is (integerp (run:state-digest))))))
 
 (test numbers.runs-use-or-refuse
   (check-calls
@@ -257,4 +259,5 @@ what went wrong after it."
             (eval `(world:defattribute :luck-of-n (a b) :success ',n))
             (eval `(world:defkicker kick-of-n (thing) (:prob ',n)))
             (eval `(world:def-place-type spot-of-n (cell)
-                      :check-matchers ((((-)) 1)) :confusion ',n))))))
+                      :check-matchers ((((-)) 1)) :confusion ',n))
+            (eval `(world:def-place-type spot-of-n (cell) :check-matchers ((((-)) ',n))))))))
