@@ -16,7 +16,7 @@
                  (:file "conditions") (:file "threads") (:file "dice") (:file "names")
                  (:file "digest") (:file "sources") (:file "variables") (:file "definitions")
                  (:file "registry") (:file "own-definitions")
-                 (:file "messages") (:file "user-code")
+                 (:file "messages") (:file "askers") (:file "user-code")
                  (:file "parameters") (:file "physics")
                  (:file "kinds") (:file "digesting") (:file "copying")
                  (:file "argument-types") (:file "operators")))
@@ -41,7 +41,7 @@
                  (:file "new-thing")
                  (:file "kicking") (:file "defmap") (:file "check")))
    (:module "src/time" :serial t
-    :components ((:file "package") (:file "resource") (:file "request") (:file "agenda")
+    :components ((:file "package") (:file "resource") (:file "request") (:file "agenda") (:file "interruptions")
                  (:file "timeline") (:file "pacing") (:file "schedule")))
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "blueprint") (:file "parts") (:file "odometer")
@@ -54,7 +54,8 @@
                  (:file "scanning") (:file "views") (:file "tending")))
    (:module "src/command" :serial t
     :components ((:file "package") (:file "command")
-                 (:file "operation") (:file "define-command") (:file "turning")
+                 (:file "operation") (:file "ownership") (:file "define-command")
+                 (:file "turning")
                  (:file "places") (:file "driving") (:file "following")
                  (:file "handling") (:file "hands") (:file "inserting") (:file "bins")
                  (:file "patterns") (:file "manipulations") (:file "manipulating")
@@ -171,7 +172,7 @@
                  (:file "listings") (:file "listings-places") (:file "listings-sensing")
                  (:file "listings-programs") (:file "listings-plans")
                  (:file "src-readme") (:file "architecture")
-                 (:file "hostile-numbers") (:file "isolation") (:file "main"))))
+                 (:file "hostile-numbers") (:file "ownership") (:file "isolation") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
              (symbol-call :ars-magna.tests :run-all)))

@@ -121,10 +121,11 @@ comes of earlier lines if the session waits for that."
            (show-messages session)))
 
 (defun call-with-syntax (function)
-  "Call FUNCTION with the package and syntax in which users write."
+  "Call FUNCTION with the package and syntax in which users write, in the name of the prompt."
   (let ((*package* (user-package))
         (*readtable* *readtable*)
-        (*read-default-float-format* 'double-float))
+        (*read-default-float-format* 'double-float)
+        (*asker* "the prompt"))
     (nisp:in-readtable :nisp)
     (funcall function)))
 

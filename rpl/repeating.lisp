@@ -12,8 +12,8 @@ before the first turn, 1 while the body runs and 2 between turns; DATA is how ma
 
 (defun checked-count (count)
   "Return COUNT, of turns: a number, or NIL for as many as it takes. Signals WRONG-ARGUMENT."
-  (check-argument n-times count (or (null count) (within-reason-p count))
-                  "a number of turns, from -1e9 to 1e9")
+  (check-argument n-times count (or (null count) (quantity-p count))
+                  "a number of turns, from -1e15 to 1e15")
   count)
 
 (defun step-turns (node task frame value)
@@ -59,7 +59,7 @@ before the first turn, 1 while the body runs and 2 between turns; DATA is how ma
 (addition n-times)
 (defmacro n-times (count &body body)
   "Run BODY in a plan COUNT times, one turn after the other. BODY may start with UNTIL or WHILE and
-a test made before each turn. COUNT is a number up to 1e9. Return NIL."
+a test made before each turn. COUNT is a number up to 1e15. Return NIL."
   (misplaced 'n-times `(,count ,@body)))
 
 (define-plan-form "N-TIMES" :must (count &rest forms) (form scope)

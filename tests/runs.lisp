@@ -112,7 +112,7 @@
   (with-pony ()
     (signals base:wrong-argument (time:schedule ('x :timer (expt 10 30)) nil))
     (signals base:wrong-argument (time:schedule ('x :timeout (expt 10 30) :when nil) nil))
-    (setf base:robot-turn-delay* most-positive-fixnum)
+    (setf base:robot-turn-delay* (expt 10 9))
     (command:robot-turn pony 1)
     (run:run-ticks 5)
     (is (= 1 (time:agenda-pending (run:simulation-agenda time:*simulation*))))))

@@ -44,7 +44,7 @@ wrong with VALUE."
 (define-argument-type 'ticks #'within-reason-p "a number of ticks, from -1e9 to 1e9")
 (define-argument-type 'tick-span #'tick-span-p "a whole number of ticks, from 0 to 1e9")
 (define-argument-type 'quantity #'quantity-p "a number from -1e15 to 1e15")
-(define-argument-type 'amount #'amount-p "a number from 0 to 1e15")
+(define-argument-type 'amount #'amount-p "a number not below 0, up to 1e15")
 (define-argument-type 'probability #'probability-p "a probability from 0 to 1")
 (define-argument-type 'integer #'integerp "a whole number")
 (define-argument-type 'truth (constantly t) "anything, of which NIL is false")

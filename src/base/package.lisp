@@ -47,7 +47,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; threads
   (:export #:make-lock #:with-lock #:make-semaphore #:signal-semaphore #:wait-on-semaphore
            #:start-thread #:join-thread #:thread-alive-p #:current-thread #:yield-thread
-           #:spread-specials)
+           #:thread-name #:spread-specials)
   ;; dice
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance)
@@ -74,6 +74,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:*message-queue* #:make-message-queue #:message-queue #:message-queue-listener
            #:message #:message-kind #:message-items #:take-messages #:message-text
            #:write-message #:write-items #:out #:*message-limit*)
+  ;; askers
+  (:export #:*asker* #:asker-note #:note-of-asker #:note-text)
   ;; user code
   (:export #:call-user-code #:*break-on-user-error*)
   ;; parameters

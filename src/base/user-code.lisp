@@ -26,4 +26,5 @@ message saying that it came from ORIGIN (an item or list of items) and return NI
              (when *break-on-user-error* (invoke-debugger condition))
              (report-user-error condition origin)
              (return nil))))
-      (apply function arguments))))
+      (let ((*asker* origin))
+        (apply function arguments)))))

@@ -17,7 +17,7 @@
   `(check-argument ,operator ,place (finite-p ,place) +finite-text+))
 
 (defmacro within-floats ((operator operand) &body body)
-  "Evaluate BODY. Signal WRONG-ARGUMENT about the variable OPERAND if a number gets too large in it."
+  "Evaluate BODY. Signal WRONG-ARGUMENT about OPERAND, a variable, if a number overflows."
   `(handler-case (progn ,@body)
      (floating-point-overflow ()
        (reject-argument ',operator ',operand ,operand

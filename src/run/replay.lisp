@@ -46,7 +46,8 @@ definitions than those at hand."
         (let ((operator (find-operator name))
               (arguments (internalize arguments simulation)))
           (check-operands operator arguments)
-          (apply (operator-function operator) arguments))
+          (let ((*asker* "the journal"))
+            (apply (operator-function operator) arguments)))
       (error (trouble)
         (reject-use "The journal cannot be replayed: its ~A: ~A."
                     (entry-text entry number) (one-line-text trouble))))))

@@ -54,7 +54,9 @@
          (rival (and resource (pending-event agenda resource))))
     (cond ((and rival (>= (event-priority rival) (event-priority event)))
            (interrupt-scheduled event))
-          (t (when rival (interrupt-event agenda rival))
+          (t (when rival
+               (note-interruption rival event (1+ (agenda-tick agenda)))
+               (interrupt-event agenda rival))
              (enter event agenda)))))
 
 (defun call-scheduled (function resource
@@ -112,7 +114,11 @@ a tick, by the owner. A layer that adds background activities adds a method.")
     "That a resource, the only argument, is to be taken from whatever occupies it.")
 
 (defmethod perform ((grab grab) timeline)
-  (release-resource (first (request-arguments grab)) timeline))
+  (let* ((resource (first (request-arguments grab)))
+         (agenda (timeline-agenda timeline))
+         (event (pending-event agenda resource)))
+    (when event (note-interruption event grab (1+ (agenda-tick agenda))))
+    (release-resource resource timeline)))
 
 (public grab-resource)
 (defun grab-resource (resource &optional (simulation (current-simulation)))

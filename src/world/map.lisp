@@ -146,14 +146,17 @@ outside (reading 51)."
     (or (null index) (logtest +wall+ (aref (map-flags map) index)))))
 
 (defun check-point (operator x y)
-  "Signal WRONG-ARGUMENT, by OPERATOR, unless X and Y can be coordinates."
-  (unless (within-reason-p x) (check-of-type operator 'x x 'number))
-  (unless (within-reason-p y) (check-of-type operator 'y y 'number)))
+  "Signal WRONG-ARGUMENT, by OPERATOR, unless X and Y are coordinates of a point, be it far away."
+  (flet ((check (name value)
+           (unless (finite-p value)
+             (reject-argument operator name value "a real number, from -1.7e308 to 1.7e308"))))
+    (check 'x x)
+    (check 'y y)))
 
 (addition wall-at-p)
 (defun wall-at-p (map x y)
   "True if the point (X, Y) of MAP, in metres, is in a wall or outside the map. Signals
-WRONG-ARGUMENT unless X and Y are numbers from -1e9 to 1e9."
+WRONG-ARGUMENT."
   (check-point 'wall-at-p x y)
   (let ((index (map-index map x y)))
     (or (null index) (logtest +wall+ (aref (map-flags map) index)))))
@@ -179,7 +182,8 @@ WRONG-ARGUMENT unless X and Y are numbers from -1e9 to 1e9."
   "Return the cell of MAP that holds the point (X, Y), in metres; it may be outside the map. Signals
 WRONG-ARGUMENT unless X and Y are numbers from -1e9 to 1e9."
   (check-argument map-cell map (map-p map) "a map")
-  (check-point 'map-cell x y)
+  (check-of-type 'map-cell 'x x 'number)
+  (check-of-type 'map-cell 'y y 'number)
   (make-cell map (floor x) (floor y)))
 
 (defun cell-index-in-map (cell)

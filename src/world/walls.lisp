@@ -97,7 +97,7 @@ against the edges, is the edges."
     (unless (and (number-pair-p center) (finite-p radius) (<= 0 radius)
                  type (symbolp type) (quantity-p parameter) (null others))
       (reject-clause definition clause
-                     "(circle (x y) radius substance parameter), numbers to 1e15, radius from 0"))))
+                     "(circle (x y) radius substance parameter), numbers, radius not below 0"))))
 
 ;;; Building.
 
