@@ -10,7 +10,7 @@
   :components
   ((:module "src/base" :serial t
     :components ((:file "package") (:file "policy") (:file "public")
-                 (:file "floats") (:file "numbers") (:file "globals") (:file "atomic") (:file "classes")
+                 (:file "floats") (:file "numbers") (:file "globals") (:file "tables") (:file "atomic") (:file "classes")
                  (:file "packages") (:file "files") (:file "processes") (:file "backtraces")
                  (:file "environments")
                  (:file "conditions") (:file "threads") (:file "dice") (:file "names")
@@ -18,7 +18,7 @@
                  (:file "registry") (:file "own-definitions")
                  (:file "messages") (:file "askers") (:file "user-code")
                  (:file "parameters") (:file "physics")
-                 (:file "kinds") (:file "digesting") (:file "copying")
+                 (:file "kinds") (:file "digesting") (:file "copying") (:file "given")
                  (:file "argument-types") (:file "operators")))
    (:module "src/geometry" :serial t
     :components ((:file "package") (:file "types") (:file "operands") (:file "points")
@@ -172,7 +172,8 @@
                  (:file "listings") (:file "listings-places") (:file "listings-sensing")
                  (:file "listings-programs") (:file "listings-plans")
                  (:file "src-readme") (:file "architecture")
-                 (:file "hostile-numbers") (:file "ownership") (:file "isolation") (:file "main"))))
+                 (:file "hostile-numbers") (:file "ownership") (:file "users-hands")
+                 (:file "isolation") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
              (symbol-call :ars-magna.tests :run-all)))

@@ -107,7 +107,7 @@ return NIL (manual C). TIMEOUT is a number up to 1e15."
 (public wait-time)
 (defmacro wait-time (span &key (unit :ticks))
   "Wait in a plan for SPAN, counted in ticks, or in seconds if UNIT is
-:seconds (manual D.4; reading 90). SPAN is a number up to 1e15; if it is 0 or less, the plan does not
+:seconds (manual D.4; reading 90). SPAN is a number up to 1e15; with 0 or less, the plan does not
 wait."
   (misplaced 'wait-time (list span :unit unit)))
 

@@ -17,9 +17,10 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:*hot* #:compiler-note #:declaim-final #:double #:cell-index #:tick-count
            #:document-functions)
   ;; public
-  (:export #:public #:addition #:addition-p #:public-symbols #:*marking-p*)
+  (:export #:public #:addition #:settable #:settable-p #:addition-p #:public-symbols #:*marking-p*)
   ;; floats, globals
-  (:export #:finite-p #:double-to-bits #:bits-to-double #:global-value #:define-global)
+  (:export #:finite-p #:double-to-bits #:bits-to-double #:global-value #:define-global
+           #:define-table-test)
   ;; numbers
   (:export #:+largest+ #:+largest-quantity+ #:within-reason-p #:quantity-p #:amount-p
            #:probability-p #:tick-span-p #:whole-p)
@@ -108,7 +109,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:kind-slot-name #:kind-slot-role #:kind-slot-type #:kind-slot-text #:kind-slot-part-p
            #:kind-slot-reader
            #:kind-slot-writer #:object-slots #:reset #:reference #:digest-state #:digest-mention
-           #:copy-running #:make-copy-table #:copied)
+           #:copy-running #:make-copy-table #:copied #:given)
   ;; argument-types, operators
   (:export #:define-argument-type #:argument-type-text #:argument-of-type-p #:find-argument-type
            #:check-of-type #:operator-name #:operator-function #:operator-types

@@ -74,6 +74,7 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
                            :expected (describe-type (parameter-type parameter)))))
 
 (addition parameter-value)
+(settable parameter-value)
 (defun parameter-value (parameter)
   "Return the value that PARAMETER (or the parameter so named) has now. Can be set; signals
 WRONG-ARGUMENT if the new value is of the wrong type or out of range."

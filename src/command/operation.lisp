@@ -202,9 +202,12 @@ and has only just been issued is carried out first, anything else is interrupted
   (if (robot-p resource) resource (part-robot resource)))
 
 (defun issue (command resource arguments continuation)
-  "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked; CONTINUATION may be NIL.
-Return nothing: the command takes effect in the next tick. Signals MISUSE if the robot's run is
-over."
+  "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked and of which lists are copied;
+CONTINUATION may be NIL. Return nothing: the command takes effect in the next tick. Signals MISUSE
+if the robot's run is over."
   (check-in-run resource (command-name command))
-  (let ((timeline (world-timeline (robot-world (resource-robot resource)))))
+  (let ((timeline (world-timeline (robot-world (resource-robot resource))))
+        (arguments (if (some #'consp arguments)
+                       (given (command-name command) "arguments" arguments)
+                       arguments)))
     (post (make-operation command resource arguments continuation timeline) timeline)))

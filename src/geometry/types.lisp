@@ -43,6 +43,7 @@ way. Written (make PT X Y) in Nisp. Signals WRONG-ARGUMENT."
   (%make-pt (double x) (double y)))
 
 (addition pt-x)
+(settable pt-x)
 (defun pt-x (pt)
   "Return the horizontal coordinate of PT, in metres. Can be set."
   (%pt-x pt))
@@ -52,6 +53,7 @@ way. Written (make PT X Y) in Nisp. Signals WRONG-ARGUMENT."
   (setf (%pt-x pt) (double x)))
 
 (addition pt-y)
+(settable pt-y)
 (defun pt-y (pt)
   "Return the vertical coordinate of PT, in metres, growing downward. Can be set."
   (%pt-y pt))
@@ -93,6 +95,7 @@ error. Written (make INTERVAL MIN MAX) in Nisp. Signals WRONG-ARGUMENT."
   (%make-interval (double min) (double max)))
 
 (addition interval-min)
+(settable interval-min)
 (defun interval-min (interval)
   "Return the lower bound of INTERVAL. Can be set, not above the upper bound."
   (%interval-min interval))
@@ -103,6 +106,7 @@ error. Written (make INTERVAL MIN MAX) in Nisp. Signals WRONG-ARGUMENT."
   (setf (%interval-min interval) (double min)))
 
 (addition interval-max)
+(settable interval-max)
 (defun interval-max (interval)
   "Return the upper bound of INTERVAL. Can be set, not below the lower bound."
   (%interval-max interval))
@@ -162,12 +166,14 @@ interval that holds only it. Written (make PT-INTERVAL A B) in Nisp. See reading
 (declaim (inline pt-interval-x pt-interval-y))
 
 (addition pt-interval-x)
+(settable pt-interval-x)
 (defun pt-interval-x (pt-interval)
   "Return the INTERVAL along x of PT-INTERVAL, its own: changing it changes PT-INTERVAL. Setting
 it copies the bounds of an interval."
   (%pt-interval-x pt-interval))
 
 (addition pt-interval-y)
+(settable pt-interval-y)
 (defun pt-interval-y (pt-interval)
   "Return the INTERVAL along y of PT-INTERVAL, its own: changing it changes PT-INTERVAL. Setting
 it copies the bounds of an interval."
@@ -227,7 +233,8 @@ is its own copy (manual 3.2.1; reading 234)."
 (public equal)
 (defun equal (a b)
   "True if A and B are the same PT, INTERVAL or PT-INTERVAL value, exactly; of anything else, if
-they are CL:EQUAL (manual 3.2.1; reading 30)."
+they are CL:EQUAL (manual 3.2.1; reading 30). It can be the test of a hash table, whose keys must
+not be changed then."
   (typecase a
     (pt (and (pt-p b) (= (%pt-x a) (%pt-x b)) (= (%pt-y a) (%pt-y b))))
     (interval (and (interval-p b)
@@ -237,6 +244,19 @@ they are CL:EQUAL (manual 3.2.1; reading 30)."
                       (equal (%pt-interval-x a) (%pt-interval-x b))
                       (equal (%pt-interval-y a) (%pt-interval-y b))))
     (t (cl:equal a b))))
+
+;; 0 and -0 are the same here, and not to SXHASH.
+(defun hash (object)
+  "Return an integer for OBJECT; what is EQUAL has the same."
+  (flet ((mix (a b) (sxhash (list (+ 0d0 a) (+ 0d0 b)))))
+    (typecase object
+      (pt (mix (%pt-x object) (%pt-y object)))
+      (interval (mix (%interval-min object) (%interval-max object)))
+      (pt-interval (logxor (hash (%pt-interval-x object))
+                           (* 3 (ash (hash (%pt-interval-y object)) -3))))
+      (t (sxhash object)))))
+
+(define-table-test equal hash)
 
 (defun print-value (object stream numbers control &rest parts)
   "Print OBJECT unreadably, as all digits of NUMBERS; for PRINC, its PARTS by CONTROL."

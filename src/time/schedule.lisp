@@ -67,7 +67,9 @@ nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an 
   (check-argument schedule priority (typep priority 'fixnum) "an integer")
   (check-of-type 'schedule 'timer timer 'tick-span)
   (when timeout (check-of-type 'schedule 'timeout timeout 'tick-span))
-  (post (make-scheduled function resource priority interrupt when timeout timer) simulation))
+  (post (make-scheduled function (given 'schedule "resource" resource) priority
+                        interrupt when timeout timer)
+        simulation))
 
 ;; Only in memory: a function cannot be written to a file.
 (defmethod request-entry ((event scheduled))
@@ -124,7 +126,7 @@ a tick, by the owner. A layer that adds background activities adds a method.")
 (defun grab-resource (resource &optional (simulation (current-simulation)))
   "Interrupt the command or event that occupies RESOURCE, and a track that it keeps, at the
 start of the next tick. Returns nothing (manual, figure D.3). See reading 37."
-  (post (make-grab (list resource)) simulation))
+  (post (make-grab (list (given 'grab-resource "resource" resource))) simulation))
 
 (define-operator 'grab '(datum) #'grab-resource)
 

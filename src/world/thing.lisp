@@ -106,9 +106,10 @@ false, always can."
           (substance-value-parameter (get-attribute thing :substance)))))
 
 (public get-attribute)
+(settable get-attribute)
 (defun get-attribute (thing attribute)
   "Return the value of ATTRIBUTE, a keyword, of THING, or NIL if it is unspecified. Can be set,
-which is SET-ATTRIBUTE (manual 5.3)."
+which is SET-ATTRIBUTE (manual 5.3). A list is the thing's own: do not alter it, as SORT does."
   (check-argument get-attribute thing (thing-p thing) "a thing")
   (second (assoc (attribute-key attribute) (thing-attributes thing) :test #'eq)))
 
