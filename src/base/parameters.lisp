@@ -38,6 +38,24 @@
 (define-registry parameter "simulation parameter"
   :object-p parameter-p :fixed t :aliases #'parameter-aliases)
 
+(defun limit-text (limit)
+  "Return LIMIT, a number, as people read it: 1e9 for a thousand million."
+  (let ((power (and (integerp limit) (>= limit 1000000) (round (log limit 10)))))
+    (if (and power (= limit (expt 10 power)))
+        (format nil "1e~D" power)
+        (princ-to-string limit))))
+
+(defun describe-type (type)
+  "Return TYPE, a parameter's, in words."
+  (cond ((eq type 'boolean) "T or NIL")
+        ((and (consp type) (member (first type) '(real integer)))
+         (format nil "~:[a number~;an integer~]~@[ from ~A~]~@[ to ~A~]"
+                 (eq (first type) 'integer)
+                 (and (second type) (limit-text (second type)))
+                 (and (third type) (limit-text (third type)))))
+        (t (format nil "a value of type ~(~S~)" type))))
+
+;; As numbers have two limits each, so do the types: (real 0 1).
 (defmacro define-parameter (symbol default
                             (&key (unit "") (type t) (kind :limit) (group "") clean addition)
                             sentence)
@@ -46,24 +64,17 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
   `(progn
      (,(if addition 'addition 'public) ,symbol)
      (defvar ,symbol ,default
-       ,(format nil "~A Default ~A~@[ ~A~].~:[ (Manual, chapter 4.)~;~]" sentence
+       ,(format nil "~A Default ~A~@[ ~A~]; ~A.~:[ (Manual, chapter 4.)~;~]" sentence
                 (let ((*read-default-float-format* 'double-float))
                   (princ-to-string (eval default)))
                 (and (string/= unit "") unit)
+                (describe-type type)
                 addition))
      (register
       *parameters* ',symbol
       (make-parameter :symbol ',symbol :default ,default :unit ,unit :type ',type
                       :kind ,kind :clean ,clean :group ,group :sentence ,sentence))
      ',symbol))
-
-(defun describe-type (type)
-  "Return TYPE, a parameter's, in words."
-  (cond ((eq type 'boolean) "T or NIL")
-        ((and (consp type) (member (first type) '(real integer)))
-         (format nil "~:[a number~;an integer~]~@[ from ~A~]~@[ to ~A~]"
-                 (eq (first type) 'integer) (second type) (third type)))
-        (t (format nil "a value of type ~(~S~)" type))))
 
 (defun check-parameter-value (parameter value)
   ;; Of a number that is none not even the type can be asked.
