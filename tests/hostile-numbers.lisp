@@ -236,7 +236,29 @@ what went wrong after it."
           (time:schedule ('x :timer n) 1) (time:schedule ('x :priority n) 1)
           (time:schedule ('x :when nil :timeout n) 1)
           (display:text-map counter :columns n) (display:text-map counter :radius n)
-          (display::svg-picture counter :scale n))))
+          (display::svg-picture counter :scale n)
+          (display::check-animation :svg nil nil n :world '() 8)
+          (display::check-animation :svg nil n 10 :world '() 8)
+          (ars-magna.canvas::check-pen nil n nil))))
+
+(test numbers.of-plans-are-used-or-refused
+  (dolist (number *hostile*)
+    (let ((never (rpl:create-fluent 'never)))
+      (dolist (plan (list (rpl:interp-lambda () (rpl:wait-time number) :done)
+                          (rpl:interp-lambda () (rpl:wait-for never :timeout number) :done)
+                          (rpl:interp-lambda () (rpl:n-times number (return)) :done)))
+        (let ((result (with-messages (rpl:run-plan-alone plan))))
+          (cond ((and (realp number) (not (member number *never*)) (<= (abs number) (expt 10 15)))
+                 (is (eq :done result) "~S: ~A" number result))
+                ((null number))
+                (t (is (typep (rpl:lisp-failure-condition result) 'base:wrong-argument)
+                       "~S: ~A" number result))))))))
+
+(test numbers.of-lines-are-refused-with-their-range
+  (dolist (line '("rate 1d-300" "rate 1d300" "rate 1/100000" "rate 0" "rate -5"))
+    (is (search "from 0.001 to 1000000" (complaint line))))
+  (dolist (line '("turn 1d300" "go-forward 1000000001" "pos 1d10 3" "angle -1d10"))
+    (is (search "from -1e9 to 1e9" (complaint line)))))
 
 (test numbers.definitions-use-or-refuse
   (with-own-definitions

@@ -136,9 +136,19 @@ Returns nothing (manual, chapter 4)."
 
 ;;; A run binds its own.
 
+(defun check-settings (settings)
+  "Signal WRONG-ARGUMENT unless SETTINGS is a list of lists (name value)."
+  (check-argument with-simulation settings
+                  (and (proper-list-p settings)
+                       (loop for setting in settings
+                             always (and (proper-list-p setting) (= 2 (length setting)))))
+                  "a list of lists (name value), such as ((max-speed* 1/2))"))
+
 (defun call-with-parameters (settings function)
-  "Call FUNCTION with every parameter bound: as SETTINGS, a list (name value), says, and as it
-is now where they say nothing. Changes made inside end with the call."
+  "Call FUNCTION with every parameter bound: as SETTINGS, a list of lists (name value), says, and as
+it is now where they say nothing. Changes made inside end with the call. Signals WRONG-ARGUMENT and
+UNKNOWN-NAME."
+  (check-settings settings)
   (let* ((settings (loop for (name value) in settings
                          collect (cons (parameter-symbol (find-parameter name)) value)))
          (symbols (mapcar #'parameter-symbol (registry-objects *parameters*)))
