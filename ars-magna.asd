@@ -10,15 +10,16 @@
   :components
   ((:module "src/base" :serial t
     :components ((:file "package") (:file "policy") (:file "public")
-                 (:file "floats") (:file "globals") (:file "atomic") (:file "classes")
+                 (:file "floats") (:file "numbers") (:file "globals") (:file "tables")
+                 (:file "atomic") (:file "classes")
                  (:file "packages") (:file "files") (:file "processes")
                  (:file "environments") (:file "interrupts") (:file "debuggers")
                  (:file "conditions") (:file "threads") (:file "dice") (:file "names")
                  (:file "digest") (:file "sources") (:file "variables") (:file "definitions")
                  (:file "registry") (:file "own-definitions")
-                 (:file "messages") (:file "user-code")
+                 (:file "messages") (:file "askers") (:file "user-code")
                  (:file "parameters") (:file "physics")
-                 (:file "kinds") (:file "digesting") (:file "copying")
+                 (:file "kinds") (:file "digesting") (:file "copying") (:file "given")
                  (:file "argument-types") (:file "operators")))
    (:module "src/geometry" :serial t
     :components ((:file "package") (:file "types") (:file "operands") (:file "points")
@@ -42,8 +43,9 @@
                  (:file "kicking") (:file "defmap") (:file "check")))
    (:module "src/time" :serial t
     :components ((:file "package") (:file "resource") (:file "request") (:file "agenda")
-                 (:file "custody") (:file "timeline") (:file "asking") (:file "pacing")
-                 (:file "stopping") (:file "hogs") (:file "clock") (:file "schedule")))
+                 (:file "interruptions") (:file "custody") (:file "timeline") (:file "asking")
+                 (:file "pacing") (:file "stopping") (:file "hogs") (:file "clock")
+                 (:file "schedule")))
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "blueprint") (:file "parts") (:file "odometer")
                  (:file "motion")
@@ -55,7 +57,8 @@
                  (:file "scanning") (:file "views") (:file "tending")))
    (:module "src/command" :serial t
     :components ((:file "package") (:file "command")
-                 (:file "operation") (:file "define-command") (:file "turning")
+                 (:file "operation") (:file "ownership") (:file "define-command")
+                 (:file "turning")
                  (:file "places") (:file "driving") (:file "following")
                  (:file "handling") (:file "hands") (:file "inserting") (:file "bins")
                  (:file "patterns") (:file "manipulations") (:file "manipulating")
@@ -171,7 +174,9 @@
                  (:file "homes")
                  (:file "listings") (:file "listings-places") (:file "listings-sensing")
                  (:file "listings-programs") (:file "listings-plans")
-                 (:file "src-readme") (:file "architecture") (:file "isolation") (:file "main"))))
+                 (:file "src-readme") (:file "architecture")
+                 (:file "hostile-numbers") (:file "ownership") (:file "users-hands")
+                 (:file "isolation") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
              (symbol-call :ars-magna.tests :run-all)))
