@@ -170,6 +170,7 @@
                  (:file "homes")
                  (:file "listings") (:file "listings-places") (:file "listings-sensing")
                  (:file "listings-programs") (:file "listings-plans")
+                 (:file "manual") (:file "manual-2")
                  (:file "src-readme") (:file "architecture") (:file "isolation") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
