@@ -71,6 +71,16 @@
         (is (null (end-code 'camera-turn (eye camera) angle))))
       (is (null (end-code 'camera-align-robot (eye camera)))))))
 
+(test manual-3-4-3.camera-align-place-at-no-place
+  "Readings 221 and 223: a place type that is only imagined leaves the camera at the heading."
+  (at-each-spot (:seed 45 :parameters '((type-false-pos* 1)))
+    (turned-to 2)
+    (answer 'camera-turn (eye) 1)
+    (destructuring-bind (turned type) (answer 'camera-align-place (eye))
+      (is (near -1 turned .021))
+      (is-true (find-place-type type))
+      (is (near 0 (camera-angle (eye)))))))
+
 ;;; Inserting and removing.
 
 (defmacro with-box ((designator &rest attributes) &body body)
@@ -158,6 +168,23 @@ ATTRIBUTES, of capacity 5 unless they say otherwise."
           (is (null (camera-location (eye))))
           (is (not (designator-valid-p designator)))
           (is (equal '(nil :lost-track) (codes (record)))))))))
+
+(test manual-3-4-3.errors-of-insertion-come-in-this-order
+  "3.4.3, reading 164: that of the manual's list, when several would do."
+  (at-each-spot (:clean t)
+    (let ((box (put-beside 'box 5 0 :capacity 0 :closed #t)))
+      (let ((designator (look '())) (camera-insert-miss-prob* 1))
+        (flet ((code () (end-code 'camera-insert (eye) designator)))
+          (is (eq :bin-closed (code)))
+          (set-attribute box :closed #f)
+          (is (eq :not-tracking (code)))
+          (answer 'camera-track (eye) (look '()))
+          (is (eq :not-tracking-destination (code)))
+          (answer 'camera-untrack (eye))
+          (answer 'camera-track (eye) designator)
+          (is (eq :insufficient-capacity (code)))
+          (set-attribute box :capacity 5)
+          (is (eq :non-local-designator (code))))))))
 
 (defun insertions (trials)
   "Return of each of TRIALS insertions into a box what its code was and whether the designator,

@@ -248,6 +248,17 @@
       (is (frequent-p (count 1 lists :key #'length) 200 .5))
       (is (frequent-p (count 2 lists :key #'length) 200 .25)))))
 
+(test manual-3-4-3.lists-may-have-several-false-places
+  "3.4.3, reading 74: after each success of :confusion it is tried again."
+  (with-own-definitions ()
+    (def-place-type mirage (cell) :confusion 1/2 :checker (values #f 0 0 0))
+    (with-scout (:seed 46)
+      (let ((counts (loop repeat 400
+                          collect (length (third (call-once 'camera-get-all-place-designators
+                                                            (eye) 'mirage))))))
+        (loop for count from 0 to 3
+              do (is (frequent-p (count count counts) 400 (expt .5 (1+ count)))))))))
+
 (defun imagined-points (trials &optional (x 10.5) (y 10.5))
   "Return where TRIALS false designators lie, as (dx dy) from (X,Y), where SCOUT stands."
   (place-robot scout x y 0)

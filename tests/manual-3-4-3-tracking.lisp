@@ -90,6 +90,17 @@
         (answer 'camera-remove (eye))
         (is (eq :local-not-local (end-code 'camera-track (eye) pen)))))))
 
+(test manual-3-4-3.lost-track-of-what-cannot-be-seen
+  "3.4.3: what is hidden when a track should begin; the designator is not lost by that."
+  (at-each-spot (:clean t)
+    (put-beside 'ball 8 0)
+    (let ((designator (look '())) (screen (put-beside 'screen 4 0 :obsview #t)))
+      (is (equal (list :lost-track (eye) designator)
+                 (call-once 'camera-track (eye) designator)))
+      (is-true (designator-valid-p designator))
+      (destroy-thing screen)
+      (is (null (second (first (call-times 9 'camera-track (eye) designator))))))))
+
 ;;; Following.
 
 (test manual-3-4-3.tracks-follow-the-object
@@ -266,6 +277,16 @@ view, 45 degrees for this camera and 22.5 for that."
           (funcall change ball)
           (run-ticks 1)
           (is (equal '(nil :lost-track) (codes (record)))))))))
+
+(test manual-3-4-3.what-ends-a-track-is-told-first
+  "Reading 87: the command that ends a track is answered, and then the track."
+  (at-each-spot (:clean t)
+    (put-beside 'box .2 0 :capacity 5)
+    (tracking (record (look '() :type :local))
+      (camera-insert (eye) (camera-tracks (eye)) (record :insert))
+      (run-ticks 5)
+      (is (equal '((:track nil) (:insert nil) (:track :lost-track))
+                 (loop for (name code) in (record) collect (list name code)))))))
 
 ;;; camera-untrack.
 
