@@ -109,6 +109,16 @@
     (let ((errors (look-often 2000 (lambda (found) (- !>found.angle (atan 1/2))))))
       (is (same-distribution-p errors (uniform -.02d0 .02d0))))))
 
+(test manual-3-4-1.angles-count-turns-as-the-camera-does
+  "3.4.1 and E, reading 50: seen by a camera at -5.75, things are at about that; what is right
+where the robot stands has the camera's own angle."
+  (at-each-spot (:clean t)
+    (answer 'camera-turn (eye) -5.75)
+    (put-beside 'ball 0 0)
+    (put-beside 'far (* 6 (cos -5.5)) (* 6 (sin -5.5)))
+    (is (= -5.75 (designator-angle (look '() :type :local))))
+    (is (near -5.5 (designator-angle (look '())) 1d-6))))
+
 (test manual-3-4-1.data-of-a-place-begin-with-its-type
   "3.4.1: the car is the place type."
   (at-each-spot (:clean t)
