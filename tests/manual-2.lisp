@@ -81,7 +81,7 @@
   (at-each-spot (:clean t)
     (put-beside 'near .99 0)
     (put-beside 'nearer .6 -.5)
-    (put-beside 'far 1.6 0)
+    (put-beside 'far 1.01 0)
     (put-beside 'farther 1.5 1.5)
     (put 'cell-mate '(10.99 10.01))
     (is (equal '(cell-mate near nearer) (seen :type :local)))
