@@ -1,8 +1,8 @@
 ;;;; package.lisp -- where all tests live, and the one door to FiveAM.
 
 (defpackage :ars-magna.tests
-  (:documentation "One suite per layer. Other layers' symbols are qualified by short local
-nicknames: geo:add, nisp:matchq, robot::%look.")
+  (:documentation "One suite per layer, and one per section of the manual (see README.md). Other
+layers' symbols are qualified by short local nicknames: geo:add, nisp:matchq, robot::%look.")
   (:use :cl :fiveam))
 
 (in-package :ars-magna.tests)
