@@ -170,6 +170,8 @@
                  (:file "homes")
                  (:file "listings") (:file "listings-places") (:file "listings-sensing")
                  (:file "listings-programs") (:file "listings-plans")
+                 (:file "manual-3-5") (:file "manual-3-5-stopping")
+                 (:file "manual-3-5-places") (:file "manual-3-5-approach")
                  (:file "src-readme") (:file "architecture") (:file "isolation") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
