@@ -172,6 +172,7 @@
                  (:file "listings-programs") (:file "listings-plans")
                  (:file "manual-3-5") (:file "manual-3-5-stopping")
                  (:file "manual-3-5-places") (:file "manual-3-5-approach")
+                 (:file "manual-3-6") (:file "manual-3-6-containers")
                  (:file "src-readme") (:file "architecture") (:file "isolation") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
