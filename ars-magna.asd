@@ -173,6 +173,7 @@
                  (:file "manual-3-5") (:file "manual-3-5-stopping")
                  (:file "manual-3-5-places") (:file "manual-3-5-approach")
                  (:file "manual-3-6") (:file "manual-3-6-containers")
+                 (:file "manual-3-7") (:file "manual-3-8")
                  (:file "src-readme") (:file "architecture") (:file "isolation") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
