@@ -175,6 +175,7 @@
                  (:file "manual-3-6") (:file "manual-3-6-containers")
                  (:file "manual-3-7") (:file "manual-3-8")
                  (:file "manual-4") (:file "manual-4-motion")
+                 (:file "manual-4-sensing") (:file "manual-4-handling")
                  (:file "src-readme") (:file "architecture") (:file "isolation") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
