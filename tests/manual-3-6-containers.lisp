@@ -145,6 +145,19 @@ letting go never fails; then there is none left."
                  (loop repeat 3 collect (inside-of 0) do (reply 'ars:hand-remove (arm 0)))))
       (is (equal (list :not-inside (arm 0)) (reply 'ars:hand-remove (arm 0)))))))
 
+(test manual-3-6.hands-get-at-what-is-inside
+  "3.6: a hand in a container grasps what a camera in there tracks, as both are in the same
+location, and takes it out; then there is more room in the container."
+  (with-joiner (:clean t)
+    (let ((toolbox (point-out 'toolbox)))
+      (reply 'ars:hand-insert (arm 0) toolbox)
+      (reply 'ars:camera-insert (lamp 0) toolbox))
+    (is (null (take-tag 0 'chisel)))
+    (is (eq :different-location (take-tag 1 'casket)) "from outside")
+    (is (null (code-of 'ars:hand-remove (arm 0))))
+    (is (eq 'chisel (held 0)))
+    (is (= 3 (ars:remaining-capacity (thing 'toolbox))))))
+
 (test manual-3-6.what-the-held-thing-contains-is-held-too
   "3.6, reading 160: a hand cannot go into what is in the thing that it holds."
   (with-joiner (:clean t)

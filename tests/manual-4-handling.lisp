@@ -61,13 +61,13 @@ loses none."
   (loop for (miss lost) in '((1 .1) (0 0))
         do (with-joiner (:seed 4 :parameters `((ars:hand-insert-miss-prob* ,miss)
                                                ,@*steady-eyes*))
-             (is (frequent-p (loop repeat 1000
+             (is (frequent-p (loop repeat 500
                                    for designator = (quick-sight 'toolbox 0)
                                    do (quick-answer 2 'ars:hand-insert (arm 0) designator)
                                    count (not (ars:designator-valid-p designator))
                                    do (quick-answer 2 'ars:hand-remove (arm 0))
                                       (quick-answer 1 'ars:camera-untrack (lamp 0)))
-                             1000 lost)))))
+                             500 lost)))))
 
 ;;; Cameras.
 
@@ -85,8 +85,8 @@ loses none."
 (test manual-4.camera-insert-miss-prob*-misses-and-loses
   "4, reading 157: a camera that misses always loses the designator."
   (with-joiner (:seed 5 :parameters *steady-eyes*)
-    (let ((outcomes (camera-insertions 2000)))
-      (is (frequent-p (count :camera-bump outcomes :key #'first) 2000 .05))
+    (let ((outcomes (camera-insertions 700)))
+      (is (frequent-p (count :camera-bump outcomes :key #'first) 700 .05))
       (is (equal '((:camera-bump t))
                  (remove-duplicates (remove nil outcomes :key #'first) :test #'equal))))))
 
@@ -94,9 +94,9 @@ loses none."
   "4, reading 158: with that chance an insertion that succeeds loses the designator, though
 another camera tracks it."
   (with-joiner (:seed 6 :parameters `((ars:camera-insert-miss-prob* 0) ,@*steady-eyes*))
-    (let ((outcomes (camera-insertions 1000)))
+    (let ((outcomes (camera-insertions 500)))
       (is (every #'null (mapcar #'first outcomes)))
-      (is (frequent-p (count t outcomes :key #'second) 1000 .1)))))
+      (is (frequent-p (count t outcomes :key #'second) 500 .1)))))
 
 ;;; Bins.
 

@@ -53,7 +53,7 @@ rest, 50 see all that is near."
 search, and each object, anew."
   (with-lookout (:seed 1 :parameters '((ars:false-thing-prob* 0)))
     (put 'ball '(25.5 30.5) :tag 'ball)
-    (is (frequent-p (count-looks 3000 '((:tag ball))) 3000 .95))
+    (is (frequent-p (count-looks 1500 '((:tag ball))) 1500 .95))
     (put 'cube '(25.5 32.5) :tag 'cube)
     (setf ars:miss-thing-prob* .3d0)
     (let ((found (loop repeat 1500 collect (length (look '() :all t)))))
@@ -75,8 +75,8 @@ search, and each object, anew."
 (test manual-4.false-thing-prob*-finds-what-is-not-there
   "4, reading 135: our parameter for false designators of things."
   (with-lookout (:seed 3)
-    (is (frequent-p (count-looks 4000 '((:tag ball))) 4000 .01))
-    (is (frequent-p (count-looks 4000 '((:tag ball)) :type :local) 4000 .01))))
+    (is (frequent-p (count-looks 3000 '((:tag ball))) 3000 .01))
+    (is (frequent-p (count-looks 3000 '((:tag ball)) :type :local) 3000 .01))))
 
 (test manual-4.prob-stop*-says-how-far-false-designators-are
   "4, reading 136: the ray is walked cell by cell until a test of that chance succeeds, through
@@ -162,13 +162,13 @@ reading is any value of the domain, the right one too."
         do (with-lookout (:seed 9 :parameters *only-truth*)
              (when factor (setf ars:discrete-noise-factor* factor))
              (put 'ball (list (+ 20.5 distance) 30.5) :stripes 'lined)
-             (let ((readings (loop repeat 1500
+             (let ((readings (loop repeat 800
                                    collect (read-by-lookout '((:stripes (plain dotted lined
                                                                           barred)))))))
                (is (< (chi-square (loop for value in '(plain dotted lined barred)
                                         collect (count value readings :test #'string=))
                                   (loop for chance in (list 0 0 right 0)
-                                        collect (* 1500 (+ chance (/ (- 1 right) 4)))))
+                                        collect (* 800 (+ chance (/ (- 1 right) 4)))))
                       16.3)
                    "~A" (list factor distance))))))
 
@@ -181,9 +181,9 @@ reading is any value of the domain, the right one too."
         do (with-lookout (:seed 10 :parameters *only-truth*)
              (when factor (setf ars:continuous-noise-factor* factor))
              (put 'ball (list (+ 20.5 distance) 30.5) :heft 20)
-             (let ((readings (loop repeat 1500
+             (let ((readings (loop repeat 800
                                    collect (read-by-lookout '((:heft 20 1000))))))
-               (is (< (abs (- (mean-of readings) 20)) (/ (* 3.3 deviation) (sqrt 1500))))
+               (is (< (abs (- (mean-of readings) 20)) (/ (* 3.3 deviation) (sqrt 800))))
                (is (same-distribution-p readings
                                         (lambda (x)
                                           (normal-probability (/ (- x 20) deviation))))
