@@ -45,6 +45,19 @@ type they are of."
       (is (string= "" (with-output-to-string (*standard-output*) (ars:error-display stream))))
       (is (string= (format nil "there~%") (get-output-stream-string stream))))))
 
+(test manual-3-7.no-message-is-lost-for-want-of-a-stream
+  "3.7: NIL and T are standard output, too; what is no stream is refused, and the messages are
+still there."
+  (with-stroller ()
+    (dolist (stream '(nil t))
+      (ars:message-set "here")
+      (is (string= (format nil "here~%")
+                   (with-output-to-string (*standard-output*) (ars:error-display stream)))))
+    (ars:message-set "still here")
+    (dolist (stream '(7 "text" :stdout))
+      (signals ars:wrong-argument (ars:error-display stream)))
+    (is (string= (format nil "still here~%") (texts)))))
+
 (test manual-3-7.items-are-printed-one-after-the-other
   "3.7, reading 36: like OUT does it: strings without quotes, T as a new line, other things as
 PRINC prints them."
