@@ -6,11 +6,11 @@
 
 ;;; LOOKOUT, amid a hall without anything in it, looks along x. Camera 0 sees a quarter of all
 ;;; round, camera 1 hardly more than a line.
-(ars:defmap wide-hall (80 60)
+(ars:defmap lookout-hall (80 60)
   (rect (0 0) (79 59) bricks 10)
   (wall (0 59) (79 59) stone 40))
 
-(ars:defrobot lookout (wide-hall (20.5 30.5) 0)
+(ars:defrobot lookout (lookout-hall (20.5 30.5) 0)
   :cameras (((/ pi 2) 50) (1d-6 1))
   :bins (20))
 
