@@ -103,8 +103,8 @@ walls, or the edge of the map is reached."
 (test manual-4.false-designators-are-anywhere-in-the-field-of-view
   "4: a random angle in the field of view is chosen."
   (with-lookout (:seed 5 :parameters '((ars:false-thing-prob* 1) (ars:camera-angle-max-error* 0)))
-    (is (same-distribution-p (loop repeat 1500 collect (ars:designator-angle (look '())))
-                             (uniform (/ pi -4) (/ pi 4))))))
+    (is (uniform-p (loop repeat 1500 collect (ars:designator-angle (look '())))
+                   (/ pi -4) (/ pi 4)))))
 
 ;;; How wrongly.
 
@@ -112,20 +112,19 @@ walls, or the edge of the map is reached."
   "4, readings 138, 144: of the angles of designators, and of what a camera says that it has
 turned; it really turns by what it is told."
   (loop for error in '(nil .1d0)
-        for distribution = (uniform (- (or error .02d0)) (or error .02d0))
+        for most = (or error .02d0)
         do (with-lookout (:seed 6 :parameters *only-truth*)
              (when error (setf ars:camera-angle-max-error* error))
              (let ((ball (put 'ball '(30.5 30.5))))
-               (is (same-distribution-p (loop repeat 500
-                                              collect (ars:designator-angle (look '()))
-                                              ;; What moves loses its designators.
-                                              do (ars:move-thing ball 30.5 30.5))
-                                        distribution)))
+               (is (uniform-p (loop repeat 500
+                                    collect (ars:designator-angle (look '()))
+                                    ;; What moves loses its designators.
+                                    do (ars:move-thing ball 30.5 30.5))
+                              (- most) most)))
              (let ((reported (loop repeat 500
                                    collect (third (quick-answer 1 'ars:camera-turn
                                                                 (glass 1) 1/4)))))
-               (is (same-distribution-p (mapcar (lambda (angle) (- angle .25d0)) reported)
-                                        distribution))
+               (is (uniform-p (mapcar (lambda (angle) (- angle .25d0)) reported) (- most) most))
                (is (near 125 (ars:camera-angle (glass 1))))))))
 
 (defun pixels-read (trials)
@@ -136,9 +135,9 @@ turned; it really turns by what it is told."
 (test manual-4.pixel-error-range*-is-uniform
   "4, reading 147: to either side of the substance's parameter."
   (with-lookout (:seed 7 :parameters '((ars:pixel-outlier-prob* 0)))
-    (is (same-distribution-p (pixels-read 80) (uniform 8 12)))
+    (is (uniform-p (pixels-read 80) 8 12))
     (setf ars:pixel-error-range* .5d0)
-    (is (same-distribution-p (pixels-read 80) (uniform 9.5 10.5)))
+    (is (uniform-p (pixels-read 80) 9.5 10.5))
     (setf ars:pixel-error-range* 0)
     (is (every (lambda (pixel) (= 10 pixel)) (pixels-read 10)))))
 
@@ -147,7 +146,7 @@ turned; it really turns by what it is told."
   (with-lookout (:seed 8 :parameters '((ars:pixel-error-range* 0)))
     (is (frequent-p (count 10 (pixels-read 200) :test #'/=) 10000 .01))
     (setf ars:pixel-outlier-prob* 1)
-    (is (same-distribution-p (pixels-read 80) (uniform 10 40)))))
+    (is (uniform-p (pixels-read 80) 10 40))))
 
 (defun read-by-lookout (demand)
   "Return what a search by camera 1 for DEMAND, of one attribute, reads of that."
@@ -255,5 +254,5 @@ FALSE-DESIG-DRIFT-ANG* in angle a tick."
                             (push (- (ars:designator-angle designator) angle) angles)))
                  (quick-answer 1 'ars:camera-untrack (glass))))
       (is (< 500 (length distances)))
-      (is (same-distribution-p distances (uniform -1 1)))
-      (is (same-distribution-p angles (uniform -.2 .2))))))
+      (is (uniform-p distances -1 1))
+      (is (uniform-p angles -.2 .2)))))
