@@ -32,3 +32,11 @@ one."
   (mapcar #'princ-to-string things))
 
 (defun same-name-p (name other) (string= name other))
+
+(defun answer (command &rest arguments)
+  "Issue COMMAND with ARGUMENTS and let ticks pass until it is answered. Return what its
+continuation was called with."
+  (let ((answers '()))
+    (apply command (append arguments (list (continuation (&rest answer) (push answer answers)))))
+    (run-until (lambda () answers) :limit 2000)
+    (first answers)))
