@@ -248,16 +248,16 @@ prototypes have no number."
 
 (test manual-5-1.each-run-begins-with-the-map-as-defined
   "5.1, 5.3: things that were moved, changed or destroyed in one run are as the map says in the next."
-  (flet ((state ()
+  (flet ((shape ()
            (loop for thing in (world-thing-list *world*)
                  collect (list (princ-to-string thing) (where thing) (thing-attributes thing)))))
-    (let ((before (with-simulation (usher :clean t) (state))))
+    (let ((before (with-simulation (usher :clean t) (shape))))
       (with-simulation (usher :clean t)
         (move-thing (find-thing 'lamp) '(9 3))
         (set-attribute (find-thing 'crate) :size 77)
         (destroy-thing (find-thing 'trunk))
-        (is-false (equal before (state))))
-      (is (equal before (with-simulation (usher :clean t) (state)))))))
+        (is-false (equal before (shape))))
+      (is (equal before (with-simulation (usher :clean t) (shape)))))))
 
 ;;; Caches.
 

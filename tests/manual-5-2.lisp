@@ -102,15 +102,15 @@ are not moved to cells' centres, angles not reduced."
 
 (test manual-5-2.each-run-begins-with-the-robot-as-defined
   "5.2: what a robot did in one run does not matter to the next."
-  (flet ((state () (list (robot-x docker) (robot-angle docker) (robot-speed docker)
+  (flet ((shape () (list (robot-x docker) (robot-angle docker) (robot-speed docker)
                          (storage-bin-closed-p (robot-storage-bin docker 0)))))
-    (let ((before (with-simulation (docker) (state))))
+    (let ((before (with-simulation (docker) (shape))))
       (with-simulation (docker :clean t)
         (is (null (end-code 'robot-set-speed docker .5)))
         (is (null (end-code 'robot-go-forward docker 3)))
         (is (null (end-code 'storage-bin-close (robot-storage-bin docker 0))))
-        (is-false (equal before (state))))
-      (is (equal before (with-simulation (docker) (state)))))))
+        (is-false (equal before (shape))))
+      (is (equal before (with-simulation (docker) (shape)))))))
 
 (test manual-5-2.environments-are-maps-or-their-names
   "5.2, reading 61: the environment may be given as the map's variable, its name, or a form for it."

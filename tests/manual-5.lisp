@@ -4,7 +4,8 @@
 ;;; claim that the manual makes, or a reading of it, in a user's words: it speaks ARS and NISP, in
 ;;; worlds that its file defines. Its docstring says the section, the reading and the claim.
 
-(in-package :ars-magna.tests)
+;; Not from ARS-MAGNA.TESTS, where NISP is the nickname of a layer.
+(in-package :ars-user)
 
 (ars:define-user-package :ars-magna.tests.manual-5
   (:documentation "A user's package: Common Lisp, ARS and NISP, and what tests are written with.")
@@ -12,7 +13,8 @@
   (:import-from :ars-magna.tests
                 #:ars-magna #:call-times #:call-once #:end-code #:near #:frequent-p #:warnings-of
                 #:complaints #:has-words-p #:wall-picture #:map-of #:picture-map
-                #:message-texts))
+                #:message-texts)
+  (:import-from :ars-magna.display #:svg-picture))
 
 (in-package :ars-magna.tests.manual-5)
 (in-readtable :nisp)
