@@ -30,7 +30,8 @@
 (defun niches (&rest rows) (apply #'places-called 'niche rows))
 
 (defun all-near (expected numbers)
-  (and (= (length expected) (length numbers)) (every (lambda (a b) (near a b 1d-6)) expected numbers)))
+  (and (= (length expected) (length numbers))
+       (every (lambda (a b) (near a b 1d-6)) expected numbers)))
 
 ;;; Match forms.
 
@@ -101,8 +102,8 @@ basic direction in !>cell.type.canonical-dir."
   (eval `(def-place-type niche (cell) :checker ,checker :before t)))
 
 (test manual-5-1-1.checkers-return-four-values
-  "5.1.1: whether there is a place, where it is relative to the cell (any cell may be asked), and its
-basic canonical direction."
+  "5.1.1: whether there is a place, where it is relative to the cell (any cell may be asked), and
+its basic canonical direction."
   (define-niche-by '(if !>cell.filled?
                         (values t 1 -2 1.5)
                         (values #f 0 0 0)))
@@ -121,8 +122,8 @@ basic canonical direction."
   (is (equal '((4 0 0d0)) (niches "--*--*-"))))
 
 (test manual-5-1-1.occupancy-windows-show-the-cells-around
-  "5.1.1: (cell-occupancy-window cell width height) is a matrix, centred on the cell, of t for a wall
-and nil for an empty cell; beyond the map is wall (reading 53)."
+  "5.1.1: (cell-occupancy-window cell width height) is a matrix, centred on the cell, of t for a
+wall and nil for an empty cell; beyond the map is wall (reading 53)."
   (let ((map (picture-map "*----" "-**--" "----*")))
     (flet ((window (x y width height)
              (cell-occupancy-window (map-cell map x y) width height)))
@@ -195,15 +196,15 @@ and nil for an empty cell; beyond the map is wall (reading 53)."
 
 (defun sought (type &key all)
   "Return what a search of MONK for places of TYPE ends with: code and finding."
-  (let ((answer (call-once (if all
-                               'camera-get-all-place-designators
-                               'camera-get-place-designator)
-                           (robot-camera monk 0) type)))
+  (let ((answer (answer (if all
+                            'camera-get-all-place-designators
+                            'camera-get-place-designator)
+                        (robot-camera monk 0) type)))
     (list (first answer) (third answer))))
 
 (test manual-5-1-1.own-types-are-sensed-and-found
-  "5.1.1: a user's place type is sensed by ROBOT-PLACE, found by cameras, and aligned with: the nearest
-canonical direction counts."
+  "5.1.1: a user's place type is sensed by ROBOT-PLACE, found by cameras, and aligned with: the
+nearest canonical direction counts."
   (define-alcove)
   (with-simulation (monk :clean t)
     (destructuring-bind (code designator) (sought 'alcove)
@@ -227,7 +228,8 @@ canonical direction counts."
     (is (eq 'alcove (third (call-once 'robot-place monk))))))
 
 (defun false-finds (confusion trials)
-  "Return how many of TRIALS searches for a type with CONFUSION, of which there is no place, find one."
+  "Return how many of TRIALS searches for a type with CONFUSION, of which there is no place, find
+one."
   (eval `(def-place-type mirage (cell) :check-matchers ((((* - * - * - *)) 0))
            :confusion ,confusion))
   (with-simulation (monk :seed 5)
@@ -246,14 +248,15 @@ canonical direction counts."
 ;;; The built-in types.
 
 (defun basic-directions (type rows-and-directions)
-  "True if in each of ROWS-AND-DIRECTIONS, lists (direction row...), the only TYPE has the direction."
+  "True if in each of ROWS-AND-DIRECTIONS, lists (direction row...), the only TYPE has the
+direction."
   (loop for (direction . rows) in rows-and-directions
         for found = (apply #'places-called type rows)
         always (and (= 1 (length found)) (near direction (third (first found)) 1d-6))))
 
 (test manual-5-1-1.doorways-are-narrow-openings
-  "5.1.1: a doorway has a wall on either side and the way is free, in two straight and, reading 66, two
-oblique ways, its direction leading through; the other direction is opposite."
+  "5.1.1: a doorway has a wall on either side and the way is free, in two straight and, reading 66,
+two oblique ways, its direction leading through; the other direction is opposite."
   (is-true (basic-directions
             'doorway `((,(/ pi 2)     "-----" "-----" "-*-*-" "-----" "-----")
                        (0             "-----" "--*--" "-----" "--*--" "-----")
@@ -270,8 +273,8 @@ oblique ways, its direction leading through; the other direction is opposite."
   (is (= 4 (length (places-called 'convex "------" "------" "--**--" "--**--" "------" "------")))))
 
 (test manual-5-1-1.concave-corners-are-inside-of-walls
-  "5.1.1, reading 67: an empty cell with walls on two perpendicular sides, which faces away from both:
-each corner of a room, and nothing else in it."
+  "5.1.1, reading 67: an empty cell with walls on two perpendicular sides, which faces away from
+both: each corner of a room, and nothing else in it."
   (let ((map (picture-map "*****" "*---*" "*---*" "*---*" "*****")))
     (is (equal '((1 1) (3 1) (1 3) (3 3))
                (loop for (name x y) in (places map)
@@ -281,6 +284,7 @@ each corner of a room, and nothing else in it."
 (test manual-5-1-1.beaks-are-before-ends-of-thin-walls
   "5.1.1, reading 67: the cell before the tip of a wall, whose basic direction leads away from it."
   (is (equalp `((4 2 0d0) (0 2 ,pi))
-              (sort (places-called 'beak "------" "------" "-***--" "------" "------") #'> :key #'first)))
+              (sort (places-called 'beak "------" "------" "-***--" "------" "------")
+                    #'> :key #'first)))
   (is-true (all-near (list 0 pi)
                      (directions (picture-map "------" "------" "-***--" "------" "------") 4 2))))

@@ -30,7 +30,7 @@ the value of the variable ATTIC and known by that name."
   (is-true (typep attic 'map))
   (is (equal '(16 12) (list (map-width attic) (map-height attic))))
   (is (eq attic (find-map 'attic)))
-  (is (= (* 16 12) (length (reduce (lambda (a b) (concatenate 'string a b)) (wall-picture attic))))))
+  (is (= (* 16 12) (reduce #'+ (mapcar #'length (wall-picture attic))))))
 
 (test manual-5-1.names-of-kinds-of-clauses-and-substances-are-names
   "5.1, reading 38: BRICKS and bricks, of whatever package, are the same."
@@ -139,8 +139,9 @@ between corners what lies between."
                                   (wall-at-p attic 3.999 5) (wall-at-p attic 5 5)))))
 
 (test manual-5-1.clauses-are-held-within-the-map
-  "5.1, reading 52: (rect (0 0) (16 12) ...) in a map of 16 by 12 cells closes the room: its far walls
-are in the last cells, and no warning is given. What lies further out is pressed against the edge."
+  "5.1, reading 52: (rect (0 0) (16 12) ...) in a map of 16 by 12 cells closes the room: its far
+walls are in the last cells, and no warning is given. What lies further out is pressed against the
+edge."
   (is (equalp '(0 15 26 11) (walls attic 0 0 15 0 15 11 0 11)))
   (is-true (loop for x below 16 always (and (wall-at-p attic x 0) (wall-at-p attic x 11))))
   (is-true (loop for y below 12 always (and (wall-at-p attic 0 y) (wall-at-p attic 15 y))))
@@ -198,8 +199,8 @@ name and the descriptor of its clause."
     (is (equalp (where crate) (where (find-thing 'nut attic))))))
 
 (test manual-5-1.contents-are-made-before-what-holds-them
-  "5.1 and E, three findings: things are numbered from 1 in one row, contents before their container;
-prototypes have no number."
+  "5.1 and E, three findings: things are numbered from 1 in one row, contents before their
+container; prototypes have no number."
   (is (equal '("LAMP#1" "NUT#2" "SACK#3" "COIN#4" "BOX#5" "CRATE#6" "COIN#7" "ROPE#8" "TRUNK#9")
              (names (world-thing-list (current-world attic)))))
   (is (equal '("CHEST") (names (list chest*)))))
@@ -247,7 +248,8 @@ prototypes have no number."
 ;;; Each run has things of its own.
 
 (test manual-5-1.each-run-begins-with-the-map-as-defined
-  "5.1, 5.3: things that were moved, changed or destroyed in one run are as the map says in the next."
+  "5.1, 5.3: things that were moved, changed or destroyed in one run are as the map says in the
+next."
   (flet ((shape ()
            (loop for thing in (world-thing-list *world*)
                  collect (list (princ-to-string thing) (where thing) (thing-attributes thing)))))

@@ -27,8 +27,8 @@
   (is (eq docker (find-robot 'docker))))
 
 (test manual-5-2.robots-start-where-they-are-defined
-  "5.2, readings 50 and 54: in the environment, at (x,y), heading ANG, all just as written: positions
-are not moved to cells' centres, angles not reduced."
+  "5.2, readings 50 and 54: in the environment, at (x,y), heading ANG, all just as written:
+positions are not moved to cells' centres, angles not reduced."
   (with-simulation (docker)
     (is (eq quay (world-map (robot-world docker))))
     (is (equalp (list 10 5 (/ pi 4))
@@ -37,7 +37,8 @@ are not moved to cells' centres, angles not reduced."
     (is (equalp '(1.25 18.5 -9) (list (robot-x clerk) (robot-y clerk) (robot-angle clerk))))))
 
 (test manual-5-2.cameras-are-a-field-of-view-and-a-resolution
-  "5.2: each camera has its field of view, in radians, and so many view pixels, in the order written."
+  "5.2: each camera has its field of view, in radians, and so many view pixels, in the order
+written."
   (is (equalp (list (/ pi 4) 3) (list (!_field-of-view (robot-camera docker 0))
                                       (camera-resolution (robot-camera docker 0)))))
   (with-simulation (docker :clean t)
@@ -84,7 +85,8 @@ are not moved to cells' centres, angles not reduced."
 
 (test manual-5-2.parts-are-numbered-from-0
   "5.2, C: indices are given by the order in DEFROBOT, starting at 0; there is none beyond."
-  (is (equal '(0 1) (list (camera-index (robot-camera docker 0)) (hand-index (robot-hand docker 1)))))
+  (is (equal '(0 1) (list (camera-index (robot-camera docker 0))
+                          (hand-index (robot-hand docker 1)))))
   (is (eq (vref !>docker.cameras 1) (robot-camera docker 1)) "reading 216")
   (signals ars-magna-error (robot-hand docker 2))
   (signals ars-magna-error (robot-storage-bin docker -1)))
@@ -119,7 +121,8 @@ are not moved to cells' centres, angles not reduced."
   (is-true (has-words-p (first (complaints '(defrobot guest (no-such-quay (3 3) 0)))) "map")))
 
 (test manual-5-2.mistakes-are-told
-  "5.2: a robot stands in its environment, outside of walls; its parts are numbers of the right kind."
+  "5.2: a robot stands in its environment, outside of walls; its parts are numbers of the right
+kind."
   (dolist (rest '(((quay (30 5) 0)) ((quay (5 -1) 0)) ((quay (0 5) 0)) ((quay 5 0)) ((quay (5 5)))
                   ((quay (5 5) 0) :cameras (3)) ((quay (5 5) 0) :cameras ((1 0)))
                   ((quay (5 5) 0) :cameras ((1 2.5))) ((quay (5 5) 0) :hands 10)

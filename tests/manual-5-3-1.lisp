@@ -97,8 +97,8 @@ has been destroyed."
       (is (equal '("BIRD#4" "CALF#1" "FLEA#3") (sort *runs* #'string<))))))
 
 (test manual-5-3-1.abstract-kickers-go-on-any-number-of-things
-  "5.3.1: DEFKICKER defines a kicker that may be attached to any object by (set-kicker thing name), by
-its name or as the value of its variable (reading 171)."
+  "5.3.1: DEFKICKER defines a kicker that may be attached to any object by (set-kicker thing name),
+by its name or as the value of its variable (reading 171)."
   (at-pasture ()
     (set-kicker (calf) 'bleat)
     (set-kicker (lamb) bleat)
@@ -129,8 +129,8 @@ its name or as the value of its variable (reading 171)."
 ;;; put-kicker
 
 (test manual-5-3-1.put-kicker-is-for-one-thing
-  "5.3.1: PUT-KICKER defines a kicker for one object, with :prob and :test as in DEFKICKER; its name is
-not globally bound."
+  "5.3.1: PUT-KICKER defines a kicker for one object, with :prob and :test as in DEFKICKER; its
+name is not globally bound."
   (at-pasture (:seed 1)
     (put-kicker sway (beast (calf)) (:prob .5 :test (not (get-attribute beast :color)))
       (note-run beast))
@@ -200,8 +200,8 @@ probability and its test say; its own trial is left out then."
     (is (equalp '((8 5) (10.25 8)) (list (where (calf)) (where (lamb)))))))
 
 (test manual-5-3-1.kick-into-a-wall-does-nothing
-  "5.3.1: without kick-if-wall nothing is moved if the destination is in a wall, and nil is returned;
-off the map is as in a wall (reading 172)."
+  "5.3.1: without kick-if-wall nothing is moved if the destination is in a wall, and nil is
+returned; off the map is as in a wall (reading 172)."
   (at-pasture ()
     (is (null (kick-thing (calf) 13 0 nil)))
     (is (null (kick-thing (calf) -7 0 nil)) "the border")
@@ -225,8 +225,8 @@ off the map is as in a wall (reading 172)."
     (is (equalp '(22 7) (where (calf))))))
 
 (test manual-5-3-1.kick-in-something-closed-fails
-  "5.3.1, reading 155: in a closed object or storage bin a kick does nothing and returns nil, whatever
-kick-if-wall."
+  "5.3.1, reading 155: in a closed object or storage bin a kick does nothing and returns nil,
+whatever kick-if-wall."
   (at-pasture (:clean t)
     (let ((bin (robot-storage-bin shepherd 0)) (bug (new-thing bug (calf) ((:size .1)))))
       (set-attribute (calf) :closed #t)
@@ -237,10 +237,11 @@ kick-if-wall."
       (is (eq bin (thing-location bug))))))
 
 (test manual-5-3-1.kick-out-of-something-open
-  "Reading 172: out of an open container or bin a thing is kicked onto the floor, as far from there."
+  "Reading 172: out of an open container or bin a thing is kicked onto the floor, as far from
+there."
   (at-pasture ()
-    (let ((bug (new-thing bug (calf) ((:size .1)))) (fly (new-thing fly (robot-storage-bin shepherd 0)
-                                                                   ((:size .1)))))
+    (let ((bug (new-thing bug (calf) ((:size .1))))
+          (fly (new-thing fly (robot-storage-bin shepherd 0) ((:size .1)))))
       (is (equal '(t t) (list (kick-thing bug 1 .5 nil) (kick-thing fly 0 2 nil))))
       (is (equalp '((8 7.5) (4 6)) (list (where bug) (where fly))))
       (is (equal '(nil nil) (list (thing-contents (calf))

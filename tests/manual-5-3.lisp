@@ -72,7 +72,7 @@ descriptor; the prototype stays as it was."
            (copy (new-thing chest (barn 3 3) ((:size 6) (:substance wood)) :prototype shelf)))
       (is (equal '(8 6 2 blue wood) (attributes copy :capacity :size :weight :color :substance)))
       (is (equal '(8 nil) (attributes shelf :size :substance)))
-      (is (equal '("JAR") (mapcar (lambda (thing) (string (thing-name thing))) (thing-contents copy))))
+      (is (equal '(jar) (mapcar #'thing-name (thing-contents copy))))
       (is-false (eq jar (first (thing-contents copy)))))))
 
 (test manual-5-3.descriptors-without-a-prototype-are-complete
@@ -100,7 +100,8 @@ descriptor; the prototype stays as it was."
 (defun seen (specification)
   "Return what FARMER's camera finds of SPECIFICATION: code and names."
   (destructuring-bind (code camera designators)
-      (call-once 'camera-get-all-object-designators (robot-camera farmer 0) :non-local specification)
+      (call-once 'camera-get-all-object-designators (robot-camera farmer 0)
+                 :non-local specification)
     (declare (ignore camera))
     (list code (mapcar (lambda (designator) (thing-name (designator-denotation designator)))
                        designators))))

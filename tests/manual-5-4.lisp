@@ -59,8 +59,8 @@ none, or KEY is not noticed."
     (is (equal '(trot) (remove-duplicates (readings 50 :gait '((:gait trot)) :non-local))))))
 
 (test manual-5-4.success-is-how-often-a-reading-is-right
-  "5.4, 3.4.2: close by a reading is right with probability :success; a wrong one is any value of the
-domain, with equal chances, so the true one, too."
+  "5.4, 3.4.2: close by a reading is right with probability :success; a wrong one is any value of
+the domain, with equal chances, so the true one, too."
   (with-attributes ((:gait (walk trot pace gallop) :success .6)) (:seed 2)
     (let ((seen (readings 1000 :gait '((:gait (walk trot pace gallop))))))
       (is-true (frequent-p (count 'trot seen) 1000 (+ .6 .1)))
@@ -68,8 +68,8 @@ domain, with equal chances, so the true one, too."
         (is-true (frequent-p (count other seen) 1000 .1) "~A" other)))))
 
 (test manual-5-4.success-is-modified-by-distance
-  "5.4, 3.4.2, reading 115: at the distance d it is p / max(1, f d (1-p)), with f discrete-noise-factor*:
-at 20 m and f = .5, .4 / max(1, 6) = .067."
+  "5.4, 3.4.2, reading 115: at the distance d it is p / max(1, f d (1-p)), with f
+discrete-noise-factor*: at 20 m and f = .5, .4 / max(1, 6) = .067."
   (with-attributes ((:gait (walk trot pace gallop) :success .4)) (:seed 3)
     (setf discrete-noise-factor* .5)
     (let ((seen (readings 800 :gait '((:gait (walk trot pace gallop))) :non-local)))
@@ -78,7 +78,8 @@ at 20 m and f = .5, .4 / max(1, 6) = .067."
 ;;; Numeric attributes.
 
 (test manual-5-4.numeric-attributes
-  "5.4: the domain NUMERIC makes an attribute numeric; readings are right by default, as :base is 0."
+  "5.4: the domain NUMERIC makes an attribute numeric; readings are right by default, as :base is
+0."
   (with-attributes ((:speed NUMERIC)) (:seed 4)
     (is (equal '(:numeric 0d0 1d0) (let ((speed (find-attribute :speed)))
                                      (list (attribute-kind speed) (attribute-base speed)
@@ -100,8 +101,8 @@ whatever :max-mult."
     (is-true (deviation-p 2 (readings 600 :speed '((:speed (-99 99))))))))
 
 (test manual-5-4.max-mult-is-the-largest-multiplier
-  "5.4, 3.4.2: at the distance d the deviation is max(s, m s d/(d+f)): with f = continuous-noise-factor*
-= 20 at 20 m, half of m times s; by default, m = 1, it stays s."
+  "5.4, 3.4.2: at the distance d the deviation is max(s, m s d/(d+f)): with f =
+continuous-noise-factor* = 20 at 20 m, half of m times s; by default, m = 1, it stays s."
   (with-attributes ((:speed numeric :base 2 :max-mult 5)) (:seed 6)
     (setf continuous-noise-factor* 20)
     (is-true (deviation-p 5 (readings 600 :speed '((:speed (-99 99))) :non-local))))
@@ -163,8 +164,8 @@ of it is met."
       (is (null (name-of '((:size 20) (:gait (walk trot pace gallop)))))))))
 
 (test manual-5-4.names-may-be-defined-after-their-use
-  "5.4, reading 124: undeclared attributes may be stored and matched, as they are; they are not sensed
-unasked. Once defined they are as the definition says."
+  "5.4, reading 124: undeclared attributes may be stored and matched, as they are; they are not
+sensed unasked. Once defined they are as the definition says."
   (with-attributes () (:seed 1)
     (is (equal '(trot nil) (list (reading :gait '((:gait trot))) (reading :gait '((:gait walk))))))
     (is (= 0 (noticed 50 '((:size 10 9))))))
@@ -177,8 +178,8 @@ unasked. Once defined they are as the definition says."
     (is-true (found (list (list :gait (make-symbol "TROT")))))))
 
 (test manual-5-4.attributes-can-be-defined-anew
-  "5.4: the newest definition counts; built-in ones keep their kind, since the simulator computes with
-them."
+  "5.4: the newest definition counts; built-in ones keep their kind, since the simulator computes
+with them."
   (eval '(defattribute :gait (walk trot) :success .3))
   (eval '(defattribute :gait (hop trot)))
   (is (equal '((hop trot) 1d0) (let ((gait (find-attribute :gait)))

@@ -39,8 +39,8 @@
 ;;; Methods and things.
 
 (test manual-5-5.bodies-return-a-code-and-a-value
-  "5.5.1, 5.5.2: the body's two values, an error code or nil and another, are what the continuation is
-called with; both arguments are there even if the body returns less."
+  "5.5.1, 5.5.2: the body's two values, an error code or nil and another, are what the continuation
+is called with; both arguments are there even if the body returns less."
   (define (prod (it - ((:size (0 99))) :by hand - HAND) () (values nil (list it hand)))
           (slap (it - ((:size (0 99))) :by hand - HAND) () (values :ouch 5))
           (pass (it - ((:size (0 99))) :by hand - HAND) () nil))
@@ -60,8 +60,8 @@ called with; both arguments are there even if the body returns less."
     (is (equal '(nil (vault gold-key)) (outcome 'compare (at 'vault) (at 'gold-key) teller)))))
 
 (test manual-5-5.patterns-are-descriptor-specifications
-  "5.5.1: only objects that match the descriptor may be bound to the variable; if none of the methods
-fits, the code is :FAILED."
+  "5.5.1: only objects that match the descriptor may be bound to the variable; if none of the
+methods fits, the code is :FAILED."
   (define (paint (it - ((:color (red violet)) (:size (5 20))) :by hand - HAND) ()
             (set-attribute it :color 'green)
             (values nil it)))
@@ -100,8 +100,8 @@ must be the same. An object without the attribute does not match."
       (is (eq :failed (code 'safe 'gold-key))))))
 
 (test manual-5-5.the-newest-method-that-fits-is-used
-  "5.5.1, reading 174: a manipulation may have several methods, chosen by the objects passed; of those
-that fit, that defined last counts."
+  "5.5.1, reading 174: a manipulation may have several methods, chosen by the objects passed; of
+those that fit, that defined last counts."
   (define (knock (it - ((:size (0 99))) :by hand - HAND) () (values nil :any))
           (knock (it - ((:size (0 99)) (:color red)) :by hand - HAND) () (values nil :red)))
   (in-bank ()
@@ -110,7 +110,8 @@ that fit, that defined last counts."
       (define (knock (it - ((:capacity (1 99))) :by hand - HAND) () (values nil :box)))
       (is (equal '(:box :box :any) (list (value 'safe) (value 'vault) (value 'iron-key))))
       (define (knock (it - ((:size (0 99)) (:color red)) :by hand - HAND) () (values nil :ruby)))
-      (is (equal '(:ruby :box) (list (value 'safe) (value 'vault))) "that method anew, so newest"))))
+      (is (equal '(:ruby :box) (list (value 'safe) (value 'vault)))
+          "that method anew, so newest"))))
 
 (test manual-5-5.undefined-manipulations-are-gone
   "Reading 174: UNDEFINE removes all methods; running it is an error then."
@@ -195,8 +196,8 @@ manipulations by it, interrupt each other, those on other resources do not."
         (run-ticks 3)
         (is (equal '((:first :interrupt nil)) answers))
         (run-ticks 9)
-        (is (equal '((:other nil :done) (:second nil :done)) (sort (rest (reverse answers)) #'string<
-                                                                    :key #'first)))
+        (is (equal '((:other nil :done) (:second nil :done))
+                   (sort (rest (reverse answers)) #'string< :key #'first)))
         (setf answers '())
         (press :third (left-hand))
         (run-ticks 1)
@@ -212,7 +213,8 @@ manipulations by it, interrupt each other, those on other resources do not."
     (let ((safe (at 'safe)))
       (signals wrong-argument (run-manipulation 'press safe (robot-camera teller 0) nil))
       (signals wrong-argument (run-manipulation 'press safe nil nil))
-      (dolist (resource (list (left-hand) (robot-camera teller 0) (robot-storage-bin teller 0) teller))
+      (dolist (resource (list (left-hand) (robot-camera teller 0) (robot-storage-bin teller 0)
+                              teller))
         (is (equal (list nil resource) (outcome 'turn-key safe resource)))))))
 
 (test manual-5-5.other-parameters-follow-the-resource
@@ -234,8 +236,8 @@ manipulations by it, interrupt each other, those on other resources do not."
 ;;; Running.
 
 (test manual-5-5.manipulate-takes-the-name-as-written
-  "5.5.2: MANIPULATE does not evaluate the name, RUN-MANIPULATION, a function, does; :BY is written in
-neither."
+  "5.5.2: MANIPULATE does not evaluate the name, RUN-MANIPULATION, a function, does; :BY is written
+in neither."
   (define (knock (it - () :by hand - HAND) () (values nil :knock))
           (scratch (it - () :by hand - HAND) () (values nil :scratch)))
   (in-bank ()
@@ -265,8 +267,8 @@ neither."
     (is (equal "fasten: NOT-HOLDING-KEY" (first (last (message-texts)))))))
 
 (test manual-5-5.bodies-that-fail-are-messages
-  "Reading 86: an error in the body is a message that names the manipulation; the run goes on, and the
-continuation is called."
+  "Reading 86: an error in the body is a message that names the manipulation; the run goes on, and
+the continuation is called."
   (define (crash (it - () :by hand - HAND) () (error "It slips")))
   (in-bank ()
     (is (eq :failed (first (outcome 'crash (at 'safe) (left-hand)))))

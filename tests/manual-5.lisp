@@ -9,9 +9,9 @@
 
 (ars:define-user-package :ars-magna.tests.manual-5
   (:documentation "A user's package: Common Lisp, ARS and NISP, and what tests are written with.")
-  (:import-from :fiveam #:def-suite* #:in-suite #:test #:is #:is-true #:is-false #:signals)
   (:import-from :ars-magna.tests
-                #:ars-magna #:call-times #:call-once #:end-code #:near #:frequent-p #:warnings-of
+                #:def-suite* #:test #:is #:is-true #:is-false #:signals #:ars-magna
+                #:call-times #:call-once #:end-code #:near #:frequent-p #:warnings-of
                 #:complaints #:has-words-p #:wall-picture #:map-of #:picture-map
                 #:message-texts)
   (:import-from :ars-magna.display #:svg-picture))

@@ -20,8 +20,8 @@
   (apply #'drawn-with :rect picture :x 32 :y 16 attributes))
 
 (test manual-b-1.graphics-draw-the-cell
-  "B.1: the body is executed with the variables bound to the window and to the position, in pixels, of
-the upper left corner of each cell of the type."
+  "B.1: the body is executed with the variables bound to the window and to the position, in pixels,
+of the upper left corner of each cell of the type."
   (let ((picture (chapel-picture
                   '((w left top)
                     (xlib:draw-rectangle w draw-gcontext* left top
@@ -90,7 +90,8 @@ while the body runs."
   (is-true (apply #'< (coerce (cl:map 'vector #'brightness grey*) 'list))))
 
 (test manual-b-1.hues-are-12-shades-from-dark-to-light
-  "B.1: red*, green*, blue*, violet* and lightred* to lightviolet* are 12-vectors, from dark to light."
+  "B.1: red*, green*, blue*, violet* and lightred* to lightviolet* are 12-vectors, from dark to
+light."
   (dolist (shades (list red* green* blue* violet* lightred* lightgreen* lightblue* lightviolet*))
     (is (= 12 (length shades)))
     (is-true (apply #'< (coerce (cl:map 'vector #'brightness shades) 'list))))

@@ -162,8 +162,8 @@
           do (is-true line "~A" name)
              (is (< (of-element line :width) (of-element line :height)) "vertical")
              (is (near (* 8 (thing-x thing)) (1+ (of-element line :x)) .51))
-             (is (near (* 8 (thing-y thing)) (+ (of-element line :y) (/ (of-element line :height) 2))
-                       .51)))
+             (is (near (* 8 (thing-y thing))
+                       (+ (of-element line :y) (/ (of-element line :height) 2)) .51)))
     (set-attribute (find-thing 'coin) :color 'violet)
     (is-true (drawn-with :rect (picture) :fill (web (vref violet* 9)) :width 2))))
 
@@ -187,8 +187,8 @@
                (is (equal there (cells-filled color)) "~A" name)))))
 
 (test manual-b.places-are-symbols-without-colour
-  "B, readings 68 and 209: a small circle is a convex corner, a dot a concave one or a beak, a square
-a doorway."
+  "B, readings 68 and 209: a small circle is a convex corner, a dot a concave one or a beak, a
+square a doorway."
   (in-museum ()
     (let ((picture (picture :in-color nil)))
       (is-true (drawn-with :rect picture :width 6 :height 6 :fill "none" :x 81.5 :y 49.5))
@@ -236,7 +236,8 @@ a doorway."
 (test manual-b.objects-that-obstruct-movement-are-solid
   "B: a solid rectangle obstructs movement."
   (is (equal "none" (of-element (in-bin '((:size 2))) :fill)))
-  (is (equal (web (vref red* 9)) (of-element (in-bin '((:size 2) (:color red) (:obsmove #t))) :fill))))
+  (is (equal (web (vref red* 9))
+             (of-element (in-bin '((:size 2) (:color red) (:obsmove #t))) :fill))))
 
 (test manual-b.objects-that-obstruct-view-are-crossed
   "B: an X is drawn over what obstructs view."
@@ -252,8 +253,8 @@ a doorway."
                       (of-element (in-bin `((:size 2) (:color ,color))) :stroke)))))
 
 (test manual-b.draw-functions-draw-instead
-  "B, reading 211: the value of :draw-function is called with window, object, x, y, width, and height,
-where the object is to be drawn in detail."
+  "B, reading 211: the value of :draw-function is called with window, object, x, y, width, and
+height, where the object is to be drawn in detail."
   (in-museum ()
     (let ((coin (find-thing 'coin)) (calls '()))
       (set-attribute coin :draw-function
@@ -307,7 +308,8 @@ where the object is to be drawn in detail."
       (list (atan2 (- y0 y) (- x0 x)) (atan2 (- y1 y) (- x1 x))))))
 
 (test manual-b.cameras-are-wedges
-  "B: a camera is a wedge whose direction is that of the camera and whose width is its field of view."
+  "B: a camera is a wedge whose direction is that of the camera and whose width is its field of
+view."
   (in-museum ()
     (loop for (heading turn) in '((0 0) (.5 0) (1 .75))
           do (place-robot guide 7.5 6.5 heading)
