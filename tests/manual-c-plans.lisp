@@ -5,8 +5,8 @@
 
 (def-suite* manual-c-plans :in ars-magna)
 
-;;; Plans drive COOK of manual-c.lisp. "Our RPL" is what the manual takes for granted of the language,
-;;; as we do it.
+;;; Plans drive COOK of manual-c.lisp. "Our RPL" is what the manual takes for granted of the
+;;; language, as we do it.
 
 (defmacro alone (&body body)
   "Run BODY as a plan without a robot; return its value, or failure, and how it ended."
@@ -157,9 +157,9 @@ if all do."
 failure, with its class."
   (multiple-value-bind (failure state) (alone (wait-time 1) (fail :class :lost) (wait-time 1))
     (is (equal '(:failed :lost 1) (list state (failure-class failure) (failure-tick failure)))))
-  (multiple-value-bind (failure state) (alone (wait-time 1) (car (fluent-value 'moon)))
+  (multiple-value-bind (failure state) (alone (wait-time 1) (parse-integer "moon"))
     (is (eq :failed state) "a Lisp error is a failure")
-    (is-true (typep (lisp-failure-condition failure) 'type-error))))
+    (is-true (typep (lisp-failure-condition failure) 'parse-error))))
 
 (test manual-c-plans.failures-can-be-handled
   "Our RPL: HANDLE-FAILURE, by class; EVAP-PROTECT cleans up however its first form ends."
@@ -211,8 +211,8 @@ ends."
                          heard))))))
 
 (test manual-c-plans.interrupted-commands-tell-so
-  "C, reading 179: when a newer command interrupts an older one that tells :INTERRUPT, then comes the
-answer of the newer."
+  "C, reading 179: when a newer command interrupts an older one that tells :INTERRUPT, then comes
+the answer of the newer."
   (in-pantry ()
     (is (equal '(:interrupt nil)
                (planned
