@@ -174,7 +174,7 @@
                  (:file "manual-5-2") (:file "manual-5-3") (:file "manual-5-3-1")
                  (:file "manual-5-4") (:file "manual-5-5") (:file "manual-b")
                  (:file "manual-b-1") (:file "manual-c") (:file "manual-c-plans")
-                 (:file "manual-d")
+                 (:file "manual-d") (:file "manual-e")
                  (:file "src-readme") (:file "architecture") (:file "isolation") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))

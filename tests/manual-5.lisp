@@ -13,8 +13,10 @@
                 #:def-suite* #:test #:is #:is-true #:is-false #:signals #:ars-magna
                 #:call-times #:call-once #:end-code #:near #:frequent-p #:warnings-of
                 #:complaints #:has-words-p #:wall-picture #:map-of #:picture-map
+                #:lines-of #:joined
                 #:message-texts)
-  (:import-from :ars-magna.display #:svg-picture))
+  (:import-from :ars-magna.display #:svg-picture)
+  (:import-from :ars-magna.cli #:make-session #:run-session #:session-errors))
 
 (in-package :ars-magna.tests.manual-5)
 (in-readtable :nisp)
