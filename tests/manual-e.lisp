@@ -234,7 +234,9 @@ with a command, help for that."
   (let ((lines (typed "obj-desig 1 local ((:size 6))" "cam-track 1 0" "status")))
     (is-true (member "View:  Camera 0: 30.00 30.00 30.00" lines :test #'string=))
     (is-true (member "          Camera 1: TRACK 30.00 30.00 30.00 30.00 30.00" lines
-                     :test #'string=))))
+                     :test #'string=)))
+  (is (equal "NIL" (last-line "status" "(camera-last-view (robot-camera (first (simulation-robots)) 0))"))
+      "the robot has not looked"))
 
 (test manual-e.status-shows-place-and-designators
   "E, reading 106: the place last sensed, and the designators that are valid, with what is known."
