@@ -5,8 +5,10 @@
 
 (def-suite* manual-5-1 :in ars-magna)
 
-(defvar chest* (new-thing chest nil ((:capacity 9) (:size 8) (:weight 2) (:color blue))))
-(new-thing coin chest* ((:size .1) (:weight .1)))
+(defvar chest*
+  (let ((chest (new-thing chest nil ((:capacity 9) (:size 8) (:weight 2) (:color blue)))))
+    (new-thing coin chest ((:size .1) (:weight .1)))
+    chest))
 
 (defkicker fidget (thing) () (kick-thing thing .5 0 nil))
 
@@ -134,7 +136,7 @@ between corners what lies between."
 (test manual-5-1.cells-have-whole-coordinates
   "5.1, reading 51: the cell of (x,y) is that of the floors of x and y."
   (is (equal '("---" "-**" "---")
-             (wall-picture (map-of 3 3 '(wall (1 1.99) (2.75 1.01) bricks 1)))))
+             (wall-picture (map-of 3 3 '(wall (1.75 1.99) (2.5 1.01) bricks 1)))))
   (is (equal '(t t nil nil) (list (wall-at-p attic 4 2) (wall-at-p attic 4.99 8.99)
                                   (wall-at-p attic 3.999 5) (wall-at-p attic 5 5)))))
 

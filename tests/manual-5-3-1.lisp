@@ -234,7 +234,9 @@ whatever kick-if-wall."
       (move-thing bug bin)
       (is (null (end-code 'storage-bin-close bin)))
       (is (equal '(nil nil) (list (kick-thing bug 1 0 nil) (kick-thing bug 1 0 t))))
-      (is (eq bin (thing-location bug))))))
+      (is (eq bin (thing-location bug)))
+      (let ((flea (new-thing flea (new-thing pot bin ((:capacity 1))) ())))
+        (is (null (kick-thing flea 1 0 t)) "in something open in something closed")))))
 
 (test manual-5-3-1.kick-out-of-something-open
   "Reading 172: out of an open container or bin a thing is kicked onto the floor, as far from

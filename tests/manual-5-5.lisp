@@ -75,14 +75,16 @@ methods fits, the code is :FAILED."
 (test manual-5-5.patterns-are-matched-exactly
   "Reading 126: true values are compared, without noise and without the usual threshold."
   (define (weigh (it - ((:size (10 20))) :by hand - HAND) () (values nil :ten))
-          (judge (it - ((:size 9.9)) :by hand - HAND) () (values nil :near)))
+          (judge (it - ((:size 9.9)) :by hand - HAND) () (values nil :near))
+          (guess (it - ((:size 9.9 .2)) :by hand - HAND) () (values nil :near)))
   (with-simulation (teller :seed 3 :parameters '((false-thing-prob* 0) (miss-thing-prob* 0)))
     (let ((safe (third (answer 'camera-get-object-designator (robot-camera teller 0) :local
                                '((:size 10 4))))))
       (is (equal '((nil :ten)) (remove-duplicates
                                 (loop repeat 20 collect (outcome 'weigh safe (left-hand)))
                                 :test #'equal)))
-      (is (eq :failed (first (outcome 'judge safe (left-hand))))))))
+      (is (eq :failed (first (outcome 'judge safe (left-hand)))))
+      (is (equal '(nil :near) (outcome 'guess safe (left-hand))) "a threshold of its own"))))
 
 (test manual-5-5.matchvars-stand-for-one-value
   "5.5.1: ?x is bound to the attribute's value where it comes first; where it comes again the value

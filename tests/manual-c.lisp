@@ -160,6 +160,7 @@ robot-angle-diff* the estimated angle turned."
   (is (equalp '(t nil -1.57) (turned (rpl-robot-turn-left))))
   (is (equalp '(t nil 1.57) (turned (rpl-robot-turn-right))))
   (is (equalp '(t nil -.4) (turned (rpl-robot-align-place) (place-robot cook 8.5 5.5 .4))))
+  (is (equalp '(t nil 1.57) (turned (rpl-robot-turn-corner) (place-robot cook 1.5 9.5 pi))))
   (is (equal '(t :no-place-type nil) (turned (rpl-robot-align-place))))
   (is (equal '(t :no-corner nil) (turned (rpl-robot-turn-corner)))))
 

@@ -235,7 +235,8 @@ with a command, help for that."
     (is-true (member "View:  Camera 0: 30.00 30.00 30.00" lines :test #'string=))
     (is-true (member "          Camera 1: TRACK 30.00 30.00 30.00 30.00 30.00" lines
                      :test #'string=)))
-  (is (equal "NIL" (last-line "status" "(camera-last-view (robot-camera (first (simulation-robots)) 0))"))
+  (is (equal "NIL" (last-line "status" (format nil "(camera-last-view (robot-camera ~
+                                                    (first (simulation-robots)) 0))")))
       "the robot has not looked"))
 
 (test manual-e.status-shows-place-and-designators
