@@ -1,6 +1,6 @@
 ;;;; manual-5-3-1.lisp -- Kickers (manual 5.3.1).
 
-(in-package :ars-magna.tests.manual-5)
+(in-package :ars-test-manual-5)
 (in-readtable :nisp)
 
 (def-suite* manual-5-3-1 :in ars-magna)

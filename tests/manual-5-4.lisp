@@ -1,6 +1,6 @@
 ;;;; manual-5-4.lisp -- Defining new attributes (manual 5.4).
 
-(in-package :ars-magna.tests.manual-5)
+(in-package :ars-test-manual-5)
 (in-readtable :nisp)
 
 (def-suite* manual-5-4 :in ars-magna)

@@ -1,6 +1,6 @@
 ;;;; manual-5-5.lisp -- Manipulations: defining and running them (manual 5.5).
 
-(in-package :ars-magna.tests.manual-5)
+(in-package :ars-test-manual-5)
 (in-readtable :nisp)
 
 (def-suite* manual-5-5 :in ars-magna)

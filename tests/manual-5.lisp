@@ -7,7 +7,7 @@
 ;; Not from ARS-MAGNA.TESTS, where NISP is the nickname of a layer.
 (in-package :ars-user)
 
-(ars:define-user-package :ars-magna.tests.manual-5
+(ars:define-user-package :ars-test-manual-5
   (:documentation "A user's package: Common Lisp, ARS and NISP, and what tests are written with.")
   (:import-from :ars-magna.tests
                 #:def-suite* #:test #:is #:is-true #:is-false #:signals #:ars-magna
@@ -18,7 +18,7 @@
   (:import-from :ars-magna.display #:svg-picture)
   (:import-from :ars-magna.cli #:make-session #:run-session #:session-errors))
 
-(in-package :ars-magna.tests.manual-5)
+(in-package :ars-test-manual-5)
 (in-readtable :nisp)
 
 (defun walls (map x y &rest more)

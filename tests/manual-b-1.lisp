@@ -1,6 +1,6 @@
 ;;;; manual-b-1.lisp -- Place type graphics methods (manual B.1).
 
-(in-package :ars-magna.tests.manual-5)
+(in-package :ars-test-manual-5)
 (in-readtable :nisp)
 
 (def-suite* manual-b-1 :in ars-magna)

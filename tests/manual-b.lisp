@@ -1,6 +1,6 @@
 ;;;; manual-b.lisp -- The graphical display (manual appendix B).
 
-(in-package :ars-magna.tests.manual-5)
+(in-package :ars-test-manual-5)
 (in-readtable :nisp)
 
 (def-suite* manual-b :in ars-magna)

@@ -1,6 +1,6 @@
 ;;;; manual-c-plans.lisp -- Plans in RPL, by themselves and on a robot (manual appendices C, D).
 
-(in-package :ars-magna.tests.manual-5)
+(in-package :ars-test-manual-5)
 (in-readtable :nisp)
 
 (def-suite* manual-c-plans :in ars-magna)

@@ -1,6 +1,6 @@
 ;;;; manual-c.lisp -- The RPL interface: fluents and functions (manual appendix C).
 
-(in-package :ars-magna.tests.manual-5)
+(in-package :ars-test-manual-5)
 (in-readtable :nisp)
 
 (def-suite* manual-c :in ars-magna)

@@ -1,6 +1,6 @@
 ;;;; manual-d.lisp -- An extended example: find, go, grasp, carry, return (manual appendix D).
 
-(in-package :ars-magna.tests.manual-5)
+(in-package :ars-test-manual-5)
 (in-readtable :nisp)
 
 (def-suite* manual-d :in ars-magna)

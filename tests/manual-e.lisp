@@ -1,6 +1,6 @@
 ;;;; manual-e.lisp -- The command-line interface (manual appendix E).
 
-(in-package :ars-magna.tests.manual-5)
+(in-package :ars-test-manual-5)
 (in-readtable :nisp)
 
 (def-suite* manual-e :in ars-magna)
