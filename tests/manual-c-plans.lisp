@@ -281,7 +281,12 @@ whose fluents tell :INTERRUPT."
     (is (equal '(t nil 1) (searched (rpl-camera-get-object-designator (f 0) (f :local)
                                                                    (f '((:color violet)))))))
     (is (equal '(t nil "Storage-bin 1" "NIL") (handled (rpl-hand-insert (f 0) (f 1)))))
-    (in-pantry () (is (= 7 (rpl-hand-strength (f 1)))))))
+    (in-pantry ()
+      (is (= 7 (rpl-hand-strength (f 1))))
+      (is (eq (robot-camera cook 1) (rpl-robot-part 'camera (f 1))))
+      (is-true (odometer-p (rpl-new-odometer (f 'walk)))))
+    (with-simulation ((cook maid))
+      (is (eq maid (rpl-init-robot (f maid)))))))
 
 (test manual-c-plans.arguments-of-the-wrong-kind-are-told
   "C: indices are those of parts that there are, other arguments as for the command."
