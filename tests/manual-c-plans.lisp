@@ -32,7 +32,7 @@
 
 (test manual-c-plans.pulses-are-for-an-instant
   "C, reading 177: a pulse sets a fluent to true for an instant: all who wait are woken, once; the
-fluent is then as before."
+fluent is then false."
   (let ((f (create-fluent 'f nil)))
     (is (equal '((:a 2) (:b 2) (nil 7))
                (log-of (par (seq (wait-for f) (note :a) (note (wait-for f :timeout 5)))
