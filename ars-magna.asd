@@ -12,7 +12,7 @@
     :components ((:file "package") (:file "policy") (:file "public")
                  (:file "floats") (:file "globals") (:file "atomic") (:file "classes")
                  (:file "packages") (:file "files") (:file "processes") (:file "backtraces")
-                 (:file "environments")
+                 (:file "environments") (:file "abridging")
                  (:file "conditions") (:file "threads") (:file "dice") (:file "names")
                  (:file "digest") (:file "sources") (:file "variables") (:file "definitions")
                  (:file "registry") (:file "own-definitions")

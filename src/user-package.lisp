@@ -93,10 +93,10 @@ if there are several of a name; not those under the names SETTLED."
               '((:local-nicknames (:xlib :ars-magna.canvas)))))))
 
 (addition define-user-package)
-(defmacro define-user-package (name &rest options)
+(define-user-macro define-user-package (name &rest options)
   "Define the package NAME, ready to work in, as DEFPACKAGE does with OPTIONS. Unless they contain
 (:use ...), it uses CL, ARS and NISP; what its packages export under a name of Common Lisp's, such
 as ARS:EQUAL or NISP:LOOP, wins over that unless OPTIONS say otherwise. In it XLIB is our canvas:
 ARS-MAGNA.CANVAS. Signals MALFORMED-DEFINITION. See reading 213."
   `(defpackage ,name
-     ,@(user-package-options (format nil "define-user-package ~(~A~)" name) options)))
+     ,@(user-package-options (title "define-user-package" name) options)))

@@ -34,12 +34,15 @@ loaded; NIL if it was typed."
   "Return a number for the form of the definition that is being carried out, or NIL."
   (and *definition* (form-digest (defining-form *definition*))))
 
+(defun title (operator name)
+  "Return what the definition of NAME by OPERATOR is called in messages, such as \"defmap yard\"."
+  (let ((name (abridged name)))
+    (format nil "~(~A ~A~)" operator (if (keywordp name) (prin1-to-string name) name))))
+
 (defun definition-text (definition)
-  "Return what DEFINITION is called in messages, such as \"defmap yard\"."
-  (let ((*print-case* :downcase))
-    (destructuring-bind (operator &optional name &rest clauses) (defining-form definition)
-      (declare (ignore clauses))
-      (format nil "~A ~A" operator (if (keywordp name) (prin1-to-string name) name)))))
+  "Return what DEFINITION is called in messages."
+  (let ((form (defining-form definition)))
+    (title (first form) (second form))))
 
 (defun clause-place (clause)
   "Return where CLAUSE of the definition at hand stands, such as \"yard.lisp, line 7\", or NIL."
@@ -145,7 +148,7 @@ the user is asked again."
   "Signal MALFORMED-DEFINITION because of CONDITION, an error in a form that an author wrote."
   (reject-clause (definition-text *definition*)
                  (or (missing-name condition)
-                     (append (head (defining-form *definition*)) '(|...|)))
+                     (append (head (defining-form *definition*)) (list +more+)))
                  (format nil "forms that have values (~A)"
                          (string-right-trim "." (princ-to-string condition)))))
 
@@ -190,8 +193,6 @@ form that signals it later."
 
 (defun call-with-definition (form function)
   "Call FUNCTION, which expands the definition FORM, and return what it returns."
-  (when (endless-p form)
-    (reject-clause "a definition" (list (first form) '|...|) "a form that ends"))
   (let ((*definition* (make-defining (source-here) form)))
     (call-with-definition-restarts function #'identity)))
 
@@ -208,3 +209,78 @@ the name."
           ,@before
           (call-as-definition ',(current-source) ',form (lambda () ,@forms))
           ',(second form))))))
+
+;;; The macros that users write. Lisp's own macros signal errors of Lisp's where they are not used as
+;;; they should be, and look for the end of a circle.
+
+(defun unlike-ours-p (condition)
+  (not (typep condition 'ars-magna-error)))
+
+(defun reject-use-of (form expected &optional condition)
+  "Signal MALFORMED-DEFINITION about FORM, the use of a macro, perhaps because of CONDITION."
+  (reject-clause (title (first form) (and (consp (rest form)) (second form)))
+                 (abridged form)
+                 (format nil "~A~@[ (~A)~]" expected
+                         (and condition
+                              (abridged (string-right-trim "." (princ-to-string condition)))))))
+
+(defun call-blaming-form (function form)
+  "Call FUNCTION, which expands FORM. Errors that are not ours are mistakes in what the author wrote
+there."
+  (handler-case
+      (handler-bind ((error (lambda (condition)
+                              (when (unlike-ours-p condition)
+                                (reject-use-of form "forms that Lisp can compile" condition)))))
+        (funcall function))
+    (storage-condition ()
+      (reject-use-of form "forms that are less deep, and macros that come to an end"))))
+
+(defun call-fitting (form usage parse)
+  "Call what PARSE, a function, returns; that takes apart FORM, the use of a macro as USAGE shows."
+  (unless (proper-form-p form) (reject-use-of form "a form that ends, in a parenthesis"))
+  (call-blaming-form (handler-case (funcall parse)
+                       (error () (reject-use-of form (format nil "~(~S~)" (abridged usage)))))
+                     form))
+
+(defun proper-form-p (form)
+  (and (not (endless-p form)) (proper-list-p form)))
+
+(defun expand-fitting (form environment usage parse)
+  "Return what CALL-FITTING does; in other forms or in a file that is compiled, a form that signals
+later what that signals."
+  (first (forms-or-rejection (lambda () (list (call-fitting form usage parse)))
+                             (nested-p environment))))
+
+(defun variable-after (key lambda-list)
+  "Return the variable that comes after KEY in LAMBDA-LIST, or NIL; and LAMBDA-LIST without both."
+  (let ((rest (member key lambda-list)))
+    (values (second rest) (append (ldiff lambda-list rest) (cddr rest)))))
+
+(defun user-macro-form (name lambda-list usage body)
+  "Return the form that defines the macro NAME with LAMBDA-LIST and BODY. A use of it that does not
+fit, or which BODY makes nothing of, signals MALFORMED-DEFINITION; USAGE, a form, says what fits."
+  (multiple-value-bind (body declarations documentation) (parse-body body :documentation t)
+    (multiple-value-bind (environment rest) (variable-after '&environment lambda-list)
+      (multiple-value-bind (whole parameters) (variable-after '&whole rest)
+        (with-gensyms (form arguments)
+          (let ((environment (or environment (gensym "ENVIRONMENT"))))
+            `(defmacro ,name (&whole ,form &rest ,arguments &environment ,environment)
+               ,@(when documentation (list documentation))
+               (declare (ignore ,arguments))
+               (expand-fitting ,form ,environment ',usage
+                               (lambda ()
+                                 (let (,@(when whole `((,whole ,form))))
+                                   ,@(when whole `((declare (ignorable ,whole))))
+                                   (destructuring-bind ,parameters (rest ,form)
+                                     ,@declarations
+                                     (lambda () ,@body))))))))))))
+
+(defmacro define-user-macro (name lambda-list &body body)
+  "Define the macro NAME, which users write, as DEFMACRO does. A use of it that does not fit
+LAMBDA-LIST, or which BODY makes nothing of, signals MALFORMED-DEFINITION."
+  (let ((shown (nth-value 1 (variable-after
+                             '&whole (nth-value 1 (variable-after '&environment lambda-list))))))
+    `(progn
+       ,(user-macro-form name lambda-list (cons name shown) body)
+       (show-lambda-list ',name ',shown)
+       ',name)))

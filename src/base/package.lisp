@@ -33,8 +33,11 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:environment-value #:run-command #:calls-under-way)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
-           #:local-function-p #:known-function-p #:macro-expander #:lisps-macro-p
+           #:local-function-p #:known-function-p #:macro-expander
+           #:show-lambda-list #:lisps-own-p
            #:extended-environment #:nested-p #:evaluate-form #:form-behind-comma #:walk-form)
+  ;; abridging
+  (:export #:abridged #:+more+)
   ;; conditions
   (:export #:ars-magna-error #:wrong-argument #:check-argument #:malformed-definition
            #:malformed-definition-place
@@ -54,7 +57,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; sources, definitions
   (:export #:source-here #:source-file #:part-in-file-p #:skip-comment #:current-source
            #:*definition* #:definition-again #:make-defining #:defining-form #:reject-clause
-           #:call-with-definition #:expand-definition #:call-as-definition
+           #:call-with-definition #:expand-definition #:title #:define-user-macro #:user-macro-form
+           #:call-as-definition
            #:check-function-name #:other-definition-p #:in-file-p #:missing-name #:read-value
            #:clause-place #:skip-definition #:skip-clause #:read-again)
   ;; registry

@@ -25,13 +25,13 @@
   "Define or redefine the substance NAME with PARAMETER; what DEFSUBSTANCE expands to. Return
 NAME."
   (unless (finite-p parameter)
-    (reject-clause (format nil "defsubstance ~(~A~)" name) parameter
+    (reject-clause (title "defsubstance" name) parameter
                    "a number as the parameter of the substance"))
   (register *substances* name (make-substance name (double parameter)))
   name)
 
 (addition defsubstance)
-(defmacro defsubstance (&whole form name &optional parameter &environment environment)
+(define-user-macro defsubstance (&whole form name &optional parameter &environment environment)
   "Define the type of substance NAME, a symbol: things whose :substance is NAME are viewed as
 PARAMETER, a number. Our addition to manual 2.1 and 3.3. Return the name."
   (expand-definition form environment
