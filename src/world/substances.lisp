@@ -25,7 +25,7 @@
   "Define or redefine the substance NAME with PARAMETER; what DEFSUBSTANCE expands to. Return
 NAME."
   (unless (finite-p parameter)
-    (reject-clause (title "defsubstance" name) parameter
+    (reject-clause (format nil "defsubstance ~(~A~)" name) parameter
                    "a number as the parameter of the substance"))
   (register *substances* name (make-substance name (double parameter)))
   name)
