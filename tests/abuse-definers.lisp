@@ -94,7 +94,7 @@ is accepted, USE is done. OPTIONS are those of DEFINE-ABUSE and :KEEP, of FORM-M
                                     (run:run-ticks 3))))
                             (list (robot:robot-name (first (last (robot:all-robots)))))))
 
-(define-form-abuse place-types ()
+(define-form-abuse place-types (:author t)
     ((world:def-place-type abuse-nook (cell) :confusion .2
        :check-matchers ((((* * *) (* - *) (x x x)) 1.5) (((x * x) (* - x) (x x x)) 3 0 1)))
      (world:def-place-type abuse-post (cell) :before doorway :invisible t
@@ -191,13 +191,4 @@ is accepted, USE is done. OPTIONS are those of DEFINE-ABUSE and :KEEP, of FORM-M
      (ars-magna.faces::define-user-package :abuse-package (:nicknames :abu) (:size 10)
        (:documentation "x") (:shadowing-import-from :ars #:equal)
        (:local-nicknames (:w :ars-worlds))))
-  nil)
-
-(define-form-abuse kinds ()
-    ((base:define-kind (abuse-gauge :include robot:part)
-         "A gauge."
-       (:fixed (scale 1d0 double-float "a factor"))
-       (:state (uses 0 fixnum "how often"))
-       (:memory (last nil t "the last")))
-     (base:define-argument-type 'abuse-gauge #'numberp "a gauge"))
   nil)

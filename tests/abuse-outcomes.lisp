@@ -7,6 +7,7 @@
 ;;;   :fine      it was done, and nobody minded
 ;;;   :warned    it was done, and somebody was told
 ;;;   :refused   one of our conditions says what is wrong, in few words
+;;;   :typed     Lisp says that something is not of a type of ours: a reader was given another thing
 ;;;   :foreign   something signalled that is no condition of ours
 ;;;   :disguised one of our conditions says no more than what Lisp says of its own insides
 ;;;   :wordy     one of our conditions takes thousands of characters
@@ -70,6 +71,13 @@ be in it, that may be executed, and Lisp's complaints of it are in order. SAMPLE
                   (t :refused))
             text)))
 
+(defun of-our-type-p (condition)
+  "True if CONDITION says that something is not of a type that has a name among ours."
+  (and (typep condition 'type-error)
+       (let ((type (type-error-expected-type condition)))
+         (and type (symbolp type)
+              (eql 0 (search "ARS-MAGNA." (package-name (symbol-package type))))))))
+
 (defun call-noting-warnings (function)
   "Call FUNCTION. Return true if it warned of anything, or if a message says so."
   (let ((base:*message-queue* (base:make-message-queue)) (warned nil))
@@ -93,8 +101,9 @@ be in it, that may be executed, and Lisp's complaints of it are in order. SAMPLE
             (handler-case (funcall *watchdog* (lambda () (refusal condition)))
               (sb-ext:timeout () (values :hung "while its message is printed"))
               (serious-condition (trouble) (values :foreign (list 'in-its-message trouble)))))
-          (serious-condition (condition) (values :foreign (list (type-of condition)
-                                                                (text-of condition)))))
+          (serious-condition (condition)
+            (values (if (of-our-type-p condition) :typed :foreign)
+                    (list (type-of condition) (text-of condition)))))
       (if (plusp *sprung*) (values :executed text) (values outcome text)))))
 
 (defun call-unheard (function)
