@@ -15,6 +15,7 @@
                  (:file "environments") (:file "abridging")
                  (:file "conditions") (:file "threads") (:file "dice") (:file "names")
                  (:file "digest") (:file "sources") (:file "variables") (:file "definitions")
+                 (:file "user-macros")
                  (:file "registry") (:file "own-definitions")
                  (:file "messages") (:file "user-code")
                  (:file "parameters") (:file "physics")

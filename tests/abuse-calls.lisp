@@ -43,15 +43,16 @@
 
 (define-abuse specifications (example)
     (list (base:roll-index 1000000000 dice)
-          (form-mutant (base:roll-element '((:local ((:size (1 3)) (:color (red blue)) (:weight 2 1)))
-                                            (:non-local ((:closed nil) (:mood good) (:size 4)))
-                                            (:local ((:substance (10 90)) (:capacity (1 9) .5))))
+          (one-of dice :local :non-local)
+          (form-mutant (base:roll-element '(((:size (1 3)) (:color (red blue)) (:weight 2 1))
+                                            ((:closed nil) (:mood good) (:size 4))
+                                            ((:substance (10 90)) (:capacity (1 9) .5)))
                                           dice)
                        dice :keep 0))
-  (destructuring-bind (seed (type &optional specification &rest more)) example
+  (destructuring-bind (seed type specification) example
     (in-zoo (seed)
-      (apply #'command:camera-get-object-designator (part-of-any #'robot:robot-cameras)
-             type specification more)
+      (command:camera-get-object-designator (part-of-any #'robot:robot-cameras)
+                                            type specification)
       (run-about))))
 
 ;;; Functions: those that users call, but for those that pass time or ask people.

@@ -23,7 +23,7 @@
               (list (form-mutant (nth which data) dice :keep (if (zerop which) 2 0)))
               (last data)))
   (with-temporary-file (file)
-    (write-lines (sealed-lines (mapcar #'data-text data)) file)
+    (put-octets (octets-of (format nil "~{~A~%~}" (sealed-lines (mapcar #'data-text data)))) file)
     (run:replay file)))
 
 (define-abuse journal-texts (texts)
@@ -33,11 +33,11 @@
               (list (text-mutant (nth which texts) dice))
               (last texts)))
   (with-temporary-file (file)
-    (write-lines (sealed-lines texts) file)
+    (put-octets (octets-of (format nil "~{~A~%~}" (sealed-lines texts))) file)
     (run:replay file)))
 
 (defun octets-of (text)
-  (sb-ext:string-to-octets text :external-format :utf-8))
+  (sb-ext:string-to-octets text :external-format '(:utf-8 :replacement #\?)))
 
 (defun put-octets (octets file)
   (alexandria:write-byte-vector-into-file (coerce octets '(vector (unsigned-byte 8))) file
@@ -80,8 +80,9 @@
   (let ((copy (copy-seq words)))
     (loop repeat (one-of dice 1 1 4)
           do (setf (aref copy (+ 2 (base:roll-index (- (length copy) 2) dice)))
-                   (one-of dice 0 (1- (expt 2 64)) (base:roll-index 1000000000 dice) (ash #x7FF 52) (ash 1 31)
-                           (ash 1 32) (ash 255 32) (+ 107 (ash 1 32)) (+ 50 (ash 1 32)))))
+                   (one-of dice 0 (1- (expt 2 64)) (base:roll-index (expt 2 60) dice)
+                           (ash #x7FF 52) (ash 1 31) (ash 1 32) (ash 255 32)
+                           (+ 107 (ash 1 32)) (+ 50 (ash 1 32)))))
     (setf (aref copy (1- world::+cache-header+)) (world::words-sum copy))
     copy))
 

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.tests)
 
-;;; Each form is good before it is damaged. What is accepted all the same has to work: it is used for
-;;; some ticks, and the world must not contradict itself.
+;;; Each form is good before it is damaged. What is accepted all the same has to work: it is used
+;;; for some ticks, and the world must not contradict itself.
 
 (defun find-contradictions (world)
   "Signal an error if WORLD contradicts itself."
@@ -48,7 +48,8 @@
   (eval '(world:defkicker abuse-hop (thing) (:prob .3) (world:kick-thing thing .3 .2 nil)))
   (eval '(world:defmap abuse-room (9 9)
           (rect (0 0) (8 8) bricks 1)
-          (obj (crate :kickers (abuse-hop)) (4.5 4.5) ((:size 2) (:color red)) (pin ((:size .1)))))))
+          (obj (crate :kickers (abuse-hop)) (4.5 4.5) ((:size 2) (:color red))
+            (pin ((:size .1)))))))
 
 (defmacro define-form-abuse (name options samples &body use)
   "Define the abuse NAME of the definitions SAMPLES, forms: a mutant of one is evaluated, and if it
@@ -185,10 +186,20 @@ is accepted, USE is done. OPTIONS are those of DEFINE-ABUSE and :KEEP, of FORM-M
        (list 'rpl:par x (cons 'rpl:seq y))))
   (eval '(rpl:def-interp-proc abuse-plan () (abuse-macro for 1 do 2))))
 
-(define-form-abuse packages ()
-    ((ars-magna.faces::define-user-package :abuse-package (:use :cl :ars :nisp)
-       (:export #:kitchen "DOOR") (:shadow #:add) (:import-from :ars-worlds #:watson))
-     (ars-magna.faces::define-user-package :abuse-package (:nicknames :abu) (:size 10)
-       (:documentation "x") (:shadowing-import-from :ars #:equal)
-       (:local-nicknames (:w :ars-worlds))))
-  nil)
+(defmacro keeping-packages (&body body)
+  "Run BODY; packages that it makes are gone afterwards."
+  `(let ((packages (list-all-packages)))
+     (unwind-protect (progn ,@body)
+       (mapc #'delete-package (set-difference (list-all-packages) packages)))))
+
+(defparameter *packages*
+  '((ars-magna.faces:define-user-package :abuse-package (:use :cl :ars :nisp)
+     (:export #:kitchen "DOOR") (:shadow #:add) (:import-from :ars-worlds #:watson))
+    (ars-magna.faces:define-user-package :abuse-package (:nicknames :abu) (:size 10)
+     (:documentation "x") (:shadowing-import-from :ars #:equal)
+     (:local-nicknames (:w :ars-worlds))))
+  "Definitions of packages.")
+
+(define-abuse packages (form :author t :samples *packages*)
+    (form-mutant (base:roll-element *packages* dice) dice)
+  (keeping-packages (eval form)))

@@ -21,7 +21,8 @@
 
 (defstruct (abuse (:constructor make-abuse (name make try &key author samples)) (:copier nil))
   "A kind of abuse: MAKE returns an example of it, by dice; TRY tries that. If an AUTHOR's code may
-be in it, that may be executed, and Lisp's complaints of it are in order. SAMPLES are examples that nobody has damaged."
+be in it, that may be executed, and Lisp's complaints of it are in order. SAMPLES are examples that
+nobody has damaged."
   name make try author samples)
 
 (defvar *abuses* '() "All kinds of abuse, the newest first.")
@@ -55,8 +56,8 @@ be in it, that may be executed, and Lisp's complaints of it are in order. SAMPLE
 
 (defparameter *words-of-lisp*
   '("is not of type" "unbound" "invalid number of arguments" "arguments to" "destructuring"
-    "while parsing" "undefined" "The value" "not a string designator" "Malformed" "odd number of &KEY"
-    "arithmetic error" "bogus" "illegal" "cannot be converted" "Can't")
+    "while parsing" "undefined" "The value" "not a string designator" "Malformed"
+    "odd number of &KEY" "arithmetic error" "bogus" "illegal" "Can't decode")
   "Words that show that Lisp speaks, of something that it was given by us.")
 
 (defun text-of (condition)
@@ -103,7 +104,8 @@ be in it, that may be executed, and Lisp's complaints of it are in order. SAMPLE
               (serious-condition (trouble) (values :foreign (list 'in-its-message trouble)))))
           (serious-condition (condition)
             (values (if (of-our-type-p condition) :typed :foreign)
-                    (list (type-of condition) (text-of condition)))))
+                    (let ((*print-circle* t) (*print-length* 40))
+                      (list (type-of condition) (text-of condition))))))
       (if (plusp *sprung*) (values :executed text) (values outcome text)))))
 
 (defun call-unheard (function)
@@ -161,3 +163,8 @@ called with the number of each before it is tried."
 
 (defun bad-rows (table)
   (remove-if-not (lambda (row) (member (first row) *bad-outcomes*)) table))
+
+(defun rows-text (rows)
+  "Return ROWS of a table in words."
+  (let ((*print-circle* t) (*print-length* 40))
+    (format nil "~:{~(~A~) ~D times, such as ~{number ~D: ~A~%~S~%~}~}" rows)))

@@ -49,7 +49,8 @@ on, or NIL if it is none that is known."
 
 (defun show-lambda-list (name lambda-list)
   "Let those who ask how the macro NAME is used be told LAMBDA-LIST."
-  (setf (sb-kernel:%simple-fun-arglist (macro-function name)) lambda-list))
+  (funcall (fdefinition `(setf ,(uiop:find-symbol* '#:%simple-fun-arglist :sb-c)))
+           lambda-list (macro-function name)))
 
 ;;; Environments.
 

@@ -57,10 +57,12 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; sources, definitions
   (:export #:source-here #:source-file #:part-in-file-p #:skip-comment #:current-source
            #:*definition* #:definition-again #:make-defining #:defining-form #:reject-clause
-           #:call-with-definition #:expand-definition #:title #:define-user-macro #:user-macro-form
+           #:call-with-definition #:expand-definition #:title
            #:call-as-definition
            #:check-function-name #:other-definition-p #:in-file-p #:missing-name #:read-value
            #:clause-place #:skip-definition #:skip-clause #:read-again)
+  ;; user-macros
+  (:export #:define-user-macro #:user-macro-form)
   ;; registry
   (:export #:registry #:define-registry #:registry-objects #:register #:seal-definitions
            #:lookup-entry #:from-this-file-p #:entry-name #:entry-object #:entry-source

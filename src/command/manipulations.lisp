@@ -184,7 +184,8 @@ parameter list, BODY a function of as many arguments. Return NAME."
         ,@options))))
 
 (public defmanipulation)
-(define-user-macro defmanipulation (&whole form name parameters options &body body &environment environment)
+(define-user-macro defmanipulation (&whole form name parameters options &body body
+                                    &environment environment)
   "Define a method of the manipulation NAME (manual 5.5.1). PARAMETERS is
   (variable - descriptor ... :by resource other ...)
 where each object's variable will be bound to a thing that is exactly as the descriptor

@@ -179,7 +179,8 @@ stands in, returns a form for its value."
       `',specification))
 
 (public defrobot)
-(define-user-macro defrobot (&whole form name &optional start &rest options &environment environment)
+(define-user-macro defrobot (&whole form name &optional start &rest options
+                             &environment environment)
   "Define a robot: (defrobot NAME (ENVIRONMENT (X Y) ANGLE) [:cameras ((FOV RESOLUTION) ...)]
 [:hands (STRENGTH ...)] [:bins (CAPACITY ...)] [:parts ((KIND INITARG VALUE ...) ...)]). NAME
 becomes a special variable bound to the robot, which stands in the resident world of the map

@@ -133,7 +133,8 @@ See reading 120."
                                           :noticed ,noticed :supported-by ',supported-by)))))
 
 (public defattribute numeric)
-(define-user-macro defattribute (&whole form name &optional domain &rest options &environment environment)
+(define-user-macro defattribute (&whole form name &optional domain &rest options
+                                 &environment environment)
   "Define the attribute NAME, a keyword by convention (manual 5.4). DOMAIN is NUMERIC or a list
 of the possible values, unevaluated. Options, in any order:
   :success p -- base probability that a discrete reading is correct; default 1

@@ -101,7 +101,8 @@ See readings 12 and 167."
     (reject-clause (title "new-thing" name) descriptor
                    "a list of lists (attribute value), each attribute once"))
   (unless (listp (cdr (last (ensure-list location))))
-    (reject-clause (title "new-thing" name) location "a location: a form, (:with form) or (map x y)"))
+    (reject-clause (title "new-thing" name) location
+                   "a location: a form, (:with form) or (map x y)"))
   `(make-new-thing ',name
                    ,(cond ((and (consp location) (eq :with (first location)))
                            `(list :with ,@(rest location)))
