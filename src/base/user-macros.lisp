@@ -11,7 +11,7 @@
 
 (defun reject-use-of (form expected &optional condition)
   "Signal MALFORMED-DEFINITION about FORM, the use of a macro, perhaps because of CONDITION."
-  (reject-clause (title (first form) (and (consp (rest form)) (second form)))
+  (reject-clause (if (consp (rest form)) (title (first form) (second form)) (first form))
                  (abridged form)
                  (format nil "~A~@[ (~A)~]" expected
                          (and condition
@@ -32,8 +32,11 @@ there."
   "Call what PARSE, a function, returns; that takes apart FORM, the use of a macro as USAGE shows."
   (unless (proper-form-p form) (reject-use-of form "a form that ends, in a parenthesis"))
   (call-blaming-form (handler-case (funcall parse)
-                       (error () (reject-use-of form (format nil "~(~S~)" (abridged usage)))))
+                       (error () (reject-use-of form (usage-text usage))))
                      form))
+
+(defun usage-text (usage)
+  (let ((*print-pretty* nil)) (format nil "~(~A~)" (abridged usage))))
 
 (defun proper-form-p (form)
   (and (not (endless-p form)) (proper-list-p form)))
