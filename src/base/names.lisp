@@ -66,7 +66,8 @@ of more than 100 characters."
   "True if the characters LETTER and OTHER are equal, or written for each other."
   (or (char-equal letter other)
       (some (lambda (letters)
-              (and (find letter letters :test #'char-equal) (find other letters :test #'char-equal)))
+              (and (find letter letters :test #'char-equal)
+                   (find other letters :test #'char-equal)))
             *letters-alike*)))
 
 (defun another-word-p (a b)
