@@ -33,7 +33,7 @@ rewrite its cache. Worlds of MAP see the change at once. Return the map."
 THINGS is a list of recipes, and of NIL for those that are left out. PACKAGE is the one that the
 author writes in. Return the map."
   (unless (typep cache '(or null string pathname))
-    (reject-clause (title "defmap" name) (list :cache cache) "the name of a file"))
+    (reject-clause (format nil "defmap ~(~A~)" name) (list :cache cache) "the name of a file"))
   (let* ((recipes (remove nil things))
          (map (build-map
                (%make-map :name name :width width :height height :clauses clauses :cache cache
