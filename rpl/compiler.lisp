@@ -109,7 +109,7 @@ it, and those to the left of them too, to keep the order."
 (defun expansion-code (form scope)
   "Return code for FORM, a macro call."
   (let ((expansion (macroexpand-1 form (scope-environment scope))))
-    (unless (lisps-macro-p (first form)) (note-own-text expansion))
+    (unless (lisps-own-p (first form)) (note-own-text expansion))
     (plan-code expansion scope)))
 
 ;;; Bodies.

@@ -18,7 +18,7 @@
 
 (defun procedure-form (name parameters body environment)
   "Return the form that defines the plan procedure NAME in ENVIRONMENT."
-  (let* ((definition (format nil "def-interp-proc ~(~A~)" name))
+  (let* ((definition (title "def-interp-proc" name))
          (parameters (untyped-lambda-list parameters definition))
          (form (list* name parameters body)))
     (declare-procedure name)
@@ -34,16 +34,16 @@
                                 ',(source-here))))))))
 
 (public def-interp-proc)
-(defmacro def-interp-proc (&whole form name parameters &body body &environment environment)
+(define-user-macro def-interp-proc (&whole form name parameters &body body &environment environment)
   "Define NAME as a plan procedure with PARAMETERS, an ordinary lambda list in which a hyphen and a
 type may follow each variable; BODY is plan text and may start with a documentation string. The
 value is that of its last form. Defining it anew takes effect at the next call, also in running
 plans (manual D.2)."
-  (check-function-name (format nil "def-interp-proc ~(~A~)" name) name)
+  (check-function-name (title "def-interp-proc" name) name)
   (call-with-definition form (lambda () (procedure-form name parameters body environment))))
 
 (addition interp-lambda)
-(defmacro interp-lambda ((&rest parameters) &body body &environment environment)
+(define-user-macro interp-lambda ((&rest parameters) &body body &environment environment)
   "Return a plan procedure without a name: PARAMETERS and BODY are as for DEF-INTERP-PROC. BODY sees
 the variables around it, but not blocks, tags and local plans. Run it by CALL-PLAN."
   (let ((parameters (untyped-lambda-list parameters "interp-lambda"))
@@ -90,18 +90,19 @@ of the variable and the word for each word that must be there literally."
     (reject-clause (format nil "~(~A~)" name) form (format nil "the word ~(~S~)" expected))))
 
 (public def-interp-macro)
-(defmacro def-interp-macro ((name &rest pattern) &body template)
+(define-user-macro def-interp-macro ((name &rest pattern) &body template)
   "Define NAME as a macro for plans. ?x in PATTERN stands for any form, to which the variable x is
 bound while TEMPLATE is evaluated; a pattern may end in a dot and ?x for all forms that are left.
 The value of TEMPLATE is the plan text to use. A documentation string may come before TEMPLATE
 (manual D.8)."
-  (check-function-name (format nil "def-interp-macro ~(~A~)" name) name)
+  (check-function-name (title "def-interp-macro" name) name)
   (multiple-value-bind (parameters literals) (pattern-parameters pattern)
     (multiple-value-bind (body documentation) (split-documentation template)
       (with-gensyms (form)
-        `(defmacro ,name (&whole ,form ,@parameters)
-           ,@(when documentation (list documentation))
-           (declare (ignorable ,form ,@(remove-if #'symbol-package (element-names parameters))))
+        (user-macro-form
+         name `(&whole ,form ,@parameters) (cons name pattern)
+         `(,@(when documentation (list documentation))
+           (declare (ignorable ,@(remove-if #'symbol-package (element-names parameters))))
            ,@(loop for (variable word) in literals
                    collect `(check-literal ',name ,form ,variable ',word))
-           ,@body)))))
+           ,@body))))))

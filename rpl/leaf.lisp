@@ -69,7 +69,7 @@
                               (plan-meaning form environment))))
              (if (and (eq meaning form)
                       (macro-function (first form) environment)
-                      (not (lisps-macro-p (first form))))
+                      (not (lisps-own-p (first form))))
                  (note-own-text (macroexpand-1 form environment))
                  meaning)))))
 

@@ -92,11 +92,24 @@ if there are several of a name; not those under the names SETTLED."
                           :key #'first :test #'string=)
               '((:local-nicknames (:xlib :ars-magna.canvas)))))))
 
+(defun check-package-name (name)
+  (unless (typep name '(or symbol string character))
+    (reject-clause "define-user-package" name "a name, such as :my-house, for the package")))
+
+(defun package-form (name options environment)
+  "Return the form, no macro, that defines the package NAME with OPTIONS of DEFINE-USER-PACKAGE."
+  (macroexpand-1 `(defpackage ,name
+                    ,@(user-package-options (title "define-user-package" name) options))
+                 environment))
+
 (addition define-user-package)
-(defmacro define-user-package (name &rest options)
+(define-user-macro define-user-package (&whole form name &rest options &environment environment)
   "Define the package NAME, ready to work in, as DEFPACKAGE does with OPTIONS. Unless they contain
 (:use ...), it uses CL, ARS and NISP; what its packages export under a name of Common Lisp's, such
 as ARS:EQUAL or NISP:LOOP, wins over that unless OPTIONS say otherwise. In it XLIB is our canvas:
-ARS-MAGNA.CANVAS. Signals MALFORMED-DEFINITION. See reading 213."
-  `(defpackage ,name
-     ,@(user-package-options (format nil "define-user-package ~(~A~)" name) options)))
+ARS-MAGNA.CANVAS. Signals MALFORMED-DEFINITION. Return the package. See reading 213."
+  (check-package-name name)
+  `(eval-when (:compile-toplevel :load-toplevel :execute)
+     ,(expand-definition form environment
+                         (lambda () (list (package-form name options environment))))
+     (find-package ',name)))

@@ -20,7 +20,7 @@
              (format stream "~(~A~): ~(~A~) is ~S; give ~A."
                      (wrong-argument-operator condition)
                      (wrong-argument-name condition)
-                     (wrong-argument-value condition)
+                     (abridged (wrong-argument-value condition))
                      (wrong-argument-expected condition))))
   (:documentation "A function was called with an argument that it cannot use."))
 
@@ -47,7 +47,7 @@
                (format stream "~A~@[ (~A)~]: cannot use the clause~%  ~S~%Expected ~A"
                        (malformed-definition-definition condition)
                        (malformed-definition-place condition)
-                       (malformed-definition-clause condition)
+                       (abridged (malformed-definition-clause condition))
                        (sentence (malformed-definition-expected condition))))))
   (:documentation "A defining form (DEFMAP, DEFROBOT ...) has a clause that makes no sense."))
 
@@ -92,7 +92,9 @@
                (format stream "There is no ~A called ~A.~@[ Did you mean ~A?~]~
                                ~@[ Known: ~{~A~^, ~}.~]"
                        kind
-                       (if (symbolp name) (plain-name name) (prin1-to-string name))
+                       (if (symbolp name)
+                           (abridged-text (plain-name name))
+                           (prin1-to-string (abridged name)))
                        (and nearest (plain-name nearest))
                        (names-to-show known)))))
   (:documentation "A name was given that nothing of that kind has."))

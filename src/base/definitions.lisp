@@ -34,12 +34,15 @@ loaded; NIL if it was typed."
   "Return a number for the form of the definition that is being carried out, or NIL."
   (and *definition* (form-digest (defining-form *definition*))))
 
+(defun title (operator name)
+  "Return what the definition of NAME by OPERATOR is called in messages, such as \"defmap yard\"."
+  (let ((name (abridged name)))
+    (format nil "~(~A ~A~)" operator (if (keywordp name) (prin1-to-string name) name))))
+
 (defun definition-text (definition)
-  "Return what DEFINITION is called in messages, such as \"defmap yard\"."
-  (let ((*print-case* :downcase))
-    (destructuring-bind (operator &optional name &rest clauses) (defining-form definition)
-      (declare (ignore clauses))
-      (format nil "~A ~A" operator (if (keywordp name) (prin1-to-string name) name)))))
+  "Return what DEFINITION is called in messages."
+  (let ((form (defining-form definition)))
+    (title (first form) (second form))))
 
 (defun clause-place (clause)
   "Return where CLAUSE of the definition at hand stands, such as \"yard.lisp, line 7\", or NIL."
@@ -145,7 +148,7 @@ the user is asked again."
   "Signal MALFORMED-DEFINITION because of CONDITION, an error in a form that an author wrote."
   (reject-clause (definition-text *definition*)
                  (or (missing-name condition)
-                     (append (head (defining-form *definition*)) '(|...|)))
+                     (append (head (defining-form *definition*)) (list +more+)))
                  (format nil "forms that have values (~A)"
                          (string-right-trim "." (princ-to-string condition)))))
 
@@ -190,8 +193,6 @@ form that signals it later."
 
 (defun call-with-definition (form function)
   "Call FUNCTION, which expands the definition FORM, and return what it returns."
-  (when (endless-p form)
-    (reject-clause "a definition" (list (first form) '|...|) "a form that ends"))
   (let ((*definition* (make-defining (source-here) form)))
     (call-with-definition-restarts function #'identity)))
 

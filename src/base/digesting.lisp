@@ -53,13 +53,14 @@ DIGEST. A kind may add an :AFTER method.")
   digest)
 
 (defun digest-contents (object digest)
-  "Add to DIGEST what is in OBJECT, an array, table or structure of a user's."
+  "Add to DIGEST what is in OBJECT, an array, table, pathname or structure of a user's."
   (typecase object
     (array (digest-add digest (array-dimensions object))
      (dotimes (i (array-total-size object)) (digest-add digest (row-major-aref object i))))
     (hash-table (digest-table object digest))
+    (pathname (digest-add digest (namestring object)))
     (structure-object
-     (unless (kind-of object)
+     (unless (or (kind-of object) (lisps-own-p (type-of object)))
        (dolist (slot (class-slot-names (class-of object)))
          (digest-add digest (slot-value object slot)))))))
 

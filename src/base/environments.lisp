@@ -40,12 +40,17 @@ on, or NIL if it is none that is known."
   (destructuring-bind (name lambda-list &rest body) definition
     (sb-cltl2:enclose (sb-cltl2:parse-macro name lambda-list body environment) environment)))
 
-(defun lisps-macro-p (name)
+(defun lisps-own-p (name)
   "True if the symbol NAME is of Common Lisp or its implementation."
   (let ((package (symbol-package name)))
     (and package
          (or (eq package #.(find-package :cl))
              (starts-with-subseq "SB-" (package-name package))))))
+
+(defun show-lambda-list (name lambda-list)
+  "Let those who ask how the macro NAME is used be told LAMBDA-LIST."
+  (funcall (fdefinition `(setf ,(uiop:find-symbol* '#:%simple-fun-arglist :sb-c)))
+           lambda-list (macro-function name)))
 
 ;;; Environments.
 

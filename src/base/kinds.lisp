@@ -143,7 +143,7 @@ are or include it."
                (push (first slot) known)))))
 
 (defun reject-clause-of-kind (name clause expected)
-  (error 'malformed-definition :definition (format nil "define-kind ~(~A~)" name)
+  (error 'malformed-definition :definition (title "define-kind" name)
                                :clause clause :expected expected))
 
 (defun slot-forms (name conc slots)

@@ -59,17 +59,35 @@ of more than 100 characters."
         (when (< distance least)
           (setf best candidate least distance))))))
 
+(defparameter *letters-alike* '("AEIOUY" "CKQ" "CSZ" "FVW" "GJ")
+  "Letters that are written for each other by those who spell by ear.")
+
+(defun alike-p (letter other)
+  "True if the characters LETTER and OTHER are equal, or written for each other."
+  (or (char-equal letter other)
+      (some (lambda (letters)
+              (and (find letter letters :test #'char-equal)
+                   (find other letters :test #'char-equal)))
+            *letters-alike*)))
+
+(defun another-word-p (a b)
+  "True if the short names A and B, of one length, differ in a letter that nobody writes for the
+other: SIDE is no slip for SIZE, as SISE is."
+  (and (= (length a) (length b))
+       (< (length a) 6)
+       (= 1 (count nil (map 'list #'char-equal a b)))
+       (notevery #'alike-p a b)))
+
 (defun resembles-p (a b)
   "True if the name A is so much like the different name B that one may be a slip for the other:
 one letter apart, or two if they are long. In short names, and at their beginning, another letter
-instead makes another word."
+instead makes another word, unless the two sound alike."
   (let* ((a (string a)) (b (string b)) (shorter (min (length a) (length b))))
     (and (plusp shorter)
-         (or (char-equal (char a 0) (char b 0))
+         (or (alike-p (char a 0) (char b 0))
              (and (/= (length a) (length b)) (<= 3 shorter)))
          (<= 1 (edit-distance a b) (if (<= 8 shorter) 2 1))
-         (not (and (= (length a) (length b)) (< shorter 6)
-                   (= 1 (count nil (map 'list #'char-equal a b))))))))
+         (not (another-word-p a b)))))
 
 (defun reject-name (kind name known)
   "Signal UNKNOWN-NAME: nothing of KIND (a string) among the names KNOWN is called NAME."

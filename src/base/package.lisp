@@ -37,8 +37,11 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:environment-value #:run-command)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
-           #:local-function-p #:known-function-p #:macro-expander #:lisps-macro-p
+           #:local-function-p #:known-function-p #:macro-expander
+           #:show-lambda-list #:lisps-own-p
            #:extended-environment #:nested-p #:evaluate-form #:form-behind-comma #:walk-form)
+  ;; abridging
+  (:export #:abridged #:+more+)
   ;; conditions
   (:export #:ars-magna-error #:wrong-argument #:check-argument #:reject-argument
            #:malformed-definition
@@ -62,9 +65,12 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; sources, definitions
   (:export #:source-here #:source-file #:part-in-file-p #:skip-comment #:current-source
            #:*definition* #:definition-again #:make-defining #:defining-form #:reject-clause
-           #:call-with-definition #:expand-definition #:call-as-definition
+           #:call-with-definition #:expand-definition #:title
+           #:call-as-definition
            #:check-function-name #:other-definition-p #:in-file-p #:missing-name #:read-value
            #:clause-place #:skip-definition #:skip-clause #:read-again)
+  ;; user-macros
+  (:export #:define-user-macro #:user-macro-form)
   ;; registry
   (:export #:registry #:define-registry #:registry-objects #:register #:seal-definitions
            #:lookup-entry #:from-this-file-p #:entry-name #:entry-object #:entry-source

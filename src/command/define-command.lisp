@@ -58,7 +58,7 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
   "Signal MALFORMED-DEFINITION unless DEFINE-COMMAND can use these parts of its form."
   (flet ((check (test clause expected)
            (unless test
-             (reject-clause (format nil "define-command ~(~A~)" name) clause expected))))
+             (reject-clause (title "define-command" name) clause expected))))
     (check (and name (symbolp name) (not (keywordp name))) name "a symbol as the command's name")
     (check (and (proper-list-p resource) (= 2 (length resource))) resource "(variable type)")
     (dolist (parameter parameters)
@@ -82,7 +82,7 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
   "Signal MALFORMED-DEFINITION unless each of TYPES, of the command NAME, is an argument type."
   (dolist (type types)
     (unless (find-argument-type type nil)
-      (reject-clause (format nil "define-command ~(~A~)" name) type
+      (reject-clause (title "define-command" name) type
                      "an argument type, as DEFINE-ARGUMENT-TYPE defines"))))
 
 (defmacro define-command (name (operation resource &rest parameters) (&rest results)

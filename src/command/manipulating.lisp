@@ -175,7 +175,7 @@ manipulation's own. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method take
     (values)))
 
 (public manipulate)
-(defmacro manipulate (name &rest arguments)
+(define-user-macro manipulate (name &rest arguments)
   "Do as RUN-MANIPULATION does with the manipulation NAME, which is not evaluated, such as
 (manipulate lock box-designator key-designator hand continuation) (manual 5.5.2)."
   `(run-manipulation ',name ,@arguments))

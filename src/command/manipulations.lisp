@@ -156,7 +156,7 @@ parameter list or of which it is a new version (reading 174)."
 (defun define-manipulation (name form body &key (success 1) (delay 0))
   "Define a method of the manipulation NAME; what DEFMANIPULATION expands to. FORM is its
 parameter list, BODY a function of as many arguments. Return NAME."
-  (let* ((definition (format nil "defmanipulation ~(~A~)" name))
+  (let* ((definition (title "defmanipulation" name))
          (manipulation (or (find-manipulation name nil) (make-manipulation name)))
          (method (make-manipulation-method
                   :form form :source (current-source) :digest (current-form-digest)
@@ -182,7 +182,8 @@ parameter list, BODY a function of as many arguments. Return NAME."
         ,@options))))
 
 (public defmanipulation)
-(defmacro defmanipulation (&whole form name parameters options &body body &environment environment)
+(define-user-macro defmanipulation (&whole form name parameters options &body body
+                                    &environment environment)
   "Define a method of the manipulation NAME (manual 5.5.1). PARAMETERS is
   (variable - descriptor ... :by resource other ...)
 where each object's variable will be bound to a thing that is exactly as the descriptor
@@ -193,7 +194,7 @@ by default 1 and 0. BODY runs in a tick; it returns an error code or NIL, and a 
 Of several methods that fit, the one defined last is used. One with the same parameter list is
 replaced, and so are those that an earlier version of the same file defined. Signals
 MALFORMED-DEFINITION. Return NAME."
-  (let ((definition (format nil "defmanipulation ~(~A~)" name)))
+  (let ((definition (title "defmanipulation" name)))
     (expand-definition form environment
                        (lambda ()
                          (manipulation-forms definition name parameters options body)))))

@@ -91,7 +91,7 @@ own fixed ones."
 
 (defun read-blueprint (name environment position angle cameras hands bins parts)
   (flet ((reject (clause expected)
-           (reject-clause (format nil "defrobot ~(~A~)" name) clause expected)))
+           (reject-clause (title "defrobot" name) clause expected)))
     (let ((map (parse-place environment position angle #'reject)))
       (make-blueprint :name name :map (map-name map)
                  :x (double (first position)) :y (double (second position))
@@ -106,7 +106,7 @@ own fixed ones."
   "Do as DEFROBOT does, with values: ENVIRONMENT is a map or its name, POSITION a list (x y),
 CAMERAS a list of lists (fov resolution), PARTS one of lists (kind initarg value ...). Return the
 robot."
-  (check-robot-name (format nil "defrobot ~(~A~)" name) name)
+  (check-robot-name (title "defrobot" name) name)
   (check-robot-variable name)
   (let* ((blueprint (read-blueprint name environment position angle cameras hands bins parts))
          (robot (settle-robot blueprint)))
@@ -128,7 +128,7 @@ robot."
   "Signal MALFORMED-DEFINITION if the variable NAME is in use for something else than robots."
   (when (and (null (definition-to-replace name *robots*))
              (variable-in-use-p name))
-    (reject-clause (format nil "defrobot ~(~A~)" name) name
+    (reject-clause (title "defrobot" name) name
                    (format nil "a name whose variable is free; ~A has the value ~S"
                            name (symbol-value name)))))
 
@@ -179,7 +179,8 @@ stands in, returns a form for its value."
       `',specification))
 
 (public defrobot)
-(defmacro defrobot (&whole form name &optional start &rest options &environment environment)
+(define-user-macro defrobot (&whole form name &optional start &rest options
+                             &environment environment)
   "Define a robot: (defrobot NAME (ENVIRONMENT (X Y) ANGLE) [:cameras ((FOV RESOLUTION) ...)]
 [:hands (STRENGTH ...)] [:bins (CAPACITY ...)] [:parts ((KIND INITARG VALUE ...) ...)]). NAME
 becomes a special variable bound to the robot, which stands in the resident world of the map
@@ -187,7 +188,7 @@ ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in radian
 evaluated. Parts of kinds of one's own, which the manual does not have, are made as their KIND says
 \(see DEFINE-KIND). A robot that was called NAME before takes no more commands. Signals
 MALFORMED-DEFINITION (manual 5.2). See reading 9."
-  (let ((definition (format nil "defrobot ~(~A~)" name)))
+  (let ((definition (title "defrobot" name)))
     (expand-definition form environment
                        (lambda ()
                          (check-robot-form definition name start options)

@@ -75,12 +75,12 @@ are NIL, if it is one of CHOICES."
                     (find-if-not #'demand-form-p object)))
          (attribute (and (consp form) (symbolp (first form)) (attribute-of (first form))))
          (domain (and attribute (attribute-domain attribute)))
-         (value (and domain (consp (rest form))
+         (value (and domain (asking-form-p form)
                      (find-if-not (lambda (value) (in-domain-p attribute value))
                                   (ensure-list (second form))))))
     (when form
       (format nil "not ~(~S~)~@[, as the values are ~(~A~)~]~@[; did you mean ~(~A~)?~]"
-              form domain (and value (value-like value domain))))))
+              (abridged form) domain (and value (value-like value domain))))))
 
 ;;; Fitting.
 

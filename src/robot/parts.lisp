@@ -189,6 +189,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
 (defun robot-part (robot kind index)
   "Return the part of ROBOT of KIND, a symbol such as CAMERA or a kind of one's own, with INDEX
 among those, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+  (check-argument robot-part kind (typep kind '(or symbol string)) "the name of a kind of part")
   (unless (find kind (all-kinds 'part) :key #'kind-name :test #'same-name-p)
     (reject-name "kind of part" kind (mapcar #'kind-name (all-kinds 'part))))
   (part-of robot (lambda (robot) (parts-of-kind robot kind)) index 'robot-part))

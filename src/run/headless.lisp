@@ -155,7 +155,7 @@ FUNCTION calls some of the ROBOTS, of other packages than theirs perhaps."
   (dolist (robot robots) (retire-robot robot reason)))
 
 (addition with-simulation)
-(defmacro with-simulation ((robots &key (seed 0) parameters clean journal) &body body)
+(define-user-macro with-simulation ((robots &key (seed 0) parameters clean journal) &body body)
   "Run BODY with ROBOTS, the name of a robot or a list of names, of any package, bound to fresh
 robots in a fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. The
 integer SEED decides all chance. Parameters are bound to what they are here, or as the list

@@ -104,7 +104,7 @@ after each tick of that, with the simulation."
      :seed (getf header :seed) :parameters (full-settings (getf header :parameters)) :journal t)))
 
 (addition with-replay)
-(defmacro with-replay ((journal &key until anyway) &body body)
+(define-user-macro with-replay ((journal &key until anyway) &body body)
   "Run BODY in a fresh headless simulation in which JOURNAL (a journal or a file that holds one) has
 been repeated, up to the tick UNTIL or its end, with robots and parameters bound as in
 WITH-SIMULATION: a run can be rewound so, and go on differently. At UNTIL, what was asked for or

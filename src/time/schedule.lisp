@@ -84,7 +84,7 @@ nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an 
 (define-operator 'schedule '(function datum integer datum datum datum integer) #'schedule-again)
 
 (public schedule)
-(defmacro schedule ((resource &key priority interrupt (when t when-p) timeout timer)
+(define-user-macro schedule ((resource &key priority interrupt (when t when-p) timeout timer)
                     &body body)
   "Ask for an event that runs BODY on RESOURCE (NIL: none) in the next tick, or TIMER ticks from
 now. On a resource that has an event, the one with the higher :PRIORITY (an integer, default 0)

@@ -47,7 +47,7 @@ See reading 171."
 (defun call-put-kicker (thing name &key (prob 1) test body)
   "Do what PUT-KICKER says; without a BODY, remove the kicker NAME."
   (check-argument put-kicker thing (thing-p thing) "a thing")
-  (let ((kicker (and body (fill-kicker (make-kicker name) (format nil "put-kicker ~(~A~)" name)
+  (let ((kicker (and body (fill-kicker (make-kicker name) (title "put-kicker" name)
                                        prob test body))))
     (changing ((world-of-living thing) call-put-kicker thing name
                         :prob prob :test test :body body)
@@ -58,12 +58,12 @@ See reading 171."
 (define-operator 'call-put-kicker '(thing name) #'call-put-kicker :rest 'datum)
 
 (public put-kicker)
-(defmacro put-kicker (name target &optional options &body body)
+(define-user-macro put-kicker (name target &optional options &body body)
   "Define a kicker NAME for one thing alone, with options as for DEFKICKER, instead of any other of
 that name on it; or, with an empty BODY, remove its kicker NAME, even a global one (manual
 5.3.1). TARGET is (variable thing); the variable is bound to the thing in test and body. Return
 the kicker as attached, if any."
-  (let ((definition (format nil "put-kicker ~(~A~)" name)))
+  (let ((definition (title "put-kicker" name)))
     (check-kicker-name definition name)
     (unless (and (proper-list-p target) (= 2 (length target)))
       (reject-clause definition target "(variable thing)"))

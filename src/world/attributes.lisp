@@ -97,7 +97,7 @@
                                        supported-by)
   "Define or redefine the attribute NAME; what DEFATTRIBUTE expands to. Return NAME.
 See reading 120."
-  (let ((definition (format nil "defattribute ~(~S~)" name))
+  (let ((definition (title "defattribute" name))
         (old (attribute-of name)))
     (check-attribute-clauses definition domain base max-mult supported-by)
     (check-kind-of-built-in definition name domain)
@@ -120,7 +120,7 @@ See reading 120."
 
 (defun attribute-forms (name domain options)
   "Return the forms that DEFATTRIBUTE expands to (reading 119)."
-  (let ((definition (format nil "defattribute ~(~S~)" name)))
+  (let ((definition (title "defattribute" name)))
     (unless (and name (symbolp name))
       (reject-clause definition name "a symbol as the name of the attribute"))
     (check-domain definition domain)
@@ -133,7 +133,8 @@ See reading 120."
                                           :noticed ,noticed :supported-by ',supported-by)))))
 
 (public defattribute numeric)
-(defmacro defattribute (&whole form name &optional domain &rest options &environment environment)
+(define-user-macro defattribute (&whole form name &optional domain &rest options
+                                 &environment environment)
   "Define the attribute NAME, a keyword by convention (manual 5.4). DOMAIN is NUMERIC or a list
 of the possible values, unevaluated. Options, in any order:
   :success p -- base probability that a discrete reading is correct; default 1

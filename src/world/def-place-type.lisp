@@ -42,7 +42,7 @@
 
 (defun place-type-forms (name lambda-list options)
   "Return the forms that DEF-PLACE-TYPE expands to."
-  (let ((definition (format nil "def-place-type ~(~A~)" name)))
+  (let ((definition (title "def-place-type" name)))
     (check-place-type-options definition name lambda-list options)
     (destructuring-bind (&key confusion check-matchers checker directions invisible graphics before)
         options
@@ -61,7 +61,7 @@
             :key ,(digest-value (digest-add (make-digest) (cons name options)))))))))
 
 (public def-place-type)
-(defmacro def-place-type (&whole form name (&rest lambda-list) &rest options
+(define-user-macro def-place-type (&whole form name (&rest lambda-list) &rest options
                           &environment environment)
   "Define the place type NAME (manual 5.1.1). LAMBDA-LIST is (CELL); options, in any order:
   :confusion p -- probability of a false designator in a search for the type; default 0
@@ -97,7 +97,7 @@ REBUILD-MAP. Signals MALFORMED-DEFINITION. Return the name."
                                  before (key 0))
   "Define the place type NAME; what DEF-PLACE-TYPE expands to, with functions of a cell for
 CHECKER and DIRECTIONS. KEY stands for the definition in the key of a map's cache. Return NAME."
-  (let* ((definition (format nil "def-place-type ~(~A~)" name))
+  (let* ((definition (title "def-place-type" name))
          (old (definition-to-replace name *place-types*))
          (next (type-to-precede definition before))
          (new (%make-place-type name)))

@@ -210,7 +210,7 @@ recipe, of anything else the clause itself. NIL if it is to be left out."
 
 (defun map-forms (name size clauses)
   "Return the forms that DEFMAP expands to."
-  (let ((definition (format nil "defmap ~(~A~)" name)))
+  (let ((definition (title "defmap" name)))
     (multiple-value-bind (width height cache) (check-size definition name size)
       (loop for clause in clauses
             for position from 3
@@ -223,7 +223,7 @@ recipe, of anything else the clause itself. NIL if it is to be left out."
                           :package ,(package-name *package*))))))))
 
 (public defmap)
-(defmacro defmap (&whole form name &optional size &body clauses &environment environment)
+(define-user-macro defmap (&whole form name &optional size &body clauses &environment environment)
   "Define the map NAME (manual 5.1), a special variable bound to it. SIZE is (width height), in
 cells of a metre, and perhaps :cache with the name of a file to keep the built grid in, unless a
 place type has a :checker. Clauses:

@@ -74,7 +74,7 @@
 (defun define-kicker (name &key (prob 1) test (body (constantly nil)))
   "Define or redefine the kicker NAME; what DEFKICKER expands to. TEST and BODY are functions of
 a thing. Return the kicker."
-  (let ((new (fill-kicker (make-kicker name) (format nil "defkicker ~(~A~)" name) prob test body))
+  (let ((new (fill-kicker (make-kicker name) (title "defkicker" name) prob test body))
         (old (definition-to-replace name *kickers*)))
     (when old (incf *kicker-generation*))
     (register *kickers* name (if old (become old new) new) :variable t)))
@@ -96,7 +96,7 @@ a thing. Return the kicker."
   (check-name definition name "kicker"))
 
 (public defkicker)
-(defmacro defkicker (&whole form name lambda-list &optional options
+(define-user-macro defkicker (&whole form name lambda-list &optional options
                      &body body &environment environment)
   "Define the kicker NAME (manual 5.3.1), whose BODY runs with probability :prob (default 1) on
 any tick on which the form :test (default true) holds. LAMBDA-LIST is one variable, bound to the
@@ -105,7 +105,7 @@ Lisp's symbols, such as OPEN, or ours, or already has a value: such kickers are 
 Redefinition affects things that have it. For chance use the dice of the world, as in (roll-between
 0 1 (world-dice *world* :user)): what CL:RANDOM says is not repeated by the same seed. Signals
 MALFORMED-DEFINITION. Return the name."
-  (let ((definition (format nil "defkicker ~(~A~)" name)))
+  (let ((definition (title "defkicker" name)))
     (expand-definition
      form environment
      (lambda ()

@@ -28,4 +28,6 @@ storage bin."))
 (addition remaining-capacity)
 (defgeneric remaining-capacity (location)
   (:documentation "Return, in units of size, how much can still be put into LOCATION: its capacity
-less the sizes of what is directly in it (a double-float, at least 0)."))
+less the sizes of what is directly in it (a double-float, at least 0). Signals WRONG-ARGUMENT.")
+  (:method (location)
+    (check-argument remaining-capacity location nil "a thing, hand or storage bin")))

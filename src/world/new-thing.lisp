@@ -85,7 +85,7 @@ it begins with a variable or the name of a map, and unless it begins with that o
                       (not (fboundp head))))))))
 
 (public new-thing)
-(defmacro new-thing (name location descriptor &key prototype &environment environment)
+(define-user-macro new-thing (name location descriptor &key prototype &environment environment)
   "Make and return a thing NAME with the attributes of DESCRIPTOR, both unevaluated (manual 5.3).
 LOCATION is one of
   a form whose value is a container, hand or storage bin, or NIL for a prototype;
@@ -98,8 +98,11 @@ See readings 12 and 167."
   (unless (and name (symbolp name))
     (reject-clause "new-thing" name "a symbol as the name of the thing"))
   (unless (descriptor-p descriptor)
-    (reject-clause (format nil "new-thing ~(~A~)" name) descriptor
+    (reject-clause (title "new-thing" name) descriptor
                    "a list of lists (attribute value), each attribute once"))
+  (unless (listp (cdr (last (ensure-list location))))
+    (reject-clause (title "new-thing" name) location
+                   "a location: a form, (:with form) or (map x y)"))
   `(make-new-thing ',name
                    ,(cond ((and (consp location) (eq :with (first location)))
                            `(list :with ,@(rest location)))

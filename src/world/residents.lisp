@@ -45,7 +45,9 @@ if there is none yet the resident worlds of all maps."
 (defun find-things (name &optional world)
   "Return a list of the things called NAME (a symbol or string, perhaps \"PEN#2\", or a serial
 number) in WORLD, in order of creation. WORLD may be a map; by default it is that of the current
-simulation or, as long as there is none, the resident worlds of all maps."
+simulation or, as long as there is none, the resident worlds of all maps. Signals WRONG-ARGUMENT."
+  (check-argument find-things name (typep name '(or symbol string integer))
+                  "a symbol, a string such as \"PEN#2\", or a serial number")
   (loop for each in (worlds-in-view world)
         append (loop for thing across (world-things each)
                      when (and thing (thing-called-p thing name)) collect thing)))

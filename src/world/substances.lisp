@@ -31,7 +31,7 @@ NAME."
   name)
 
 (addition defsubstance)
-(defmacro defsubstance (&whole form name &optional parameter &environment environment)
+(define-user-macro defsubstance (&whole form name &optional parameter &environment environment)
   "Define the type of substance NAME, a symbol: things whose :substance is NAME are viewed as
 PARAMETER, a number. Our addition to manual 2.1 and 3.3. Return the name."
   (expand-definition form environment

@@ -59,9 +59,14 @@
   (and (symbolp value)
        (nearest-name value (remove-if-not #'symbolp (remove nil domain)))))
 
+(defun quoted-p (value)
+  (and (consp value) (eq 'quote (first value))))
+
 (defun check-attribute-value (operator key value)
   "Signal WRONG-ARGUMENT unless a thing's attribute KEY can be VALUE. NIL, for unspecified or
 false, always can."
+  (when (quoted-p value)
+    (reject-value operator key value "a value that is not quoted, as it is not evaluated"))
   (let ((attribute (attribute-of key)))
     (flet ((reject (expected) (reject-value operator key value expected)))
       (cond ((and (floatp value) (not (finite-p value))) (reject (argument-type-text 'quantity)))
