@@ -116,13 +116,13 @@
   :serial t
   :components
   ((:module "cli" :serial t
-    :components ((:file "package") (:file "process") (:file "console") (:file "user-names")
-                 (:file "session") (:file "line")
+    :components ((:file "package") (:file "process") (:file "telling") (:file "input")
+                 (:file "console") (:file "user-names") (:file "session") (:file "line")
                  (:file "arguments") (:file "layout") (:file "errands") (:file "robot-lines")
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
                  (:file "status-lines") (:file "running-lines") (:file "loading") (:file "worlds")
                  (:file "world-lines") (:file "plans") (:file "plan-lines")
-                 (:file "picture-lines") (:file "prompt") (:file "options") (:file "main")))))
+                 (:file "picture-lines") (:file "debugger") (:file "prompt") (:file "options") (:file "main")))))
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."

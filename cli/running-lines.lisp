@@ -46,7 +46,7 @@
   "Return the rate that TEXT says: a positive number or :FREE. Signals BAD-LINE."
   (if (string-equal text "free")
       :free
-      (let ((rate (ignore-errors (let ((*read-eval* nil)) (read-from-string text)))))
+      (let ((rate (ignore-errors (values (read-data-from-string text 0)))))
         (if (typep rate '(real (0)))
             rate
             (reject-line "The rate cannot be ~A. Give a number of ticks per second, or free."
@@ -97,7 +97,7 @@
            (put-line "  ~A" (parameter-text parameter))))
 
 (defun read-setting (text)
-  (handler-case (let ((*read-eval* nil)) (values (read-from-string text)))
+  (handler-case (values (read-data-from-string text 0))
     (error () (reject-line "~A cannot be read; give a number, T or NIL." text))))
 
 (define-line "PARAMS" (session (name :token "the name of a parameter" :optional)

@@ -89,7 +89,8 @@
 
 (defparameter *sb-ext-doors*
   '("src/base/policy.lisp" "src/base/floats.lisp" "src/base/globals.lisp" "src/base/atomic.lisp"
-    "src/base/packages.lisp" "src/base/environments.lisp")
+    "src/base/packages.lisp" "src/base/environments.lisp" "src/base/backtraces.lisp"
+    "src/base/files.lisp")
   "The files that may name SB-EXT.")
 
 (defparameter *before-the-doors*

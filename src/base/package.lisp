@@ -29,8 +29,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:copy-nicknames)
   ;; files, processes, backtraces
   (:export #:native-name #:native-path #:existing-path #:replace-file #:plain-file-p
-           #:call-replacing-file
-           #:environment-value #:run-command #:calls-under-way)
+           #:call-replacing-file #:decoded #:file-text
+           #:environment-value #:run-command #:calls-under-way #:debugger-hook)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
            #:local-function-p #:known-function-p #:macro-expander #:lisps-macro-p

@@ -89,7 +89,7 @@ form; then FILE is as it was."
                        do (setf last (read-char in nil))
                        until (member last '(nil #\Newline))
                        do (write-char last out)))))
-    (when (or last (plusp (length line))) (string-right-trim '(#\Return) line))))
+    (when (or last (plusp (length line))) (string-right-trim '(#\Return) (decoded line)))))
 
 (defun comment-line-p (line)
   "True if LINE is a comment or empty; an editor may have put a byte order mark before it."
@@ -252,7 +252,7 @@ is wrong, and in which entry."
   "Return the journal in FILE. Signals an error if it is none."
   (unless (probe-file file) (error "there is no such file"))
   (unless (plain-file-p file) (error "it is a directory or a device"))
-  (with-open-file (in file :external-format '(:utf-8 :replacement #\?))
+  (with-open-file (in file :external-format :latin-1)
     (when (< +longest-file+ (file-length in))
       (error "it has ~D bytes, more than journals have" (file-length in)))
     (with-homeless-symbols () (journal-from (read-data in)))))
