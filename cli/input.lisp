@@ -42,7 +42,7 @@ line has at most; and whether there were more."
             (typed-line stream) (if too-long-p "" (decoded octets)))
       (when too-long-p
         (reject-line "The line is longer than ~D bytes. Put what is in it into a file, ~
-                      and LOAD that."
+                      and (load \"FILE\")."
                      +longest-line-typed+)))))
 
 (defmethod stream-read-line ((stream typed-text))
