@@ -29,18 +29,18 @@
 
 ;;; What the user sees.
 
-(defun whereabouts (breakage)
+(defun whereabouts (session breakage)
   "Return in words where BREAKAGE is, if not in this thread."
   (let ((thread (breakage-thread breakage)))
-    (cond ((eq thread (session-thread *session*)) nil)
+    (cond ((eq thread (session-thread session)) nil)
           ((and *simulation* (eq thread (simulation-thread *simulation*))) "the simulator's thread")
           (t "another thread"))))
 
-(defun break-text (breakage)
+(defun break-text (session breakage)
   (format nil "*BREAK* -> ~A~@[ (in ~A)~]~%~:{  ~2D  ~16A ~A~%~}~
                A number chooses. BACKTRACE tells where it is; a line in parentheses is Lisp.~%"
           (complaint-text (condition-text (breakage-condition breakage)))
-          (whereabouts breakage)
+          (whereabouts session breakage)
           (loop for restart in (breakage-restarts breakage)
                 for number from 0
                 collect (list number (plain-name (restart-name restart))
@@ -50,7 +50,7 @@
   "Show what has happened, and let the prompt that stands be the debugger's."
   (let ((console (session-console session)))
     (fresh-line console)
-    (write-string (break-text breakage) console)
+    (write-string (break-text session breakage) console)
     (if (console-prompt console)
         (show-prompt console "Break> ")
         (finish-output console))))
@@ -90,8 +90,10 @@
                                   restarts)))))
 
 (defun write-backtrace ()
-  (dolist (call (calls-under-way 40))
-    (put-line "  ~A" (visible (cut (one-line (format-briefly nil "~S" call)) 200)))))
+  "Write the calls under way, up to the one that evaluates a line."
+  (loop for call in (calls-under-way 40)
+        until (eq 'eval-quietly (first call))
+        do (put-line "  ~A" (complaint-text (format-briefly nil "~S" call)))))
 
 (defun debug-line (session breakage text)
   "Do what TEXT, a line typed at the debugger, says to BREAKAGE."
@@ -134,17 +136,19 @@
 (defun enter-debugger (condition hook)
   "Let the user of the prompt say how to go on after CONDITION. Called instead of Lisp's debugger."
   (declare (ignore hook))
-  (let ((breakage (make-breakage condition (restarts-to-offer condition) (current-thread))))
-    (if (eq (session-thread *session*) (current-thread))
-        (debug-here *session* breakage)
-        (debug-elsewhere *session* breakage))))
+  (let ((session *session*)
+        (breakage (make-breakage condition (restarts-to-offer condition) (current-thread))))
+    (cond ((null session))              ; It has just ended: Lisp's own debugger comes up.
+          ((eq (session-thread session) (current-thread)) (debug-here session breakage))
+          (t (debug-elsewhere session breakage)))))
 
 ;; By this name the rest of the program knows that there is none.
 (defun debugger-disabled-hook (condition hook)
   "Say what CONDITION is and go on, if it is no error, or give up what this thread is at. Called
 instead of Lisp's debugger where nobody sits."
   (declare (ignore hook))
-  (complain *session* (format nil "Break: ~A" (condition-text condition)))
+  (when *session*
+    (complain *session* (format nil "Break: ~A" (condition-text condition))))
   (invoke-restart (or (and (not (typep condition 'serious-condition))
                            (find-restart 'continue condition))
                       (find-restart 'end-line)

@@ -47,6 +47,10 @@
   (over-p nil)
   ;; The robot to go on with, in batch mode, when this one's lines are over.
   (next-robot nil))
+
+(defmethod print-object ((session session) stream)
+  (print-unreadable-object (session stream :type t)))
+
 (setf (documentation 'session-errors 'function)
       "Return how many errors there were so far: lines that made no sense, plans that failed, and
 error messages, but not those of a plan that goes on.")

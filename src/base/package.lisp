@@ -14,8 +14,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
            #:read-file-into-string #:starts-with-subseq #:define-constant #:proper-list-p)
   ;; policy
-  (:export #:*hot* #:compiler-note #:declaim-final #:double #:cell-index #:tick-count
-           #:document-functions)
+  (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:cell-index
+           #:tick-count #:document-functions)
   ;; public
   (:export #:public #:addition #:addition-p #:public-symbols #:*marking-p*)
   ;; floats, globals
