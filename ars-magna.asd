@@ -163,7 +163,7 @@
                  (:file "plans")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
-                 (:file "cli-debugger") (:file "kinds")
+                 (:file "cli-debugger") (:file "cli-files") (:file "kinds")
                  (:file "digests") (:file "runs") (:file "users-parts")
                  (:file "user-package")
                  (:file "definitions") (:file "definitions-names")

@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.cli)
 
-;;; Arguments are read by the Lisp reader and not evaluated (manual E), and reading them runs nothing;
-;;; numbers stand for cameras, hands, storage bins and designators. A semicolon begins a comment.
+;;; Arguments are read by the Lisp reader and not evaluated (manual E), and reading them runs
+;;; nothing; numbers stand for cameras, hands, storage bins and designators. A semicolon begins a
+;;; comment.
 
 ;; As reading 227 says.
 (defgeneric read-argument (type datum robot)

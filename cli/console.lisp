@@ -5,8 +5,8 @@
 ;;; What the simulator and the user's programs print comes from other threads, at any time. The
 ;;; console keeps what each of them writes in one piece, and knows when a prompt has been written
 ;;; over and must be shown again. A terminal moves the cursor when the user presses return; nobody
-;;; but ANSWERED can know. When what is written cannot be delivered, it is lost, and what leads to no
-;;; more than that ends.
+;;; but ANSWERED can know. When what is written cannot be delivered, it is lost, and the program
+;;; ends.
 
 (defclass console (fundamental-character-output-stream)
   ((stream :initarg :stream :reader console-stream)
@@ -26,7 +26,8 @@ that what was written could not be delivered, or NIL."))
   "True in the thread that ends this process, when there is nobody any more to write for.")
 
 (defun try-to-write (function console)
-  "Call FUNCTION with the stream below CONSOLE, unless that has failed before; true if it fails now."
+  "Call FUNCTION with the stream below CONSOLE, unless that has failed before. True if it fails
+now."
   (with-lock ((console-lock console))
     (unless (console-trouble console)
       (handler-case (progn (funcall function (console-stream console)) nil)

@@ -20,9 +20,10 @@
 (defvar *session* nil "The session that the debugger asks, in whatever thread; the newest.")
 
 (defun restarts-to-offer (condition)
-  "Return the restarts for CONDITION, of each name the innermost."
-  (remove-duplicates (remove nil (compute-restarts condition) :key #'restart-name)
-                     :key #'restart-name :from-end t))
+  "Return the restarts for CONDITION up to the one that ends the line, of each name the innermost."
+  (let* ((all (remove nil (compute-restarts condition) :key #'restart-name))
+         (last (position 'end-line all :key #'restart-name)))
+    (remove-duplicates (subseq all 0 (and last (1+ last))) :key #'restart-name :from-end t)))
 
 (defun here-p (breakage)
   (eq (breakage-thread breakage) (current-thread)))

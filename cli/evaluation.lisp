@@ -58,8 +58,8 @@ definitions are messages like others."
     (mapc #'write-value values)))
 
 (defun read-form (session text &optional (start 0))
-  "Return the form in TEXT at START, reading on in SESSION while it is incomplete; where it ends; and
-TEXT with what was read."
+  "Return the form in TEXT at START, reading on in SESSION while it is incomplete; where it ends;
+and TEXT with what was read."
   (loop
     (handler-case (read-from-string text t nil :start start)
       (end-of-file () (setf text (read-more session text)))

@@ -42,9 +42,9 @@
   "Call FUNCTION, in which this thread takes interrupts, those too that wait."
   (funcall *call-interruptibly* function))
 
-;;; Other signals. There are states in which no Lisp runs any more that would heed one, so the system
-;;; itself ends the process. (That is so with a terminal that goes away anyway, unless it was started
-;;; with NOHUP.)
+;;; Other signals. There are states in which no Lisp runs any more that would heed one, so the
+;;; system itself ends the process. (With a terminal that goes away it does so anyway, unless it was
+;;; told NOHUP.)
 
 (defun die-of-termination ()
   "Let this process end at once when it is told to terminate."

@@ -6,19 +6,20 @@
 ;;; are. Others come from files: Lisp files that define a map and at least one robot in it.
 
 (defun call-with-syntax (float-format function)
-  "Call FUNCTION with the package and syntax in which users write; numbers with a point are floats of
-FLOAT-FORMAT."
+  "Call FUNCTION with the package and syntax in which users write; numbers with a point are floats
+of FLOAT-FORMAT."
   (let ((*package* (user-package))
         (*readtable* *readtable*)
         (*read-default-float-format* float-format))
     (nisp:in-readtable :nisp)
     (funcall function)))
 
-;;; A file is read as (load ...) reads it in any Lisp, so that it defines the same world on all roads.
+;;; A file has the floats that (load ...) reads in any Lisp, so that it defines the same world on all
+;;; roads.
 
 (defun load-lisp (path)
-  "Load the Lisp file at PATH as users write it: in the package ARS-USER and Nisp's syntax, unless it
-says otherwise."
+  "Load the Lisp file at PATH as users write it: in the package ARS-USER and Nisp's syntax, unless
+it says otherwise."
   (call-with-syntax 'single-float
                     (lambda () (call-quietly (lambda () (load-forms path))))))
 

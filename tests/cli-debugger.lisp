@@ -1,4 +1,4 @@
-;;;; cli-debugger.lisp -- programs that break, at a prompt where somebody sits and where nobody does.
+;;;; cli-debugger.lisp -- programs that break, where somebody sits at the prompt and where nobody.
 
 (in-package :ars-magna.tests)
 
@@ -14,19 +14,20 @@
                               :clean t)
     (lines-of (get-output-stream-string output))))
 
+(defun without-prompts (line)
+  (if (or (eql 0 (search "Robot> " line)) (eql 0 (search "Break> " line)))
+      (without-prompts (subseq line 7))
+      line))
+
 (defun written-p (line written)
-  "True if LINE is one of the lines WRITTEN, perhaps after a prompt."
-  (find-if (lambda (other)
-             (and (search line other)
-                  (member (subseq other 0 (search line other)) '("" "Robot> " "Break> ")
-                          :test #'string=)))
-           written))
+  "True if LINE begins one of the lines WRITTEN, perhaps after prompts."
+  (find-if (lambda (other) (eql 0 (search line (without-prompts other)))) written))
 
 ;;; Where nobody sits.
 
 (test break.is-a-message-where-nobody-sits
-  (is (equal '("*ERROR* -> Break: oh" "4" "NIL" "5")
-             (type-batch "(progn (break \"oh\") (print 4) (values))" "(values nil)" "(+ 2 3)")))
+  (is (equal '("*ERROR* -> Break: oh" "4" "5")
+             (type-batch "(progn (break \"oh\") 4)" "(+ 2 3)")))
   (is (equal '("*ERROR* -> Break: no" "5")
              (type-batch "(invoke-debugger (make-condition 'simple-error :format-control \"no\"))"
                          "(+ 2 3)"))))

@@ -108,8 +108,8 @@ against the edges, is the edges."
   (let ((possible (floor (heap-bytes) +cell-bytes+)))
     (when (< possible (* width height))
       (reject-clause definition (list width height)
-                     (format nil "a size of at most ~D cells in all, such as (~D ~:*~D), since this ~
-                                  Lisp has room for no more: start it with a larger ~
+                     (format nil "a size of at most ~D cells in all, such as (~D ~:*~D): this Lisp ~
+                                  has room for no more; start it with a larger ~
                                   --dynamic-space-size"
                              possible (min 32767 (isqrt possible)))))))
 
