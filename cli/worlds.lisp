@@ -14,11 +14,11 @@ of FLOAT-FORMAT."
     (nisp:in-readtable :nisp)
     (funcall function)))
 
-;;; A file has the floats that (load ...) reads in any Lisp, so that it defines the same world on all
+;;; A file has the floats that (load ...) reads in any Lisp, so that it defines one world on all
 ;;; roads.
 
 (defun load-lisp (path)
-  "Load the Lisp file at PATH as users write it: in the package ARS-USER and Nisp's syntax, unless
+  "Load the Lisp file at PATH as users write it: in ARS-USER and Nisp's syntax, unless
 it says otherwise."
   (call-with-syntax 'single-float
                     (lambda () (call-quietly (lambda () (load-forms path))))))
