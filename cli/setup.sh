@@ -109,8 +109,14 @@ forget_changed() {
     mv -f "$known.new" "$known"
 }
 
+# Half of a compiled file is what a compiler that was killed leaves.
+forget_halves() {
+    find "$cache" -name '*-tmp*.fasl' -exec rm -f {} +
+}
+
 compile() {  # LOG LISP-FORM: evaluate the form of build.lisp; show its troubles if that fails.
-    forget_changed
+    forget_halves
+    forget_changed || say "what has changed cannot be told; is $cache full?"
     plain_sbcl --load "$root/cli/build.lisp" --eval "$2" >"$1" 2>&1 && return
     grep -v -e '^; compil' -e '^; wrote' -e '^$' "$1" | tail -n 60 >&2
     say "that did not compile; all of it is in $1"
