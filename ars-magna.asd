@@ -11,8 +11,8 @@
   ((:module "src/base" :serial t
     :components ((:file "package") (:file "policy") (:file "public")
                  (:file "floats") (:file "globals") (:file "atomic") (:file "classes")
-                 (:file "packages") (:file "files") (:file "processes") (:file "backtraces")
-                 (:file "environments")
+                 (:file "packages") (:file "files") (:file "processes")
+                 (:file "environments") (:file "interrupts") (:file "debuggers")
                  (:file "conditions") (:file "threads") (:file "dice") (:file "names")
                  (:file "digest") (:file "sources") (:file "variables") (:file "definitions")
                  (:file "registry") (:file "own-definitions")
@@ -42,7 +42,8 @@
                  (:file "kicking") (:file "defmap") (:file "check")))
    (:module "src/time" :serial t
     :components ((:file "package") (:file "resource") (:file "request") (:file "agenda")
-                 (:file "timeline") (:file "pacing") (:file "schedule")))
+                 (:file "custody") (:file "timeline") (:file "asking") (:file "pacing")
+                 (:file "stopping") (:file "hogs") (:file "clock") (:file "schedule")))
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "blueprint") (:file "parts") (:file "odometer")
                  (:file "motion")
@@ -164,7 +165,7 @@
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "cli-files") (:file "kinds")
-                 (:file "digests") (:file "runs") (:file "users-parts")
+                 (:file "digests") (:file "runs") (:file "outliving") (:file "users-parts")
                  (:file "user-package")
                  (:file "definitions") (:file "definitions-names")
                  (:file "definitions-mistakes") (:file "definitions-maps")

@@ -95,7 +95,7 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
 (defun call-for-status (function)
   "Call FUNCTION, which returns a status to exit with; return a status whatever happens."
   (catch 'leave
-    (handler-case (let ((*leave-unheard-p* t)) (call-interruptibly function))
+    (handler-case (let ((*leave-unheard-p* t)) (call-open-to-interrupts function))
       (usage-error (condition) (give-reason condition 2))
       (user-interrupt () 130)
       ((or error storage-condition) (condition) (give-reason condition 1)))))

@@ -22,25 +22,11 @@
                                     :external-format '(:utf-8 :replacement #\?)))
 
 ;;; Control C. It reaches this process's first thread, between any two of its instructions. So that
-;;; it ends what the user wants to end and nothing else, it waits but in some calls.
+;;; it ends what the user wants to end and nothing else, the prompt holds it: see RUN-SESSION.
 
 (deftype user-interrupt ()
   "The condition that the user has pressed control C."
   'sb-sys:interactive-interrupt)
-
-(defvar *call-interruptibly* #'funcall
-  "A function that calls another, in which this thread takes interrupts.")
-
-(defun call-holding-interrupts (function)
-  "Call FUNCTION. Until it returns, interrupts wait, but in what CALL-INTERRUPTIBLY calls."
-  (sb-sys:without-interrupts
-    (let ((*call-interruptibly* (lambda (function)
-                                  (sb-sys:with-local-interrupts (funcall function)))))
-      (funcall function))))
-
-(defun call-interruptibly (function)
-  "Call FUNCTION, in which this thread takes interrupts, those too that wait."
-  (funcall *call-interruptibly* function))
 
 ;;; Other signals. There are states in which no Lisp runs any more that would heed one, so the
 ;;; system itself ends the process. (With a terminal that goes away it does so anyway, unless it was

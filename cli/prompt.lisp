@@ -91,7 +91,7 @@ comes of earlier lines if the session waits for that."
           (call-complaining session
                             (lambda ()
                               (handler-bind ((error #'look-into))
-                                (call-interruptibly function)))))
+                                (call-open-to-interrupts function)))))
       (user-interrupt () (interrupted session)))))
 
 (defun interrupted (session)

@@ -152,12 +152,12 @@
 
 (test interrupts.wait-for-their-place
   (let ((log '()))
-    (cli::call-holding-interrupts
+    (base:call-holding-interrupts
      (lambda ()
        (bordeaux-threads:interrupt-thread (bordeaux-threads:current-thread)
                                           (lambda () (push :interrupt log)))
        (push :held log)
-       (cli::call-interruptibly (lambda () (push :line log)))
+       (base:call-open-to-interrupts (lambda () (push :line log)))
        (push :held log)))
     (is (equal '(:held :interrupt :line :held) (reverse log)))))
 

@@ -27,10 +27,10 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:define-function-class #:generic-name #:class-ancestors #:class-slot-names
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
-  ;; files, processes, backtraces
+  ;; files, processes
   (:export #:native-name #:native-path #:existing-path #:replace-file #:plain-file-p
            #:call-replacing-file #:decoded #:file-text
-           #:environment-value #:run-command #:calls-under-way #:debugger-hook)
+           #:environment-value #:run-command)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
            #:local-function-p #:known-function-p #:macro-expander #:lisps-macro-p
@@ -42,8 +42,12 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:unknown-name #:plain-name #:misuse #:reject-use)
   ;; threads
   (:export #:make-lock #:with-lock #:make-semaphore #:signal-semaphore #:wait-on-semaphore
-           #:start-thread #:join-thread #:thread-alive-p #:current-thread #:yield-thread
-           #:spread-specials)
+           #:start-thread #:join-thread #:interrupt-thread #:thread-alive-p
+           #:current-thread #:yield-thread #:spread-specials)
+  ;; interrupts, debuggers
+  (:export #:time-limit #:deferring-interrupts #:allowing-interrupts #:let-interrupts-in
+           #:call-holding-interrupts #:call-open-to-interrupts
+           #:debugger-p #:answering-debugger #:calls-under-way #:debugger-hook)
   ;; dice
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance)
@@ -71,7 +75,9 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:message #:message-kind #:message-items #:take-messages #:message-text
            #:write-message #:write-items #:out #:*message-limit*)
   ;; user code
-  (:export #:call-user-code #:*break-on-user-error*)
+  (:export #:call-user-code #:*break-on-user-error* #:in-any-case #:call-each
+           #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*
+           #:interruptibly #:abort-user-code #:text-of-condition #:text-of-origin)
   ;; parameters
   (:export #:parameter #:parameter-p #:parameter-name #:parameter-default #:parameter-unit
            #:parameter-kind #:parameter-group #:parameter-sentence #:parameter-value

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.base)
 
-;;; Nothing here interrupts or kills a thread: threads are asked to end and then joined.
+;;; No thread is killed: threads are asked to end, and then joined. One that is in users' code which
+;;; does not return may be interrupted, at the user's word.
 
 (defun make-lock (name)
   "Return a new lock called NAME."
@@ -34,6 +35,12 @@
   "Wait until THREAD has ended, in whatever way. Return nothing."
   ;; One that was aborted, as from the debugger, makes this an error.
   (ignore-errors (bordeaux-threads:join-thread thread))
+  (values))
+
+(defun interrupt-thread (thread function)
+  "Have THREAD call FUNCTION, with no arguments, as soon as it lets that happen. Return nothing."
+  ;; One that has ended makes this an error.
+  (ignore-errors (bordeaux-threads:interrupt-thread thread function))
   (values))
 
 (defun thread-alive-p (thread)

@@ -1,29 +1,160 @@
-;;;; user-code.lisp -- trouble in a user's continuation, kicker or test is data.
+;;;; user-code.lisp -- calling users' functions: whatever becomes of a call, the run goes on.
 
 (in-package :ars-magna.base)
+
+;;; Continuations, kickers, tests and whatever else users give to the simulator is called here. A
+;;; call may end in four ways besides returning. It may signal an error, or be aborted: then it has
+;;; ended, and a message says so. It may be left, as by THROW or because its thread is to end; then
+;;; its callers are left too, and see to it that the tick is finished first (IN-ANY-CASE). And it
+;;; may not end at all: who watches is told where the thread is (USER-CALLS) and can have the call
+;;; aborted from outside (ABORT-USER-CODE). Nowhere else does a run let in what interrupts it.
 
 (addition *break-on-user-error*)
 (defvar *break-on-user-error* nil
   "When true, an error in user code (a continuation, kicker, manipulation, test or graphics
-body) enters the debugger where it happens; when NIL, the default, it is queued as an error
-message that names its origin, and the run goes on.")
+body) enters the debugger where it happens, if somebody is there to answer it: at a terminal, or in
+an editor. Its restarts are: report it and go on, try again, and stop the simulator if that runs
+live. When NIL, the default, or without a terminal, the error is queued as an error message that
+names its origin, and the run goes on.")
+
+;;; Finishing what has been begun.
+
+(defmacro in-any-case (&body forms)
+  "Run FORMS in order, those that follow also if one is left, as by THROW."
+  (destructuring-bind (form &rest more) forms
+    (if more
+        `(unwind-protect ,form (in-any-case ,@more))
+        form)))
+
+(defun call-each (function list)
+  "Call FUNCTION with each element of LIST in order, with the rest also if a call is left."
+  (in-any-case
+    (loop while list do (funcall function (pop list)))
+    (when list (call-each function list))))
+
+;;; What users' code a thread is in.
+
+(defstruct (user-calls (:constructor make-user-calls (&optional stop)) (:copier nil))
+  "What users' code a thread calls. STOP is a function that ends what the thread does."
+  (origin nil :type t)
+  (count 0 :type fixnum)
+  (stop nil :type (or null function) :read-only t))
+
+(document-functions
+  make-user-calls "Return a record of users' code called by a thread which the function STOP stops."
+  user-calls-origin "Return whose code the thread is in, an item or a list of items, or NIL."
+  user-calls-count "Return how many calls of users' code the thread has begun.")
+
+(defvar *user-calls* nil
+  "The USER-CALLS of this thread, or NIL if nobody watches them.")
+
+(defun call-interruptibly (function origin)
+  "Call FUNCTION, of which ORIGIN says whose code it is, so that it can be interrupted."
+  (declare (type function function))
+  (let ((calls *user-calls*))
+    (if calls
+        (let ((outer (user-calls-origin calls)))
+          (incf (user-calls-count calls))
+          (setf (user-calls-origin calls) origin)
+          (unwind-protect (allowing-interrupts (funcall function))
+            (setf (user-calls-origin calls) outer)))
+        (allowing-interrupts (funcall function)))))
+
+(defmacro interruptibly ((origin) &body body)
+  "Run BODY as CALL-INTERRUPTIBLY would a function."
+  `(flet ((body () ,@body))
+     (declare (dynamic-extent #'body))
+     (call-interruptibly #'body ,origin)))
+
+(defun abort-user-code (count)
+  "Abort the users' code that this thread is in, if that is still the call numbered COUNT."
+  (let ((calls *user-calls*))
+    (when (and calls (user-calls-origin calls) (= count (user-calls-count calls)))
+      (abort))))
+
+;;; Reporting.
+
+(defun text-of-condition (condition)
+  "Return what CONDITION reports, on one line and of bounded length."
+  (let* ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil)
+         (text (handler-case (princ-to-string condition)
+                 (serious-condition () (string (type-of condition))))))
+    (substitute #\Space #\Newline (subseq text 0 (min (length text) 2000)))))
+
+(defun text-of-origin (origin)
+  "Return ORIGIN, an item or list of items, as one text."
+  (format nil "~{~A~}" (ensure-list origin)))
 
 (defun report-user-error (condition origin)
   (apply #'error-set "Error in "
-         (append (ensure-list origin)
-                 (list ": " (substitute #\Space #\Newline
-                                        (handler-case (princ-to-string condition)
-                                          (error () (string (type-of condition)))))))))
+         (append (ensure-list origin) (list ": " (text-of-condition condition)))))
+
+(defun report-aborted (origin)
+  (apply #'error-set (append (ensure-list origin) (list " was aborted"))))
+
+(defun report-break (condition origin)
+  (apply #'message-set "Break in "
+         (append (ensure-list origin) (list ": " (text-of-condition condition)))))
+
+;;; Calling.
+
+(defun offer-abort (stream) (write-string "Report it and go on." stream))
+(defun offer-retry (stream) (write-string "Try again." stream))
+(defun offer-stop (stream) (write-string "Report it and stop the simulator." stream))
+
+(defun stoppable-p (condition)
+  "True if what this thread does can be stopped, whatever CONDITION has come up."
+  (declare (ignore condition))
+  (and *user-calls* (user-calls-stop *user-calls*) t))
+
+(defun call-offering (function go-on again)
+  "Call FUNCTION with restarts: ABORT, which calls GO-ON; RETRY, which calls AGAIN; and if this
+thread can be stopped STOP-SIMULATOR."
+  (declare (type function function go-on again))
+  (flet ((stop ()
+           (funcall (the function (user-calls-stop *user-calls*)))
+           (funcall go-on)))
+    (declare (dynamic-extent #'stop))
+    (restart-bind ((abort go-on :report-function #'offer-abort)
+                   (retry again :report-function #'offer-retry)
+                   (stop-simulator #'stop :report-function #'offer-stop
+                                          :test-function #'stoppable-p))
+      (funcall function))))
+
+(defmacro offering ((go-on again) &body body)
+  "Run BODY as CALL-OFFERING would a function."
+  `(flet ((body () ,@body))
+     (declare (dynamic-extent #'body))
+     (call-offering #'body ,go-on ,again)))
 
 (defun call-user-code (function origin &rest arguments)
-  "Call FUNCTION with ARGUMENTS and return its values. Should it signal an error, queue an error
-message saying that it came from ORIGIN (an item or list of items) and return NIL."
+  "Call FUNCTION with ARGUMENTS and return its values. Should it signal an error or be aborted,
+queue an error message saying that it came from ORIGIN (an item or list of items) and return NIL."
   (declare (dynamic-extent arguments))
-  (block nil
-    (handler-bind
-        (((or error storage-condition)
-           (lambda (condition)
-             (when *break-on-user-error* (invoke-debugger condition))
-             (report-user-error condition origin)
-             (return nil))))
-      (apply function arguments))))
+  (prog (trouble)
+   again
+     (setf trouble nil)
+     (flet ((go-on ()
+              (if trouble
+                  (report-user-error trouble origin)
+                  (report-aborted origin))
+              (return nil))
+            (again () (go again)))
+       (declare (dynamic-extent #'go-on #'again))
+       (flet ((note (condition)
+                ;; A limit to the time of more than this call is for those who set it.
+                (when (typep condition 'time-limit) (signal condition))
+                (setf trouble condition)
+                (when *break-on-user-error* (invoke-debugger condition))
+                (go-on))
+              (answer (condition)
+                (cond ((typep condition 'serious-condition) (setf trouble condition))
+                      (t (report-break condition origin)
+                         (continue)))
+                (go-on)))
+         (declare (dynamic-extent #'note #'answer))
+         (return
+           (offering (#'go-on #'again)
+             (handler-bind (((or error storage-condition) #'note))
+               (answering-debugger (#'answer)
+                 (interruptibly (origin) (apply function arguments))))))))))

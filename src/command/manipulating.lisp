@@ -76,19 +76,21 @@ NIL (reading 175)."
 
 ;;; In its tick.
 
+(defun call-body (method arguments)
+  "Return the values that the body of METHOD returns for ARGUMENTS as a list."
+  (let ((things (method-things method arguments)))
+    (multiple-value-list
+     (apply (method-body method) (append things (nthcdr (length things) arguments))))))
+
 (defun run-body (operation method)
-  "Run the body of METHOD. Return the values it returns as a list, (:FAILED) after an error."
-  (let* ((arguments (operation-arguments operation))
-         (things (method-things method arguments))
-         (results '(:failed))
-         (*world* (operation-world operation)))
-    (call-user-code (lambda ()
-                      (setf results
-                            (multiple-value-list
-                             (apply (method-body method)
-                                    (append things (nthcdr (length things) arguments))))))
-                    (list "manipulation " (command-prefix (operation-command operation))))
-    results))
+  "Run the body of METHOD, and end OPERATION with the error code and the value that it returns, or
+with :FAILED if it fails or is left."
+  (let ((results '(:failed)) (*world* (operation-world operation)))
+    (in-any-case
+      (call-user-code (lambda ()
+                        (setf results (call-body method (operation-arguments operation))))
+                      (list "manipulation " (command-prefix (operation-command operation))))
+      (finish operation (first results) (second results)))))
 
 (defun carry-out (operation)
   "Do what the method that is the subject of OPERATION does, if that is still possible and succeeds,
@@ -97,9 +99,7 @@ and end OPERATION."
         (dice (world-dice (operation-world operation) :manipulations)))
     (if (and (method-applies-p method (operation-arguments operation))
              (chance (method-success method) dice))
-        (destructuring-bind (&optional code value &rest more) (run-body operation method)
-          (declare (ignore more))
-          (finish operation code value))
+        (run-body operation method)
         (fail-with operation :failed))))
 
 (defun begin-manipulation (operation resource &rest arguments)

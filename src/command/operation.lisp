@@ -89,12 +89,9 @@
 
 ;; As reading 86 says.
 (defun call-continuation (operation code results)
-  (let ((origin (command-origin (operation-command operation))))
-    (call-watched (operation-timeline operation)
-                  (lambda ()
-                    (apply #'call-user-code (operation-continuation operation) origin
-                           code (operation-resource operation) results))
-                  origin)))
+  (apply #'call-user-code (operation-continuation operation)
+         (command-origin (operation-command operation))
+         code (operation-resource operation) results))
 
 (defun notify (operation code results)
   "Call the continuation of OPERATION with CODE and RESULTS at the end of this tick."
@@ -111,7 +108,8 @@ the resource and RESULTS. The second end of an operation changes nothing."
       (cancel-event (operation-agenda operation) operation))
     (let ((results (fit-results operation results)))
       ;; A user's command may fail in its report.
-      (unwind-protect (report operation code results)
+      (in-any-case
+        (report operation code results)
         (notify operation code results)))))
 
 (defun succeed (operation &rest results)
@@ -132,14 +130,15 @@ the resource and RESULTS. The second end of an operation changes nothing."
 on, are messages and end that with :FAILED."
   (let ((origin (list "command " (command-prefix (operation-command operation))))
         (returned nil))
-    (call-user-code (lambda ()
-                      (funcall step operation)
-                      (setf returned t))
-                    origin)
-    (unless (or (operation-finished-p operation)
-                (and returned (event-pending-p operation)))
-      (when returned (apply #'error-set (append origin '(" neither ended nor went on"))))
-      (finish operation :failed))))
+    (in-any-case
+      (call-user-code (lambda ()
+                        (funcall step operation)
+                        (setf returned t))
+                      origin)
+      (unless (or (operation-finished-p operation)
+                  (and returned (event-pending-p operation)))
+        (when returned (apply #'error-set (append origin '(" neither ended nor went on"))))
+        (finish operation :failed)))))
 
 (declaim (inline call-step))
 (defun call-step (operation step)

@@ -98,8 +98,7 @@ NIL."
 See reading 215."
   (check-start blueprint (world-map world))
   (let ((robot (%make-robot :name (blueprint-name blueprint) :blueprint blueprint :world world)))
-    (unless (world-timeline world)
-      (setf (world-timeline world) (make-timeline (map-name (world-map world)))))
+    (ensure-timeline world)
     (outfit robot blueprint)
     (stand-at-start robot)
     (setf (world-robots world) (append (world-robots world) (list robot)))

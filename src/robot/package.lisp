@@ -27,7 +27,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:hand-contents #:hand-holding #:hand-way-in
            #:storage-bin #:storage-bin-p #:storage-bin-robot #:storage-bin-index
            #:storage-bin-capacity #:storage-bin-closed-p #:storage-bin-contents)
-  (:export #:world-tick)
+  (:export #:world-tick #:ensure-timeline)
   ;; odometer
   (:export #:odometer #:odometer-p #:odometer-name #:odometer-estimate
            #:odometer-origin-angle #:make-odometer #:robot-main-odometer

@@ -120,6 +120,14 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
 (defmethod timeline-of ((world world))
   (world-timeline world))
 
+(defun ensure-timeline (world)
+  "Return the timeline of WORLD, made if it has none."
+  (or (world-timeline world)
+      (progn (compare-and-swap (world-timeline world)
+                               nil (make-timeline (map-name (world-map world))))
+             ;; Another thread may have been first.
+             (world-timeline world))))
+
 (addition world-tick)
 (declaim (inline world-tick))
 (defun world-tick (world)

@@ -17,6 +17,17 @@ ends with it and simulations side by side do not meet.")
     (reject-use "~(~A~): this simulation runs live, its ticks pass by themselves. ~
                  Use (with-simulation (ROBOT) ...) or (stop-simulator)." operator)))
 
+(defun check-passable (simulation)
+  "Signal MISUSE where ticks of SIMULATION are being passed already."
+  (when (and (owner-p simulation)
+             (or (simulation-ticking-p simulation)
+                 (timeline-passing-p (simulation-timeline simulation))))
+    (reject-use "run-ticks: a tick is under way; time cannot pass inside it.")))
+
+(defun reject-busy (simulation)
+  (reject-use "run-ticks: another thread passes ticks of ~A, or changes it. One at a time can."
+              (simulation-name simulation)))
+
 (defun call-inside (simulation function)
   "Call FUNCTION where SIMULATION is the current one: with its world, its message queue and, if it
 is not the current one out here, its parameters."
@@ -29,25 +40,33 @@ is not the current one out here, its parameters."
         (call)
         (call-with-parameter-values (simulation-known-parameters simulation) #'call))))
 
-(declaim (inline pass-ticks))
 (defun pass-ticks (count simulation)
-  "Pass COUNT ticks of SIMULATION. Nobody else can do that meanwhile, continuations neither."
-  (let ((timeline (simulation-timeline simulation)))
+  "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before.
+Nobody else can do that meanwhile, continuations neither."
+  (let* ((timeline (simulation-timeline simulation)) (custody (timeline-custody timeline)))
     (setf (timeline-passing-p timeline) t)
-    (unwind-protect (loop repeat count do (tick simulation))
+    (in-any-case
+      (deferring-interrupts
+        (loop repeat count
+              until (timeline-over timeline)
+              do (tick simulation)
+                 (when (custody-questions custody) (answer-questions custody))
+                 (let-interrupts-in)))
       (setf (timeline-passing-p timeline) nil))))
 
 (addition run-ticks)
 (defun run-ticks (count &optional (simulation (current-simulation)))
   "Pass COUNT ticks of the headless SIMULATION. Return the tick then reached. Signals
-WRONG-ARGUMENT, and MISUSE if SIMULATION runs live or is inside a tick."
+WRONG-ARGUMENT, and MISUSE if SIMULATION runs live or is inside a tick, or if another thread passes
+its ticks."
   (check-argument run-ticks count (typep count '(integer 0)) "a number of ticks, 0 or more")
   (check-headless simulation 'run-ticks)
   (check-not-over simulation 'run-ticks)
-  (when (or (simulation-ticking-p simulation)
-            (timeline-passing-p (simulation-timeline simulation)))
-    (reject-use "run-ticks: a tick is under way; time cannot pass inside it."))
-  (call-inside simulation (lambda () (pass-ticks count simulation)))
+  (check-passable simulation)
+  (call-with-custody (timeline-custody (simulation-timeline simulation))
+                     (lambda ()
+                       (call-inside simulation (lambda () (pass-ticks count simulation))))
+                     (lambda () (reject-busy simulation)))
   (simulation-tick simulation))
 
 (addition run-until)

@@ -17,7 +17,7 @@
 runs live already, WRONG-ARGUMENT for a rate that is neither a positive number nor :FREE."
   (check-not-over simulation 'start-clock)
   (check-parameters)
-  (with-lock ((timeline-lock (simulation-timeline simulation)))
+  (asking (simulation)
     (start-pacing (simulation-timeline simulation)
                   (lambda () (tick simulation))
                   (lambda () (idle-p simulation))
@@ -97,10 +97,11 @@ One whose map or definition has been replaced means the robot that is called so 
 ;;; Starting and stopping.
 
 (defun restart-world (world seed)
-  "Make WORLD and its robots what they were at the start, with a timeline and run of their own."
-  (with-lock ((timeline-lock (world-timeline world)))
+  "Make WORLD, which this thread has in custody, and its robots what they were at the start, with a
+timeline and run of their own. Return the run."
+  (let ((custody (timeline-custody (world-timeline world))))
     (writing (world) (reset-world world :seed seed))
-    (setf (world-timeline world) (make-timeline (map-name (world-map world)))))
+    (setf (world-timeline world) (make-timeline (map-name (world-map world)) custody)))
   (world-simulation world))
 
 (defun fresh-p (simulation journal)
@@ -119,7 +120,6 @@ One whose map or definition has been replaced means the robot that is called so 
   "Return the simulation of WORLD to run live: a new one if the last has passed ticks, or if JOURNAL
 is true and it keeps none. With SEED, all chance in it comes from that."
   (let ((simulation (world-simulation world)))
-    (stop-clock simulation)
     (cond ((not (fresh-p simulation journal))
            (end-simulation simulation "it has been started anew")
            (restart-world world (or seed (simulation-seed simulation))))
@@ -131,6 +131,27 @@ is true and it keeps none. With SEED, all chance in it comes from that."
   (and *simulation*
        (eq (simulation-thread *simulation*) (current-thread))))
 
+(defun call-as-starter (custody function)
+  "Call FUNCTION, which starts the world in CUSTODY, which this thread has. Signals MISUSE if that
+is what it is doing already, and FUNCTION has been called on the way."
+  (when (eq (current-thread) (custody-starter custody))
+    (reject-use "simulator: this world is being started already."))
+  (setf (custody-starter custody) (current-thread))
+  (in-any-case
+    (funcall function)
+    ;; Another thread may have stopped it meanwhile and be starting it again.
+    (swap-if (custody-starter custody) (current-thread) nil)))
+
+(defun call-starting (world function)
+  "Stop WORLD, and call FUNCTION with it in custody, to start it."
+  (let ((timeline (ensure-timeline world)))
+    (call-alone timeline
+                (lambda ()
+                  (call-as-starter (timeline-custody timeline)
+                                   (lambda ()
+                                     (stop-pacing timeline)
+                                     (funcall function)))))))
+
 (defun make-current (simulation everywhere)
   "Let SIMULATION be the current one; EVERYWHERE, not only where this thread has bound that."
   (setf *simulation* simulation
@@ -138,6 +159,20 @@ is true and it keeps none. With SEED, all chance in it comes from that."
   (when everywhere
     (setf (global-value '*simulation*) simulation
           (global-value '*world*) (simulation-world simulation))))
+
+(defun start-live (world rate seed journal)
+  "Run WORLD live at RATE, with SEED and a JOURNAL or without, and make its run the current one."
+  (let ((everywhere (passing-ticks-p)))
+    (call-starting
+     world
+     (lambda ()
+       (let ((simulation (run-to-start world seed journal)))
+         (if journal
+             (renew-definitions simulation)
+             (setf (simulation-journal simulation) nil))
+         (setf (simulation-messages simulation) (residents-queue))
+         (make-current simulation everywhere)
+         (start-clock simulation :rate rate))))))
 
 (public simulator)
 (defun simulator (robot &rest options
@@ -150,15 +185,8 @@ STOP-SIMULATOR stops it. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if the
 fits into its map. See reading 238."
   (check-rate rate)
   (check-argument simulator seed (typep seed '(or null integer)) "an integer, or NIL")
-  (let* ((robot (robot-to-start robot))
-         (everywhere (passing-ticks-p))
-         (simulation (run-to-start (robot-world robot) seed journal)))
-    (if journal
-        (renew-definitions simulation)
-        (setf (simulation-journal simulation) nil))
-    (setf (simulation-messages simulation) (residents-queue))
-    (make-current simulation everywhere)
-    (start-clock simulation :rate rate)
+  (let ((robot (robot-to-start robot)))
+    (start-live (robot-world robot) rate seed journal)
     (dolist (hook *simulator-hooks*) (funcall hook robot options))
     robot))
 

@@ -96,25 +96,29 @@ other thread can find it before PREPARE, a function, has been called with it."
 (addition add-observer)
 (defun add-observer (function &optional (simulation (current-simulation)))
   "Call FUNCTION with SIMULATION after each of its ticks. Return FUNCTION."
-  (setf (simulation-observers simulation)
-        (append (simulation-observers simulation) (list function)))
+  (asking (simulation)
+    (setf (simulation-observers simulation)
+          (append (simulation-observers simulation) (list function))))
   function)
 
 (addition remove-observer)
 (defun remove-observer (function &optional (simulation (current-simulation)))
   "Stop calling FUNCTION after the ticks of SIMULATION."
-  (setf (simulation-observers simulation) (remove function (simulation-observers simulation)))
+  (asking (simulation)
+    (removef (simulation-observers simulation) function))
   (values))
 
 (defun add-participant (participant simulation)
   "Let PARTICIPANT take part in SIMULATION from now on."
-  (setf (simulation-participants simulation)
-        (append (simulation-participants simulation) (list participant)))
+  (asking (simulation)
+    (setf (simulation-participants simulation)
+          (append (simulation-participants simulation) (list participant))))
   participant)
 
 (defun remove-participant (participant simulation)
   "Let PARTICIPANT take part in SIMULATION no more."
-  (removef (simulation-participants simulation) participant)
+  (asking (simulation)
+    (removef (simulation-participants simulation) participant))
   (values))
 
 (addition idle-p)
@@ -145,12 +149,10 @@ SEED. See reading 218."
 
 ;;; The end.
 
-(defun end-timeline (timeline reason)
-  "Let TIMELINE be over for REASON, and its thread end. True unless it has been over before."
-  (unless (timeline-over timeline)
-    (setf (timeline-over timeline) reason)
-    (when (timeline-thread timeline) (stop-pacing timeline))
-    t))
+(defun interrupt-all (timeline robots)
+  "Interrupt whatever ROBOTS of TIMELINE, which is over, do or were to do."
+  (call-each (lambda (request) (perform request timeline)) (take-requests timeline))
+  (abandon timeline (loop for robot in robots append (cons robot (robot-parts robot)))))
 
 (defun end-simulation (simulation reason)
   "End the run of SIMULATION for good, for REASON, a sentence without its full stop. Whatever was
@@ -158,10 +160,15 @@ asked of its robots, and is under way or has not even begun, is interrupted; not
 it any more."
   (let ((timeline (simulation-timeline simulation))
         (robots (simulation-robots simulation)))
-    (when (end-timeline timeline reason)
-      (let ((*message-queue* (simulation-messages simulation)))
-        (mapc #'close-robot robots)
-        (dolist (participant (simulation-participants simulation))
-          (participant-end participant simulation))
-        (dolist (request (take-requests timeline)) (perform request timeline))
-        (abandon timeline (loop for robot in robots append (cons robot (robot-parts robot))))))))
+    (call-alone
+     timeline
+     (lambda ()
+       (unless (timeline-over timeline)
+         (setf (timeline-over timeline) reason)
+         (stop-pacing timeline)
+         (let ((*message-queue* (simulation-messages simulation)))
+           (in-any-case
+             (call-each #'close-robot robots)
+             (call-each (lambda (participant) (participant-end participant simulation))
+                        (simulation-participants simulation))
+             (interrupt-all timeline robots))))))))

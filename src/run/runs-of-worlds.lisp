@@ -4,11 +4,6 @@
 
 (defvar *simulations-lock* (make-lock "simulations"))
 
-(defun ensure-timeline (world)
-  "Return the timeline of WORLD, also if it has no robot yet."
-  (or (world-timeline world)
-      (setf (world-timeline world) (make-timeline (map-name (world-map world))))))
-
 (defun residents-queue ()
   "Return the message queue for the runs of resident worlds: not that of a headless run which may be
 the first to need one."

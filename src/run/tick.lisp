@@ -4,21 +4,35 @@
 
 ;;; TICK is the order of a tick. While the world changes, no program runs but users' kickers,
 ;;; manipulations and events; continuations come after that, and then whoever looks on. So
-;;; whatever else a program does happens between ticks, and a journal can repeat it.
+;;; whatever else a program does happens between ticks, and a journal can repeat it. Users' code
+;;; may leave a tick, as by THROW; the timeline knows which phases have begun, and the others follow
+;;; first.
 
-(defmacro in-tick ((timeline world) &body body)
-  "Run BODY, in which this thread changes WORLD: the part of a tick of TIMELINE that does so."
+(defmacro in-phases ((place) &body forms)
+  "Run FORMS in order, but for those that the number in PLACE, which is 0 before and after, says
+have been begun."
   `(progn
-     (setf (timeline-ticking-p ,timeline) t
-           (world-writer ,world) (current-thread))
-     (unwind-protect (progn ,@body)
-       (setf (timeline-ticking-p ,timeline) nil
-             (world-writer ,world) nil))))
+     ,@(loop for form in forms
+             for number from 1
+             collect `(when (< ,place ,number)
+                        (setf ,place ,number)
+                        ,form))
+     (setf ,place 0)))
+
+(declaim (inline begin-changing end-changing))
+(defun begin-changing (timeline world)
+  "Let this thread change WORLD in a tick of TIMELINE."
+  (setf (timeline-ticking-p timeline) t
+        (world-writer world) (current-thread)))
+
+(defun end-changing (timeline world)
+  (setf (timeline-ticking-p timeline) nil
+        (world-writer world) nil))
 
 (declaim (inline notice-parameters))
 (defun notice-parameters (simulation timeline)
   "Look after the parameters of SIMULATION, at least when there is a command that may read them."
-  (when (or (timeline-thread timeline)
+  (when (or (timeline-pacing timeline)
             (timeline-inbox timeline)
             (simulation-journal simulation))
     (follow-settings simulation)))
@@ -33,15 +47,11 @@
   (destructuring-bind (operator . arguments) (request-entry request)
     (note simulation operator arguments)))
 
-;; What signals or throws is no reason to forget what was asked for after it.
 (defun perform-all (simulation timeline)
-  (let ((requests (take-requests timeline)))
-    (unwind-protect
-         (loop while requests
-               do (let ((request (pop requests)))
-                    (when (simulation-journal simulation) (note-request simulation request))
-                    (perform request timeline)))
-      (when requests (put-back requests timeline)))))
+  (call-each (lambda (request)
+               (when (simulation-journal simulation) (note-request simulation request))
+               (perform request timeline))
+             (take-requests timeline)))
 
 (declaim (inline perform-requests run-due-events prolong-journal tell-observers
                  let-participants-act))
@@ -59,29 +69,40 @@
     (when (and journal (not (journal-full-p journal)))
       (setf (journal-end journal) (simulation-tick simulation)))))
 
+(defun tell-all-observers (simulation)
+  (call-each (lambda (observer) (call-user-code observer "an observer" simulation))
+             (simulation-observers simulation)))
+
 (defun tell-observers (simulation)
-  (dolist (observer (simulation-observers simulation))
-    (call-user-code observer "an observer" simulation)))
+  (when (simulation-observers simulation) (tell-all-observers simulation)))
+
+(defun let-all-participants-act (simulation)
+  (call-each (lambda (participant)
+               (call-user-code #'participant-after-tick "a participant" participant simulation))
+             (simulation-participants simulation)))
 
 (defun let-participants-act (simulation)
-  (dolist (participant (simulation-participants simulation))
-    (call-user-code #'participant-after-tick "a participant" participant simulation)))
+  (when (simulation-participants simulation) (let-all-participants-act simulation)))
 
 (defun tick (simulation)
-  "Pass one tick of SIMULATION. To be called by its owner only."
+  "Pass one tick of SIMULATION, or what is left of one. To be called by its owner only."
   (declare #.*hot* (type simulation simulation))
   (let ((timeline (simulation-timeline simulation))
         (world (simulation-world simulation)))
     (declare (type timeline timeline) (type world world))
-    (in-tick (timeline world)
-      (notice-parameters simulation timeline)
-      (perform-requests simulation timeline)
-      (run-due-events timeline)
-      (run-kickers world)
-      (settle-robots world)
-      (tend-tracks world)
-      (check-grips world))
-    (prolong-journal simulation)
-    (deliver-notifications timeline)
-    (tell-observers simulation)
-    (let-participants-act simulation)))
+    (in-any-case
+      (in-phases ((timeline-phase timeline))
+        (progn (begin-changing timeline world)
+               (notice-parameters simulation timeline)
+               (perform-requests simulation timeline))
+        (run-due-events timeline)
+        (run-kickers world)
+        (progn (settle-robots world)
+               (tend-tracks world)
+               (check-grips world))
+        (progn (end-changing timeline world)
+               (prolong-journal simulation)
+               (deliver-notifications timeline))
+        (tell-observers simulation)
+        (let-participants-act simulation))
+      (unless (zerop (timeline-phase timeline)) (tick simulation)))))

@@ -183,18 +183,23 @@ interrupted."
     (when resource (unclaim agenda resource)))
   (funcall (event-function event) event))
 
+(defun run-if-pending (agenda event)
+  (declare #.*hot* (type agenda agenda) (type event event))
+  (setf (event-queued-p event) nil)
+  (when (event-pending-p event) (run-event agenda event)))
+
 (defun bucket-by-priority (event)
   "Return a list of EVENT and those that follow it, higher priorities first."
   (stable-sort (loop for e = event then (event-next e) while e collect e)
                #'> :key #'event-priority))
 
 (defun run-in-order (agenda event)
+  "Run EVENT and those that follow it, the rest also if one is left."
   (declare #.*hot* (type agenda agenda))
-  (loop while event
-        do (let ((next (event-next (the event event))))
-             (setf (event-queued-p event) nil)
-             (when (event-pending-p event) (run-event agenda event))
-             (setf event next))))
+  (in-any-case
+    (loop while event
+          do (run-if-pending agenda (shiftf event (event-next (the event event)))))
+    (when event (run-in-order agenda event))))
 
 (defun advance-agenda (agenda)
   "Go on to the next tick and run the events due in it."
@@ -207,9 +212,8 @@ interrupted."
         (empty-bucket bucket)
         (if (zerop (agenda-unequal agenda))
             (run-in-order agenda event)
-            (dolist (event (bucket-by-priority event))
-              (setf (event-queued-p event) nil)
-              (when (event-pending-p event) (run-event agenda event))))))))
+            (call-each (lambda (event) (run-if-pending agenda event))
+                       (bucket-by-priority event)))))))
 
 ;;; Looking at it whole.
 

@@ -1,12 +1,9 @@
-;;;; pacing.lisp -- ticks that pass by themselves, in a thread of their own (manual 2.3, A).
+;;;; pacing.lisp -- the pace of ticks that pass by themselves (manual 2.3, A).
 
 (in-package :ars-magna.time)
 
-;;; The thread passes ticks at the pace RATE, a number of ticks per second or :FREE, for as long as
-;;; anything is to be done; while all is idle it sleeps, and simulated time stands still. Between
-;;; ticks it answers questions. Others steer it by setting its fields and waking it. What a tick is,
-;;; and whether there is anything to do, is said by functions. This is the only file that reads
-;;; the real clock, and no result depends on what it reads.
+;;; A thread passes ticks at the pace RATE, a number of ticks per second or :FREE, for as long as
+;;; anything is to be done (clock.lisp). Others steer it by setting its fields and waking it.
 
 (addition *default-rate*)
 (defparameter *default-rate* 20
@@ -14,21 +11,44 @@
 
 (addition *hog-seconds*)
 (defparameter *hog-seconds* 0.5
-  "A continuation that keeps the simulator's thread for longer earns a warning, in seconds.")
+  "For how many seconds a user's function, such as a continuation, may keep the simulator's thread
+before a warning names it; also how long STOP-SIMULATOR waits before it interrupts one. At least
+0.05.")
 
-(defstruct (pacing (:constructor make-pacing (rate tick idle-p)) (:copier nil))
-  "How a timeline is paced. TICK passes one tick, IDLE-P says whether none is needed."
+(defun hog-seconds ()
+  "Return *HOG-SECONDS*, within bounds."
+  (if (typep *hog-seconds* '(real 0.05 1000000)) *hog-seconds* 0.05))
+
+(defstruct (pacing (:constructor make-pacing (timeline rate tick idle-p calls)) (:copier nil))
+  "How a timeline is paced. TICK passes one tick, IDLE-P says whether none is needed, CALLS tells
+what users' code the thread is in."
+  (timeline nil :type timeline :read-only t)
   (rate nil)
   (tick nil :type function :read-only t)
   (idle-p nil :type function :read-only t)
+  (calls nil :type user-calls :read-only t)
+  (thread nil)
+  (ended (make-semaphore "ended") :read-only t)
   (paused-p nil)
   (stopping-p nil)
   ;; How many ticks to pass although it is paused.
   (steps 0 :type fixnum))
 
+(defun pacing-custody (pacing)
+  (timeline-custody (pacing-timeline pacing)))
+
+(defun wake (pacing)
+  "Wake the thread of PACING."
+  (signal-semaphore (custody-wake-up (pacing-custody pacing))))
+
 (defun seconds-now ()
   "Return the real time, in seconds since some moment. No result may depend on it."
   (/ (float (get-internal-real-time) 1d0) internal-time-units-per-second))
+
+(defun timeline-thread (timeline)
+  "Return the thread that paces TIMELINE, or NIL if none does, or it has been told to stop."
+  (let ((pacing (timeline-pacing timeline)))
+    (and pacing (not (pacing-stopping-p pacing)) (pacing-thread pacing))))
 
 (addition live-p)
 (defun live-p (&optional (simulation (current-simulation)))
@@ -46,110 +66,6 @@
   (let ((pacing (timeline-pacing (timeline-of simulation))))
     (and pacing (pacing-rate pacing))))
 
-;;; Resting.
-
-(defun sleep-until-woken (timeline seconds)
-  "Sleep for SECONDS (NIL: for as long as it takes), but not while somebody wants something."
-  (setf (timeline-asleep-p timeline) t)
-  (memory-barrier)
-  (unless (timeline-questions timeline)
-    (wait-on-semaphore (timeline-wake-up timeline) seconds))
-  (setf (timeline-asleep-p timeline) nil))
-
-(defun nothing-to-do-p (pacing)
-  (if (pacing-paused-p pacing)
-      (zerop (pacing-steps pacing))
-      (funcall (pacing-idle-p pacing))))
-
-(defun rest-thread (timeline pacing)
-  "Sleep for as long as there is nothing to do (reading 88)."
-  (setf (timeline-asleep-p timeline) t)
-  (memory-barrier)
-  (when (and (nothing-to-do-p pacing)
-             (null (timeline-questions timeline))
-             (not (pacing-stopping-p pacing)))
-    ;; The timeout covers tests that come true without anybody posting.
-    (wait-on-semaphore (timeline-wake-up timeline) 1))
-  (setf (timeline-asleep-p timeline) nil))
-
-(defun keep-pace (timeline pacing due)
-  "Sleep until the time DUE, in seconds; return when the next tick is due."
-  (let ((rate (pacing-rate pacing)))
-    (if (eq rate :free)
-        (seconds-now)
-        (loop for left = (- due (seconds-now))
-              while (and (plusp left)
-                         (not (pacing-stopping-p pacing))
-                         (eql rate (pacing-rate pacing)))
-              do (sleep-until-woken timeline left)
-                 (answer-questions timeline)
-              finally (return (+ (max due (- (seconds-now) 0.25d0)) (/ 1d0 (float rate 1d0))))))))
-
-;;; The thread.
-
-(defun pass-tick (pacing)
-  "Pass a tick. Trouble that no user code answers for is reported and pauses the clock."
-  (handler-bind ((error (lambda (trouble)
-                          (unless *break-on-user-error*
-                            (error-set "The simulator failed and is paused; RESUME goes on: "
-                                       (princ-to-string trouble))
-                            (setf (pacing-paused-p pacing) t)
-                            (return-from pass-tick)))))
-    (funcall (pacing-tick pacing)))
-  (when (plusp (pacing-steps pacing)) (decf (pacing-steps pacing))))
-
-(defun run-paced (timeline pacing)
-  (loop with due = (seconds-now)
-        until (or (pacing-stopping-p pacing)
-                  ;; Stopped from within and started again: another thread has taken over.
-                  (not (eq (current-thread) (timeline-thread timeline))))
-        do (answer-questions timeline)
-           (cond ((nothing-to-do-p pacing)
-                  (rest-thread timeline pacing)
-                  (setf due (seconds-now)))
-                 (t (setf due (keep-pace timeline pacing due))
-                    (unless (pacing-stopping-p pacing)
-                      (pass-tick pacing))))))
-
-(defun start-pacing (timeline tick idle-p rate caller)
-  "Let a new thread pass ticks of TIMELINE at RATE by calling TICK, as long as IDLE-P is false, both
-functions of no arguments. The thread works inside CALLER, a function of a function that calls it.
-Signals MISUSE if it is live already, WRONG-ARGUMENT for a rate that is neither a positive number
-nor :FREE."
-  (check-rate rate)
-  (when (live-p timeline) (reject-use "~A runs live already." (timeline-name timeline)))
-  (let ((started (make-semaphore "started"))
-        (pacing (make-pacing rate tick idle-p)))
-    (setf (timeline-pacing timeline) pacing
-          (timeline-thread timeline)
-          (start-thread (lambda ()
-                          (wait-on-semaphore started)
-                          (funcall caller (lambda () (run-paced timeline pacing))))
-                        (format nil "simulator of ~A" (timeline-name timeline))))
-    (signal-semaphore started))
-  timeline)
-
-(defun stop-pacing (timeline)
-  "End the thread of TIMELINE after its current tick and wait for that. Return TIMELINE."
-  (let ((thread (timeline-thread timeline)))
-    (when thread
-      (setf (pacing-stopping-p (timeline-pacing timeline)) t)
-      (signal-semaphore (timeline-wake-up timeline))
-      (unless (eq thread (current-thread)) (join-thread thread))
-      (setf (timeline-thread timeline) nil)
-      (answer-questions timeline)))
-  timeline)
-
-(defun call-watched (object function origin)
-  "Call FUNCTION; warn that ORIGIN hogs the simulator's thread if a live one had to wait long."
-  (if (live-p object)
-      (let ((start (seconds-now)))
-        (funcall function)
-        (let ((seconds (- (seconds-now) start)))
-          (when (> seconds *hog-seconds*)
-            (warning-set (format nil "~A kept the simulator waiting for ~,1F s" origin seconds)))))
-      (funcall function)))
-
 ;;; Steering.
 
 (defun check-rate (rate)
@@ -159,12 +75,12 @@ nor :FREE."
 
 (defun steer (simulation &key (rate nil rate-p) (paused-p nil paused-p-p) steps)
   "Change how SIMULATION is paced, and wake it. Without effect if it never ran live."
-  (let* ((timeline (timeline-of simulation)) (pacing (timeline-pacing timeline)))
+  (let ((pacing (timeline-pacing (timeline-of simulation))))
     (when pacing
       (when steps (setf (pacing-steps pacing) steps))
       (when paused-p-p (setf (pacing-paused-p pacing) paused-p))
       (when rate-p (setf (pacing-rate pacing) rate))
-      (signal-semaphore (timeline-wake-up timeline)))
+      (wake pacing))
     (values)))
 
 (addition pause)

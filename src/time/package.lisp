@@ -15,17 +15,18 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
            #:perform)
   ;; timeline
   (:export #:timeline #:make-timeline #:timeline-p #:timeline-of #:timeline-name #:timeline-tick
-           #:timeline-agenda #:timeline-run #:timeline-over #:timeline-thread
-           #:timeline-lock
-           #:timeline-ticking-p #:timeline-passing-p #:timeline-notifications
+           #:timeline-agenda #:timeline-run #:timeline-over #:timeline-custody
+           #:timeline-phase #:timeline-ticking-p #:timeline-passing-p #:timeline-notifications
            #:timeline-inbox #:timeline-pacing #:check-not-over
            #:*simulation* #:current-simulation
-           #:wake-owner #:post #:put-back #:take-requests #:ask #:asking #:owner-p
-           #:answer-questions
+           #:wake-owner #:post #:take-requests #:owner-p
            #:notify-later #:deliver-notifications)
-  ;; pacing
-  (:export #:start-pacing #:stop-pacing #:check-rate #:live-p #:paused-p #:pause #:resume
-           #:let-pass #:pace #:set-rate #:*default-rate* #:*hog-seconds* #:call-watched
-           #:seconds-now)
+  ;; custody, asking
+  (:export #:custody-questions #:custody-starter #:answer-questions #:call-with-custody #:mine-p
+           #:ask #:asking)
+  ;; pacing, stopping, clock
+  (:export #:timeline-thread #:check-rate #:live-p #:paused-p #:pause #:resume
+           #:let-pass #:pace #:set-rate #:*default-rate* #:*hog-seconds*
+           #:seconds-now #:stop-pacing #:call-alone #:start-pacing)
   ;; schedule
   (:export #:schedule #:call-scheduled #:abandon #:grab-resource #:release-resource))

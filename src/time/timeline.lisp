@@ -1,16 +1,14 @@
-;;;; timeline.lisp -- the events of a run, what waits to be done in it, and who may do it.
+;;;; timeline.lisp -- the events of a run, and what waits to be done in it.
 
 (in-package :ars-magna.time)
 
-;;; A timeline belongs to one thread at a time, its owner: the thread that paces it, or while none
-;;; does, whoever passes its ticks. Others reach it in two ways. POST leaves a request, which is
-;;; performed at the start of the next tick, and returns at once; it is how commands are issued,
-;;; from wherever. ASK has a function called between two ticks by the owner and waits for its
-;;; values; it is how others read or change what is live. A timeline that nobody runs yet keeps
-;;; what was posted.
+;;; Whoever has the timeline in custody passes its ticks. Others reach it in two ways. POST leaves a
+;;; request, which is performed at the start of the next tick, and returns at once; it is how
+;;; commands are issued, from wherever. ASK, in asking.lisp, has a function called between two ticks
+;;; and waits for its values. A timeline that nobody runs yet keeps what was posted.
 
-(define-kind (timeline :constructor (make-timeline (name)))
-    "The events of a run, what was asked of it, and who owns it."
+(define-kind (timeline :constructor (make-timeline (name &optional (custody (make-custody)))))
+    "The events of a run, and what was asked of it."
   (:fixed
    (name "" (or symbol string) "what the timeline is called, for messages"))
   (:state
@@ -20,20 +18,18 @@
    (inbox '() t "the requests that wait for the next tick, newest first")
    (notifications '() list "functions to call at the end of the tick, newest first"))
   (:link
-   (ticking-p nil boolean "a tick is under way")
+   (phase 0 fixnum "how many phases of the tick that is under way have begun; 0 between ticks")
+   (ticking-p nil boolean "a tick is under way, and the world changes")
    (passing-p nil boolean "somebody passes ticks without a clock")
    (run nil t "the run that the timeline is of, NIL as long as there is none")
    (over nil (or null string) "why the run is over, a sentence without its full stop, or NIL")
-   (questions '() t "what ASK has been called with, newest first")
-   (thread nil t "the thread that paces the timeline, or NIL")
-   (wake-up (make-semaphore "timeline") t "what that thread waits on while it sleeps")
-   (asleep-p nil boolean "that thread sleeps")
-   (lock (make-lock "timeline") t "held by whoever changes what no thread paces")
-   (pacing nil t "how the timeline is paced, or NIL")))
+   (custody (make-custody) custody "which thread may touch the timeline and its world")
+   (pacing nil t "how the timeline is paced, or NIL if it never was")))
 
 (document-functions
   timeline-p "True of timelines."
-  make-timeline "Return a timeline called NAME, at tick 0, without events and requests.")
+  make-timeline "Return a timeline called NAME, at tick 0, without events and requests. With CUSTODY
+it follows another in the same world.")
 
 (declaim (inline timeline-tick))
 (defun timeline-tick (timeline)
@@ -75,13 +71,11 @@ given to SIMULATOR.")
 
 (defun wake-owner (timeline)
   "Wake the thread that paces TIMELINE if it sleeps: there may be something to do."
-  (when (timeline-asleep-p timeline)
-    (signal-semaphore (timeline-wake-up timeline))))
+  (wake-holder (timeline-custody timeline)))
 
 (defun owner-p (object)
   "True if the calling thread may touch what the timeline of OBJECT owns."
-  (let ((thread (timeline-thread (timeline-of object))))
-    (or (null thread) (eq thread (current-thread)))))
+  (mine-p (timeline-custody (timeline-of object))))
 
 ;;; Requests.
 
@@ -111,53 +105,6 @@ See reading 219."
         when (swap-if (timeline-inbox timeline) inbox '())
           return (reverse inbox)))
 
-(defun put-back (requests timeline)
-  "Leave REQUESTS, oldest first, for the next tick of TIMELINE, before those posted meanwhile."
-  (let ((newest-first (reverse requests)))
-    (loop for inbox = (timeline-inbox timeline)
-          until (swap-if (timeline-inbox timeline) inbox (append inbox newest-first)))))
-
-;;; Questions.
-
-(defun answer-questions (timeline)
-  "Answer what others have asked of TIMELINE. Called by its owner between ticks."
-  (loop for questions = (timeline-questions timeline)
-        while questions
-        when (swap-if (timeline-questions timeline) questions '())
-          do (mapc #'funcall (reverse questions))))
-
-(addition ask)
-(defun ask (object function)
-  "Call FUNCTION, with no arguments, where the world of OBJECT, a simulation or robot, stands still:
-at once if this thread owns it, else between two ticks in the thread that does. Return its values;
-what it signals is signalled here."
-  (let ((timeline (timeline-of object)))
-    (if (owner-p timeline)
-        (funcall function)
-        (ask-thread timeline function))))
-
-(defun ask-thread (timeline function)
-  (let ((answered (make-semaphore "answer"))
-        (values '())
-        (trouble nil))
-    (atomic-push
-     (lambda ()
-       (handler-case (setf values (multiple-value-list (funcall function)))
-         (error (condition) (setf trouble condition)))
-       (signal-semaphore answered))
-     (timeline-questions timeline))
-    (wake-owner timeline)
-    (loop until (wait-on-semaphore answered 0.2)
-          ;; A clock that has stopped meanwhile leaves its questions to whoever waits.
-          unless (timeline-thread timeline)
-            do (answer-questions timeline))
-    (if trouble (error trouble) (values-list values))))
-
-(addition asking)
-(defmacro asking ((object) &body body)
-  "Run BODY as ASK would a function."
-  `(ask ,object (lambda () ,@body)))
-
 ;;; Notifications.
 
 (defun notify-later (timeline function)
@@ -167,4 +114,4 @@ what it signals is signalled here."
 (defun deliver-notifications (timeline)
   "Call what is to be called at the end of this tick, in order."
   (loop while (timeline-notifications timeline)
-        do (mapc #'funcall (reverse (shiftf (timeline-notifications timeline) '())))))
+        do (call-each #'funcall (reverse (shiftf (timeline-notifications timeline) '())))))

@@ -35,6 +35,11 @@ does with the list ARGUMENTS.")
      (declare (dynamic-extent #'write-it))
      (call-writing #'write-it ,world)))
 
+(defun world-of-living (thing)
+  "Return the world that THING is in, or NIL if it is a prototype or has been destroyed, so that what
+becomes of it is nobody's business."
+  (and (thing-alive-p thing) (thing-world thing)))
+
 (defmacro changing ((world operator &rest arguments) &body body)
   "Run BODY, which changes WORLD (NIL: nobody's, as of prototypes), where that is allowed; it is
 what OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside ticks."

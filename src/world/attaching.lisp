@@ -39,7 +39,7 @@ Signals WRONG-ARGUMENT and UNKNOWN-NAME. Return it as attached, what SELF is whe
 See reading 171."
   (check-argument set-kicker thing (thing-p thing) "a thing")
   (let ((kicker (find-kicker kicker-name)))
-    (changing ((thing-world thing) set-kicker thing (kicker-name kicker))
+    (changing ((world-of-living thing) set-kicker thing (kicker-name kicker))
       (attach-kicker thing kicker))))
 
 (define-operator 'set-kicker '(thing name) #'set-kicker)
@@ -49,7 +49,7 @@ See reading 171."
   (check-argument put-kicker thing (thing-p thing) "a thing")
   (let ((kicker (and body (fill-kicker (make-kicker name) (format nil "put-kicker ~(~A~)" name)
                                        prob test body))))
-    (changing ((thing-world thing) call-put-kicker thing name
+    (changing ((world-of-living thing) call-put-kicker thing name
                         :prob prob :test test :body body)
       (if kicker
           (attach-kicker thing kicker)

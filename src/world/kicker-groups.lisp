@@ -117,48 +117,68 @@
 
 ;;; Running.
 
+(defun run-member (kicker thing)
+  "Run the body of KICKER for THING, unless its test says no."
+  (let ((test (kicker-test kicker)))
+    (when (or (null test) (funcall (the function test) thing))
+      (funcall (the function (kicker-body kicker)) thing))))
+
+(defun run-again (origin)
+  "Run the member that is said to be to blame in ORIGIN once more."
+  (let ((attachment (origin-attachment origin)))
+    (setf self attachment)
+    (run-member (attachment-kicker attachment) (attachment-thing attachment))))
+
 (defun run-members (group end dice tick)
   "Run those before END in the row of GROUP whose trials succeed, but not those that ran in TICK
 already; TICK is 0 if none did. The next success is drawn before one runs, so that after an
-error the row goes on behind it."
+error the row goes on behind it. When it is tried again, the one that failed comes first."
   (declare #.*hot* (type group group) (type (unsigned-byte 50) end) (type dice dice)
            (type tick-count tick))
-  (loop with origin = (group-origin group)
-        for index of-type (unsigned-byte 50) = (group-skip group)
-        while (< index end)
-        do (setf (group-skip group) (+ index 1 (draw-gap (group-scale group) dice)))
-           (let* ((row (group-row group))
-                  (attachment (svref row (* 3 index)))
-                  (thing (svref row (+ 1 (* 3 index))))
-                  (kicker (svref row (+ 2 (* 3 index)))))
-             (declare (type kicker kicker))
-             (when (and thing (or (zerop tick) (/= tick (attachment-ran attachment))))
-               (setf (origin-attachment origin) attachment
-                     self attachment)
-               (let ((test (kicker-test kicker)))
-                 (when (or (null test) (funcall test thing))
-                   (funcall (kicker-body kicker) thing))))))
+  (let ((origin (group-origin group)))
+    (when (origin-attachment origin) (run-again origin))
+    (loop for index of-type (unsigned-byte 50) = (group-skip group)
+          while (< index end)
+          do (setf (group-skip group) (+ index 1 (draw-gap (group-scale group) dice)))
+             (let* ((row (group-row group))
+                    (attachment (svref row (* 3 index)))
+                    (thing (svref row (+ 1 (* 3 index))))
+                    (kicker (svref row (+ 2 (* 3 index)))))
+               (declare (type kicker kicker))
+               (when (and thing (or (zerop tick) (/= tick (attachment-ran attachment))))
+                 (setf (origin-attachment origin) attachment
+                       self attachment)
+                 (run-member kicker thing))))
+    (setf (origin-attachment origin) nil))
   t)
+
+(defun run-row (group end dice tick)
+  "Run the members of GROUP before END whose trials succeed, those behind one that fails too."
+  (in-any-case
+    (loop while (< (group-skip group) end)
+          do (unless (call-user-code #'run-members (group-origin group) group end dice tick)
+               (setf (group-origin group) (make-origin))))
+    (when (< (group-skip group) end)
+      ;; One was left, as by THROW.
+      (setf (group-origin group) (make-origin))
+      (run-row group end dice tick))))
 
 (defun run-group (group dice tick)
   (refresh-rate group dice)
   (let ((end (group-count group)))
-    (loop while (< (group-skip group) end)
-          do (unless (call-user-code #'run-members (group-origin group)
-                                     group end dice tick)
-               (setf (group-origin group) (make-origin))))
-    (decf (group-skip group) end)
-    (when (group-dead group) (bury-dead group))))
+    (in-any-case
+      (run-row group end dice tick)
+      (progn (decf (group-skip group) end)
+             (when (group-dead group) (bury-dead group))))))
 
-(defun run-due-kickers (world)
-  "Run what RUN-KICKER has asked for, in order."
-  (dolist (attachment (nreverse (shiftf (world-due-kickers world) '())))
-    (when (attachment-alive-p attachment)
-      (setf (attachment-ran attachment) (world-kicker-tick world))
-      (call-user-code (lambda () (setf self attachment)
-                        (funcall (kicker-body (attachment-kicker attachment))
-                                 (attachment-thing attachment)))
-                      attachment))))
+(defun run-due-kicker (attachment world)
+  "Run ATTACHMENT of a thing in WORLD, as RUN-KICKER has asked for."
+  (when (attachment-alive-p attachment)
+    (setf (attachment-ran attachment) (world-kicker-tick world))
+    (call-user-code (lambda () (setf self attachment)
+                      (funcall (kicker-body (attachment-kicker attachment))
+                               (attachment-thing attachment)))
+                    attachment)))
 
 (defun run-kickers (world)
   "Run for one tick the kickers of all things in WORLD: first those that RUN-KICKER has asked
@@ -166,13 +186,14 @@ for, then those whose chance has come. Trouble in a kicker is queued as an error
 Return nothing."
   (when (or (world-kicker-groups world) (world-due-kickers world))
     (let ((*world* world) (self nil)
-          (dice (world-dice world :kickers)))
+          (dice (world-dice world :kickers))
+          (due (nreverse (shiftf (world-due-kickers world) '()))))
       (unless (= (world-kicker-generation world) *kicker-generation*) (regroup-kickers world))
-      (incf (world-kicker-tick world))
-      (let ((tick (if (world-due-kickers world) (world-kicker-tick world) 0)))
-        (run-due-kickers world)
-        (dolist (group (world-kicker-groups world))
-          (run-group group dice tick)))))
+      (let ((tick (incf (world-kicker-tick world))))
+        (in-any-case
+          (call-each (lambda (attachment) (run-due-kicker attachment world)) due)
+          (call-each (lambda (group) (run-group group dice (if due tick 0)))
+                     (world-kicker-groups world))))))
   (values))
 
 (public run-kicker)

@@ -35,7 +35,7 @@ or unspecified. Signals WRONG-ARGUMENT for a value that the attribute cannot hav
   (check-argument set-attribute thing (thing-p thing) "a thing")
   (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
   (let ((descriptor (normal-descriptor 'set-attribute (list (list attribute new-value)))))
-    (changing ((thing-world thing) set-attribute thing attribute new-value)
+    (changing ((world-of-living thing) set-attribute thing attribute new-value)
       (change-attributes thing descriptor)))
   new-value)
 
@@ -50,7 +50,7 @@ or unspecified. Signals WRONG-ARGUMENT for a value that the attribute cannot hav
 (manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
   (check-argument change-attribute thing (thing-p thing) "a thing")
   (let ((descriptor (normal-descriptor 'change-attribute descriptor)))
-    (changing ((thing-world thing) change-attribute thing descriptor)
+    (changing ((world-of-living thing) change-attribute thing descriptor)
       (change-attributes thing descriptor)))
   thing)
 

@@ -1,0 +1,47 @@
+;;;; debuggers.lisp -- the calls under way, and whether anybody is there to answer a debugger.
+
+(in-package :ars-magna.base)
+
+(defun calls-under-way (&optional (limit 100))
+  "Return a list of the calls under way, the newest first and at most LIMIT of them, each as
+(function argument...) as far as the compiler has kept that."
+  (sb-debug:list-backtrace :count limit))
+
+(defun disabled-p (hook)
+  "True if HOOK is the one by which SBCL has no debugger, as in scripts."
+  (and (symbolp hook) (string= hook "DEBUGGER-DISABLED-HOOK")))
+
+(defun debugger-p (&optional (hook sb-ext:*invoke-debugger-hook*))
+  "True if a debugger that is entered has somebody to talk to: a terminal, or the program, such as
+an editor, that has set HOOK or *DEBUGGER-HOOK*."
+  (cond (*debugger-hook* t)
+        (hook (not (disabled-p hook)))
+        (t (and (interactive-stream-p *standard-input*) (interactive-stream-p *debug-io*)))))
+
+(defun call-answering-debugger (function answer)
+  "Call FUNCTION and return its values. If it enters a debugger and nobody is there to talk to that,
+call ANSWER with the condition instead, which is not to return."
+  (declare (type function function answer))
+  (let ((hook sb-ext:*invoke-debugger-hook*))
+    (flet ((decide (condition this-hook)
+             (declare (ignore this-hook))
+             (cond ((not (debugger-p hook)) (funcall answer condition))
+                   ((and hook (not (disabled-p hook))) (funcall hook condition hook)))))
+      (declare (dynamic-extent #'decide))
+      (let ((sb-ext:*invoke-debugger-hook* #'decide))
+        (funcall function)))))
+
+(defmacro answering-debugger ((answer) &body body)
+  "Run BODY as CALL-ANSWERING-DEBUGGER would a function."
+  `(flet ((body () ,@body))
+     (declare (dynamic-extent #'body))
+     (call-answering-debugger #'body ,answer)))
+
+(defun debugger-hook ()
+  "Return the function that is called instead of Lisp's debugger, with a condition and itself, in
+whatever thread that has not bound one; or NIL. Can be set. By the name DEBUGGER-DISABLED-HOOK one
+says that there is nobody to talk to."
+  sb-ext:*invoke-debugger-hook*)
+
+(defun (setf debugger-hook) (function)
+  (setf sb-ext:*invoke-debugger-hook* function))

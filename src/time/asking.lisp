@@ -1,0 +1,80 @@
+;;;; asking.lisp -- having something done where a world stands still.
+
+(in-package :ars-magna.time)
+
+(addition ask)
+(defun ask (object function)
+  "Call FUNCTION, with no arguments, where the world of OBJECT, a simulation or robot, stands still:
+at once if this thread has it in its hands or nobody has, else between two ticks in the thread that
+does. Return its values; what it signals is signalled here. Signals MISUSE inside a tick of another
+world, and if FUNCTION is aborted."
+  (let ((custody (timeline-custody (timeline-of object))))
+    (call-with-custody custody function (lambda () (ask-holder custody function)))))
+
+(addition asking)
+(defmacro asking ((object) &body body)
+  "Run BODY as ASK would a function."
+  `(ask ,object (lambda () ,@body)))
+
+;;; Of another thread.
+
+(defstruct (question (:constructor make-question (function)) (:copier nil))
+  "What somebody has asked, and the answer."
+  (function nil :type function :read-only t)
+  (answered (make-semaphore "answer") :type t :read-only t)
+  (values '() :type list)
+  (trouble nil :type t)
+  ;; Whoever asked has left.
+  (given-up-p nil :type t))
+
+(defun call-for-other (question)
+  "Call the function of QUESTION, and note in it what comes of that."
+  (setf (question-trouble question) :aborted)
+  (restart-case
+      (handler-case
+          (setf (question-values question)
+                (multiple-value-list (interruptibly ("what another thread has asked for")
+                                       (funcall (question-function question))))
+                (question-trouble question) nil)
+        (serious-condition (condition) (setf (question-trouble question) condition)))
+    (abort () :report "Tell who asked that it was aborted.")))
+
+(defun answer (question)
+  "Do what is asked in QUESTION, in the thread that has the world, for the one who waits."
+  (unless (question-given-up-p question)
+    (in-any-case
+      (call-for-other question)
+      (signal-semaphore (question-answered question)))))
+
+(defun result-of (question)
+  "Return or signal what has come of QUESTION."
+  (let ((trouble (question-trouble question)))
+    (cond ((null trouble) (values-list (question-values question)))
+          ((eq trouble :aborted)
+           (reject-use "What was to be done in the simulator's thread was aborted."))
+          (t (error trouble)))))
+
+(defun check-outside-ticks ()
+  "Signal MISUSE inside a tick: nobody can be answered here, so none can be asked."
+  (when (and *simulation* (timeline-ticking-p (timeline-of *simulation*))
+             (owner-p *simulation*))
+    (reject-use "A tick of ~A is under way here. Another world that is live can be asked or ~
+                 changed between ticks, as in a continuation."
+                (timeline-name (timeline-of *simulation*)))))
+
+(defun await-answer (question custody)
+  (loop until (wait-for-other (question-answered question))
+        do (release-if-dead custody)
+           ;; Who has given it up meanwhile leaves its questions to whoever waits.
+           (call-with-custody custody (constantly nil) (constantly nil))))
+
+(defun ask-holder (custody function)
+  "Have the thread that has CUSTODY call FUNCTION. Return its values."
+  (check-outside-ticks)
+  (let ((question (make-question function)))
+    (atomic-push (lambda () (answer question)) (custody-questions custody))
+    (wake-holder custody)
+    (in-any-case
+      (await-answer question custody)
+      (setf (question-given-up-p question) t))
+    (result-of question)))

@@ -1,0 +1,127 @@
+;;;; clock.lisp -- ticks that pass by themselves, in a thread of their own (manual 2.3, A).
+
+(in-package :ars-magna.time)
+
+;;; While all is idle the thread sleeps, and simulated time stands still. Between ticks it answers
+;;; questions. It has the world in custody until it ends, in whatever way. What a tick is, and
+;;; whether there is anything to do, is said by functions.
+
+;;; Resting.
+
+(defun sleep-until-woken (custody seconds)
+  "Sleep for SECONDS, but not while somebody wants something."
+  (setf (custody-asleep-p custody) t)
+  (memory-barrier)
+  (unless (custody-questions custody)
+    (wait-on-semaphore (custody-wake-up custody) seconds))
+  (setf (custody-asleep-p custody) nil))
+
+(defun nothing-to-do-p (pacing)
+  (if (pacing-paused-p pacing)
+      (zerop (pacing-steps pacing))
+      (funcall (pacing-idle-p pacing))))
+
+(defun rest-thread (custody pacing)
+  "Sleep for as long as there is nothing to do (reading 88)."
+  (setf (custody-asleep-p custody) t)
+  (memory-barrier)
+  (when (and (nothing-to-do-p pacing)
+             (null (custody-questions custody))
+             (not (pacing-stopping-p pacing)))
+    ;; The timeout covers tests that come true without anybody posting.
+    (wait-on-semaphore (custody-wake-up custody) 1))
+  (setf (custody-asleep-p custody) nil))
+
+(defun keep-pace (custody pacing due)
+  "Sleep until the time DUE, in seconds; return when the next tick is due."
+  (let ((rate (pacing-rate pacing)))
+    (if (eq rate :free)
+        (seconds-now)
+        (loop for left = (- due (seconds-now))
+              while (and (plusp left)
+                         (not (pacing-stopping-p pacing))
+                         (eql rate (pacing-rate pacing)))
+              do (sleep-until-woken custody left)
+                 (answer-questions custody)
+              finally (return (+ (max due (- (seconds-now) 0.25d0)) (/ 1d0 (float rate 1d0))))))))
+
+;;; Passing ticks.
+
+(defun pause-for (pacing trouble)
+  "Pause the clock of PACING, as TROUBLE has come up that no user code answers for."
+  (error-set "The simulator failed and is paused; RESUME goes on: " (text-of-condition trouble))
+  (setf (pacing-paused-p pacing) t))
+
+(defun pass-tick (pacing)
+  "Pass a tick. Trouble that no user code answers for is reported and pauses the clock."
+  (handler-case (funcall (pacing-tick pacing))
+    ((or error storage-condition) (trouble) (pause-for pacing trouble)))
+  (when (plusp (pacing-steps pacing)) (decf (pacing-steps pacing))))
+
+(defun run-paced (custody pacing)
+  "Pass ticks as PACING says, until it is to stop or another thread has been handed CUSTODY."
+  (loop with due = (seconds-now)
+        until (or (pacing-stopping-p pacing) (not (mine-p custody)))
+        do (let-interrupts-in)
+           (answer-questions custody)
+           (cond ((nothing-to-do-p pacing)
+                  (rest-thread custody pacing)
+                  (setf due (seconds-now)))
+                 (t (setf due (keep-pace custody pacing due))
+                    (unless (pacing-stopping-p pacing)
+                      (pass-tick pacing))))))
+
+(defun let-go (custody pacing)
+  "Give back what the thread of PACING has, which ends, perhaps unasked."
+  (unless (pacing-stopping-p pacing)
+    (setf (pacing-stopping-p pacing) t)
+    (error-set "The simulator's thread was ended from outside. (simulator ROBOT) starts another."))
+  (when (eq pacing (custody-pacing custody))
+    (setf (custody-pacing custody) nil))
+  (in-any-case
+    (give-up-custody custody)
+    (signal-semaphore (pacing-ended pacing))))
+
+(defun run-thread (pacing ready start)
+  "Signal READY as soon as whatever ends this thread finds it prepared; run PACING after START."
+  (let ((custody (pacing-custody pacing)))
+    (deferring-interrupts
+      (let ((*held* (list custody))
+            (*user-calls* (pacing-calls pacing)))
+        (in-any-case
+          (progn (signal-semaphore ready)
+                 (wait-on-semaphore start)
+                 (run-paced custody pacing))
+          (let-go custody pacing))))))
+
+;;; Starting.
+
+(defun start-threads (pacing caller)
+  "Start the thread of PACING, and the one that watches it, which work inside CALLER."
+  (let ((custody (pacing-custody pacing))
+        (ready (make-semaphore "ready"))
+        (start (make-semaphore "start"))
+        (name (format nil "simulator of ~A" (timeline-name (pacing-timeline pacing)))))
+    (setf (pacing-thread pacing)
+          (start-thread (lambda ()
+                          (funcall caller (lambda () (run-thread pacing ready start))))
+                        name))
+    (wait-on-semaphore ready)
+    (setf (timeline-pacing (pacing-timeline pacing)) pacing
+          (custody-pacing custody) pacing)
+    (hand-over custody (pacing-thread pacing))
+    (signal-semaphore start)
+    (start-thread (lambda () (funcall caller (lambda () (watch-for-hogs pacing))))
+                  (format nil "watcher of the ~A" name))))
+
+(defun start-pacing (timeline tick idle-p rate caller)
+  "Let a new thread pass ticks of TIMELINE at RATE by calling TICK, as long as IDLE-P is false, both
+functions of no arguments. The thread works inside CALLER, a function of a function that calls it,
+and is handed the custody of TIMELINE, which this thread has. Return TIMELINE. Signals MISUSE if it
+is live already, WRONG-ARGUMENT for a rate that is neither a positive number nor :FREE."
+  (check-rate rate)
+  (when (live-p timeline) (reject-use "~A runs live already." (timeline-name timeline)))
+  (start-threads (make-pacing timeline rate tick idle-p
+                              (make-user-calls (lambda () (stop-pacing timeline))))
+                 caller)
+  timeline)

@@ -1,0 +1,94 @@
+;;;; custody.lisp -- which thread may touch a world, and how others have it do so.
+
+(in-package :ars-magna.time)
+
+;;; A world, with the timelines of its runs, which follow one another, is in the custody of one
+;;; thread at a time: the one that paces it, or one that passes its ticks or changes it, for as long
+;;; as that takes. Custody is taken if nobody has it, and given up; it may be handed over to another
+;;; thread meanwhile. Who does not get it leaves a question, a function, which the thread that has
+;;; it calls between two ticks, or before it gives custody up.
+
+(defstruct (custody (:constructor make-custody ()) (:copier nil))
+  "Which thread may touch a world."
+  (thread nil :type t)
+  (questions '() :type t)
+  (wake-up (make-semaphore "custody") :type t :read-only t)
+  (asleep-p nil :type t)
+  ;; How the thread that has it paces the world, or NIL if it does not.
+  (pacing nil :type t)
+  ;; The thread that is starting the world, or NIL.
+  (starter nil :type t))
+
+(document-functions
+  custody-questions "Return what others have asked those who have the custody, newest first."
+  custody-starter "Return the thread that is starting the world, or NIL. Can be set.")
+
+(defvar *held* '()
+  "The custodies that this thread has and has not handed over.")
+
+(declaim (inline mine-p))
+(defun mine-p (custody)
+  "True if this thread has CUSTODY."
+  (eq (custody-thread custody) (current-thread)))
+
+(defun take-custody (custody)
+  "Let this thread have CUSTODY, if nobody has it. True if so."
+  (swap-if (custody-thread custody) nil (current-thread)))
+
+(defun answer-questions (custody)
+  "Call what others have asked those who have CUSTODY to call, in order."
+  (loop for questions = (custody-questions custody)
+        while questions
+        when (swap-if (custody-questions custody) questions '())
+          do (call-each #'funcall (reverse questions))))
+
+(defun give-up-custody (custody)
+  "Let others have CUSTODY. Whatever has been asked is answered before."
+  (loop (in-any-case
+          (when (mine-p custody) (answer-questions custody))
+          (swap-if (custody-thread custody) (current-thread) nil))
+        (memory-barrier)
+        ;; Somebody may have asked just now.
+        (unless (and (custody-questions custody) (take-custody custody))
+          (return))))
+
+(defun call-with-custody (custody function otherwise)
+  "Call FUNCTION with CUSTODY, OTHERWISE if another thread has it. Return the values."
+  (if (mine-p custody)
+      (funcall function)
+      (deferring-interrupts
+        (if (take-custody custody)
+            (let ((*held* (cons custody *held*)))
+              (in-any-case
+                (allowing-interrupts (funcall function))
+                (give-up-custody custody)))
+            (allowing-interrupts (funcall otherwise))))))
+
+(defun hand-over (custody thread)
+  "Let THREAD have CUSTODY, which this thread has."
+  (setf (custody-thread custody) thread))
+
+;;; Waiting.
+
+(defun wake-holder (custody)
+  "Wake the thread that has CUSTODY if it sleeps: there may be something to do."
+  (when (custody-asleep-p custody)
+    (signal-semaphore (custody-wake-up custody))))
+
+(defun release-if-dead (custody)
+  "Take CUSTODY from a thread that has ended without giving it up."
+  (let ((thread (custody-thread custody)))
+    (when (and thread (not (thread-alive-p thread)))
+      (swap-if (custody-thread custody) thread nil))))
+
+(defun answer-meanwhile ()
+  "Answer what others have asked of the worlds that this thread has in custody: they may be waiting
+for it while it waits for them."
+  (dolist (custody *held*)
+    (when (mine-p custody) (answer-questions custody))))
+
+(defun wait-for-other (semaphore &optional (seconds 0.2))
+  "Wait for SEMAPHORE for a moment, of SECONDS at most. True if it came."
+  (answer-meanwhile)
+  ;; Who has a world in custody must look often who asks for that.
+  (wait-on-semaphore semaphore (if *held* (min seconds 0.002) seconds)))

@@ -1,0 +1,68 @@
+;;;; stopping.lisp -- ending the thread that passes ticks, though it may be in users' code.
+
+(in-package :ars-magna.time)
+
+;;; The thread ends by itself after its tick. Users' code that keeps it from that is aborted, at the
+;;; word of whoever has it stopped.
+
+(defun ended-p (pacing seconds)
+  "Wait for the thread of PACING to end, for SECONDS. True if it has."
+  (loop with due = (+ (seconds-now) seconds)
+        when (wait-for-other (pacing-ended pacing) (min seconds 0.2))
+          ;; Others may be waiting too.
+          do (signal-semaphore (pacing-ended pacing))
+             (return t)
+        until (> (seconds-now) due)))
+
+(defun interrupt-hog (pacing)
+  "Abort the users' code that the thread of PACING is in, if it is in any. True if so."
+  (let* ((calls (pacing-calls pacing)) (count (user-calls-count calls)))
+    (when (user-calls-origin calls)
+      (interrupt-thread (pacing-thread pacing) (lambda () (abort-user-code count)))
+      t)))
+
+(defun hog-of (pacing)
+  "Return a text that names the users' code that the thread of PACING is in, or NIL."
+  (let ((origin (user-calls-origin (pacing-calls pacing))))
+    (and origin (text-of-origin origin))))
+
+(defun await-end (pacing)
+  "Wait for the thread of PACING to end. Users' code that keeps it from that is interrupted, and
+again if it does not go. Signals MISUSE if that does not help either."
+  (loop repeat 10
+        when (ended-p pacing (hog-seconds))
+          return t
+        do (interrupt-hog pacing)
+        finally (reject-use "The simulator of ~A does not stop~@[: ~A does not let itself be ~
+                             interrupted~]."
+                            (timeline-name (pacing-timeline pacing))
+                            (hog-of pacing))))
+
+(defun stop (pacing)
+  "End the thread of PACING after its current tick, and wait for that if it is another than this."
+  (setf (pacing-stopping-p pacing) t)
+  (wake pacing)
+  (unless (eq (pacing-thread pacing) (current-thread))
+    (await-end pacing)))
+
+(defun stop-pacing (timeline)
+  "End the thread that paces TIMELINE after its current tick, and wait for that if it is another
+than this. Return TIMELINE. Signals MISUSE if it is in users' code that does not let itself be
+interrupted."
+  (when (timeline-pacing timeline) (stop (timeline-pacing timeline)))
+  timeline)
+
+(defun call-alone (timeline function)
+  "Stop whoever paces the world of TIMELINE, and call FUNCTION with that in custody. Return the
+values."
+  (let ((custody (timeline-custody timeline)))
+    (flet ((make-free ()
+             (let ((pacing (custody-pacing custody)))
+               (if pacing
+                   (stop pacing)
+                   (ask-holder custody (constantly nil))))))
+      (loop
+        (block busy
+          (return (call-with-custody custody function (lambda ()
+                                                        (make-free)
+                                                        (return-from busy)))))))))

@@ -1,0 +1,368 @@
+;;;; outliving.lisp -- a run outlives what users' code does in it: errors, aborts, throws, hanging.
+
+(in-package :ars-magna.tests)
+
+(def-suite* outliving :in ars-magna)
+
+(world:defmap dell (12 12)
+  (obj log (6 6) ((:size 1) (:color world:red)))
+  (obj stump (3 9) ((:size 1) (:color world:blue))))
+(world:defmap copse (12 12)
+  (obj twig (6 6) ((:size 1) (:color world:red))))
+(robot:defrobot shrew (dell (4 10) 0) :hands (10))
+(robot:defrobot vole (copse (4 10) 0))
+
+(defmacro with-shrew ((&rest options) &body body)
+  `(run:with-simulation (shrew :clean t ,@options) ,@body))
+
+(defun told-p (text)
+  "True if a message of the current queue, which is emptied, has TEXT in it."
+  (some (lambda (message) (search text message)) (message-texts)))
+
+(defun turn-and (robot function)
+  "Turn ROBOT a little, and then call FUNCTION, in the continuation."
+  (command:robot-turn robot .01 (lambda (&rest ignore)
+                                  (declare (ignore ignore))
+                                  (funcall function))))
+
+(defun run-catching (ticks)
+  "Pass TICKS, or fewer if somebody throws to OUT; return what is thrown, or NIL."
+  (catch 'out
+    (run:run-ticks ticks)
+    nil))
+
+;;; What leaves a tick finds it finished.
+
+(test throw.out-of-continuations-loses-none-of-them
+  (with-shrew ()
+    (let ((calls '()) (looks 0))
+      (run:add-observer (lambda (simulation) (declare (ignore simulation)) (incf looks)))
+      (flet ((call-and-leave (number)
+               (lambda (&rest ignore)
+                 (declare (ignore ignore))
+                 (push number calls)
+                 (throw 'out number))))
+        (command:robot-set-speed shrew 1 (call-and-leave 1))
+        (command:robot-set-turn-angle shrew 1 (call-and-leave 2))
+        (command:robot-turn shrew 1 (call-and-leave 3)))
+      (is-true (run-catching 1))
+      (let ((tick (run:simulation-tick)))
+        (loop repeat 50 until (= 3 (length calls)) do (run-catching 1))
+        (is (= 1 tick))
+        (is (equal '(3 2 1) calls) "each once, in order")
+        (is (= looks (run:simulation-tick)) "and who looks on has seen each tick")))))
+
+(defun kicked (body)
+  "Let BODY, a function of a thing, be the kicker of all things in the dell for a tick. Return how
+far these have come to the east."
+  (with-own-definitions
+    (world:define-kicker 'shove :prob 1 :test nil :body body)
+    (let ((things (list (world:find-thing 'log) (world:find-thing 'stump))))
+      (dolist (thing things) (world:set-kicker thing 'shove))
+      (run-catching 1)
+      (mapcar #'world:thing-x things))))
+
+(test throw.out-of-a-kicker-keeps-no-other-from-running
+  (with-shrew ()
+    (is (equalp '(7 4) (kicked (lambda (thing)
+                                 (world:kick-thing thing 1 0 nil)
+                                 (throw 'out t)))))
+    (is (= 1 (run:simulation-tick)))
+    (is (= 2 (run:run-ticks 1)))))
+
+(test throw.out-of-an-event-lets-the-other-events-of-the-tick-happen
+  (with-shrew ()
+    (let ((happened '()))
+      (dotimes (i 3)
+        (let ((i i)) (time:schedule (nil) (push i happened) (throw 'out i))))
+      (is-true (run-catching 1))
+      (is (equal '(2 1 0) happened)))))
+
+(test throw.out-of-a-manipulation-ends-that
+  (with-own-definitions
+    (eval '(command:defmanipulation fling (:by hand) () (throw 'out hand)))
+    (with-shrew ()
+      (let ((answers '()) (hand (robot:robot-hand shrew 0)))
+        (command:run-manipulation 'fling hand (lambda (&rest all) (push (first all) answers)))
+        (is (eq hand (run-catching 20)))
+        (is (equal '(:failed) answers))))))
+
+(test time-limit.reaches-who-has-set-it
+  "A limit to the time of a whole run is no error of the kicker that it meets."
+  (with-shrew ()
+    (is (eq :late (handler-case (kicked (lambda (thing)
+                                          (declare (ignore thing))
+                                          (error 'sb-ext:timeout)))
+                    (sb-ext:timeout () :late))))
+    (is (= 1 (run:simulation-tick)))
+    (is-false (told-p "Error"))))
+
+(test time-limit.without-a-taker-is-an-error-like-others
+  (with-shrew ()
+    (turn-and shrew (lambda () (error 'sb-ext:timeout)))
+    (run:run-ticks 20)
+    (is-true (told-p "Error in the continuation of robot-turn"))))
+
+;;; Aborts and overflows are messages.
+
+(defun deep (n) (1+ (deep (1+ n))))
+
+(defun ring ()
+  "Return a circular list."
+  (let ((list (list 1 2 3)))
+    (setf (cdddr list) list)))
+
+(test abort.in-users-code-ends-that-call-only
+  (with-shrew ()
+    (turn-and shrew #'abort)
+    (is (= 20 (run:run-ticks 20)))
+    (is-true (told-p "robot-turn was aborted"))
+    (is (equalp '(7 4) (kicked (lambda (thing)
+                                 (world:kick-thing thing 1 0 nil)
+                                 (abort)))))
+    (is-true (told-p "was aborted"))
+    (time:schedule (nil) (abort))
+    (is (= 22 (run:run-ticks 1)))
+    (is-true (told-p "a scheduled event was aborted"))))
+
+(test overflow.of-the-stack-is-survived-again-and-again
+  (with-shrew ()
+    (loop for tick from 20 by 20
+          repeat 3
+          do (turn-and shrew (lambda () (deep 0)))
+             (is (= tick (run:run-ticks 20)))
+             (is-true (told-p "Error in the continuation of robot-turn")))))
+
+(test error.whose-report-is-endless-is-told
+  (with-shrew ()
+    (turn-and shrew (lambda () (error "What is ~S?" (ring))))
+    (run:run-ticks 20)
+    (is-true (told-p "What is"))
+    (turn-and shrew (lambda () (error "~A" (make-string 1000000 :initial-element #\x))))
+    (run:run-ticks 20)
+    (let ((texts (message-texts)))
+      (is (some (lambda (text) (search "Error in the continuation of robot-turn" text)) texts))
+      (is (every (lambda (text) (< (length text) 5000)) texts)))))
+
+;;; The debugger.
+
+(defun restart-names (condition)
+  "Return the names of the restarts for CONDITION, in the order in which a debugger shows them."
+  (mapcar #'restart-name (compute-restarts condition)))
+
+(defmacro with-debugger ((condition) decision &body body)
+  "Run BODY, in which users' errors enter a debugger whose user does DECISION about CONDITION."
+  `(let ((base:*break-on-user-error* t)
+         (*debugger-hook* (lambda (,condition hook)
+                            (declare (ignore hook) (ignorable ,condition))
+                            ,decision)))
+     ,@body))
+
+(test debugger.offers-to-go-on-first-and-then-to-retry
+  (let ((seen '()))
+    (with-shrew ()
+      (with-debugger (condition) (progn (setf seen (restart-names condition))
+                                        (invoke-restart (first (compute-restarts condition))))
+        (turn-and shrew (lambda () (error "bad wiring")))
+        (is (= 20 (run:run-ticks 20)))))
+    (is (equal '("ABORT" "RETRY") (mapcar #'symbol-name (subseq seen 0 2))))
+    (is-false (find "STOP-SIMULATOR" seen :test #'string=) "nothing here runs live")
+    (with-shrew ()
+      (with-debugger (condition) (abort)
+        (turn-and shrew (lambda () (error "bad wiring")))
+        (run:run-ticks 20)
+        (is-true (told-p "bad wiring") "going on reports it")))))
+
+(test debugger.retry-calls-the-same-again
+  (with-shrew ()
+    (let ((calls 0))
+      (with-debugger (condition) (invoke-restart (find 'base::retry (compute-restarts condition)
+                                                       :key #'restart-name :test #'string=))
+        (turn-and shrew (lambda () (when (< (incf calls) 3) (error "not yet"))))
+        (run:run-ticks 20)
+        (is (= 3 calls))
+        (setf calls 0)
+        (is (equalp '(9 4) (kicked (lambda (thing)
+                                     (world:kick-thing thing 1 0 nil)
+                                     (when (< (incf calls) 3) (error "not yet")))))
+            "the one that failed, and then the others"))
+      (is-false (told-p "not yet")))))
+
+(test debugger.without-anybody-there-is-a-message
+  "The tests run without a terminal."
+  (with-shrew ()
+    (let ((base:*break-on-user-error* t) (*debugger-hook* nil) (passed 0))
+      (turn-and shrew (lambda () (error "bad wiring")))
+      (run:run-ticks 20)
+      (is-true (told-p "bad wiring"))
+      (turn-and shrew (lambda () (break "Look at ~A" 'this) (incf passed)))
+      (run:run-ticks 20)
+      (is-true (told-p "Look at THIS"))
+      (is (= 1 passed) "goes on after the break"))))
+
+;;; Live.
+
+(defmacro with-live-shrew (&body body)
+  "Run BODY with the shrew live, users' code that hangs being noticed soon, and messages collected."
+  `(with-messages
+     (let ((time:*hog-seconds* .05))
+       (unwind-protect (progn (run:simulator 'shrew :rate :free :display nil)
+                              ,@body)
+         (run:stop-simulator (robot:find-robot 'shrew))))))
+
+(defun live-shrew () (robot:find-robot 'shrew))
+
+(defun goes-on-p (robot)
+  "True if a command of ROBOT, which is live, comes to its end."
+  (let ((done (base:make-semaphore "done")))
+    (turn-and robot (lambda () (base:signal-semaphore done)))
+    (base:wait-on-semaphore done 60)))
+
+(defun message-with (text)
+  "Wait for a message with TEXT in the current queue. True if it has come."
+  (loop with come = (base:make-semaphore "come") and queue = base:*message-queue*
+          initially (setf (base:message-queue-listener queue)
+                          (lambda () (base:signal-semaphore come)))
+        when (told-p text) return t
+        while (base:wait-on-semaphore come 60)))
+
+(test live.an-abort-is-a-message-and-the-clock-goes-on
+  (with-live-shrew
+    (turn-and (live-shrew) #'abort)
+    (is-true (message-with "robot-turn was aborted"))
+    (is-true (goes-on-p (live-shrew)))))
+
+(test live.a-thread-that-is-ended-can-be-replaced
+  "It is said so; nothing hangs, and the simulator starts again."
+  (with-live-shrew
+    (turn-and (live-shrew) #'sb-thread:abort-thread)
+    (is-true (message-with "ended from outside"))
+    (is-false (time:live-p))
+    (is (integerp (run:state-digest)) "who asks is answered")
+    (run:simulator 'shrew :rate :free :display nil)
+    (is-true (goes-on-p (live-shrew)))))
+
+(test live.ending-its-thread-from-another-leaves-no-tick-unfinished
+  (with-live-shrew
+    (let ((thread (run:simulation-thread time:*simulation*)))
+      (sb-thread:terminate-thread thread)
+      (is-true (message-with "ended from outside"))
+      (is-false (run:simulation-ticking-p time:*simulation*))
+      (run:simulator 'shrew :rate :free :display nil)
+      (is-true (goes-on-p (live-shrew))))))
+
+(defun hang () (loop))
+
+(test live.code-that-hangs-is-named-and-can-be-stopped
+  (with-live-shrew
+    (turn-and (live-shrew) #'hang)
+    (is-true (message-with "robot-turn has kept the simulator waiting"))
+    (run:stop-simulator)
+    (is-false (time:live-p))
+    (is-true (told-p "robot-turn was aborted"))
+    (run:simulator 'shrew :rate :free :display nil)
+    (is-true (goes-on-p (live-shrew)))))
+
+(test live.a-kicker-that-hangs-can-be-stopped
+  (with-own-definitions
+    (world:define-kicker 'brood :prob 1 :test nil :body (lambda (thing)
+                                                          (declare (ignore thing))
+                                                          (hang)))
+    (with-live-shrew
+      (world:set-kicker (world:find-thing 'log) 'brood)
+      (is-true (message-with "has kept the simulator waiting"))
+      (run:simulator 'shrew :rate :free :display nil)
+      (is-true (goes-on-p (live-shrew))))))
+
+(test live.the-debugger-can-stop-the-simulator
+  (let ((base:*user-calls* (base:make-user-calls (lambda () (throw 'out :stopped)))))
+    (with-shrew ()
+      (with-debugger (condition) (invoke-restart (find 'stop-simulator (compute-restarts condition)
+                                                       :key #'restart-name :test #'string=))
+        (turn-and shrew (lambda () (error "bad wiring")))
+        (is (eq :stopped (run-catching 20)))))))
+
+;;; Several worlds.
+
+(test worlds.that-ask-each-other-do-not-wait-for-ever
+  (with-messages
+    (let ((told (base:make-semaphore "told")) (meet (base:make-semaphore "meet")))
+      (flet ((ask-other (robot)
+               (lambda ()
+                 (base:signal-semaphore meet)
+                 (base:wait-on-semaphore meet 1)
+                 (time:ask robot (lambda () (robot:robot-x robot)))
+                 (base:signal-semaphore told))))
+        (unwind-protect
+             (progn
+               (run:simulator 'shrew :rate :free :display nil)
+               (run:simulator 'vole :rate :free :display nil)
+               (loop repeat 20
+                     do (turn-and (robot:find-robot 'shrew) (ask-other (robot:find-robot 'vole)))
+                        (turn-and (robot:find-robot 'vole) (ask-other (robot:find-robot 'shrew)))
+                        (is-true (base:wait-on-semaphore told 60))
+                        (is-true (base:wait-on-semaphore told 60))))
+          (run:stop-simulator (robot:find-robot 'shrew))
+          (run:stop-simulator (robot:find-robot 'vole)))))))
+
+(test worlds.others-are-not-asked-inside-a-tick
+  (with-messages
+    (unwind-protect
+         (progn
+           (run:simulator 'vole :rate :free :display nil)
+           (let ((vole (robot:find-robot 'vole)))
+             (with-shrew ()
+               (time:schedule (nil) (time:ask vole (lambda () 1)))
+               (run:run-ticks 1)
+               (is-true (told-p "between ticks")))))
+      (run:stop-simulator (robot:find-robot 'vole)))))
+
+(test run-ticks.is-refused-in-a-continuation
+  (with-shrew ()
+    (turn-and shrew (lambda () (run:run-ticks 1)))
+    (is (= 20 (run:run-ticks 20)))
+    (is-true (told-p "time cannot pass inside it"))))
+
+(test simulator.is-refused-while-it-starts
+  "A continuation that hears of the end of its run starts no other on the way to one."
+  (with-live-shrew
+    (let ((codes '()))
+      (is-true (goes-on-p (live-shrew)))
+      (time:pause)
+      (command:robot-go-forward (live-shrew) 5
+                                (lambda (code &rest ignore)
+                                  (declare (ignore ignore))
+                                  (push code codes)
+                                  (run:simulator 'shrew :rate :free :display nil)))
+      (run:simulator 'shrew :rate :free :display nil)
+      (is (equal '(:interrupt) codes))
+      (is-true (told-p "is being started already"))
+      (is-true (goes-on-p (live-shrew))))))
+
+(test simulator.from-many-threads-leaves-one-that-works
+  (with-live-shrew
+    (let ((threads (loop repeat 4
+                         collect (base:start-thread
+                                  (lambda ()
+                                    (loop repeat 5
+                                          do (run:simulator 'shrew :rate :free :display nil)
+                                             (run:stop-simulator (live-shrew))))
+                                  "starter"))))
+      (mapc #'base:join-thread threads)
+      (run:simulator 'shrew :rate :free :display nil)
+      (is-true (goes-on-p (live-shrew)))
+      (is-true (replays-p (progn (run:stop-simulator) time:*simulation*))))))
+
+(test changes.of-what-has-been-destroyed-are-nobodys-business
+  "They are made, and are not in the journal, where nothing would be called so."
+  (with-shrew (:journal t)
+    (let ((thing (world:make-new-thing 'twig '(dell 2 2) '())))
+      (world:destroy-thing thing)
+      (let ((count (length (run:journal-entries (run:simulation-journal time:*simulation*)))))
+        (world:set-attribute thing :size 3)
+        (world:change-attribute thing '((:color world:red)))
+        (world:put-kicker nag (it thing) (:prob 1) (world:kick-thing it 1 0 nil))
+        (is (= 3 (world:get-attribute thing :size)))
+        (is (= count (length (run:journal-entries (run:simulation-journal time:*simulation*)))))
+        (run:run-ticks 3)
+        (is-true (replays-p time:*simulation*))))))
