@@ -90,11 +90,18 @@
                      word (mapcar (lambda (restart) (plain-name (restart-name restart)))
                                   restarts)))))
 
+(defun broken-calls ()
+  "Return the calls under way that led into the debugger, the newest first, as far as they are the
+user's."
+  (let* ((calls (calls-under-way 100))
+         (start (position 'invoke-debugger calls :key #'first))
+         (user-calls (if start (nthcdr (1+ start) calls) calls)))
+    (subseq user-calls 0 (position-if (lambda (name) (member name '(eval-quietly call-user-code)))
+                                      user-calls :key #'first))))
+
 (defun write-backtrace ()
-  "Write the calls under way, up to the one that evaluates a line."
-  (loop for call in (calls-under-way 40)
-        until (eq 'eval-quietly (first call))
-        do (put-line "  ~A" (complaint-text (format-briefly nil "~S" call)))))
+  (dolist (call (broken-calls))
+    (put-line "  ~A" (visible (cut (one-line (format-briefly nil "~S" call)) 300)))))
 
 (defun debug-line (session breakage text)
   "Do what TEXT, a line typed at the debugger, says to BREAKAGE."
@@ -134,9 +141,18 @@
     (removef (session-breaks session) breakage)
     (signal-semaphore (breakage-done breakage))))
 
+(defun give-up (condition)
+  "Leave what CONDITION has come up in, by the innermost restart that does."
+  (invoke-restart (or (find-if (lambda (restart)
+                                 (member (restart-name restart) '(abort end-line)))
+                               (restarts-to-offer condition))
+                      'abort)))
+
 (defun enter-debugger (condition hook)
   "Let the user of the prompt say how to go on after CONDITION. Called instead of Lisp's debugger."
   (declare (ignore hook))
+  ;; What asks needs the room that is not there.
+  (when (typep condition 'storage-condition) (give-up condition))
   (let ((session *session*)
         (breakage (make-breakage condition (restarts-to-offer condition) (current-thread))))
     (cond ((null session))              ; It has just ended: Lisp's own debugger comes up.
@@ -150,10 +166,8 @@ instead of Lisp's debugger where nobody sits."
   (declare (ignore hook))
   (when *session*
     (complain *session* (format nil "Break: ~A" (condition-text condition))))
-  (invoke-restart (or (and (not (typep condition 'serious-condition))
-                           (find-restart 'continue condition))
-                      (find-restart 'end-line)
-                      (find-restart 'abort))))
+  (unless (typep condition 'serious-condition) (continue condition))
+  (give-up condition))
 
 ;;; From when to when.
 

@@ -72,6 +72,15 @@
   (is-false (written-p "5" (type-at-terminal "(break)" "quit" "(+ 2 3)")))
   (is-true (written-p "*BREAK* -> break" (type-at-terminal "(break)"))))
 
+(test break.on-a-full-stack-is-a-message
+  (let* ((base:*break-on-user-error* t)
+         (written (type-at-terminal
+                   "(robot-turn butler 1 (lambda (&rest r) (labels ((f (n) (1+ (f n)))) (f r))))"
+                   "(run-ticks 9)" "(robot-turn butler 1)" "(run-ticks 9)" "(+ 2 3)")))
+    (is-false (find-if (lambda (line) (search "*BREAK*" line)) written))
+    (is-true (written-p "*ERROR* -> Error in the continuation of robot-turn" written))
+    (is-true (written-p "5" written))))
+
 (test errors.break-only-when-that-is-wanted
   (is-true (written-p "*ERROR* -> no" (type-at-terminal "(error \"no\")")))
   (let* ((base:*break-on-user-error* t)
