@@ -52,6 +52,18 @@ name, in Nisp's syntax and with a decimal fraction."
                           "~A" name)))
           (delete-file (base:native-path file)))))))
 
+;;; Other files.
+
+(test names-of-journals.may-have-any-characters
+  (dolist (name '("a b" "a*b" "a?b" "[ab]" "é" "a\\b"))
+    (let ((file (format nil "~Aars-magna ~A.journal"
+                        (uiop:native-namestring (uiop:temporary-directory)) name)))
+      (unwind-protect
+           (is (= 0 (nth-value 1 (type-batch "turn 1" (format nil "save-journal \"~A\"" file)
+                                             (format nil "replay \"~A\"" file))))
+               "~A" name)
+        (when (probe-file (base:native-path file)) (delete-file (base:native-path file)))))))
+
 ;;; What is compiled of which sources.
 
 (defparameter *forgetting*
