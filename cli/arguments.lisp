@@ -75,8 +75,7 @@ method, DATUM is the argument.")
 
 ;;; The prompt's own types.
 
-(define-argument-type 'count (lambda (value) (typep value '(integer 0)))
-  "a whole number, 0 or more")
+(define-argument-type 'count #'whole-p "a whole number, from 0 to 1e9")
 
 ;;; Reading.
 

@@ -63,14 +63,15 @@ comes of earlier lines if the session waits for that."
       (member (line-name line) '("EVAL" "REPEAT") :test #'string=)))
 
 (defun run-text (session text)
-  "Do what TEXT, a line as typed, says."
-  (cond ((comment-p text))
-        ((lisp-p text) (evaluate-text session text))
-        (t (let ((text (expand-alias text)))
-             (if (lisp-p text)
-                 (evaluate-text session text)
-                 (multiple-value-bind (name rest) (split-line text)
-                   (run-line session (find-line name) rest)))))))
+  "Do what TEXT, a line as typed, says; what it asks for, the prompt asks for."
+  (let ((*asker* "the prompt"))
+    (cond ((comment-p text))
+          ((lisp-p text) (evaluate-text session text))
+          (t (let ((text (expand-alias text)))
+               (if (lisp-p text)
+                   (evaluate-text session text)
+                   (multiple-value-bind (name rest) (split-line text)
+                     (run-line session (find-line name) rest))))))))
 
 ;;; Lines that go wrong.
 

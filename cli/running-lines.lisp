@@ -43,14 +43,13 @@
     (format t "Tick ~D.~%" (simulation-tick simulation))))
 
 (defun parse-rate (text)
-  "Return the rate that TEXT says: a positive number or :FREE. Signals BAD-LINE."
+  "Return the rate that TEXT says: a number or :FREE. Signals BAD-LINE."
   (if (string-equal text "free")
       :free
       (let ((rate (ignore-errors (values (read-data-from-string text 0)))))
-        (if (typep rate '(real (0)))
+        (if (argument-of-type-p rate 'rate)
             rate
-            (reject-line "The rate cannot be ~A. Give a number of ticks per second, or free."
-                         text)))))
+            (reject-line "The rate cannot be ~A. Give ~A." text (argument-type-text 'rate))))))
 
 (define-line "RATE" (session (x :token "a number of ticks per second, or free" :optional))
     (:running)

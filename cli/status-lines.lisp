@@ -52,6 +52,15 @@ were (reading 201)."
 (defun write-position (label x y)
   (format t "~19A(~,2F,~,2F)~%" label x y))
 
+;; A line of the manual's session would be in the way while nothing goes on.
+(defun write-ownership (robot)
+  "Show whose commands ROBOT and its parts carry out, and whose were interrupted last by whose."
+  (dolist (resource (cons robot (robot-parts robot)))
+    (let ((name (if (robot-p resource) "" (format nil "~A: " resource))))
+      (loop for (label text) in `(("Under way:" ,(under-way-text resource))
+                                  ("Interrupted:" ,(interruption-text resource)))
+            when text do (put-line "~19A~A~A" label name text)))))
+
 ;; As readings 17 and 199 say.
 (defun write-status (robot)
   (multiple-value-call #'write-position "Position:" (robot-position robot))
@@ -64,12 +73,14 @@ were (reading 201)."
   (write-views robot)
   (write-sensors robot)
   (format t "~19A~A~%" "Place:" (robot-last-place robot))
+  (write-ownership robot)
   (write-designators robot))
 
 (define-line "STATUS" (session)
     (:seeing)
     "Show the robot: position, last change of position, real and estimated, heading, speed, turning
-speed, the views of its cameras, the place it sensed last, its designators."
+speed, the views of its cameras, the place it sensed last, whose commands it and its parts carry
+out, whose was interrupted last by whose, its designators."
   (let ((robot (session-robot)))
     (still (write-status robot))))
 

@@ -18,8 +18,8 @@ seconds, serves to warn of Lisp code that runs for more than SLOW seconds. DICE 
 BUSY-P says whether somebody else, such as a command under way, may still post. ON-POST is called
 after each post, in the posting thread, ON-TICK, if given, with the tick when time has passed,
 ON-END with each top-level task that ends; by default it reports failures."
-  (check-argument make-plan-runner budget (typep budget '(or null (integer 1)))
-                  "NIL or a positive integer")
+  (check-argument make-plan-runner budget (or (null budget) (whole-p budget 1))
+                  "NIL or an integer from 1 to 1e9")
   (%make-plan-runner :trace (and trace (make-trace)) :budget budget :clock clock :slow slow
                      :dice dice :ticks-per-second ticks-per-second :tick tick :busy-p busy-p
                      :on-post on-post :on-tick (ensure-list on-tick) :on-end on-end))

@@ -70,7 +70,10 @@ for (manual D.2)."
 
 (addition create-fluent-vector)
 (defun create-fluent-vector (name count &optional value)
-  "Return a vector of COUNT new fluents with VALUE, one for each part of a kind (manual C)."
+  "Return a vector of COUNT new fluents with VALUE, one for each part of a kind (manual C). Signals
+WRONG-ARGUMENT unless COUNT is an integer from 0 to a million."
+  (check-argument create-fluent-vector count (whole-p count 0 1000000)
+                  "an integer from 0 to 1000000")
   (let ((vector (make-array count)))
     (dotimes (i count vector)
       (setf (svref vector i) (create-fluent (format nil "~A ~D" name i) value)))))

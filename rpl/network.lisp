@@ -90,6 +90,7 @@
 
 (declaim (inline fluent-value))
 (public fluent-value)
+(settable fluent-value)
 (defun fluent-value (object)
   "Return the value that OBJECT, a fluent, has now. Any other OBJECT is its own value. Can be set:
 see SET-VALUE (manual D.2)."

@@ -10,6 +10,12 @@
 before the first turn, 1 while the body runs and 2 between turns; DATA is how many are left."
   :step step-turns)
 
+(defun checked-count (count)
+  "Return COUNT, of turns: a number, or NIL for as many as it takes. Signals WRONG-ARGUMENT."
+  (check-argument n-times count (or (null count) (quantity-p count))
+                  "a number of turns, from -1e15 to 1e15")
+  count)
+
 (defun step-turns (node task frame value)
   (declare #.*hot* (ignore value) (type turns node) (type task task) (type frame frame))
   (let ((environment (frame-environment frame)))
@@ -18,7 +24,8 @@ before the first turn, 1 while the body runs and 2 between turns; DATA is how ma
            (make-ready task)
            +parked+)
           (t (when (= 0 (frame-counter frame))
-               (setf (frame-data frame) (funcall (turns-count node) environment)))
+               (setf (frame-data frame)
+                     (checked-count (funcall (turns-count node) environment))))
              (setf (frame-counter frame) 1)
              (let ((left (frame-data frame)))
                (cond ((or (and left (<= (the real left) 0))
@@ -52,7 +59,7 @@ before the first turn, 1 while the body runs and 2 between turns; DATA is how ma
 (addition n-times)
 (defmacro n-times (count &body body)
   "Run BODY in a plan COUNT times, one turn after the other. BODY may start with UNTIL or WHILE and
-a test made before each turn. Return NIL."
+a test made before each turn. COUNT is a number up to 1e15. Return NIL."
   (misplaced 'n-times `(,count ,@body)))
 
 (define-plan-form "N-TIMES" :must (count &rest forms) (form scope)

@@ -166,10 +166,12 @@ not count: they tell plans nothing."
 
 (public rpl-init-robot)
 (defun rpl-init-robot (robot)
-  "Let plans drive ROBOT, a robot or its name, from now on: make the fluents anew, for the parts
-that ROBOT has. Plans under way end. Return ROBOT. To be called before anything else of the
-interface (manual C); RUN-PLAN does it for the robot of a simulation that has only one."
-  (let* ((robot (if (robot-p robot) robot (find-robot robot)))
+  "Let plans drive ROBOT, a robot or its name, or a fluent whose value is one, from now on: make the
+fluents anew, for the parts that it has. Plans under way end. Return the robot. To be called before
+anything else of the interface (manual C); RUN-PLAN does it for the robot of a simulation that has
+only one."
+  (let* ((named (fluent-value robot))
+         (robot (if (robot-p named) named (find-robot named)))
          (simulation (robot-simulation robot)))
     (when (and *interface* (ended-by-p *interface* simulation))
       (close-interface *interface*))

@@ -34,10 +34,15 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
   "True if TASK is over, and nobody has made it evaporate."
   (and (task-over-p task) (not (eq :evaporated (task-state task)))))
 
+(defun checked-plan-limit ()
+  (check-argument run-plan *plan-limit* (within-reason-p *plan-limit*)
+                  "a number of ticks, up to 1e9")
+  *plan-limit*)
+
 (defun run-headless (interface task)
   "Pass ticks until TASK is over. Return its state, or how it came that it is not over."
   (let* ((simulation (interface-simulation interface))
-         (last (+ (simulation-tick simulation) *plan-limit*)))
+         (last (+ (simulation-tick simulation) (checked-plan-limit))))
     (with-plans (interface) (react-fully interface))
     (loop
       (cond ((ended-by-itself-p task) (return (task-state task)))

@@ -80,7 +80,8 @@ FRAME and VALUE are what the last step returned; return what it should have."
     (when signal
       (setf (task-signal task) nil)
       (multiple-value-setq (frame value) (receive task frame signal)))
-    (run-steps task frame value)))
+    (let ((*asker* task))
+      (run-steps task frame value))))
 
 (defun spawn (parent node environment index level &optional (task (make-task nil node)))
   "Start TASK, the part number INDEX of PARENT (NIL: a top-level task), to run NODE in ENVIRONMENT.

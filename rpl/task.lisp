@@ -124,6 +124,10 @@ over :succeeded, :failed or :evaporated.")
         while each do (push (task-label each) path)
         finally (return path)))
 
+;; Whatever a plan asks for, in whatever task, is asked for by the plan as a whole.
+(defmethod asker-note ((task task))
+  (list "the plan " (first (task-path task))))
+
 (defmethod print-object ((task task) stream)
   (print-unreadable-object (task stream :type t)
     (format stream "~D ~(~A~) ~A" (task-serial task) (task-state task) (task-label task))))

@@ -41,6 +41,8 @@ returns (NIL: for ever)."
              (condition (funcall (wait-condition node) environment))
              (value (fluent-value condition))
              (timeout (if value nil (fluent-value (funcall (wait-timeout node) environment)))))
+        (check-argument wait-for timeout (or (null timeout) (quantity-p timeout))
+                        "a number of ticks, from -1e15 to 1e15, or NIL")
         (cond (value (values (frame-up frame) value))
               ((and timeout (<= (the real timeout) 0)) (values (frame-up frame) nil))
               (t (setf (frame-counter frame) 1)
@@ -60,7 +62,7 @@ returns (NIL: for ever)."
 (defmacro wait-for (fluent &key timeout)
   "Wait in a plan until FLUENT, or a network such as (and a (not b)), is true; not at all if it is
 already. A pulse is enough. Return its value. After TIMEOUT ticks, if given, go on nevertheless and
-return NIL (manual C)."
+return NIL (manual C). TIMEOUT is a number up to 1e15."
   (misplaced 'wait-for (list* fluent (and timeout (list :timeout timeout)))))
 
 (define-plan-form "WAIT-FOR" :must (condition &key timeout) (form scope)
@@ -97,7 +99,7 @@ return NIL (manual C)."
 (defun ticks-of (span unit)
   "Return SPAN, a number or fluent, of UNIT (:ticks or :seconds) in ticks."
   (let ((span (fluent-value span)))
-    (check-argument wait-time span (realp span) "a number")
+    (check-argument wait-time span (quantity-p span) "a number from -1e15 to 1e15")
     (ecase unit
       (:ticks span)
       (:seconds (ceiling (* span (runner-ticks-per-second *runner*)))))))
@@ -105,7 +107,8 @@ return NIL (manual C)."
 (public wait-time)
 (defmacro wait-time (span &key (unit :ticks))
   "Wait in a plan for SPAN, counted in ticks, or in seconds if UNIT is
-:seconds (manual D.4; reading 90)."
+:seconds (manual D.4; reading 90). SPAN is a number up to 1e15; with 0 or less, the plan does not
+wait."
   (misplaced 'wait-time (list span :unit unit)))
 
 (define-plan-form "WAIT-TIME" :must (span &key unit) (form scope)

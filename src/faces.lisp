@@ -21,14 +21,47 @@
   (let ((layer (symbol-package symbol)))
     (eq :external (nth-value 1 (find-symbol (symbol-name symbol) layer)))))
 
+;;; Layers SETF what they read of a run; users must not, as no journal would know. So where a
+;;; function can be set and is not marked as SETTABLE, a face has a symbol of its own for it.
+
+(defun only-read-p (symbol)
+  "True if users may call the function called SYMBOL, but not SETF it, as layers do."
+  (and (fboundp `(setf ,symbol)) (not (settable-p symbol))))
+
+(defun reject-setting (symbol)
+  "Return a function that signals MISUSE, for a SETF of SYMBOL."
+  (lambda (value object)
+    (declare (ignore value object))
+    (reject-use "~(~A~) cannot be set. What belongs to a run is changed by commands, and by ~
+                 functions such as PLACE-ROBOT, MOVE-THING and SET-ATTRIBUTE, which its journal ~
+                 notes."
+                symbol)))
+
+(defun own-symbol-in (face name)
+  "Return the symbol called NAME whose home is the package FACE."
+  (let ((present (find-symbol name face)))
+    (unless (or (null present) (eq (find-package face) (symbol-package present)))
+      (unintern present face))
+    (intern name face)))
+
+(defun reader-in (symbol face)
+  "Return a symbol of FACE that names the function of SYMBOL, and cannot be set."
+  (let ((reader (own-symbol-in face (symbol-name symbol))))
+    (setf (fdefinition reader) (fdefinition symbol)
+          (documentation reader 'function) (documentation symbol 'function)
+          (fdefinition `(setf ,reader)) (reject-setting symbol))
+    reader))
+
 (defun show (symbol face)
-  "Import SYMBOL into the package FACE, and export it. Signals MISUSE if its layer does not."
+  "Let the package FACE export SYMBOL, or one that names the same function and cannot be set.
+Signals MISUSE if its layer does not export it."
   (unless (externalp symbol)
     (reject-use "~S is marked for ~A, but ~A does not export it. Add it to that package's exports."
                 symbol face (package-name (symbol-package symbol))))
-  (shadowing-import (list symbol) face)
-  (export (list symbol) face)
-  (when (addition-p symbol) (tell-addition symbol)))
+  (when (addition-p symbol) (tell-addition symbol))
+  (let ((shown (if (only-read-p symbol) (reader-in symbol face) symbol)))
+    (shadowing-import (list shown) face)
+    (export (list shown) face)))
 
 (defun ensure-face (face documentation)
   "Return the package FACE, with DOCUMENTATION; it uses no other."

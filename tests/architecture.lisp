@@ -90,7 +90,7 @@
 (defparameter *sb-ext-doors*
   '("src/base/policy.lisp" "src/base/floats.lisp" "src/base/globals.lisp" "src/base/atomic.lisp"
     "src/base/packages.lisp" "src/base/environments.lisp" "src/base/interrupts.lisp"
-    "src/base/debuggers.lisp" "src/base/files.lisp")
+    "src/base/debuggers.lisp" "src/base/files.lisp" "src/base/tables.lisp")
   "The files that may name SB-EXT.")
 
 (defparameter *before-the-doors*
@@ -218,7 +218,30 @@ project's systems has been loaded.")
 (test public.is-what-is-marked
   (dolist (face '(:ars :nisp))
     (is (null (set-exclusive-or (base:public-symbols face)
-                                (external-symbols (face-package face)))))))
+                                (external-symbols (face-package face))
+                                :test #'string=)))))
+
+(defun users-symbol (symbol)
+  "Return what users see of SYMBOL, which a layer exports."
+  (find-symbol (symbol-name symbol)
+               (face-package (first (base::mark-faces (base::find-mark symbol))))))
+
+(test public.readers-only-read
+  "Whoever could set one would change a run behind the back of its journal."
+  (let ((settable '()) (readers 0))
+    (dolist (symbol (append (base:public-symbols :ars) (base:public-symbols :nisp)))
+      (let ((shown (users-symbol symbol)))
+        (cond ((not (fboundp `(setf ,shown))))
+              ((eq shown symbol) (push symbol settable))
+              (t (incf readers)
+                 (is (eq (fdefinition symbol) (fdefinition shown)))
+                 (signals base:misuse (funcall (fdefinition `(setf ,shown)) 1 2))))))
+    (is (< 50 readers))
+    (is (null (set-exclusive-or settable
+                                '("PARAMETER-VALUE" "GET-ATTRIBUTE" "FLUENT-VALUE" "VREF"
+                                  "PT-X" "PT-Y" "INTERVAL-MIN" "INTERVAL-MAX"
+                                  "PT-INTERVAL-X" "PT-INTERVAL-Y")
+                                :test #'string=)))))
 
 (test public.is-told-apart-from-the-manual
   (dolist (symbol (append (base:public-symbols :ars) (base:public-symbols :nisp)))

@@ -62,6 +62,13 @@
      (is (= 3 base:braking*))))
   (is (= 2 base:braking*)))
 
+(test parameters.are-given-in-pairs
+  (dolist (settings '(7 (7) (:seed (max-speed* 2)) ((max-speed* 2) "x") ((max-speed* 2 3))
+                      ((max-speed* . 2)) ((max-speed* 2) . 3)))
+    (signals base:wrong-argument (base:call-with-parameters settings (constantly nil))))
+  (signals base:unknown-name (base:call-with-parameters '((7 2)) (constantly nil)))
+  (is (= 2 (base:call-with-parameters '((max-speed* 2)) (lambda () base:max-speed*)))))
+
 (test parameters.clean-and-dirty
   "Cleaning removes all noise, once; delays and limits stay; dirtying restores."
   (base:call-with-parameters

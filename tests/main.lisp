@@ -48,7 +48,7 @@ returns what came of its checks."
 ;;; Reporting.
 
 (defun write-failure (result)
-  (format t "~&~%FAILED ~(~A~)~%~A~%" (test-name result) (failure-reason result)))
+  (format t "~&~%FAILED ~(~A~)~%~A~%" (symbol-name (test-name result)) (failure-reason result)))
 
 (defun report-suite (suite results)
   "Say what came of the checks of SUITE. Return how many passed, failed and were skipped, a list."
@@ -56,7 +56,7 @@ returns what came of its checks."
     (declare (ignore good))
     (let ((passed (- (length results) (length failed) (length skipped))))
       (format t "~&~(~20A~)~6D passed~[~:;~:*, ~D failed~]~[~:;~:*, ~D skipped~]~%"
-              suite passed (length failed) (length skipped))
+              (symbol-name suite) passed (length failed) (length skipped))
       (mapc #'write-failure failed)
       (finish-output)
       (list passed (length failed) (length skipped)))))

@@ -362,6 +362,7 @@ far these have come to the east."
         (world:set-attribute thing :size 3)
         (world:change-attribute thing '((:color world:red)))
         (world:put-kicker nag (it thing) (:prob 1) (world:kick-thing it 1 0 nil))
+        (world:run-kicker (world:find-attachment thing 'nag))
         (is (= 3 (world:get-attribute thing :size)))
         (is (= count (length (run:journal-entries (run:simulation-journal time:*simulation*)))))
         (run:run-ticks 3)

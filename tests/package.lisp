@@ -1,8 +1,8 @@
 ;;;; package.lisp -- where all tests live, and the one door to FiveAM.
 
 (defpackage :ars-magna.tests
-  (:documentation "One suite per layer. Other layers' symbols are qualified by short local
-nicknames: geo:add, nisp:matchq, robot::%look.")
+  (:documentation "One suite per layer, and one per section of the manual (see README.md). Other
+layers' symbols are qualified by short local nicknames: geo:add, nisp:matchq, robot::%look.")
   (:use :cl :fiveam))
 
 (in-package :ars-magna.tests)
@@ -19,7 +19,7 @@ nicknames: geo:add, nisp:matchq, robot::%look.")
 
 (def-suite ars-magna :description "All that ARS MAGNA claims.")
 
-;;; What MAIN needs to know of FiveAM's insides.
+;;; What others need to know of FiveAM's insides.
 
 (defun suite-names ()
   "Return a list of the names of the suites, in order of definition."
@@ -36,3 +36,7 @@ nicknames: geo:add, nisp:matchq, robot::%look.")
 (defun failure-reason (result)
   "Return what RESULT, a failed check's, says."
   (fiveam::reason result))
+
+(defun test-claim (test)
+  "Return what TEST, a name, says in its documentation."
+  (fiveam::description (get-test test)))

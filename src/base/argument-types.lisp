@@ -37,13 +37,15 @@ wrong with VALUE."
     (error 'wrong-argument :operator operator :name name :value value
                            :expected (argument-type-text type value))))
 
-(defun within-reason-p (value)
-  "True of real numbers small enough that arithmetic on positions and angles keeps its meaning."
-  (and (realp value) (< -1d9 value 1d9)))
+;;; One for each kind of number; see numbers.lisp for the limits.
 
-(define-argument-type 'number #'within-reason-p "a number between -1e9 and 1e9")
-(define-argument-type 'angle #'within-reason-p "an angle in radians, between -1e9 and 1e9")
-(define-argument-type 'ticks #'within-reason-p "a number of ticks, between -1e9 and 1e9")
+(define-argument-type 'number #'within-reason-p "a number from -1e9 to 1e9")
+(define-argument-type 'angle #'within-reason-p "an angle in radians, from -1e9 to 1e9")
+(define-argument-type 'ticks #'within-reason-p "a number of ticks, from -1e9 to 1e9")
+(define-argument-type 'tick-span #'tick-span-p "a whole number of ticks, from 0 to 1e9")
+(define-argument-type 'quantity #'quantity-p "a number from -1e15 to 1e15")
+(define-argument-type 'amount #'amount-p "a number not below 0, up to 1e15")
+(define-argument-type 'probability #'probability-p "a probability from 0 to 1")
 (define-argument-type 'integer #'integerp "a whole number")
 (define-argument-type 'truth (constantly t) "anything, of which NIL is false")
 (define-argument-type 'datum (constantly t) "anything")

@@ -56,7 +56,9 @@
 
 (addition chance)
 (defun chance (probability dice)
-  "True with PROBABILITY. Certain outcomes (0 or less, 1 or more) roll nothing."
+  "True with PROBABILITY. Certain outcomes (0 or less, 1 or more) roll nothing. Signals
+WRONG-ARGUMENT unless PROBABILITY is a number from -1e15 to 1e15."
+  (check-argument chance probability (quantity-p probability) "a probability, from 0 to 1")
   (let ((probability (double probability)))
     (cond ((<= probability 0d0) nil)
           ((>= probability 1d0) t)
@@ -64,28 +66,40 @@
 
 (addition roll-between)
 (defun roll-between (low high dice)
-  "Return a double-float uniform in [LOW, HIGH)."
+  "Return a double-float uniform in [LOW, HIGH). Signals WRONG-ARGUMENT unless both are numbers from
+-1e15 to 1e15."
+  (check-argument roll-between low (quantity-p low) "a number from -1e15 to 1e15")
+  (check-argument roll-between high (quantity-p high) "a number from -1e15 to 1e15")
   (let ((low (double low)) (high (double high)))
     (+ low (* (roll dice) (- high low)))))
 
 (addition roll-within)
 (defun roll-within (range dice)
-  "Return a double-float uniform in [-RANGE, RANGE); 0 if RANGE is 0."
+  "Return a double-float uniform in [-RANGE, RANGE); 0 if RANGE is 0. Signals WRONG-ARGUMENT unless
+that is a number from -1e15 to 1e15."
+  (check-argument roll-within range (quantity-p range) "a number from -1e15 to 1e15")
   (if (zerop range) 0d0 (roll-between (- range) range dice)))
 
 (addition roll-index)
 (defun roll-index (count dice)
-  "Return an integer uniform in [0, COUNT)."
+  "Return an integer uniform in [0, COUNT). Signals WRONG-ARGUMENT unless COUNT is an integer from 1
+to 2^53, where double-floats begin to leave some out."
+  (check-argument roll-index count (whole-p count 1 #.(expt 2 53)) "an integer from 1 to 2^53")
   (values (floor (* (roll dice) count))))
 
 (addition roll-element)
 (defun roll-element (sequence dice)
-  "Return an element of the non-empty SEQUENCE, each as likely as another."
+  "Return an element of SEQUENCE, each as likely as another. Signals WRONG-ARGUMENT if it has none."
+  (check-argument roll-element sequence (and (typep sequence 'sequence) (plusp (length sequence)))
+                  "a sequence that is not empty")
   (elt sequence (roll-index (length sequence) dice)))
 
 (addition roll-gaussian)
 (defun roll-gaussian (mean deviation dice)
-  "Return a normally distributed double-float. A DEVIATION of 0 returns MEAN and rolls nothing."
+  "Return a normally distributed double-float. A DEVIATION of 0 returns MEAN and rolls nothing.
+Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15."
+  (check-argument roll-gaussian mean (quantity-p mean) "a number from -1e15 to 1e15")
+  (check-argument roll-gaussian deviation (quantity-p deviation) "a number from -1e15 to 1e15")
   (if (zerop deviation)
       (double mean)
       (let ((radius (sqrt (* -2d0 (log (- 1d0 (roll dice))))))

@@ -24,6 +24,9 @@ their elements, functions as such, other objects by what tells them apart. Retur
     (double-float
      (digest-word digest (double-to-bits datum)))
     (integer (digest-word digest (ldb (byte 64 0) datum)))
+    (ratio (if (finite-p datum)
+               (digest-add digest (coerce datum 'double-float))
+               (digest-add digest (list (numerator datum) (denominator datum)))))
     (real (digest-add digest (coerce datum 'double-float)))
     ((or symbol string) (digest-word digest (name-word (name-string datum))))
     (character (digest-word digest (char-code datum)))

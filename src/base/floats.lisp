@@ -5,12 +5,25 @@
 ;;; The library ieee-floats reckons the bits from sign, exponent and fraction. That conses and
 ;;; takes three times as long, which digests would feel, and it does not know the infinities.
 
-(defun finite-p (object)
-  "True of real numbers that are, or could be made, finite floats: not of the infinities, what is no
-number, and integers and ratios that are too large."
+;;; What is no number must not even be compared with one: that is an arithmetic error.
+
+(declaim (inline finite-double-p finite-p))
+(defun finite-double-p (number)
+  "True unless NUMBER, a double-float, is infinite or no number."
+  (declare (type double-float number))
+  (/= #x7FF00000 (logand #x7FF00000 (sb-kernel:double-float-high-bits number))))
+
+(defun other-finite-p (object)
   (typecase object
     (float (not (or (sb-ext:float-infinity-p object) (sb-ext:float-nan-p object))))
     (real (<= (abs object) most-positive-double-float))))
+
+(defun finite-p (object)
+  "True of real numbers that are, or could be made, finite floats: not of the infinities, what is no
+number, and integers and ratios that are too large."
+  (if (typep object 'double-float)
+      (finite-double-p object)
+      (other-finite-p object)))
 
 (declaim (inline double-to-bits bits-to-double))
 (defun double-to-bits (number)

@@ -116,9 +116,12 @@ line (reading 36)."
 
 (public error-display)
 (defun error-display (&optional (stream *standard-output*))
-  "Write all queued messages to STREAM, oldest first, and flush the queue. Writes nothing
-when FLUSH-ALL-ERRORS* is true. Return nothing (manual 3.7). See reading 207."
-  (let ((messages (take-messages)))
+  "Write all queued messages to STREAM, oldest first, and flush the queue; NIL and T mean standard
+output. Writes nothing when FLUSH-ALL-ERRORS* is true. Return nothing (manual 3.7). Signals
+WRONG-ARGUMENT, and keeps the messages, if STREAM is no stream. See reading 207."
+  (check-argument error-display stream (typep stream '(or stream boolean)) "a stream")
+  (let ((messages (take-messages))
+        (stream (if (streamp stream) stream *standard-output*)))
     (unless flush-all-errors*
       (dolist (message messages) (write-message message stream))
       (finish-output stream)))

@@ -17,9 +17,13 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:cell-index
            #:tick-count #:document-functions)
   ;; public
-  (:export #:public #:addition #:addition-p #:public-symbols #:*marking-p*)
+  (:export #:public #:addition #:settable #:settable-p #:addition-p #:public-symbols #:*marking-p*)
   ;; floats, globals
-  (:export #:finite-p #:double-to-bits #:bits-to-double #:global-value #:define-global)
+  (:export #:finite-p #:double-to-bits #:bits-to-double #:global-value #:define-global
+           #:define-table-test)
+  ;; numbers
+  (:export #:+largest+ #:+largest-quantity+ #:within-reason-p #:quantity-p #:amount-p
+           #:probability-p #:tick-span-p #:whole-p)
   ;; atomic
   (:export #:atomic-count #:compare-and-swap #:swap-if #:atomic-push #:atomic-incf #:atomic-decf
            #:memory-barrier)
@@ -36,14 +40,15 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:local-function-p #:known-function-p #:macro-expander #:lisps-macro-p
            #:extended-environment #:nested-p #:evaluate-form #:form-behind-comma #:walk-form)
   ;; conditions
-  (:export #:ars-magna-error #:wrong-argument #:check-argument #:malformed-definition
+  (:export #:ars-magna-error #:wrong-argument #:check-argument #:reject-argument
+           #:malformed-definition
            #:malformed-definition-place
            #:definition-warning #:definition-warning-text #:warn-of-definition
            #:unknown-name #:plain-name #:misuse #:reject-use)
   ;; threads
   (:export #:make-lock #:with-lock #:make-semaphore #:signal-semaphore #:wait-on-semaphore
            #:start-thread #:join-thread #:interrupt-thread #:thread-alive-p
-           #:current-thread #:yield-thread #:spread-specials)
+           #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; interrupts, debuggers
   (:export #:time-limit #:deferring-interrupts #:allowing-interrupts #:let-interrupts-in
            #:call-holding-interrupts #:call-open-to-interrupts
@@ -74,6 +79,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:*message-queue* #:make-message-queue #:message-queue #:message-queue-listener
            #:message #:message-kind #:message-items #:take-messages #:message-text
            #:write-message #:write-items #:out #:*message-limit*)
+  ;; askers
+  (:export #:*asker* #:asker-note #:note-of-asker #:note-text)
   ;; user code
   (:export #:call-user-code #:*break-on-user-error* #:in-any-case #:call-each
            #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*
@@ -108,7 +115,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:kind-slot-name #:kind-slot-role #:kind-slot-type #:kind-slot-text #:kind-slot-part-p
            #:kind-slot-reader
            #:kind-slot-writer #:object-slots #:reset #:reference #:digest-state #:digest-mention
-           #:copy-running #:make-copy-table #:copied)
+           #:copy-running #:make-copy-table #:copied #:given)
   ;; argument-types, operators
   (:export #:define-argument-type #:argument-type-text #:argument-of-type-p #:find-argument-type
            #:check-of-type #:operator-name #:operator-function #:operator-types

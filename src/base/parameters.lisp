@@ -38,6 +38,24 @@
 (define-registry parameter "simulation parameter"
   :object-p parameter-p :fixed t :aliases #'parameter-aliases)
 
+(defun limit-text (limit)
+  "Return LIMIT, a number, as people read it: 1e9 for a thousand million."
+  (let ((power (and (integerp limit) (>= limit 1000000) (round (log limit 10)))))
+    (if (and power (= limit (expt 10 power)))
+        (format nil "1e~D" power)
+        (princ-to-string limit))))
+
+(defun describe-type (type)
+  "Return TYPE, a parameter's, in words."
+  (cond ((eq type 'boolean) "T or NIL")
+        ((and (consp type) (member (first type) '(real integer)))
+         (format nil "~:[a number~;an integer~]~@[ from ~A~]~@[ to ~A~]"
+                 (eq (first type) 'integer)
+                 (and (second type) (limit-text (second type)))
+                 (and (third type) (limit-text (third type)))))
+        (t (format nil "a value of type ~(~S~)" type))))
+
+;; As numbers have two limits each, so do the types: (real 0 1).
 (defmacro define-parameter (symbol default
                             (&key (unit "") (type t) (kind :limit) (group "") clean addition)
                             sentence)
@@ -46,10 +64,11 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
   `(progn
      (,(if addition 'addition 'public) ,symbol)
      (defvar ,symbol ,default
-       ,(format nil "~A Default ~A~@[ ~A~].~:[ (Manual, chapter 4.)~;~]" sentence
+       ,(format nil "~A Default ~A~@[ ~A~]; ~A.~:[ (Manual, chapter 4.)~;~]" sentence
                 (let ((*read-default-float-format* 'double-float))
                   (princ-to-string (eval default)))
                 (and (string/= unit "") unit)
+                (describe-type type)
                 addition))
      (register
       *parameters* ',symbol
@@ -57,22 +76,16 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
                       :kind ,kind :clean ,clean :group ,group :sentence ,sentence))
      ',symbol))
 
-(defun describe-type (type)
-  "Return TYPE, a parameter's, in words."
-  (cond ((eq type 'boolean) "T or NIL")
-        ((and (consp type) (member (first type) '(real integer)))
-         (format nil "~:[a number~;an integer~]~@[ from ~A~]~@[ to ~A~]"
-                 (eq (first type) 'integer) (second type) (third type)))
-        (t (format nil "a value of type ~(~S~)" type))))
-
 (defun check-parameter-value (parameter value)
-  (unless (and (typep value (parameter-type parameter))
-               (or (not (realp value)) (finite-p value)))
+  ;; Of a number that is none not even the type can be asked.
+  (unless (and (or (not (realp value)) (finite-p value))
+               (typep value (parameter-type parameter)))
     (error 'wrong-argument :operator "set parameter" :name (parameter-name parameter)
                            :value value
                            :expected (describe-type (parameter-type parameter)))))
 
 (addition parameter-value)
+(settable parameter-value)
 (defun parameter-value (parameter)
   "Return the value that PARAMETER (or the parameter so named) has now. Can be set; signals
 WRONG-ARGUMENT if the new value is of the wrong type or out of range."
@@ -123,9 +136,19 @@ Returns nothing (manual, chapter 4)."
 
 ;;; A run binds its own.
 
+(defun check-settings (settings)
+  "Signal WRONG-ARGUMENT unless SETTINGS is a list of lists (name value)."
+  (check-argument with-simulation settings
+                  (and (proper-list-p settings)
+                       (loop for setting in settings
+                             always (and (proper-list-p setting) (= 2 (length setting)))))
+                  "a list of lists (name value), such as ((max-speed* 1/2))"))
+
 (defun call-with-parameters (settings function)
-  "Call FUNCTION with every parameter bound: as SETTINGS, a list (name value), says, and as it
-is now where they say nothing. Changes made inside end with the call."
+  "Call FUNCTION with every parameter bound: as SETTINGS, a list of lists (name value), says, and as
+it is now where they say nothing. Changes made inside end with the call. Signals WRONG-ARGUMENT and
+UNKNOWN-NAME."
+  (check-settings settings)
   (let* ((settings (loop for (name value) in settings
                          collect (cons (parameter-symbol (find-parameter name)) value)))
          (symbols (mapcar #'parameter-symbol (registry-objects *parameters*)))

@@ -52,6 +52,17 @@
 may be a list (name face...), as for PUBLIC."
   `(mark-names ',names t))
 
+(defvar *settable* '() "The public symbols whose functions users may SETF, too.")
+
+(defmacro settable (&rest names)
+  "Let users SETF the functions NAMES, which are public. Of all others they see only that they read:
+what belongs to a run is changed by functions that its journal notes."
+  `(setf *settable* (union *settable* ',names)))
+
+(defun settable-p (symbol)
+  "True if users may SETF the function called SYMBOL."
+  (and (member symbol *settable* :test #'eq) t))
+
 (defun public-symbols (face)
   "Return a list of the symbols that are marked for FACE, :ARS or :NISP, in order of definition."
   (loop for mark in *marks*

@@ -52,6 +52,10 @@
   "Return the thread that asks."
   (bordeaux-threads:current-thread))
 
+(defun thread-name (thread)
+  "Return what THREAD is called, a string."
+  (bordeaux-threads:thread-name thread))
+
 (defun yield-thread ()
   "Let other threads run for a moment."
   (bordeaux-threads:thread-yield))

@@ -157,4 +157,6 @@ queue an error message saying that it came from ORIGIN (an item or list of items
            (offering (#'go-on #'again)
              (handler-bind (((or error storage-condition) #'note))
                (answering-debugger (#'answer)
-                 (interruptibly (origin) (apply function arguments))))))))))
+                 (interruptibly (origin)
+                  (let ((*asker* origin))
+                    (apply function arguments)))))))))))

@@ -104,9 +104,9 @@ others, each a list (variable type), with NIL for no type."
 
 ;;; Defining.
 
-(defun check-option (definition option value type expected)
-  (unless (typep value type)
-    (reject-clause definition (list option value) expected))
+(defun check-option (definition option value type)
+  (unless (argument-of-type-p value type)
+    (reject-clause definition (list option value) (argument-type-text type)))
   value)
 
 (defun check-method-options (definition options)
@@ -161,10 +161,8 @@ parameter list, BODY a function of as many arguments. Return NAME."
          (method (make-manipulation-method
                   :form form :source (current-source) :digest (current-form-digest)
                   :parameters (parse-parameters definition form) :body body
-                  :success (double (check-option definition :success success '(real 0 1)
-                                                 "a probability from 0 to 1"))
-                  :delay (check-option definition :delay delay 'tick-count
-                                       "a number of ticks, 0 or more"))))
+                  :success (double (check-option definition :success success 'probability))
+                  :delay (check-option definition :delay delay 'tick-span))))
     (dolist (pattern (parameter-list-patterns (method-parameters method)))
       (warn-of-slips definition "a pattern" pattern))
     (say-if-shared name (manipulation-methods manipulation) method)

@@ -171,21 +171,22 @@ on, are messages and end that with :FAILED."
   (apply (command-body (operation-command operation))
          operation (operation-resource operation) (operation-arguments operation)))
 
-(defun make-way (agenda rival)
-  "Free the resource of RIVAL, the event pending on it: a command that takes no time and has only
-just been issued is carried out first, anything else is interrupted. So (robot-set-speed ...)
-followed by (robot-go-forward ...) sets the speed (reading 77)."
+(defun make-way (operation agenda rival)
+  "Free for OPERATION the resource of RIVAL, the event pending on it: a command that takes no time
+and has only just been issued is carried out first, anything else is interrupted. So
+\(robot-set-speed ...) followed by (robot-go-forward ...) sets the speed (reading 77)."
   (cond ((and (operation-p rival) (command-instant-p (operation-command rival)))
          (cancel-event agenda rival)
          (call-step rival 'start-body))
-        (t (interrupt-event agenda rival))))
+        (t (note-interruption rival operation (1+ (agenda-tick agenda)))
+           (interrupt-event agenda rival))))
 
 (defun begin (operation)
   "Take over the resource of OPERATION and let it wait for its command's delay."
   (let* ((agenda (operation-agenda operation))
          (rival (pending-event agenda (operation-resource operation)))
          (delay (funcall (command-delay (operation-command operation)))))
-    (when rival (make-way agenda rival))
+    (when rival (make-way operation agenda rival))
     (go-on operation 'start-body delay)))
 
 ;; A robot may have been retired since the command was issued.
@@ -200,9 +201,12 @@ followed by (robot-go-forward ...) sets the speed (reading 77)."
   (if (robot-p resource) resource (part-robot resource)))
 
 (defun issue (command resource arguments continuation)
-  "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked; CONTINUATION may be NIL.
-Return nothing: the command takes effect in the next tick. Signals MISUSE if the robot's run is
-over."
+  "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked and of which lists are copied;
+CONTINUATION may be NIL. Return nothing: the command takes effect in the next tick. Signals MISUSE
+if the robot's run is over."
   (check-in-run resource (command-name command))
-  (let ((timeline (world-timeline (robot-world (resource-robot resource)))))
+  (let ((timeline (world-timeline (robot-world (resource-robot resource))))
+        (arguments (if (some #'consp arguments)
+                       (given (command-name command) "arguments" arguments)
+                       arguments)))
     (post (make-operation command resource arguments continuation timeline) timeline)))

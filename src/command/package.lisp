@@ -19,6 +19,8 @@
            #:operation-p #:operation-world #:operation-finished-p #:operation-continuation
            #:operation-step #:operation-subject #:operation-count #:issue #:finish #:succeed
            #:fail-with #:notify #:report #:once-more #:go-on #:go-on-now)
+  ;; ownership
+  (:export #:under-way #:last-interruption #:under-way-text #:interruption-text)
   ;; define-command
   (:export #:define-command)
   ;; hands

@@ -37,7 +37,7 @@
           ((discrete-p attribute)
            (check-discrete-clause definition clause attribute))
           ((eq :substance key))
-          ((not (or (matchvar-p value) (realp value) (null value) (range-p value)))
+          ((not (or (matchvar-p value) (quantity-p value) (null value) (range-p value)))
            (reject-clause definition clause "a number, or a range: two numbers in a list")))))
 
 (defun parse-pattern (definition specification)

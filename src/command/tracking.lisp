@@ -27,6 +27,14 @@ robot (reading 140)."
   (when (eq code :interrupt) (report operation code '()))
   (notify operation code (list designator)))
 
+(defun interrupt-track (operation camera)
+  "End the track of CAMERA, if it has one, for OPERATION, which is at work."
+  (let ((track (camera-tracking camera)))
+    (when (and track (track-operation track))
+      (note-interruption (track-operation track) operation
+                         (timeline-tick (operation-timeline operation))))
+    (end-track camera :interrupt)))
+
 ;; As reading 83 says.
 (defun begin-track (operation camera designator)
   (report operation nil (list designator))
@@ -59,6 +67,6 @@ track begins, with NIL, and again when it ends, with the error code that says ho
      (:report () (format nil "~A stopped tracking" (operation-resource operation))))
     "Stop CAMERA from tracking. The designator remains; the track's continuation gets :INTERRUPT."
   (cond ((camera-tracking camera)
-         (end-track camera :interrupt)
+         (interrupt-track operation camera)
          (succeed operation))
         (t (fail-with operation :not-tracking))))

@@ -5,17 +5,17 @@
 ;;; A camera turns exactly as told, and at once after its delay; what it reports is an estimate. Its
 ;;; angle is relative to the robot and never normalised. Turning a camera interrupts its track.
 
-(defun turn-camera (camera angle)
-  "Turn CAMERA by ANGLE, in radians; return an estimate of that (reading 144)."
+(defun turn-camera (operation camera angle)
+  "Turn CAMERA by ANGLE, in radians, for OPERATION; return an estimate of that (reading 144)."
   (let ((world (robot-world (camera-robot camera))))
-    (end-track camera :interrupt)
+    (interrupt-track operation camera)
     (incf (camera-angle camera) (double angle))
     (+ (double angle) (angle-error (world-dice world :looking)))))
 
-(defun turn-camera-to (camera direction)
-  "Turn CAMERA to DIRECTION, relative to the robot, the short way round; return an estimate of the
-angle."
-  (turn-camera camera (angle-difference direction (camera-angle camera))))
+(defun turn-camera-to (operation camera direction)
+  "Turn CAMERA to DIRECTION, relative to the robot, the short way round, for OPERATION; return an
+estimate of the angle."
+  (turn-camera operation camera (angle-difference direction (camera-angle camera))))
 
 (defun camera-turned-text (operation angle)
   (format nil "~A turned ~,2F" (operation-resource operation) angle))
@@ -26,14 +26,14 @@ angle."
     ((:family :looking) (:section "3.4.3") (:delay camera-align-delay*)
      (:report (angle) (camera-turned-text operation angle)))
     "Turn CAMERA by ANGLE, relative to where it points."
-  (succeed operation (turn-camera camera angle)))
+  (succeed operation (turn-camera operation camera angle)))
 
 (define-command camera-align-robot (operation (camera camera))
     ((angle "an estimate of the angle turned"))
     ((:family :looking) (:section "3.4.3") (:delay camera-align-delay*)
      (:report (angle) (camera-turned-text operation angle)))
     "Point CAMERA where the robot is heading."
-  (succeed operation (turn-camera-to camera 0)))
+  (succeed operation (turn-camera-to operation camera 0)))
 
 (define-command camera-align-place (operation (camera camera))
     ((angle "an estimate of the angle turned")
@@ -48,6 +48,6 @@ angle."
         (let ((direction (nearest-direction (canonical-directions robot type)
                                             (camera-heading camera))))
           (succeed operation
-                   (turn-camera-to camera (- direction (robot-angle robot)))
+                   (turn-camera-to operation camera (- direction (robot-angle robot)))
                    (place-type-name type)))
         (fail-with operation :no-place-type))))

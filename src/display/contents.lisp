@@ -40,7 +40,8 @@
 but the world, shows the same of it and of ROBOT, an image too."
   (ecase display
     (:state (list (robot-image-x robot) (robot-image-y robot) (robot-image-angle robot)
-                  (robot-image-speed robot) (robot-image-place robot)))
+                  (robot-image-speed robot) (robot-image-place robot)
+                  (robot-image-under-way robot) (robot-image-interruption robot)))
     (:designators (content (robot-image-designators robot)))
     (:cameras (list (robot-image-angle robot) (content (robot-image-cameras robot))))
     (:hands (content (robot-image-hands robot)))

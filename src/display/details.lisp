@@ -73,7 +73,10 @@ name (reading 211)."
                              (robot-image-x robot) (robot-image-y robot))
                      (format nil "Direction: ~A" (angle-text (robot-image-angle robot)))
                      (format nil "Speed: ~,2F" (robot-image-speed robot))
-                     (format nil "Place: ~:[none~;~:*~(~A~)~]" (robot-image-place robot)))))
+                     (format nil "Place: ~:[none~;~:*~(~A~)~]" (robot-image-place robot))
+                     (format nil "Under way: ~:[nothing~;~:*~A~]" (robot-image-under-way robot))
+                     (format nil "Interrupted: ~:[nothing~;~:*~A~]"
+                             (robot-image-interruption robot)))))
     (loop for y from +margin+ by +line-height+
           for line in lines
           do (draw-line-of-text canvas +margin+ y width line)

@@ -81,6 +81,6 @@ the world shows. To be called within WITH-CANVAS."
                                              +picture-layers+))))
 
 (defun check-scale (operator scale)
-  (unless (typep scale '(real 1 256))
+  (unless (and (finite-p scale) (<= 1 scale 256))
     (error 'wrong-argument :operator operator :name "graphics-scale*" :value scale
                            :expected "a number of pixels to a cell, from 1 to 256")))

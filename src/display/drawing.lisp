@@ -11,7 +11,8 @@
                                   :expected expected)))
     (unless (canvas-p canvas) (reject "drawable" canvas "the window that the body was given"))
     (unless (gcontext-p gcontext) (reject "gcontext" gcontext "draw-gcontext*"))
-    (unless (every #'realp numbers) (reject "coordinates" numbers "numbers of pixels"))))
+    (unless (every #'within-reason-p numbers)
+      (reject "coordinates" numbers "numbers of pixels, from -1e9 to 1e9"))))
 
 (defun check-sequence (operator canvas gcontext numbers multiple)
   (check-drawing operator canvas gcontext numbers)

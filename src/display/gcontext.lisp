@@ -44,8 +44,9 @@
 (defun check-pen (foreground line-width line-style)
   (check-argument with-color foreground (typep foreground '(or null color))
                   "a colour, such as (vref red* 9)")
-  (check-argument with-lines line-width (typep line-width '(or null (real 0)))
-                  "a width in pixels, 0 or more")
+  (check-argument with-lines line-width (or (null line-width)
+                                             (and (within-reason-p line-width) (<= 0 line-width)))
+                  "a width in pixels, from 0 to 1e9")
   (check-argument with-lines line-style (typep line-style '(or null line-style))
                   ":solid, :dash or :double-dash"))
 

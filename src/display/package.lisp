@@ -6,6 +6,7 @@
         :ars-magna.robot :ars-magna.run :ars-magna.canvas)
   (:shadowing-import-from :cl #:equal)
   (:shadowing-import-from :ars-magna.world #:map)
+  (:import-from :ars-magna.command #:under-way-text #:interruption-text)
   ;; text-map
   (:export #:text-map)
   ;; history

@@ -21,6 +21,7 @@
 
 (define-image robot-image "What a snapshot knows of a robot."
   (name nil) (x 0d0) (y 0d0) (angle 0d0) (speed 0d0) (place nil)
+  (under-way nil) (interruption nil)
   (cameras '()) (hands '()) (bins '())
   (designators '()) (odometer nil) (trail '()))
 
@@ -150,6 +151,7 @@ what it holds of each."
       (make-robot-image
        :name (robot-name robot) :x (robot-x robot) :y (robot-y robot) :angle (robot-angle robot)
        :speed (robot-speed robot) :place (robot-last-place robot)
+       :under-way (under-way-text robot) :interruption (interruption-text robot)
        :cameras (images (lambda (camera) (image-of-camera camera history))
                         (robot-cameras robot))
        :hands (images #'image-of-hand (robot-hands robot))

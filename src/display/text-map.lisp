@@ -147,8 +147,9 @@ places, things by their initials, robots as arrows, and what it all means. With 
 number of cells, it shows only the surroundings of ROBOT. Call it where the world stands still.
 Signals WRONG-ARGUMENT."
   (check-argument text-map robot (robot-p robot) "a robot")
-  (check-argument text-map columns (typep columns '(integer 10)) "an integer from 10")
-  (check-argument text-map radius (typep radius '(or null (integer 0))) "a number of cells")
+  (check-argument text-map columns (whole-p columns 10 100000) "an integer from 10 to 100000")
+  (check-argument text-map radius (or (null radius) (whole-p radius))
+                  "a whole number of cells, from 0 to 1e9, or NIL")
   (with-output-to-string (stream)
     (draw (if radius
               (near-view robot radius (- columns 5))

@@ -20,10 +20,17 @@
 
 (public (atan2 :ars :nisp))
 (defun atan2 (y x)
-  "Return the angle of the direction (X, Y), in radians from -pi to pi (manual, Figure D.8)."
-  (check-argument atan2 y (realp y) "a real number")
-  (check-argument atan2 x (realp x) "a real number")
+  "Return the angle of the direction (X, Y), in radians from -pi to pi (manual, Figure D.8). Signals
+WRONG-ARGUMENT."
+  (check-finite atan2 y)
+  (check-finite atan2 x)
   (atan (double y) (double x)))
+
+;; Beyond that too little is left of the part of a turn.
+(defmacro check-angle (operator place)
+  "Signal WRONG-ARGUMENT unless PLACE is an angle."
+  `(check-argument ,operator ,place (within-reason-p ,place)
+                   "an angle in radians, from -1e9 to 1e9"))
 
 (declaim (inline reduced-angle))
 (defun reduced-angle (angle)
@@ -37,15 +44,16 @@
 (addition angle-difference)
 (defun angle-difference (a b)
   "Return the angle A minus the angle B without whole turns: the signed turn, in (-pi, pi]
-radians, that leads from B to A (reading 50)."
-  (check-argument angle-difference a (realp a) "a real number")
-  (check-argument angle-difference b (realp b) "a real number")
+radians, that leads from B to A (reading 50). Signals WRONG-ARGUMENT unless both are from -1e9 to
+1e9."
+  (check-angle angle-difference a)
+  (check-angle angle-difference b)
   (reduced-angle (- (double a) (double b))))
 
 (addition nearest-angle)
 (defun nearest-angle (angle candidate &rest more)
   "Return the one of CANDIDATE and MORE that is the least turn away from ANGLE, all in radians,
-as it was given; the first of equals."
+as it was given; the first of equals. Signals WRONG-ARGUMENT."
   (declare (dynamic-extent more))
   (let ((least (abs (angle-difference candidate angle))))
     (dolist (other more candidate)

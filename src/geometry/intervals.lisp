@@ -51,7 +51,7 @@ the two axes; 0 just if they intersect (manual, Table 3.2)."
 (defun in-interval (x interval)
   "True if the number or point X is in INTERVAL, bounds included (manual, Table 3.2)."
   (dispatch in-interval (x interval) "a number and an INTERVAL, or a PT and a PT-INTERVAL"
-    ((real span) (<= (low interval) (double x) (high interval)))
+    ((finite span) (<= (low interval) (double x) (high interval)))
     ((pt region) (and (<= (low-x interval) (%pt-x x) (high-x interval))
                       (<= (low-y interval) (%pt-y x) (high-y interval))))))
 
@@ -141,14 +141,14 @@ that is nothing (manual, Table 3.2)."
 (defun add-to-lbi! (interval x)
   "Grow INTERVAL just so that it contains the number or point X, and return it (manual, Table 3.2)."
   (dispatch add-to-lbi! (interval x) "an INTERVAL and a number, or a PT-INTERVAL and a PT"
-    ((interval real) (interval-lbi! interval x))
+    ((interval finite) (interval-lbi! interval x))
     ((pt-interval pt) (interval-lbi! interval x))))
 
 (public add-to-lbi)
 (defun add-to-lbi (interval x)
   "Return the least interval that contains INTERVAL and the number or point X (manual, Table 3.2)."
   (dispatch add-to-lbi (interval x) "an INTERVAL and a number, or a PT-INTERVAL and a PT"
-    ((span real) (interval-lbi! (lift interval) x))
+    ((span finite) (interval-lbi! (lift interval) x))
     ((region pt) (interval-lbi! (lift interval) x))))
 
 (public interval-lift)
@@ -156,18 +156,18 @@ that is nothing (manual, Table 3.2)."
   "Return the interval that contains only X: an INTERVAL of a number, a PT-INTERVAL of a point
 (manual, Table 3.2)."
   (dispatch interval-lift (x) "a number or a PT"
-    (((or real pt)) (lift x))))
+    (((or finite pt)) (lift x))))
 
 (public lift-lbi)
 (defun lift-lbi (x &rest more)
   "Return the least interval that contains X and each of MORE, all numbers or all points
 (manual, Table 3.2)."
   (declare (dynamic-extent more))
-  (check-argument lift-lbi x (typep x '(or real pt)) "a number or a PT")
+  (check-argument lift-lbi x (typep x '(or finite pt)) "a number or a PT")
   (let ((interval (lift x)))
     (dolist (x more interval)
       (dispatch lift-lbi (interval x) "all numbers or all points"
-        ((interval real) (interval-lbi! interval x))
+        ((interval finite) (interval-lbi! interval x))
         ((pt-interval pt) (interval-lbi! interval x))))))
 
 ;;; Growth.
@@ -187,8 +187,8 @@ that is nothing (manual, Table 3.2)."
   "Push each boundary of INTERVAL outward by the number AMOUNT, and return INTERVAL. A negative
 AMOUNT shrinks it, at most to its centre (manual, Table 3.2)."
   (dispatch grow-interval! (interval amount) "an INTERVAL or PT-INTERVAL and a number"
-    ((interval real) (%grow! interval (double amount)))
-    ((pt-interval real)
+    ((interval finite) (%grow! interval (double amount)))
+    ((pt-interval finite)
      (%grow! (%pt-interval-x interval) (double amount))
      (%grow! (%pt-interval-y interval) (double amount))))
   interval)
@@ -198,5 +198,5 @@ AMOUNT shrinks it, at most to its centre (manual, Table 3.2)."
   "Return INTERVAL with each boundary pushed outward by the number AMOUNT, which may be negative;
 INTERVAL then shrinks, at most to its centre (manual, Table 3.2)."
   (dispatch grow-interval (interval amount) "an INTERVAL or PT-INTERVAL and a number"
-    ((span real) (grow-interval! (lift interval) amount))
-    ((region real) (grow-interval! (lift interval) amount))))
+    ((span finite) (grow-interval! (lift interval) amount))
+    ((region finite) (grow-interval! (lift interval) amount))))

@@ -39,7 +39,7 @@ Table 3.1)."
 of which one may be an element (manual, Table 3.1)."
   (dispatch add (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (%make-pt (+ (%pt-x a) (%pt-x b)) (+ (%pt-y a) (%pt-y b))))
-    ((real real) (+ (double a) (double b)))
+    ((finite finite) (+ (double a) (double b)))
     ((span span) (add! (lift a) b))
     ((region region) (add! (lift a) b))))
 
@@ -61,7 +61,7 @@ their elements (manual, Table 3.1; reading 48)."
 one may be an element (manual, Table 3.1)."
   (dispatch subtract (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (%make-pt (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
-    ((real real) (- (double a) (double b)))
+    ((finite finite) (- (double a) (double b)))
     ((span span) (subtract! (lift a) b))
     ((region region) (subtract! (lift a) b))))
 
@@ -80,7 +80,7 @@ one may be an element (manual, Table 3.1)."
 (defun neg (a)
   "Return the negative of A, a point, number, interval or point interval (manual, Table 3.1)."
   (dispatch neg (a) "a PT, INTERVAL, PT-INTERVAL or number"
-    ((real) (- 0d0 (double a)))
+    ((finite) (- 0d0 (double a)))
     (((or pt interval pt-interval)) (neg! (copy-obj a)))))
 
 (public mul!)
@@ -88,7 +88,7 @@ one may be an element (manual, Table 3.1)."
   "Multiply A by the number FACTOR, and return A. A negative FACTOR swaps the bounds of an
 interval; the FACTOR of an interval may be an interval itself (manual, Table 3.1)."
   (dispatch mul! (a factor) "a PT, INTERVAL or PT-INTERVAL and a number"
-    ((pt real) (let ((factor (double factor)))
+    ((pt finite) (let ((factor (double factor)))
                  (set-pt! a (* (%pt-x a) factor) (* (%pt-y a) factor))))
     ((interval span) (%mul! a (low factor) (high factor)))
     ((pt-interval span)
@@ -102,8 +102,8 @@ interval; the FACTOR of an interval may be an interval itself (manual, Table 3.1
   "Return A, a point, number, interval or point interval, multiplied by the number FACTOR; an
 interval as FACTOR gives the interval or point interval of all products (manual, Table 3.1)."
   (dispatch mul (a factor) "a point, interval or point interval and a number"
-    ((pt real) (mul! (copy-obj a) factor))
-    ((real real) (* (double a) (double factor)))
+    ((pt finite) (mul! (copy-obj a) factor))
+    ((finite finite) (* (double a) (double factor)))
     ((span span) (mul! (lift a) factor))
     ((region span) (mul! (lift a) factor))))
 
@@ -129,7 +129,7 @@ interval as FACTOR gives the interval or point interval of all products (manual,
 interval, the INTERVAL of the lengths of its elements (manual, Table 3.1)."
   (dispatch norm (a) "a PT, INTERVAL, PT-INTERVAL or number"
     ((pt) (length-of (%pt-x a) (%pt-y a)))
-    ((real) (abs (double a)))
+    ((finite) (abs (double a)))
     ((interval) (%make-interval (least-size a) (greatest-size a)))
     ((pt-interval)
      (let ((x (%pt-interval-x a)) (y (%pt-interval-y a)))

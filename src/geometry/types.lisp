@@ -6,6 +6,23 @@
 ;;; has its min above its max. A point interval owns its two intervals: no other object shares
 ;;; them, so that a destructive operation changes its first operand only (manual 3.2.1).
 
+;;; What a double-float cannot stand for, infinite or no number is in none of these; nor does
+;;; DISPATCH (see operands.lisp) let anything be computed that would be.
+
+(define-constant +finite-text+ "a real number, from -1.7e308 to 1.7e308" :test #'string=
+  :documentation "In words, what a double-float can stand for.")
+
+(defmacro check-finite (operator place)
+  "Signal WRONG-ARGUMENT unless PLACE is a number that a double-float can stand for."
+  `(check-argument ,operator ,place (finite-p ,place) +finite-text+))
+
+(defmacro within-floats ((operator operand) &body body)
+  "Evaluate BODY. Signal WRONG-ARGUMENT about OPERAND, a variable, if a number overflows."
+  `(handler-case (progn ,@body)
+     (floating-point-overflow ()
+       (reject-argument ',operator ',operand ,operand
+                        "operands whose result is not beyond 1.7e308 either way"))))
+
 ;;; Points.
 
 (public pt)
@@ -19,27 +36,30 @@
 
 (addition make-pt)
 (defun make-pt (x y)
-  "Return the point (X, Y); both are real numbers, in metres. Written (make PT X Y) in Nisp."
-  (check-argument make-pt x (realp x) "a real number")
-  (check-argument make-pt y (realp y) "a real number")
+  "Return the point (X, Y); both are real numbers, in metres, up to 1.7e308 either
+way. Written (make PT X Y) in Nisp. Signals WRONG-ARGUMENT."
+  (check-finite make-pt x)
+  (check-finite make-pt y)
   (%make-pt (double x) (double y)))
 
 (addition pt-x)
+(settable pt-x)
 (defun pt-x (pt)
   "Return the horizontal coordinate of PT, in metres. Can be set."
   (%pt-x pt))
 
 (defun (setf pt-x) (x pt)
-  (check-argument pt-x x (realp x) "a real number")
+  (check-finite pt-x x)
   (setf (%pt-x pt) (double x)))
 
 (addition pt-y)
+(settable pt-y)
 (defun pt-y (pt)
   "Return the vertical coordinate of PT, in metres, growing downward. Can be set."
   (%pt-y pt))
 
 (defun (setf pt-y) (y pt)
-  (check-argument pt-y y (realp y) "a real number")
+  (check-finite pt-y y)
   (setf (%pt-y pt) (double y)))
 
 (defun set-pt! (pt x y)
@@ -67,30 +87,32 @@
 
 (addition make-interval)
 (defun make-interval (min max)
-  "Return the interval from MIN to MAX, real numbers. MIN above MAX is an error. Written
-(make INTERVAL MIN MAX) in Nisp."
-  (check-argument make-interval min (realp min) "a real number")
-  (check-argument make-interval max (realp max) "a real number")
+  "Return the interval from MIN to MAX, real numbers up to 1.7e308 either way. MIN above MAX is an
+error. Written (make INTERVAL MIN MAX) in Nisp. Signals WRONG-ARGUMENT."
+  (check-finite make-interval min)
+  (check-finite make-interval max)
   (check-argument make-interval min (<= min max) "a number that is not above the max")
   (%make-interval (double min) (double max)))
 
 (addition interval-min)
+(settable interval-min)
 (defun interval-min (interval)
   "Return the lower bound of INTERVAL. Can be set, not above the upper bound."
   (%interval-min interval))
 
 (defun (setf interval-min) (min interval)
-  (check-argument interval-min min (and (realp min) (<= min (%interval-max interval)))
+  (check-argument interval-min min (and (finite-p min) (<= min (%interval-max interval)))
                   "a number that is not above the max; set the max first")
   (setf (%interval-min interval) (double min)))
 
 (addition interval-max)
+(settable interval-max)
 (defun interval-max (interval)
   "Return the upper bound of INTERVAL. Can be set, not below the lower bound."
   (%interval-max interval))
 
 (defun (setf interval-max) (max interval)
-  (check-argument interval-max max (and (realp max) (>= max (%interval-min interval)))
+  (check-argument interval-max max (and (finite-p max) (>= max (%interval-min interval)))
                   "a number that is not below the min; set the min first")
   (setf (%interval-max interval) (double max)))
 
@@ -119,11 +141,14 @@ interval that holds only it. Written (make PT-INTERVAL A B) in Nisp. See reading
          (%make-pt-interval (span-between (%pt-x a) (%pt-x b))
                             (span-between (%pt-y a) (%pt-y b))))
         (t
-         (check-argument make-pt-interval a (typep a '(or real interval))
-                         "two intervals or two points")
-         (check-argument make-pt-interval b (typep b '(or real interval))
-                         "two intervals or two points")
+         (check-side a)
+         (check-side b)
          (%make-pt-interval (lift a) (lift b)))))
+
+(defun check-side (side)
+  (unless (interval-p side)
+    (check-argument make-pt-interval side (finite-p side)
+                    "two intervals or two points; a number is from -1.7e308 to 1.7e308")))
 
 (defun span-between (a b)
   "Return the interval with the ends A and B, in either order."
@@ -141,12 +166,14 @@ interval that holds only it. Written (make PT-INTERVAL A B) in Nisp. See reading
 (declaim (inline pt-interval-x pt-interval-y))
 
 (addition pt-interval-x)
+(settable pt-interval-x)
 (defun pt-interval-x (pt-interval)
   "Return the INTERVAL along x of PT-INTERVAL, its own: changing it changes PT-INTERVAL. Setting
 it copies the bounds of an interval."
   (%pt-interval-x pt-interval))
 
 (addition pt-interval-y)
+(settable pt-interval-y)
 (defun pt-interval-y (pt-interval)
   "Return the INTERVAL along y of PT-INTERVAL, its own: changing it changes PT-INTERVAL. Setting
 it copies the bounds of an interval."
@@ -164,17 +191,20 @@ it copies the bounds of an interval."
                   (%interval-min interval) (%interval-max interval))
   interval)
 
+(defun side-length (side)
+  (- (%interval-max side) (%interval-min side)))
+
 (addition pt-interval-dx)
 (defun pt-interval-dx (pt-interval)
   "Return how wide PT-INTERVAL is along x, in metres."
-  (let ((side (%pt-interval-x pt-interval)))
-    (- (%interval-max side) (%interval-min side))))
+  (within-floats (pt-interval-dx pt-interval)
+    (side-length (%pt-interval-x pt-interval))))
 
 (addition pt-interval-dy)
 (defun pt-interval-dy (pt-interval)
   "Return how wide PT-INTERVAL is along y, in metres."
-  (let ((side (%pt-interval-y pt-interval)))
-    (- (%interval-max side) (%interval-min side))))
+  (within-floats (pt-interval-dy pt-interval)
+    (side-length (%pt-interval-y pt-interval))))
 
 ;; Inline, so that bounds need not be boxed on the way.
 (declaim (inline set-pt-interval!))
@@ -203,7 +233,8 @@ is its own copy (manual 3.2.1; reading 234)."
 (public equal)
 (defun equal (a b)
   "True if A and B are the same PT, INTERVAL or PT-INTERVAL value, exactly; of anything else, if
-they are CL:EQUAL (manual 3.2.1; reading 30)."
+they are CL:EQUAL (manual 3.2.1; reading 30). It can be the test of a hash table, whose keys must
+not be changed then."
   (typecase a
     (pt (and (pt-p b) (= (%pt-x a) (%pt-x b)) (= (%pt-y a) (%pt-y b))))
     (interval (and (interval-p b)
@@ -213,6 +244,19 @@ they are CL:EQUAL (manual 3.2.1; reading 30)."
                       (equal (%pt-interval-x a) (%pt-interval-x b))
                       (equal (%pt-interval-y a) (%pt-interval-y b))))
     (t (cl:equal a b))))
+
+;; 0 and -0 are the same here, and not to SXHASH.
+(defun hash (object)
+  "Return an integer for OBJECT; what is EQUAL has the same."
+  (flet ((mix (a b) (sxhash (list (+ 0d0 a) (+ 0d0 b)))))
+    (typecase object
+      (pt (mix (%pt-x object) (%pt-y object)))
+      (interval (mix (%interval-min object) (%interval-max object)))
+      (pt-interval (logxor (hash (%pt-interval-x object))
+                           (* 3 (ash (hash (%pt-interval-y object)) -3))))
+      (t (sxhash object)))))
+
+(define-table-test equal hash)
 
 (defun print-value (object stream numbers control &rest parts)
   "Print OBJECT unreadably, as all digits of NUMBERS; for PRINC, its PARTS by CONTROL."

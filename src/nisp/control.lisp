@@ -48,6 +48,7 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
                   (format nil "the index of one of ~D elements, from 0" (length vector))))
 
 (public vref)
+(settable vref)
 (defun vref (vector index)
   "Return the element of VECTOR (a vector or a list) at INDEX, counted from 0. Can be set
 (manual 3.1.3)."

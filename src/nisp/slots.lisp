@@ -112,7 +112,9 @@ the name of a function of the object; WRITER, if the slot can be set, is (SETF R
 name of a function of the value and the object."
   (let ((accessor (slot-accessor-name name))
         (direct (and (symbolp reader)
-                     (or (null writer) (setf-of-p writer reader)))))
+                     (if writer
+                         (setf-of-p writer reader)
+                         (not (fboundp `(setf ,reader)))))))
     `(progn
        (eval-when (:compile-toplevel :load-toplevel :execute)
          (ensure-slot-accessor ',name))

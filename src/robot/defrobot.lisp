@@ -11,8 +11,8 @@
   (list (double (first specification)) (second specification)))
 
 (defun parse-amount (amount reject)
-  (unless (and (finite-p amount) (not (minusp amount)))
-    (funcall reject amount "a number, 0 or more"))
+  (unless (amount-p amount)
+    (funcall reject amount (argument-type-text 'amount)))
   (double amount))
 
 (defun maps-to-choose (name)
@@ -30,14 +30,14 @@
   (let ((map (or (find-map environment nil)
                  (funcall reject environment (maps-to-choose environment)))))
     (destructuring-bind (x y) position
-      (unless (and (finite-p x) (finite-p y))
-        (funcall reject position "a position (x y), two numbers"))
+      (unless (and (within-reason-p x) (within-reason-p y))
+        (funcall reject position "a position (x y), two numbers from -1e9 to 1e9"))
       (let ((trouble (start-trouble map x y)))
         (when trouble
           (funcall reject position (format nil "a position in the open of ~(~A~), and ~A"
                                            (map-name map) trouble))))
-      (unless (and (finite-p angle) (< -1d9 angle 1d9))
-        (funcall reject angle "a heading in radians, between -1e9 and 1e9"))
+      (unless (within-reason-p angle)
+        (funcall reject angle (argument-type-text 'angle)))
       map)))
 
 (defun settable-slots (kind)
@@ -57,7 +57,7 @@ own fixed ones."
   (let ((slot (and (keywordp initarg)
                    (find initarg (settable-slots kind)
                          :key #'kind-slot-name :test #'same-name-p))))
-    (when slot
+    (when (and slot (or (not (realp value)) (finite-p value)))
       (let ((value (if (and (realp value) (eq 'double-float (kind-slot-type slot)))
                        (double value)
                        value)))

@@ -57,10 +57,9 @@ no part of the robot any more."
   "Put ROBOT at (X,Y) heading ANGLE at once, without error and ignoring obstacles: a change from
 outside, as the prompt's POS and ANGLE make. Signals WRONG-ARGUMENT (manual E). See reading 114."
   (check-argument place-robot robot (robot-p robot) "a robot")
-  (check-argument place-robot x (finite-p x) "a number of metres")
-  (check-argument place-robot y (finite-p y) "a number of metres")
-  (check-argument place-robot angle (and (finite-p angle) (< -1d9 angle 1d9))
-                  "an angle in radians, between -1e9 and 1e9")
+  (check-of-type 'place-robot 'x x 'number)
+  (check-of-type 'place-robot 'y y 'number)
+  (check-of-type 'place-robot 'angle angle 'angle)
   (let ((map (world-map (robot-world robot))))
     (unless (map-index map x y)
       (error 'wrong-argument :operator "pos" :name "position" :value (list x y)

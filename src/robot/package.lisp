@@ -53,7 +53,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
   (:export #:own-symbol #:reading-reliability #:reading-deviation #:read-attribute #:angle-error
            #:specification-p #:specification-trouble #:notice-probability #:sighting
            #:designate #:look-for-things #:tend-tracks #:tracks-busy-p
-           #:track #:track-ended #:serial-designator #:make-designator
+           #:track #:track-operation #:track-ended #:serial-designator #:make-designator
            #:look-for-places #:camera-heading #:take-view #:start-track #:trackable-p
            #:in-same-cell-p)
   ;; inside

@@ -56,10 +56,10 @@ Nobody else can do that meanwhile, continuations neither."
 
 (addition run-ticks)
 (defun run-ticks (count &optional (simulation (current-simulation)))
-  "Pass COUNT ticks of the headless SIMULATION. Return the tick then reached. Signals
+  "Pass COUNT ticks of the headless SIMULATION, at most 1e9. Return the tick then reached. Signals
 WRONG-ARGUMENT, and MISUSE if SIMULATION runs live or is inside a tick, or if another thread passes
 its ticks."
-  (check-argument run-ticks count (typep count '(integer 0)) "a number of ticks, 0 or more")
+  (check-argument run-ticks count (whole-p count 0) "a whole number of ticks, from 0 to 1e9")
   (check-headless simulation 'run-ticks)
   (check-not-over simulation 'run-ticks)
   (check-passable simulation)
@@ -87,7 +87,7 @@ true, but at most LIMIT. Return what it returned and the tick reached; NIL means
 (defun step-ticks (&optional (count 1) (simulation (current-simulation)))
   "Pass COUNT ticks and then pause. A headless SIMULATION has passed them on return; a live one
 passes them at its pace. Returns nothing."
-  (check-argument step-ticks count (typep count '(integer 1)) "a number of ticks, 1 or more")
+  (check-argument step-ticks count (whole-p count 1) "a whole number of ticks, from 1 to 1e9")
   (if (live-p simulation)
       (let-pass count simulation)
       (run-ticks count simulation))

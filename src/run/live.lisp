@@ -35,7 +35,9 @@ way stay as they are; START-CLOCK goes on with them. Return SIMULATION."
 (defun await-idle (&optional (simulation (current-simulation)) (seconds 60))
   "Wait until nothing is left to do in the live SIMULATION, at most SECONDS. True if so. Where
 things have kickers, something is always left to do. Of one that is not live, return at once whether
-nothing is left."
+nothing is left. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9."
+  (check-argument await-idle seconds (and (within-reason-p seconds) (<= 0 seconds))
+                  "a number of seconds, from 0 to 1e9")
   (let ((simulation (simulation-meant simulation)))
     (cond ((not (live-p simulation)) (idle-p simulation))
           ((eq (current-thread) (simulation-thread simulation))

@@ -12,7 +12,7 @@
 
 (defun room-left-p (journal)
   "True if JOURNAL may have another entry. A limit that is no number does not count."
-  (not (and (realp *journal-limit*)
+  (not (and (finite-p *journal-limit*)
             (>= (journal-length journal) *journal-limit*))))
 
 (defun note (simulation operator arguments)

@@ -32,6 +32,23 @@ definitions than those at hand."
         (replay-anyway ()
           :report "Replay it all the same.")))))
 
+;;; Silence. A run in which nothing was asked for goes on as long as somebody lets it; whoever reads
+;;; a journal that says so may not want to.
+
+(defconstant +longest-silence+ 10000000
+  "For how many ticks without an entry a journal is repeated unless somebody says how far.")
+
+(defun check-silence (journal)
+  "Signal MISUSE if nothing is asked for in JOURNAL for too long."
+  (loop with before = 0
+        for tick in (append (mapcar #'first (journal-entries journal))
+                            (list (journal-end journal)))
+        do (when (> (- tick before) +longest-silence+)
+             (reject-use "The journal goes on to tick ~D without any entry after tick ~D. Say how ~
+                          far to repeat it: (replay journal :until ~D), or all of it: :until ~D."
+                         tick before before (journal-end journal)))
+           (setf before tick)))
+
 ;;; Entries.
 
 (defun entry-text (entry number)
@@ -46,7 +63,8 @@ definitions than those at hand."
         (let ((operator (find-operator name))
               (arguments (internalize arguments simulation)))
           (check-operands operator arguments)
-          (apply (operator-function operator) arguments))
+          (let ((*asker* "the journal"))
+            (apply (operator-function operator) arguments)))
       (error (trouble)
         (reject-use "The journal cannot be replayed: its ~A: ~A."
                     (entry-text entry number) (one-line-text trouble))))))
@@ -74,6 +92,7 @@ after each tick of that, with the simulation."
          (header (journal-header journal))
          (blueprints (mapcar #'find-blueprint (getf header :robots))))
     (unless anyway (check-definitions header blueprints))
+    (unless until (check-silence journal))
     (call-with-simulation
      (lambda ()
        (let ((simulation (current-simulation)))
@@ -91,7 +110,8 @@ been repeated, up to the tick UNTIL or its end, with robots and parameters bound
 WITH-SIMULATION: a run can be rewound so, and go on differently. At UNTIL, what was asked for or
 changed when that tick had passed, also by continuations, has not happened. Commands are repeated
 without their continuations. Return the values of BODY. Signals DAMAGED-JOURNAL, WRONG-ARGUMENT
-for a tick beyond its end, UNKNOWN-NAME when the world is not loaded, and DIFFERENT-DEFINITIONS
+for a tick beyond its end, MISUSE where nothing happens for ten million ticks and nobody says UNTIL
+when, UNKNOWN-NAME when the world is not loaded, and DIFFERENT-DEFINITIONS
 when what is loaded is not what the run was recorded with, unless ANYWAY is true."
   `(call-with-replay (lambda () ,@body) ,journal :until ,until :anyway ,anyway))
 

@@ -95,7 +95,9 @@ other thread can find it before PREPARE, a function, has been called with it."
 
 (addition add-observer)
 (defun add-observer (function &optional (simulation (current-simulation)))
-  "Call FUNCTION with SIMULATION after each of its ticks. Return FUNCTION."
+  "Call FUNCTION with SIMULATION after each of its ticks. Return FUNCTION. Signals WRONG-ARGUMENT."
+  (check-argument add-observer function (typep function '(or function (and symbol (not null))))
+                  "a function of a simulation")
   (asking (simulation)
     (setf (simulation-observers simulation)
           (append (simulation-observers simulation) (list function))))

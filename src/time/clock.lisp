@@ -118,7 +118,8 @@
   "Let a new thread pass ticks of TIMELINE at RATE by calling TICK, as long as IDLE-P is false, both
 functions of no arguments. The thread works inside CALLER, a function of a function that calls it,
 and is handed the custody of TIMELINE, which this thread has. Return TIMELINE. Signals MISUSE if it
-is live already, WRONG-ARGUMENT for a rate that is neither a positive number nor :FREE."
+is live already, WRONG-ARGUMENT for a rate that is neither a number from 0.001 to 1000000 nor
+:FREE."
   (check-rate rate)
   (when (live-p timeline) (reject-use "~A runs live already." (timeline-name timeline)))
   (start-threads (make-pacing timeline rate tick idle-p

@@ -68,10 +68,13 @@ what users' code the thread is in."
 
 ;;; Steering.
 
+(define-argument-type 'rate
+  (lambda (value) (or (eq value :free) (and (finite-p value) (<= 1/1000 value 1000000))))
+  "a number of ticks per second, from 0.001 to 1000000, or :free")
+
 (defun check-rate (rate)
-  "Signal WRONG-ARGUMENT unless RATE is a positive number or :FREE."
-  (check-argument rate rate (or (eq rate :free) (and (realp rate) (plusp rate)))
-                  "a positive number of ticks per second, or :free"))
+  "Signal WRONG-ARGUMENT unless RATE can be the pace of a clock."
+  (check-of-type 'set-rate 'rate rate 'rate))
 
 (defun steer (simulation &key (rate nil rate-p) (paused-p nil paused-p-p) steps)
   "Change how SIMULATION is paced, and wake it. Without effect if it never ran live."
@@ -99,8 +102,8 @@ what users' code the thread is in."
 
 (addition set-rate)
 (defun set-rate (rate &optional (simulation (current-simulation)))
-  "Set the pace of SIMULATION to RATE, ticks per second or :FREE. Returns RATE. Signals
-WRONG-ARGUMENT."
+  "Set the pace of SIMULATION to RATE, from 0.001 to 1000000 ticks per second, or :FREE. Returns
+RATE. Signals WRONG-ARGUMENT."
   (check-rate rate)
   (steer simulation :rate rate)
   rate)

@@ -5,14 +5,18 @@
 they wait in; the pace of a live one. Knows nothing of worlds, robots and journals.")
   (:use :cl :ars-magna.base)
   ;; resource, event, agenda
-  (:export #:resource #:resource-event #:event #:event-pending-p #:event-resource #:event-time
-           #:event-priority #:agenda #:make-agenda #:agenda-tick #:agenda-pending #:queue-event
+  (:export #:resource #:resource-event #:resource-interruption #:event #:event-pending-p
+           #:event-resource #:event-time #:event-priority
+           #:agenda #:make-agenda #:agenda-tick #:agenda-pending #:queue-event
            #:queue-again #:+longest-delay+ #:cancel-event #:interrupt-event
            #:pending-event #:advance-agenda
            #:pending-events)
   ;; request
   (:export #:request #:make-request #:request-operator #:request-arguments #:request-entry
-           #:perform)
+           #:request-asker #:perform)
+  ;; interruptions
+  (:export #:request-name #:note-interruption #:interruption-tick #:interruption-what
+           #:interruption-asker #:interruption-by #:interruption-by-asker)
   ;; timeline
   (:export #:timeline #:make-timeline #:timeline-p #:timeline-of #:timeline-name #:timeline-tick
            #:timeline-agenda #:timeline-run #:timeline-over #:timeline-custody

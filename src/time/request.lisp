@@ -10,7 +10,9 @@
     "Something asked of a run."
   (:fixed
    (operator nil t "what is asked for: an operator's name, or what has one")
-   (arguments '() list "what it is asked for with")))
+   (arguments '() list "what it is asked for with"))
+  (:memory
+   (asker nil t "a note of who asked for it")))
 
 (document-functions
   make-request "Return a request for the operator called OPERATOR with the list ARGUMENTS.")

@@ -6,4 +6,6 @@
     "What commands and events compete for: a robot or one of its parts. Anything else may serve as
 a resource of SCHEDULE too; these carry their pending event themselves, which is faster."
   (:state
-   (event nil t "the event or command that is pending on the resource, or NIL")))
+   (event nil t "the event or command that is pending on the resource, or NIL"))
+  (:memory
+   (interruption nil t "what was interrupted last on the resource, or NIL")))

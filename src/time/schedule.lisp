@@ -54,7 +54,9 @@
          (rival (and resource (pending-event agenda resource))))
     (cond ((and rival (>= (event-priority rival) (event-priority event)))
            (interrupt-scheduled event))
-          (t (when rival (interrupt-event agenda rival))
+          (t (when rival
+               (note-interruption rival event (1+ (agenda-tick agenda)))
+               (interrupt-event agenda rival))
              (enter event agenda)))))
 
 (defun call-scheduled (function resource
@@ -63,11 +65,11 @@
   "Ask for an event that calls FUNCTION. See SCHEDULE, of which this is the function. Returns
 nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
   (check-argument schedule priority (typep priority 'fixnum) "an integer")
-  (check-argument schedule timer (typep timer `(integer 0 ,+longest-delay+))
-                  "a number of ticks, from 0 to 2^59")
-  (check-argument schedule timeout (typep timeout `(or null (integer 0 ,+longest-delay+)))
-                  "a number of ticks, from 0 to 2^59")
-  (post (make-scheduled function resource priority interrupt when timeout timer) simulation))
+  (check-of-type 'schedule 'timer timer 'tick-span)
+  (when timeout (check-of-type 'schedule 'timeout timeout 'tick-span))
+  (post (make-scheduled function (given 'schedule "resource" resource) priority
+                        interrupt when timeout timer)
+        simulation))
 
 ;; Only in memory: a function cannot be written to a file.
 (defmethod request-entry ((event scheduled))
@@ -88,10 +90,10 @@ nothing. Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an 
 now. On a resource that has an event, the one with the higher :PRIORITY (an integer, default 0)
 stays, of equal ones the first; the form INTERRUPT is evaluated if this event loses. With the
 form WHEN, the event happens in the first tick from then on in which WHEN is true, at most
-TIMEOUT ticks from now; then it evaporates. Both forms, like BODY, run inside ticks. Resources that
-are EQUAL are the same. What is asked of a resource, by commands too, is taken in the order of
-asking, at the start of the next tick; a command has the priority 0, and takes over whatever is
-there. Returns nothing (manual 3.8). See reading 7."
+TIMEOUT ticks from now; then it evaporates. TIMER and TIMEOUT are integers from 0 to 1e9. INTERRUPT
+and WHEN, like BODY, run inside ticks. Resources that are EQUAL are the same. What is asked of a
+resource, by commands too, is taken in the order of asking, at the start of the next tick; a command
+has the priority 0, and takes over whatever is there. Returns nothing (manual 3.8). See reading 7."
   `(call-scheduled (lambda () ,@body) ,resource
                    :priority ,(or priority 0)
                    :timer ,(or timer 1)
@@ -114,13 +116,17 @@ a tick, by the owner. A layer that adds background activities adds a method.")
     "That a resource, the only argument, is to be taken from whatever occupies it.")
 
 (defmethod perform ((grab grab) timeline)
-  (release-resource (first (request-arguments grab)) timeline))
+  (let* ((resource (first (request-arguments grab)))
+         (agenda (timeline-agenda timeline))
+         (event (pending-event agenda resource)))
+    (when event (note-interruption event grab (1+ (agenda-tick agenda))))
+    (release-resource resource timeline)))
 
 (public grab-resource)
 (defun grab-resource (resource &optional (simulation (current-simulation)))
   "Interrupt the command or event that occupies RESOURCE, and a track that it keeps, at the
 start of the next tick. Returns nothing (manual, figure D.3). See reading 37."
-  (post (make-grab (list resource)) simulation))
+  (post (make-grab (list (given 'grab-resource "resource" resource))) simulation))
 
 (define-operator 'grab '(datum) #'grab-resource)
 

@@ -85,6 +85,7 @@ posted before. Any thread may post. Return nothing. Signals MISUSE if the run is
 See reading 219."
   (let ((timeline (timeline-of object)))
     (check-not-over timeline)
+    (setf (request-asker request) (note-of-asker))
     (atomic-push request (timeline-inbox timeline))
     ;; It may have ended just now, and its inbox may have been emptied for the last time.
     (when (and (timeline-over timeline) (withdraw request timeline))

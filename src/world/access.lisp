@@ -36,8 +36,8 @@ does with the list ARGUMENTS.")
      (call-writing #'write-it ,world)))
 
 (defun world-of-living (thing)
-  "Return the world that THING is in, or NIL if it is a prototype or has been destroyed, so that what
-becomes of it is nobody's business."
+  "Return the world that THING is in, or NIL if it is a prototype or has been destroyed, so that
+what becomes of it is nobody's business."
   (and (thing-alive-p thing) (thing-world thing)))
 
 (defmacro changing ((world operator &rest arguments) &body body)

@@ -7,12 +7,19 @@
 
 (defun asking-form-p (form)
   "True if FORM is a list (attribute value) or (attribute value threshold), whatever the values of
-that attribute are. A value is an atom or a list that ends, a threshold NIL or not below 0."
+that attribute are. A value is an atom or a list that ends, a threshold NIL or not below 0; numbers
+are from -1e15 to 1e15."
   (and (proper-list-p form)
        (<= 2 (length form) 3)
        (first form) (symbolp (first form))
-       (or (atom (second form)) (proper-list-p (second form)))
-       (typep (third form) '(or null (real 0)))))
+       (askable-p (second form))
+       (or (null (third form)) (amount-p (third form)))))
+
+(defun askable-p (value)
+  "True if VALUE, an atom or a list that ends, has no number in it that is beyond reason."
+  (if (consp value)
+      (and (proper-list-p value) (every #'askable-p value))
+      (or (not (realp value)) (quantity-p value))))
 
 (defun range-p (value)
   "True if VALUE is a range: a list of two numbers, the lower one first."

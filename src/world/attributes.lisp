@@ -68,8 +68,8 @@
 (defun check-attribute-clauses (definition domain base max-mult supported-by)
   (check-domain definition domain)
   (loop for (option value) in `((:base ,base) (:max-mult ,max-mult))
-        unless (and (finite-p value) (<= 0 value))
-          do (reject-clause definition (list option value) "a number not below 0"))
+        unless (amount-p value)
+          do (reject-clause definition (list option value) (argument-type-text 'amount)))
   (unless (and (proper-list-p supported-by) (every #'symbolp supported-by))
     (reject-clause definition (list :supported-by supported-by) "a list of attribute names")))
 

@@ -19,13 +19,13 @@
 
 (defun check-probability (definition option value)
   "Return VALUE, of OPTION, as a double-float. Signals MALFORMED-DEFINITION."
-  (unless (typep value '(real 0 1))
-    (reject-clause definition (list option value) "a probability from 0 to 1"))
+  (unless (probability-p value)
+    (reject-clause definition (list option value) (argument-type-text 'probability)))
   (double value))
 
 (defun number-pair-p (form)
-  "True if FORM is a list of two real numbers, such as a point or a range."
-  (and (proper-list-p form) (= 2 (length form)) (every #'realp form)))
+  "True if FORM is a list of two numbers from -1e15 to 1e15, such as a point or a range."
+  (and (proper-list-p form) (= 2 (length form)) (every #'quantity-p form)))
 
 (defun check-name (definition name what)
   "Signal MALFORMED-DEFINITION unless the WHAT that is defined can be called NAME."

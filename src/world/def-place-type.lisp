@@ -16,14 +16,21 @@
   (when (eq (null (getf options :check-matchers)) (null (getf options :checker)))
     (reject-clause definition options "either :check-matchers or :checker, one of them")))
 
+(defun checked-direction (definition matcher direction)
+  "Return DIRECTION, which MATCHER says, as a double-float. Signals MALFORMED-DEFINITION."
+  (unless (within-reason-p direction)
+    (reject-clause definition matcher (argument-type-text 'angle)))
+  (double direction))
+
 (defun matcher-form (matcher definition)
   "Return a form that makes the rule for MATCHER, an element of :check-matchers."
   (unless (and (proper-list-p matcher) (<= 2 (length matcher) 4)
-               (every #'integerp (cddr matcher)))
+               (loop for step in (cddr matcher) always (typep step '(signed-byte 16))))
     (reject-clause definition matcher
                    "(match-form direction), or (match-form direction dx dy) for a place beside it"))
   (destructuring-bind (form direction &optional (dx 0) (dy 0)) matcher
-    `(make-rule ',(normal-form form definition) (double ,direction) ,dx ,dy)))
+    `(make-rule ',(normal-form form definition)
+                (checked-direction ,definition ',matcher ,direction) ,dx ,dy)))
 
 ;; As reading 76 says.
 (defun graphics-form (graphics definition)
@@ -73,8 +80,7 @@ REBUILD-MAP. Signals MALFORMED-DEFINITION. Return the name."
                      (lambda () (place-type-forms name lambda-list options))))
 
 (defun check-place-type (definition confusion rules)
-  (unless (typep confusion '(real 0 1))
-    (reject-clause definition (list :confusion confusion) "a probability from 0 to 1"))
+  (check-probability definition :confusion confusion)
   (when (> (length rules) 255)
     (reject-clause definition (list :check-matchers '|...|) "at most 255 matchers")))
 

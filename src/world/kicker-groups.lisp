@@ -202,7 +202,7 @@ Return nothing."
 probability and test say; its own trial is left out that tick (manual 5.3.1). Return nothing.
 See reading 170."
   (check-argument run-kicker attachment (attachment-p attachment) "SELF, while a kicker runs")
-  (let ((world (thing-world (attachment-thing attachment))))
+  (let ((world (world-of-living (attachment-thing attachment))))
     (when (and world (attachment-alive-p attachment))
       (changing (world run-kicker attachment)
         (let ((next (1+ (world-kicker-tick world))))

@@ -145,9 +145,19 @@ outside (reading 51)."
   (let ((index (cell-index-at map x y)))
     (or (null index) (logtest +wall+ (aref (map-flags map) index)))))
 
+(defun check-point (operator x y)
+  "Signal WRONG-ARGUMENT, by OPERATOR, unless X and Y are coordinates of a point, be it far away."
+  (flet ((check (name value)
+           (unless (finite-p value)
+             (reject-argument operator name value "a real number, from -1.7e308 to 1.7e308"))))
+    (check 'x x)
+    (check 'y y)))
+
 (addition wall-at-p)
 (defun wall-at-p (map x y)
-  "True if the point (X, Y) of MAP, in metres, is in a wall or outside the map."
+  "True if the point (X, Y) of MAP, in metres, is in a wall or outside the map. Signals
+WRONG-ARGUMENT."
+  (check-point 'wall-at-p x y)
   (let ((index (map-index map x y)))
     (or (null index) (logtest +wall+ (aref (map-flags map) index)))))
 
@@ -169,8 +179,11 @@ outside (reading 51)."
 
 (addition map-cell)
 (defun map-cell (map x y)
-  "Return the cell of MAP that holds the point (X, Y), in metres; it may be outside the map."
+  "Return the cell of MAP that holds the point (X, Y), in metres; it may be outside the map. Signals
+WRONG-ARGUMENT unless X and Y are numbers from -1e9 to 1e9."
   (check-argument map-cell map (map-p map) "a map")
+  (check-of-type 'map-cell 'x x 'number)
+  (check-of-type 'map-cell 'y y 'number)
   (make-cell map (floor x) (floor y)))
 
 (defun cell-index-in-map (cell)
@@ -196,9 +209,10 @@ outside (reading 51)."
 (public cell-occupancy-window)
 (defun cell-occupancy-window (cell width height)
   "Return a list of HEIGHT rows, each a list of WIDTH entries, centred on CELL: T for a wall,
-NIL for an empty cell (manual 5.1.1). Of an even number of entries one more lies before CELL."
-  (check-argument cell-occupancy-window width (typep width '(integer 1)) "a positive integer")
-  (check-argument cell-occupancy-window height (typep height '(integer 1)) "a positive integer")
+NIL for an empty cell (manual 5.1.1). Of an even number of entries one more lies before CELL. WIDTH
+and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
+  (check-argument cell-occupancy-window width (whole-p width 1 1000) "an integer from 1 to 1000")
+  (check-argument cell-occupancy-window height (whole-p height 1 1000) "an integer from 1 to 1000")
   (let ((map (cell-map cell))
         (left (- (cell-x cell) (floor width 2)))
         (top (- (cell-y cell) (floor height 2))))

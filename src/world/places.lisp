@@ -110,7 +110,8 @@ outside (reading 71)."
 (defun check-checked (type cell values)
   "Signal unless VALUES, which the checker of TYPE returned for CELL, say where a place is."
   (destructuring-bind (dx dy direction) values
-    (unless (and (typep dx '(signed-byte 16)) (typep dy '(signed-byte 16)) (realp direction))
+    (unless (and (typep dx '(signed-byte 16)) (typep dy '(signed-byte 16))
+                 (within-reason-p direction))
       (blame-type type :checker
                   (format nil "four values at ~A: a boolean, two integers, a direction (after the ~
                                first came~{ ~S~})"
@@ -146,7 +147,7 @@ outside (reading 71)."
                (directions (call-blaming-type
                             (lambda () (multiple-value-list (funcall function cell)))
                             cell type :directions)))
-          (unless (and (= 2 (length directions)) (every #'realp directions))
+          (unless (and (= 2 (length directions)) (every #'within-reason-p directions))
             (blame-type type :directions
                         (format nil "two values at ~A, both angles in radians, not~{ ~S~}"
                                 cell directions))))))))
@@ -219,7 +220,8 @@ message (reading 72)."
          (origin (list "the :directions of place type " (place-type-name type))))
     (multiple-value-bind (one other)
         (and function (call-user-code function origin (place-cell place)))
-      (cond ((and (realp one) (realp other)) (values (double one) (double other)))
+      (cond ((and (within-reason-p one) (within-reason-p other))
+             (values (double one) (double other)))
             (t (when (and function (or one other))
                  (apply #'error-set (append origin (list " are not two angles at "
                                                          (place-cell place)))))

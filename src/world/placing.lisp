@@ -62,7 +62,7 @@ The primitive: it checks and tells nothing. Return THING."
   thing)
 
 (defun check-inside (operator map x y)
-  (unless (and (realp x) (realp y) (map-index map x y))
+  (unless (and (within-reason-p x) (within-reason-p y) (map-index map x y))
     (reject-value operator "position" (list x y)
                   (format nil "a point of ~A, which is ~D by ~D metres"
                           map (map-width map) (map-height map)))))

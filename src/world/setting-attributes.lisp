@@ -10,11 +10,11 @@
     (refresh-cell-flags (thing-world thing) (thing-index thing))))
 
 (defun normal-descriptor (operator descriptor)
-  "Return the object descriptor DESCRIPTOR with keywords as names. Signals WRONG-ARGUMENT."
+  "Return the object descriptor DESCRIPTOR with keywords as names, a copy. Signals WRONG-ARGUMENT."
   (unless (descriptor-p descriptor)
     (reject-value operator "descriptor" descriptor
                   "a list of lists (attribute value), each attribute once"))
-  (loop for (name value) in descriptor
+  (loop for (name value) in (given operator "descriptor" descriptor)
         for key = (attribute-key name)
         do (check-attribute-value operator key value)
         collect (list key value)))
@@ -31,7 +31,8 @@
 (public set-attribute)
 (defun set-attribute (thing attribute new-value)
   "Set ATTRIBUTE, a keyword, of THING to NEW-VALUE and return that (manual 5.3). NIL means false
-or unspecified. Signals WRONG-ARGUMENT for a value that the attribute cannot have."
+or unspecified. Of lists, strings and vectors THING gets copies. Signals WRONG-ARGUMENT for a value
+that the attribute cannot have."
   (check-argument set-attribute thing (thing-p thing) "a thing")
   (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
   (let ((descriptor (normal-descriptor 'set-attribute (list (list attribute new-value)))))

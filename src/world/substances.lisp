@@ -24,9 +24,9 @@
 (defun define-substance (name parameter)
   "Define or redefine the substance NAME with PARAMETER; what DEFSUBSTANCE expands to. Return
 NAME."
-  (unless (finite-p parameter)
+  (unless (quantity-p parameter)
     (reject-clause (format nil "defsubstance ~(~A~)" name) parameter
-                   "a number as the parameter of the substance"))
+                   "a number as the parameter of the substance, from -1e15 to 1e15"))
   (register *substances* name (make-substance name (double parameter)))
   name)
 
@@ -49,10 +49,10 @@ PARAMETER, a number. Our addition to manual 2.1 and 3.3. Return the name."
 
 (defun substance-value-p (value)
   "True if VALUE can be the value of a thing's :substance (reading 64)."
-  (or (realp value)
+  (or (quantity-p value)
       (and value (symbolp value))
       (and (proper-list-p value) (= 2 (length value))
-           (first value) (symbolp (first value)) (realp (second value)))))
+           (first value) (symbolp (first value)) (quantity-p (second value)))))
 
 (defun substance-value-type (value)
   "Return the type, a symbol, that VALUE of a :substance attribute names, or NIL if none."

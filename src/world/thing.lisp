@@ -64,19 +64,20 @@
 false, always can."
   (let ((attribute (attribute-of key)))
     (flet ((reject (expected) (reject-value operator key value expected)))
-      (cond ((or (null value) (null attribute)))
+      (cond ((and (floatp value) (not (finite-p value))) (reject (argument-type-text 'quantity)))
+            ((or (null value) (null attribute)))
             ((eq key :substance)
              (unless (substance-value-p value)
-               (reject "a number, a substance's name, or a list (name number)"))
+               (reject "a number from -1e15 to 1e15, a substance's name, or a list (name number)"))
              (note-unknown-substance value))
             ((eq (attribute-kind attribute) :discrete)
              (unless (member value (attribute-domain attribute) :test #'value-equal)
                (reject (format nil "one of ~(~{~A~^, ~}~)~@[; did you mean ~(~A~)?~]"
                                (attribute-domain attribute)
                                (value-like value (attribute-domain attribute))))))
-            ((not (finite-p value)) (reject "a number"))
+            ((not (quantity-p value)) (reject (argument-type-text 'quantity)))
             ((and (member key '(:size :weight :capacity)) (minusp value))
-             (reject "a number not below 0"))))))
+             (reject (argument-type-text 'amount)))))))
 
 (defun note-unknown-substance (value)
   "Warn if VALUE of a :substance names none: where that is defined, or else by a message."
@@ -105,9 +106,10 @@ false, always can."
           (substance-value-parameter (get-attribute thing :substance)))))
 
 (public get-attribute)
+(settable get-attribute)
 (defun get-attribute (thing attribute)
   "Return the value of ATTRIBUTE, a keyword, of THING, or NIL if it is unspecified. Can be set,
-which is SET-ATTRIBUTE (manual 5.3)."
+which is SET-ATTRIBUTE (manual 5.3). A list is the thing's own: do not alter it, as SORT does."
   (check-argument get-attribute thing (thing-p thing) "a thing")
   (second (assoc (attribute-key attribute) (thing-attributes thing) :test #'eq)))
 

@@ -85,16 +85,17 @@ against the edges, is the edges."
   (destructuring-bind (&optional start end type &rest parameters) (rest clause)
     (unless (and (number-pair-p start) (number-pair-p end) type (symbolp type)
                  (member (length parameters) (if (eq kind :wall) '(1 2) '(1 4)))
-                 (every #'realp parameters))
+                 (every #'quantity-p parameters))
       (reject-clause definition clause
-                     (format nil "(~(~A~) (x0 y0) (x1 y1) substance parameter [~A]), with numbers"
+                     (format nil "(~(~A~) (x0 y0) (x1 y1) substance parameter [~A]), with numbers ~
+                             from -1e15 to 1e15"
                              kind
                              (if (eq kind :wall) "parameter1" "three parameters more"))))))
 
 (defun check-circle-clause (definition clause)
   (destructuring-bind (&optional center radius type parameter &rest others) (rest clause)
-    (unless (and (number-pair-p center) (typep radius '(real 0)) type (symbolp type)
-                 (realp parameter) (null others))
+    (unless (and (number-pair-p center) (finite-p radius) (<= 0 radius)
+                 type (symbolp type) (quantity-p parameter) (null others))
       (reject-clause definition clause
                      "(circle (x y) radius substance parameter), numbers, radius not below 0"))))
 
