@@ -122,13 +122,13 @@
   :serial t
   :components
   ((:module "cli" :serial t
-    :components ((:file "package") (:file "process") (:file "console") (:file "user-names")
-                 (:file "session") (:file "line")
+    :components ((:file "package") (:file "process") (:file "telling") (:file "input")
+                 (:file "console") (:file "user-names") (:file "session") (:file "line")
                  (:file "arguments") (:file "layout") (:file "errands") (:file "robot-lines")
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
                  (:file "status-lines") (:file "running-lines") (:file "loading") (:file "worlds")
                  (:file "world-lines") (:file "plans") (:file "plan-lines")
-                 (:file "picture-lines") (:file "prompt") (:file "options") (:file "main")))))
+                 (:file "picture-lines") (:file "debugger") (:file "prompt") (:file "options") (:file "main")))))
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."
@@ -169,7 +169,8 @@
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-robot-live")
                  (:file "plans")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
-                 (:file "cli-plans") (:file "cli-robots") (:file "kinds")
+                 (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
+                 (:file "cli-debugger") (:file "cli-files") (:file "kinds")
                  (:file "digests") (:file "runs") (:file "outliving") (:file "users-parts")
                  (:file "user-package")
                  (:file "definitions") (:file "definitions-names")

@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.cli)
 
-;;; Arguments are read by the Lisp reader and not evaluated (manual E); numbers stand for cameras,
-;;; hands, storage bins and designators. A semicolon begins a comment.
+;;; Arguments are read by the Lisp reader and not evaluated (manual E), and reading them runs
+;;; nothing; numbers stand for cameras, hands, storage bins and designators. A semicolon begins a
+;;; comment.
 
 ;; As reading 227 says.
 (defgeneric read-argument (type datum robot)
@@ -97,15 +98,30 @@ method, DATUM is the argument.")
   "Return TOKEN without the double quotes around it, if any."
   (string-trim "\"" token))
 
+(defun refuse-syntax (stream char argument)
+  (declare (ignore stream argument))
+  (error "#~C is for programs" char))
+
+(defun data-readtable ()
+  "Return the readtable that is in use, without what makes objects by calling functions."
+  (let ((readtable (copy-readtable)))
+    (set-dispatch-macro-character #\# #\S #'refuse-syntax readtable)
+    readtable))
+
+(defun read-data-from-string (text start)
+  "Return the Lisp datum in TEXT at START and where it ends. Nothing that it says is evaluated."
+  (let ((*read-eval* nil) (*readtable* (data-readtable)))
+    (read-from-string text t nil :start start :preserve-whitespace t)))
+
 (defun read-datum (text start line)
   "Return the Lisp datum in TEXT at START and where it ends (reading 196)."
-  (handler-case (read-from-string text t nil :start start :preserve-whitespace t)
+  (handler-case (read-data-from-string text start)
     (end-of-file ()
       (reject-line "~A is not complete: a parenthesis or quote is missing. ~A"
                    (subseq text start) (takes line)))
     (error (condition)
       (reject-line "~A cannot be read: ~A. ~A" (subseq text start)
-                   (one-line (princ-to-string condition)) (takes line)))))
+                   (one-line (condition-text condition)) (takes line)))))
 
 (defun check-read (value slot line)
   (unless (argument-of-type-p value (slot-type slot))

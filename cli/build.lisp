@@ -17,11 +17,16 @@
                 (uiop:pathname-directory-pathname *load-truename*))
   "The project's directory.")
 
-(defvar *cache* (uiop:getenvp "ARS_MAGNA_CACHE")
-  "The directory of all that is compiled, ending in a slash; NIL means ASDF's own.")
+(defun path-in-environment (name)
+  "Return the path that the environment's variable NAME has as the system writes it, or NIL."
+  (let ((value (uiop:getenvp name)))
+    (and value (uiop:parse-native-namestring value))))
+
+(defvar *cache* (path-in-environment "ARS_MAGNA_CACHE")
+  "The directory of all that is compiled; NIL means ASDF's own.")
 
 (defun project-fasls ()
-  (uiop:ensure-directory-pathname (uiop:strcat *cache* "project")))
+  (uiop:subpathname *cache* "project/"))
 
 (defun configure ()
   "Let ASDF find the project here, put compiled files into the cache, and stay as it is."
@@ -33,7 +38,7 @@
      `(:output-translations
        (,(merge-pathnames "**/*.*" *root*)
         ,(merge-pathnames "**/*.*" (project-fasls)))
-       (t (,(uiop:ensure-directory-pathname (uiop:strcat *cache* "libraries")) :implementation))
+       (t (,(uiop:subpathname *cache* "libraries/") :implementation))
        :ignore-inherited-configuration))))
 
 (configure)
@@ -104,14 +109,17 @@ defined twice, that a package has grown since it was defined."
   (with-open-file (out file :direction :output :if-exists :supersede)
     (format out "~(~{~A~%~}~)" (uiop:symbol-call :ars-magna.cli :all-words))))
 
-(defun save-prompt (file)
-  "Save a core that runs the prompt in FILE, and the names of its commands in FILE.words."
+(defun save-prompt ()
+  "Save a core that runs the prompt in the file that the environment says, and the names of its
+commands beside it."
   (load-strictly "ars-magna/cli")
-  (write-words (uiop:strcat file ".words"))
+  (write-words (uiop:parse-native-namestring
+                (uiop:strcat (uiop:getenv "ARS_MAGNA_CORE") ".words")))
   ;; What is in the core is not to be compiled again under its user.
   (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))
   (uiop:call-image-dump-hook)
-  (sb-ext:save-lisp-and-die file :toplevel (uiop:find-symbol* :main :ars-magna.cli)))
+  (sb-ext:save-lisp-and-die (path-in-environment "ARS_MAGNA_CORE")
+                            :toplevel (uiop:find-symbol* :main :ars-magna.cli)))
 
 ;;; The tests.
 

@@ -5,7 +5,8 @@
 ;;; What the simulator and the user's programs print comes from other threads, at any time. The
 ;;; console keeps what each of them writes in one piece, and knows when a prompt has been written
 ;;; over and must be shown again. A terminal moves the cursor when the user presses return; nobody
-;;; but ANSWERED can know. When nobody reads the stream any more, what is written is lost.
+;;; but ANSWERED can know. When what is written cannot be delivered, it is lost, and the program
+;;; ends.
 
 (defclass console (fundamental-character-output-stream)
   ((stream :initarg :stream :reader console-stream)
@@ -13,20 +14,30 @@
    (column :initform 0 :accessor console-column)
    (prompt :initform nil :accessor console-prompt)
    (overwritten-p :initform nil :accessor console-overwritten-p)
-   (closed-p :initform nil :accessor console-closed-p))
+   (trouble :initform nil :accessor console-trouble))
   (:documentation "An output stream on top of another. PROMPT is what stands there for the user to
-answer, or NIL; OVERWRITTEN-P is true if something was written after it; CLOSED-P, if what was
-written could not be delivered."))
+answer, or NIL; OVERWRITTEN-P is true if something was written after it. TROUBLE is the condition
+that what was written could not be delivered, or NIL."))
 
 (defun make-console (stream)
   (if (typep stream 'console) stream (make-instance 'console :stream stream)))
 
+(defvar *leave-unheard-p* nil
+  "True in the thread that ends this process, when there is nobody any more to write for.")
+
+(defun try-to-write (function console)
+  "Call FUNCTION with the stream below CONSOLE, unless that has failed before. True if it fails
+now."
+  (with-lock ((console-lock console))
+    (unless (console-trouble console)
+      (handler-case (progn (funcall function (console-stream console)) nil)
+        (stream-error (trouble) (setf (console-trouble console) trouble))))))
+
 (defun call-with-console (function console)
   "Call FUNCTION with the stream below CONSOLE, unless it has failed before."
-  (with-lock ((console-lock console))
-    (unless (console-closed-p console)
-      (handler-case (funcall function (console-stream console))
-        (stream-error () (setf (console-closed-p console) t))))))
+  (when (and (call-holding-interrupts (lambda () (try-to-write function console)))
+             *leave-unheard-p*)
+    (throw 'leave 1)))
 
 (defmacro with-console ((stream console) &body body)
   "Run BODY with STREAM bound to the stream below CONSOLE, nobody else writing to it."

@@ -4,6 +4,8 @@
 
 ;;; A line that begins with a parenthesis is Lisp, in the package ARS-USER and the syntax of the
 ;;; readtable :NISP; IN-PACKAGE holds for the lines that follow. A form may go on over lines.
+;;; Numbers typed are exact, double-floats. What runs, files that it loads included, finds what Lisp
+;;; has for it everywhere else.
 
 (defun blank-from-p (text start)
   (= (skip-blanks text start) (length text)))
@@ -38,23 +40,35 @@ definitions are messages like others."
 (defun eval-quietly (form)
   "Evaluate FORM. What it writes to the error output comes when it is done."
   (let ((diagnostics (make-string-output-stream)))
-    (unwind-protect (let ((*error-output* diagnostics))
+    (unwind-protect (let ((*error-output* diagnostics)
+                          (*read-default-float-format* 'single-float))
                       (call-quietly (lambda () (eval (with-own-name form)))))
       (write-but-diagnostics (get-output-stream-string diagnostics) *standard-output*))))
+
+(defun write-value (value)
+  (let ((*print-circle* (or *print-circle* (not (tree-p value)))))
+    (format t "~S~%" value)))
 
 (defun evaluate (session form)
   "Evaluate FORM and print its values, each on a line."
   (setf (session-lisp-p session) t)
   (let ((values (multiple-value-list (eval-quietly form))))
     (shiftf *** ** * (first values))
-    (when values (format t "~&~{~S~%~}" values))))
+    (when values (fresh-line))
+    (mapc #'write-value values)))
+
+(defun read-form (session text &optional (start 0))
+  "Return the form in TEXT at START, reading on in SESSION while it is incomplete; where it ends;
+and TEXT with what was read."
+  (loop
+    (handler-case (read-from-string text t nil :start start)
+      (end-of-file () (setf text (read-more session text)))
+      (:no-error (form end) (return (values form end text))))))
 
 (defun evaluate-text (session text)
   "Evaluate the forms in TEXT, reading on in SESSION while the last of them is incomplete."
   (loop with position = 0
+        with form
         until (blank-from-p text position)
-        do (handler-case (read-from-string text t nil :start position)
-             (end-of-file () (setf text (read-more session text)))
-             (:no-error (form end)
-               (setf position end)
-               (evaluate session form)))))
+        do (setf (values form position text) (read-form session text position))
+           (evaluate session form)))

@@ -53,12 +53,6 @@
   "Write a line formatted from CONTROL and ARGUMENTS, without blanks at its end."
   (format t "~A~%" (string-right-trim " " (apply #'format nil control arguments))))
 
-(defun cut (text length)
-  "Return TEXT, or its beginning if it is longer than LENGTH."
-  (if (> (length text) length)
-      (concatenate 'string (subseq text 0 (- length 3)) "...")
-      text))
-
 ;;; A live world is looked at between two ticks.
 
 (defun call-still (function)

@@ -37,7 +37,7 @@
 
 (defun load-forms (path)
   "Do as LOAD does with the Lisp file at PATH. Signals FILE-TROUBLE."
-  (let* ((text (read-file-into-string path))
+  (let* ((text (file-text path))
          (file (native-name path))
          (*package* *package*) (*readtable* *readtable*)
          (*load-pathname* path) (*load-truename* (truename path)))

@@ -17,30 +17,19 @@
           ((find robot robots :test #'same-name-p))
           (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world robots)))))
 
-(defun load-files (session files)
-  (dolist (file files)
-    (call-guarded session (lambda () (load-lisp (or (existing-file file)
-                                                    (reject-line "There is no file ~A." file)))))
-    (setf (session-lisp-p session) t)))
-
-(defun run-headless (session robot-name seed files)
-  "Run the lines of SESSION, a batch, in a fresh world, after loading FILES. Return the robot to go
-on with, or NIL."
+(defun run-headless (session robot-name seed)
+  "Run the lines of SESSION, a batch, in a fresh world. Return the robot to go on with, or NIL."
   (setf (session-next-robot session) nil
         *prompt-robot* robot-name)
   (call-by-name (robots-beside robot-name))
-  (call-with-simulation (lambda ()
-                          (load-files session files)
-                          (run-session session))
-                        (robots-beside robot-name)
+  (call-with-simulation (lambda () (run-session session)) (robots-beside robot-name)
                         :seed seed :journal t)
   (session-next-robot session))
 
-(defun run-batch (session robot-name options)
+(defun run-batch (session robot-name seed)
   "Run the lines of SESSION, beginning with ROBOT-NAME."
-  (loop for files = (option-values :load options) then '()
-        for name = robot-name then next
-        for next = (run-headless session name (option-value :seed options 0) files)
+  (loop for name = robot-name then next
+        for next = (run-headless session name seed)
         while next))
 
 (defun greet (session)
@@ -56,29 +45,31 @@ on with, or NIL."
                                 :display (terminal-p session)
          (when (option-value :seed options) (list :seed (option-value :seed options))))
   (when (terminal-p session) (greet session))
-  (load-files session (option-values :load options))
   (run-session session))
 
 (defun plan-lines (options)
   "Return the lines for the plans that OPTIONS ask for."
   (loop for text in (option-values :plan options) collect (format nil "plan ~A" text)))
 
-(defun standard-session (batch lines)
-  "Return a session that does LINES and then those of the standard input. If nobody sits there, it
-shows what it reads and waits for each command, for a transcript like those of manual E. A batch
-that has LINES does not wait for others to be typed."
-  (let* ((input (standard-stream 0 :input))
-         (piped (not (interactive-stream-p input))))
+(defun standard-session (options)
+  "Return a session that does what OPTIONS say and then the lines of the standard input. If nobody
+sits there, it shows what it reads and waits for each command, for a transcript like those of manual
+E. A batch that has plans to carry out does not wait for lines to be typed."
+  (let* ((input (standard-input))
+         (piped (not (typed-by-hand-p input)))
+         (batch (option-value :batch options))
+         (lines (plan-lines options)))
     (make-session :input (if (and batch lines (not piped)) (make-concatenated-stream) input)
-                  :output *standard-output* :batch batch :lines lines
+                  :output *standard-output* :batch batch
+                  :files (option-values :load options) :lines lines
                   :patient (or batch piped) :echo (and piped (not batch)))))
 
 (defun run-prompt (options)
   "Do what OPTIONS say. Return the status to exit with."
   (let ((robot-name (first-robot options))
-        (session (standard-session (option-value :batch options) (plan-lines options))))
+        (session (standard-session options)))
     (if (and (session-batch-p session) (null (option-value :rate options)))
-        (run-batch session robot-name options)
+        (run-batch session robot-name (option-value :seed options 0))
         (run-live session robot-name options))
     (if (and (session-batch-p session) (plusp (session-errors session))) 1 0)))
 
@@ -95,23 +86,38 @@ that has LINES does not wait for others to be typed."
 
 (defun give-reason (condition status)
   "Say on the error output what CONDITION says; return STATUS."
-  (format *error-output* "ars-magna: ~A~%" (condition-text condition))
+  (ignore-errors
+   (let ((output (text-output 2)))
+     (format output "ars-magna: ~A~%" (complaint-text (condition-text condition)))
+     (finish-output output)))
   status)
 
 (defun call-for-status (function)
   "Call FUNCTION, which returns a status to exit with; return a status whatever happens."
   (catch 'leave
-    (handler-case (funcall function)
+    (handler-case (let ((*leave-unheard-p* t)) (call-open-to-interrupts function))
       (usage-error (condition) (give-reason condition 2))
       (user-interrupt () 130)
-      (error (condition) (give-reason condition 1)))))
+      ((or error storage-condition) (condition) (give-reason condition 1)))))
+
+(defun deliver (console status)
+  "Write what CONSOLE still has. Return STATUS, or another if it could not be written."
+  (finish-output console)
+  (let ((trouble (console-trouble console)))
+    (cond ((null trouble) status)
+          ;; That nobody wants to read more is no news to him.
+          ((search "Broken pipe" (own-text trouble)) (max 1 status))
+          (t (give-reason trouble (max 1 status))))))
+
+(defun run-process ()
+  "Do what the arguments of this process say. Return the status to exit with."
+  (let ((console (make-console (text-output 1))))
+    (setf *standard-output* console)
+    (deliver console (call-for-status (lambda () (run-arguments (process-arguments)))))))
 
 (defun main ()
   "Run ./cli/ars-magna: do what the arguments of this process say, and end it. The argument --probe
 only asks whether the core starts."
   (when (equal (process-arguments) '("--probe")) (end-process 0))
-  (setf *standard-output* (make-console (standard-stream 1 :output)))
-  (let ((status (call-for-status (lambda () (run-arguments (process-arguments))))))
-    (ignore-errors (finish-output *standard-output*))
-    (ignore-errors (finish-output *error-output*))
-    (end-process status)))
+  (die-of-termination)
+  (end-process (call-holding-interrupts #'run-process)))

@@ -1,20 +1,37 @@
-;;;; process.lisp -- this process: its arguments, standard streams and interrupts, and its end.
+;;;; process.lisp -- this process: its arguments, standard streams and signals, and its end.
 
 (in-package :ars-magna.cli)
-
-(deftype user-interrupt ()
-  "The condition that the user has pressed control C."
-  'sb-sys:interactive-interrupt)
 
 (defun process-arguments ()
   "Return the arguments that this process was started with, strings."
   (rest (uiop:raw-command-line-arguments)))
 
-(defun standard-stream (descriptor direction)
-  "Return a stream on the file DESCRIPTOR that no bytes can upset."
-  (sb-sys:make-fd-stream descriptor direction t :buffering :full
-                                    :external-format '(:utf-8 :replacement #\?)))
-
 (defun end-process (status)
   "End this process with STATUS, at once: nothing is flushed and no thread is waited for."
   (uiop:quit status nil))
+
+;;; Streams.
+
+(defun octet-input (descriptor)
+  "Return an input stream on the file DESCRIPTOR, each character of which stands for an octet."
+  (sb-sys:make-fd-stream descriptor :input t :buffering :full :external-format :latin-1))
+
+(defun text-output (descriptor)
+  "Return an output stream of UTF-8 on the file DESCRIPTOR."
+  (sb-sys:make-fd-stream descriptor :output t :buffering :full
+                                    :external-format '(:utf-8 :replacement #\?)))
+
+;;; Control C. It reaches this process's first thread, between any two of its instructions. So that
+;;; it ends what the user wants to end and nothing else, the prompt holds it: see RUN-SESSION.
+
+(deftype user-interrupt ()
+  "The condition that the user has pressed control C."
+  'sb-sys:interactive-interrupt)
+
+;;; Other signals. There are states in which no Lisp runs any more that would heed one, so the
+;;; system itself ends the process. (With a terminal that goes away it does so anyway, unless it was
+;;; told NOHUP.)
+
+(defun die-of-termination ()
+  "Let this process end at once when it is told to terminate."
+  (sb-sys:enable-interrupt sb-unix:sigterm :default))

@@ -3,7 +3,8 @@
 (in-package :ars-magna.cli)
 
 ;;; Whatever goes wrong in a line ends that line, with one line that says why. An interrupt (control
-;;; C) ends the line that is being read or carried out; the simulator does not notice.
+;;; C) ends the line that is being read or carried out; the simulator does not notice. Between lines
+;;; it waits for the next.
 
 (defun read-input (session prompt)
   "Return the next line of SESSION, or NIL at the end. Show PROMPT unless it is a batch, and what
@@ -14,12 +15,12 @@ comes of earlier lines if the session waits for that."
     (catch-up session)
     (let* ((given (pop (session-lines session)))
            (line (or given
-                     (and (not (console-closed-p console))
+                     (and (not (console-trouble console))
                           (read-line (session-input session) nil)))))
       (with-lock ((session-lock session))
         (cond ((session-batch-p session))
               ((null line) (terpri console))
-              ((or given (session-echo-p session)) (format console "~A~%" line)))
+              ((or given (session-echo-p session)) (format console "~A~%" (visible line))))
         (answered console))
       line)))
 
@@ -74,33 +75,25 @@ comes of earlier lines if the session waits for that."
 
 ;;; Lines that go wrong.
 
-(defun lock-text (condition)
-  "Return what CONDITION, that a locked name was to be defined, means to a user."
-  (let ((symbol (locked-symbol condition)))
-    (if symbol
-        (format nil "~A is a name of ~A. Call yours otherwise, or begin with (shadow '~A)."
-                symbol (package-name (symbol-package symbol)) symbol)
-        (remove #\Newline (princ-to-string condition)))))
-
-(defun condition-text (condition)
-  "Return what CONDITION says, or what it is if it cannot say that."
-  (if (typep condition 'lock-violation)
-      (lock-text condition)
-      (plain-text condition)))
-
-(defun plain-text (condition)
-  (let ((text (handler-case (princ-to-string condition) (error () ""))))
-    (if (string= text "") (string-downcase (type-of condition)) text)))
-
-(defun debug-if-wanted (condition)
-  (when (and *break-on-user-error* (not (typep condition 'ars-magna-error)))
+(defun debug-if-wanted (session condition)
+  (when (and *break-on-user-error* (terminal-p session) (not (typep condition 'ars-magna-error)))
     (invoke-debugger condition)))
 
-(defun call-guarded (session function)
+(defun call-complaining (session function)
   "Call FUNCTION; complain of what goes wrong in it."
-  (handler-case (handler-bind ((error #'debug-if-wanted)) (funcall function))
-    (user-interrupt () (interrupted session))
+  (handler-case (funcall function)
     ((or error storage-condition) (condition) (complain session (condition-text condition)))))
+
+(defun call-guarded (session function)
+  "Call FUNCTION, which may be interrupted; complain of what goes wrong in it."
+  (flet ((look-into (condition) (debug-if-wanted session condition)))
+    (handler-case
+        (with-simple-restart (end-line "End the line.")
+          (call-complaining session
+                            (lambda ()
+                              (handler-bind ((error #'look-into))
+                                (call-open-to-interrupts function)))))
+      (user-interrupt () (interrupted session)))))
 
 (defun interrupted (session)
   (when (session-batch-p session) (throw 'leave 130))
@@ -108,32 +101,50 @@ comes of earlier lines if the session waits for that."
   (format (session-console session) "~&Interrupted.~:[~; Plans go on; STOP-PLAN ends them.~]~%"
           (plans)))
 
+(defun do-next (session text)
+  "Do what TEXT, a line, says, or let it answer the newest break, if a program waits for that."
+  (let ((breakage (first (session-breaks session))))
+    (if breakage
+        (debug-line session breakage text)
+        (run-text session text))))
+
 (defun next-line (session)
   "Read a line of SESSION and do what it says; at the end of input, let the session be over."
-  (let ((text (read-input session "Robot> ")))
-    (cond ((null text) (setf (session-over-p session) t))
-          (t (run-text session text)))))
+  (follow-simulation session)
+  (let ((text (read-input session (if (session-breaks session) "Break> " "Robot> "))))
+    (if text
+        (do-next session text)
+        (setf (session-over-p session) t))))
+
+(defun load-first (session)
+  "Load the files that SESSION begins with."
+  (loop while (session-files session)
+        do (let ((file (pop (session-files session))))
+             (call-guarded session (lambda () (load-lisp (file-called file))))
+             (setf (session-lisp-p session) t))))
 
 (defun run-lines (session)
-  "Do what the lines of SESSION say until it is over, or goes on with another robot."
+  "Do what the files and lines of SESSION say until it is over, or goes on with another robot."
+  (load-first session)
   (loop until (or (session-over-p session) (session-next-robot session))
-        do (follow-simulation session)
-           (call-guarded session (lambda () (next-line session)))
-           (show-messages session)))
+        do (call-guarded session (lambda () (next-line session)))
+           (call-guarded session (lambda () (show-messages session)))))
 
-(defun call-with-syntax (function)
-  "Call FUNCTION with the package and syntax in which users write."
-  (let ((*package* (user-package))
-        (*readtable* *readtable*)
-        (*read-default-float-format* 'double-float))
-    (nisp:in-readtable :nisp)
+(defun call-with-streams (session function)
+  "Call FUNCTION, which writes to SESSION and asks its user."
+  (let* ((*standard-output* (session-console session))
+         (*standard-input* (session-input session))
+         (*query-io* (make-two-way-stream *standard-input* *standard-output*)))
     (funcall function)))
 
 (defun run-session (session)
   "Read lines and do what they say until QUIT or the end of input. Return SESSION."
-  (let ((*standard-output* (session-console session)))
-    (unwind-protect (call-with-syntax (lambda () (run-lines session)))
-      (stop-listening session)))
+  (flet ((run ()
+           (unwind-protect (call-with-syntax 'double-float (lambda () (run-lines session)))
+             (stop-listening session))))
+    (call-with-debugger session
+                        (lambda ()
+                          (call-with-streams session (lambda () (call-holding-interrupts #'run))))))
   session)
 
 (defun prompt (&rest options &key input output batch patient echo lines)

@@ -46,7 +46,7 @@
   "Return the rate that TEXT says: a number or :FREE. Signals BAD-LINE."
   (if (string-equal text "free")
       :free
-      (let ((rate (ignore-errors (let ((*read-eval* nil)) (read-from-string text)))))
+      (let ((rate (ignore-errors (values (read-data-from-string text 0)))))
         (if (argument-of-type-p rate 'rate)
             rate
             (reject-line "The rate cannot be ~A. Give ~A." text (argument-type-text 'rate))))))
@@ -96,7 +96,7 @@
            (put-line "  ~A" (parameter-text parameter))))
 
 (defun read-setting (text)
-  (handler-case (let ((*read-eval* nil)) (values (read-from-string text)))
+  (handler-case (values (read-data-from-string text 0))
     (error () (reject-line "~A cannot be read; give a number, T or NIL." text))))
 
 (define-line "PARAMS" (session (name :token "the name of a parameter" :optional)
@@ -124,7 +124,7 @@ VALUE."
   (let ((simulation (current-simulation)))
     (multiple-value-bind (path tick digest)
         (asking (simulation)
-          (values (save-journal file simulation)
+          (values (save-journal (native-path file) simulation)
                   (simulation-tick simulation)
                   (state-digest simulation)))
       (format t "~A: ~A" (native-name path) (moment-text tick digest)))))
@@ -140,5 +140,5 @@ VALUE."
     (:running)
     "Repeat the run in FILE in a world of its own; show the tick and the state that it comes to.
 With ANYWAY also if what is defined here is not what the run was recorded with."
-  (multiple-value-bind (simulation digest) (replay file :anyway (anyway-p anyway))
+  (multiple-value-bind (simulation digest) (replay (native-path file) :anyway (anyway-p anyway))
     (format t "~A: ~A" file (moment-text (simulation-tick simulation) digest))))

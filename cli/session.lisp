@@ -6,15 +6,6 @@
 ;;; warning or an error starts a fresh one; then the prompt is shown again. What a tick has to say
 ;;; is shown together, when the tick is over.
 
-(define-condition bad-line (ars-magna-error)
-  ((text :initarg :text :reader bad-line-text))
-  (:report (lambda (condition stream) (write-string (bad-line-text condition) stream)))
-  (:documentation "A line typed at the prompt makes no sense."))
-
-(defun reject-line (control &rest arguments)
-  "Signal BAD-LINE with a text formatted from CONTROL and ARGUMENTS; it should name the remedy."
-  (error 'bad-line :text (apply #'format nil control arguments)))
-
 (defvar *prompt-robot* nil
   "The name of the robot that the prompt commands: the one last given to SIMULATOR, or chosen.")
 
@@ -42,8 +33,12 @@
   ;; True if there are messages that somebody will show soon.
   (news-p nil)
   (errors 0 :type fixnum)
-  ;; Lines to do before any is read.
+  ;; Files to load, and lines to do, before any is read.
+  (files '() :type list)
   (lines '() :type list)
+  ;; The thread that reads, and what has entered the debugger in others, newest first.
+  (thread nil)
+  (breaks '() :type list)
   ;; That of the last plan, if it failed, and the plan's name, in a list.
   (failure nil)
   ;; What has been issued and may not have ended, and whether Lisp may have issued more.
@@ -52,17 +47,22 @@
   (over-p nil)
   ;; The robot to go on with, in batch mode, when this one's lines are over.
   (next-robot nil))
+
+(defmethod print-object ((session session) stream)
+  (print-unreadable-object (session stream :type t)))
+
 (setf (documentation 'session-errors 'function)
       "Return how many errors there were so far: lines that made no sense, plans that failed, and
 error messages, but not those of a plan that goes on.")
 
 (defun make-session (&key (input *standard-input*) (output *standard-output*) batch
-                       (patient batch) echo lines)
-  "Return a session that does the list LINES, then reads others from INPUT, and writes to OUTPUT.
-With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes before the next is
-read; with ECHO, it shows what it reads."
+                       (patient batch) echo files lines)
+  "Return a session that loads FILES, does the list LINES, then reads others from INPUT, and writes
+to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes before
+the next is read; with ECHO, it shows what it reads."
   (%make-session :input input :console (make-console output) :batch-p (and batch t)
-                 :patient-p (and patient t) :echo-p (and echo t) :lines lines))
+                 :patient-p (and patient t) :echo-p (and echo t)
+                 :files files :lines lines))
 
 (defun check-run ()
   "Signal BAD-LINE if the run that the prompt is in is over."
@@ -84,26 +84,14 @@ over."
 
 (defun terminal-p (session)
   "True if somebody sits at SESSION."
-  (interactive-stream-p (session-input session)))
+  (typed-by-hand-p (session-input session)))
 
 ;;; Complaints and messages.
 
 (defun complain (session text)
   "Show TEXT as an error."
   (incf (session-errors session))
-  (format (session-console session) "~&*ERROR* -> ~A~%" (one-line text)))
-
-(defun blank-p (char)
-  (member char '(#\Space #\Tab #\Return #\Page #\Newline)))
-
-(defun one-line (text)
-  "Return TEXT with each run of blanks as one space."
-  (string-trim " " (with-output-to-string (out)
-                     (loop for previous = #\Space then char
-                           for char across text
-                           for blank = (blank-p char)
-                           unless (and blank (blank-p previous))
-                             do (write-char (if blank #\Space char) out)))))
+  (format (session-console session) "~&*ERROR* -> ~A~%" (complaint-text text)))
 
 (defun take-all-messages ()
   (append (take-messages)
@@ -114,7 +102,8 @@ over."
 (defun write-messages (messages console)
   (unless (and (unanswered-p console) (eq (message-kind (first messages)) :message))
     (fresh-line console))
-  (dolist (message messages) (write-message message console)))
+  (dolist (message messages)
+    (write-string (visible (with-output-to-string (text) (write-message message text))) console)))
 
 (defvar *showing-p* nil
   "True while this thread shows messages; what the showing itself reports is left for later.")
@@ -158,25 +147,30 @@ over."
   (when (or (session-news-p session) (spoilt-p (session-console session)))
     (show-messages session)))
 
+(defun observer-for (session)
+  "Return an observer that shows what SESSION has not shown. It takes itself back when SESSION has
+another, so that nobody waits for the tick to end, which it may never."
+  (let ((observer nil))
+    (setf observer (lambda (simulation)
+                     (if (eq observer (session-observer session))
+                         (look session)
+                         (remove-observer observer simulation))))))
+
 (defun listen-to (session simulation)
   "Let SESSION show what SIMULATION has to say when it says it."
-  (flet ((look (simulation)
-           (declare (ignore simulation))
-           (look session)))
-    (setf (session-simulation session) simulation
-          (message-queue-listener (simulation-messages simulation))
-          (lambda () (hear session simulation)))
-    (when (live-p simulation)
-      (setf (session-observer session) #'look)
-      (asking (simulation) (add-observer #'look simulation)))))
+  (setf (session-simulation session) simulation
+        (message-queue-listener (simulation-messages simulation))
+        (lambda () (hear session simulation)))
+  (when (live-p simulation)
+    (let ((observer (observer-for session)))
+      (setf (session-observer session) observer)
+      (asking (simulation) (add-observer observer simulation)))))
 
 (defun stop-listening (session)
-  (let ((simulation (shiftf (session-simulation session) nil))
-        (observer (shiftf (session-observer session) nil)))
+  (let ((simulation (shiftf (session-simulation session) nil)))
+    (setf (session-observer session) nil)
     (when simulation
-      (setf (message-queue-listener (simulation-messages simulation)) nil))
-    (when observer
-      (asking (simulation) (remove-observer observer simulation)))))
+      (setf (message-queue-listener (simulation-messages simulation)) nil))))
 
 (defun follow-simulation (session)
   "Let SESSION listen to the simulation that is current now."

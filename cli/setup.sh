@@ -80,20 +80,45 @@ ensure_packages() {  # SYSTEM...
     [ -z "$packages" ] || install_packages $packages
 }
 
-# Compiling. Starts at the same time wait for each other, where the system has flock.
+# Compiling. Starts at the same time wait for each other, where the system has flock; also for what
+# goes on compiling when the start that wanted it has been killed.
 
 with_lock() {  # COMMAND...
     if command -v flock >/dev/null; then
-        ( flock 9; "$@" 9>&- ) 9>"$cache/lock"
+        ( flock 9; "$@" ) 9>"$cache/lock"
     else
         "$@"
     fi
 }
 
+source_sums() {  # DIRECTORY...: a check sum of each source there, and its name.
+    ( cd "$root" && find ars-magna.asd "$@" \( -name '*.lisp' -o -name '*.asd' \) -exec cksum {} + |
+          LC_ALL=C sort -k 3 )
+}
+
+# The compiler goes by dates. So that a source with an old one counts as changed, what was compiled
+# of others than those that are there is forgotten.
+forget_changed() {
+    known=$cache/sources
+    source_sums src rpl worlds cli tests >"$known.new" || return
+    [ -f "$known" ] || : >"$known"
+    LC_ALL=C sort "$known.new" >"$known.left" && LC_ALL=C sort "$known" >"$known.right" &&
+        LC_ALL=C comm -23 "$known.left" "$known.right" |
+            while read -r _ _ file; do rm -f "$cache/project/${file%.lisp}.fasl"; done
+    rm -f "$known.left" "$known.right"
+    mv -f "$known.new" "$known"
+}
+
+# Half of a compiled file is what a compiler that was killed leaves.
+forget_halves() {
+    find "$cache" -name '*-tmp*.fasl' -exec rm -f {} +
+}
+
 compile() {  # LOG LISP-FORM: evaluate the form of build.lisp; show its troubles if that fails.
+    forget_halves
+    forget_changed || say "what has changed cannot be told; is $cache full?"
     plain_sbcl --load "$root/cli/build.lisp" --eval "$2" >"$1" 2>&1 && return
     grep -v -e '^; compil' -e '^; wrote' -e '^$' "$1" | tail -n 60 >&2
     say "that did not compile; all of it is in $1"
     return 1
 }
-

@@ -5,11 +5,23 @@
 ;;; The shipped worlds, in the directory worlds/, are there from the start and called as their maps
 ;;; are. Others come from files: Lisp files that define a map and at least one robot in it.
 
-(defun load-lisp (path)
-  "Load the Lisp file at PATH as users write it: in the package ARS-USER unless it says otherwise."
+(defun call-with-syntax (float-format function)
+  "Call FUNCTION with the package and syntax in which users write; numbers with a point are floats
+of FLOAT-FORMAT."
   (let ((*package* (user-package))
-        (*read-default-float-format* 'single-float))
-    (call-quietly (lambda () (load-forms path)))))
+        (*readtable* *readtable*)
+        (*read-default-float-format* float-format))
+    (nisp:in-readtable :nisp)
+    (funcall function)))
+
+;;; A file has the floats that (load ...) reads in any Lisp, so that it defines one world on all
+;;; roads.
+
+(defun load-lisp (path)
+  "Load the Lisp file at PATH as users write it: in ARS-USER and Nisp's syntax, unless
+it says otherwise."
+  (call-with-syntax 'single-float
+                    (lambda () (call-quietly (lambda () (load-forms path))))))
 
 (defun load-world (path)
   "Load the Lisp file at PATH. Return the names of the robots that it defines. Signals BAD-LINE if
@@ -40,6 +52,10 @@ there are none."
     (and (pathname-name path)
          (or (existing-path path)
              (existing-path (make-pathname :type "lisp" :defaults path))))))
+
+(defun file-called (name)
+  "Return the path of the Lisp file NAME, with or without its type. Signals BAD-LINE."
+  (or (existing-file name) (reject-line "There is no file ~A." name)))
 
 (defun world-robots-called (name)
   "Return the names of the robots in the world NAME: a map's name, or else a Lisp file that defines

@@ -90,7 +90,7 @@
 (defparameter *sb-ext-doors*
   '("src/base/policy.lisp" "src/base/floats.lisp" "src/base/globals.lisp" "src/base/atomic.lisp"
     "src/base/packages.lisp" "src/base/environments.lisp" "src/base/interrupts.lisp"
-    "src/base/debuggers.lisp" "src/base/tables.lisp")
+    "src/base/debuggers.lisp" "src/base/files.lisp" "src/base/tables.lisp")
   "The files that may name SB-EXT.")
 
 (defparameter *before-the-doors*

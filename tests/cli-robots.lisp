@@ -30,7 +30,7 @@
      '()
      (lambda ()
        (base:clean-simulation)
-       (cli::run-batch session robot '())))
+       (cli::run-batch session robot 0)))
     (lines-of (get-output-stream-string output))))
 
 (test robots.of-shipped-worlds-are-known-by-name

@@ -55,6 +55,15 @@
     (file-position file position)
     (write-byte byte file)))
 
+(test cache.is-not-read-when-it-is-too-large
+  (with-fresh-cache
+    (apply #'cached-map *cached-clauses*)
+    (damage-cache (expt 2 36) 1)        ; 64 GB of which next to nothing is on the disk
+    (apply #'cached-map *cached-clauses*)
+    (is (search "is damaged" (first (message-texts))))
+    (apply #'cached-map *cached-clauses*)
+    (is (null (message-texts)) "the file was rewritten")))
+
 (test cache.is-rebuilt-with-a-warning-when-damaged
   (with-fresh-cache
     (let ((built (grid-of (apply #'cached-map *cached-clauses*))))

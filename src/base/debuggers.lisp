@@ -36,3 +36,12 @@ call ANSWER with the condition instead, which is not to return."
   `(flet ((body () ,@body))
      (declare (dynamic-extent #'body))
      (call-answering-debugger #'body ,answer)))
+
+(defun debugger-hook ()
+  "Return the function that is called instead of Lisp's debugger, with a condition and itself, in
+whatever thread that has not bound one; or NIL. Can be set. By the name DEBUGGER-DISABLED-HOOK one
+says that there is nobody to talk to."
+  sb-ext:*invoke-debugger-hook*)
+
+(defun (setf debugger-hook) (function)
+  (setf sb-ext:*invoke-debugger-hook* function))

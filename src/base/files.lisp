@@ -1,4 +1,4 @@
-;;;; files.lisp -- files as the operating system knows them: their names, kinds and renaming.
+;;;; files.lisp -- files as the operating system knows them: names, kinds, octets, renaming.
 
 (in-package :ars-magna.base)
 
@@ -50,3 +50,16 @@ when FUNCTION has returned; if that or anything else fails, FILE is as it was. R
       :close-stream
       (replace-file path new))
     (truename path)))
+
+;;; Text of whatever octets. (SBCL's streams of UTF-8 loop at some that are none.)
+
+(defun decoded (octets)
+  "Return the text in UTF-8 whose octets the characters of OCTETS, read as Latin 1, stand for, with
+a question mark for each that cannot be read."
+  (sb-ext:octets-to-string (map '(vector (unsigned-byte 8)) #'char-code octets)
+                           :external-format '(:utf-8 :replacement #\?)))
+
+(defun file-text (path)
+  "Return the text in the file PATH, whatever octets it has. Signals an error if it has none."
+  (unless (plain-file-p path) (error "~A is a directory or a device" (native-name path)))
+  (decoded (read-file-into-string path :external-format :latin-1)))

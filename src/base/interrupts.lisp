@@ -22,3 +22,19 @@
 (defun let-interrupts-in ()
   "Let what has been waiting interrupt this thread now."
   (when sb-sys:*interrupt-pending* (allowing-interrupts nil)))
+
+;;; The same for functions, and strictly: what happens to be called in between cannot let any in.
+
+(defvar *open-to-interrupts* #'funcall
+  "A function that calls another, in which this thread takes interrupts.")
+
+(defun call-holding-interrupts (function)
+  "Call FUNCTION. Until it returns, interrupts wait, but in what CALL-OPEN-TO-INTERRUPTS calls."
+  (sb-sys:without-interrupts
+    (let ((*open-to-interrupts* (lambda (function)
+                                  (sb-sys:with-local-interrupts (funcall function)))))
+      (funcall function))))
+
+(defun call-open-to-interrupts (function)
+  "Call FUNCTION, in which this thread takes interrupts, those too that wait."
+  (funcall *open-to-interrupts* function))

@@ -14,8 +14,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
            #:read-file-into-string #:starts-with-subseq #:define-constant #:proper-list-p)
   ;; policy
-  (:export #:*hot* #:compiler-note #:declaim-final #:double #:cell-index #:tick-count
-           #:document-functions)
+  (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:cell-index
+           #:tick-count #:document-functions)
   ;; public
   (:export #:public #:addition #:settable #:settable-p #:addition-p #:public-symbols #:*marking-p*)
   ;; floats, globals
@@ -33,7 +33,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:copy-nicknames)
   ;; files, processes
   (:export #:native-name #:native-path #:existing-path #:replace-file #:plain-file-p
-           #:call-replacing-file
+           #:call-replacing-file #:decoded #:file-text
            #:environment-value #:run-command)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
@@ -54,7 +54,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; interrupts, debuggers
   (:export #:time-limit #:deferring-interrupts #:allowing-interrupts #:let-interrupts-in
-           #:debugger-p #:answering-debugger #:calls-under-way)
+           #:call-holding-interrupts #:call-open-to-interrupts
+           #:debugger-p #:answering-debugger #:calls-under-way #:debugger-hook)
   ;; dice
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance)

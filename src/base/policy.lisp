@@ -1,4 +1,4 @@
-;;;; policy.lisp -- how code is compiled, and the few number types that all layers share.
+;;;; policy.lisp -- how code is compiled, its room, and the number types that all layers share.
 
 (in-package :ars-magna.base)
 
@@ -13,6 +13,10 @@
 (defmacro declaim-final (&rest types)
   "Promise the compiler that no type will include one of the structures TYPES from here on."
   `(declaim (sb-ext:freeze-type ,@types)))
+
+(defun heap-bytes ()
+  "Return for how many bytes of objects this Lisp has room, in use or not."
+  (sb-ext:dynamic-space-size))
 
 (deftype cell-index ()
   "The index of a grid cell: maps have at most 2^30 cells."

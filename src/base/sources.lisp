@@ -167,7 +167,7 @@ CLAUSE is not found in it, or NIL; and which of the definitions of that name it 
 
 (defun clause-line (file form clause)
   "Return what LINE-OF-CLAUSE does for the text in FILE; NIL if that cannot be read."
-  (ignore-errors (line-of-clause (read-file-into-string file) form clause)))
+  (ignore-errors (line-of-clause (file-text file) form clause)))
 
 (defun part-in-file-p (file form part)
   "True if a form in FILE, as that is now, has operator and name of FORM, and PART, a list, in it."

@@ -30,17 +30,20 @@
            (when (find char "\\|") (read-escape char stream token))
         finally (return (coerce token 'simple-string))))
 
+(defun reject-syntax (text expected)
+  (reject-clause "Nisp's reader" text expected))
+
 (defun token-object (token)
-  "Return what the standard reader makes of TOKEN in the current package."
+  "Return what the standard reader makes of TOKEN in the current package. Signals
+MALFORMED-DEFINITION if that is nothing whole."
   (let ((*readtable* (find-readtable :standard)))
-    (values (read-from-string token))))
+    (handler-case (values (read-from-string token))
+      ;; What holds TOKEN is no shorter than it should be.
+      (end-of-file () (reject-syntax token "a name or number after ! or ?")))))
 
 (defun token-name (token)
   "Return TOKEN as the name of a slot: the reader's upper case, no package."
   (string-upcase (remove #\| token)))
-
-(defun reject-syntax (text expected)
-  (reject-clause "Nisp's reader" text expected))
 
 ;;; ! and its forms.
 

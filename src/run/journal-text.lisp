@@ -11,6 +11,10 @@
 (defconstant +longest-file+ (expt 2 28) "How many bytes a journal has at most.")
 (defconstant +latest-end+ (expt 10 9) "The last tick that a journal on file can end at.")
 
+(defun shown-name (file)
+  "Return FILE, a pathname or string, as the operating system writes it."
+  (if (pathnamep file) (native-name file) file))
+
 (addition damaged-journal)
 (define-condition damaged-journal (ars-magna-error)
   ((file   :initarg :file   :reader damaged-journal-file)
@@ -18,7 +22,8 @@
   (:report (lambda (condition stream)
              (format stream "~A is no usable journal: ~A. Save one with SAVE-JOURNAL; ~
                              nothing was changed."
-                     (damaged-journal-file condition) (damaged-journal-reason condition))))
+                     (shown-name (damaged-journal-file condition))
+                     (damaged-journal-reason condition))))
   (:documentation "A file that should hold a journal cannot be used."))
 
 ;;; Writing.
@@ -72,7 +77,7 @@ form; then FILE is as it was."
       (call-replacing-file (lambda (out) (write-data (journal-data journal) out)) file)
     (error (trouble)
       (reject-use "The journal cannot be written to ~A: ~A. What was there is as before."
-                  file (one-line-text trouble)))))
+                  (shown-name file) (one-line-text trouble)))))
 
 ;;; Reading.
 
@@ -89,7 +94,7 @@ form; then FILE is as it was."
                        do (setf last (read-char in nil))
                        until (member last '(nil #\Newline))
                        do (write-char last out)))))
-    (when (or last (plusp (length line))) (string-right-trim '(#\Return) line))))
+    (when (or last (plusp (length line))) (string-right-trim '(#\Return) (decoded line)))))
 
 (defun comment-line-p (line)
   "True if LINE is a comment or empty; an editor may have put a byte order mark before it."
@@ -252,7 +257,7 @@ is wrong, and in which entry."
   "Return the journal in FILE. Signals an error if it is none."
   (unless (probe-file file) (error "there is no such file"))
   (unless (plain-file-p file) (error "it is a directory or a device"))
-  (with-open-file (in file :external-format '(:utf-8 :replacement #\?))
+  (with-open-file (in file :external-format :latin-1)
     (when (< +longest-file+ (file-length in))
       (error "it has ~D bytes, more than journals have" (file-length in)))
     (with-homeless-symbols () (journal-from (read-data in)))))

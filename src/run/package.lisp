@@ -21,6 +21,8 @@ takes part in it. Manual 2.3 and appendix A.")
   (:export #:journal #:make-journal #:journal-p #:journal-header #:journal-entries
            #:journal-end #:journal-length #:*journal-limit* #:note #:begin-journal
            #:end-of-journal #:truncated-journal)
+  ;; plain-data
+  (:export #:tree-p)
   ;; references
   (:export #:externalize #:internalize #:dereference)
   ;; tick, headless

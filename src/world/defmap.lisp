@@ -34,6 +34,7 @@ THINGS is a list of recipes, and of NIL for those that are left out. PACKAGE is 
 author writes in. Return the map."
   (unless (typep cache '(or null string pathname))
     (reject-clause (format nil "defmap ~(~A~)" name) (list :cache cache) "the name of a file"))
+  (check-room (format nil "defmap ~(~A~)" name) width height)
   (let* ((recipes (remove nil things))
          (map (build-map
                (%make-map :name name :width width :height height :clauses clauses :cache cache

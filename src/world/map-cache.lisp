@@ -69,11 +69,16 @@
 
 ;;; Reading.
 
-(defun read-words (path)
-  "Return the words of the file PATH, or NIL if there is no such file."
+(defun most-words (map)
+  "Return how many words a cache of MAP has at most: each cell is a wall, or a place, or both."
+  (+ +cache-header+ (* 4 (map-width map) (map-height map))))
+
+(defun read-words (path most)
+  "Return the words of the file PATH, none if they are more than MOST; NIL if there is no file."
   (with-open-file (in path :element-type '(unsigned-byte 64) :if-does-not-exist nil)
     (when in
-      (let ((words (make-array (file-length in) :element-type '(unsigned-byte 64))))
+      (let ((words (make-array (if (<= (file-length in) most) (file-length in) 0)
+                               :element-type '(unsigned-byte 64))))
         (read-sequence words in)
         words))))
 
@@ -146,7 +151,7 @@ or damaged, or that cannot be told."
 (defun restore-from-cache (map path key)
   "Fill MAP from the file PATH; true if that could be done."
   (handler-case
-      (let ((words (read-words path)))
+      (let ((words (read-words path (most-words map))))
         (when words
           (let ((trouble (words-trouble words key)))
             (if trouble

@@ -101,6 +101,19 @@ against the edges, is the edges."
 
 ;;; Building.
 
+;; A cell takes 20 bytes in its map, 2 while that is built and 9 in a world; and there are others.
+(defconstant +cell-bytes+ 40 "How many bytes of the heap there must be for each cell of a map.")
+
+(defun check-room (definition width height)
+  "Signal MALFORMED-DEFINITION if the heap is too small for a map of WIDTH by HEIGHT cells."
+  (let ((possible (floor (heap-bytes) +cell-bytes+)))
+    (when (< possible (* width height))
+      (reject-clause definition (list width height)
+                     (format nil "a size of at most ~D cells in all, such as (~D ~:*~D): this Lisp ~
+                                  has room for no more; start it with a larger ~
+                                  --dynamic-space-size"
+                             possible (min 32767 (isqrt possible)))))))
+
 (defun draw-clause (map clause)
   (let ((kind (first clause)))
     (apply (cond ((same-name-p kind "WALL") #'draw-wall)

@@ -1,0 +1,121 @@
+;;;; cli-debugger.lisp -- programs that break, where somebody sits at the prompt and where nobody.
+
+(in-package :ars-magna.tests)
+
+(def-suite* cli-debugger :in ars-magna)
+
+(defun type-at-terminal (&rest lines)
+  "Type LINES as somebody who sits at a terminal would. Return what is written, a list of lines."
+  (let* ((output (make-string-output-stream))
+         (input (make-instance 'cli::typed-text :by-hand-p t
+                               :octets (make-string-input-stream (joined lines))))
+         (session (cli:make-session :input input :output output)))
+    (run:call-with-simulation (lambda () (cli:run-session session)) '(ars-user::butler)
+                              :clean t)
+    (lines-of (get-output-stream-string output))))
+
+(defun without-prompts (line)
+  (if (or (eql 0 (search "Robot> " line)) (eql 0 (search "Break> " line)))
+      (without-prompts (subseq line 7))
+      line))
+
+(defun written-p (line written)
+  "True if LINE begins one of the lines WRITTEN, perhaps after prompts."
+  (find-if (lambda (other) (eql 0 (search line (without-prompts other)))) written))
+
+;;; Where nobody sits.
+
+(test break.is-a-message-where-nobody-sits
+  (is (equal '("*ERROR* -> Break: oh" "4" "5")
+             (type-batch "(progn (break \"oh\") 4)" "(+ 2 3)")))
+  (is (equal '("*ERROR* -> Break: no" "5")
+             (type-batch "(invoke-debugger (make-condition 'simple-error :format-control \"no\"))"
+                         "(+ 2 3)"))))
+
+(test break.on-errors-is-a-message-where-nobody-sits
+  (let ((base:*break-on-user-error* t))
+    (is (equal '("*ERROR* -> no" "5") (type-batch "(error \"no\")" "(+ 2 3)")))))
+
+(test break.of-another-thread-ends-that-thread
+  (is (equal '("*ERROR* -> Break: no" "5")
+             (remove "NIL" (type-batch "(ars-magna.base:join-thread (ars-magna.base:start-thread
+                                          (lambda () (error \"no\")) \"failing\"))"
+                                       "(+ 2 3)")
+                     :test #'string=))))
+
+(test hook.is-as-before-afterwards
+  (let ((hook (base:debugger-hook)))
+    (type-batch "(+ 1 2)")
+    (is (eq hook (base:debugger-hook)))))
+
+;;; Where somebody does.
+
+(test break.asks-how-to-go-on
+  (let ((written (type-at-terminal "(progn (break \"oh\") (+ 2 2))" "nonsense" "(* 6 7)" "0"
+                                   "(+ 2 3)")))
+    (is-true (written-p "*BREAK* -> oh" written))
+    (is-true (find-if (lambda (line) (has-words-p line "0" "continue" "Return from")) written))
+    (is-true (find-if (lambda (line) (has-words-p line "nonsense" "no way to go on")) written))
+    (dolist (line '("42" "4" "5"))
+      (is-true (written-p line written) "~A is not in ~S" line written))))
+
+(test break.can-end-its-line
+  (let ((written (type-at-terminal "(progn (break) (print 77))" "end-line" "(+ 2 3)")))
+    (is-false (written-p "77" written))
+    (is-true (written-p "5" written))))
+
+(test break.shows-where-it-is
+  (is-true (find-if (lambda (line) (has-words-p line "  (break \"oh\")"))
+                    (type-at-terminal "(break \"oh\")" "backtrace" "0"))))
+
+(test break.can-be-left-with-the-prompt
+  (is-false (written-p "5" (type-at-terminal "(break)" "quit" "(+ 2 3)")))
+  (is-true (written-p "*BREAK* -> break" (type-at-terminal "(break)"))))
+
+(test break.on-a-full-stack-is-a-message
+  (let* ((base:*break-on-user-error* t)
+         (written (type-at-terminal
+                   "(robot-turn butler 1 (lambda (&rest r) (labels ((f (n) (1+ (f n)))) (f r))))"
+                   "(run-ticks 9)" "(robot-turn butler 1)" "(run-ticks 9)" "(+ 2 3)")))
+    (is-false (find-if (lambda (line) (search "*BREAK*" line)) written))
+    (is-true (written-p "*ERROR* -> Error in the continuation of robot-turn" written))
+    (is-true (written-p "5" written))))
+
+(test errors.break-only-when-that-is-wanted
+  (is-true (written-p "*ERROR* -> no" (type-at-terminal "(error \"no\")")))
+  (let* ((base:*break-on-user-error* t)
+         (written (type-at-terminal "(error \"no\")" "end" "turn fast" "(+ 2 3)")))
+    (is-true (written-p "*BREAK* -> no" written))
+    (is-true (written-p "5" written))
+    (is (= 1 (count-if (lambda (line) (search "*BREAK*" line)) written))
+        "a line that makes no sense is no break")))
+
+;;; In another thread.
+
+(defvar *breaking* nil "The thread of BREAK-ELSEWHERE.")
+(defvar *went-on* nil "What that has done.")
+
+(defun break-elsewhere ()
+  "Let another thread break, and wait until it asks how to go on."
+  (setf *went-on* '()
+        *breaking* (base:start-thread (lambda ()
+                                        (push (restart-case (progn (break "there") :went-on)
+                                                (turn-back () :turned-back))
+                                              *went-on*))
+                                      "breaking"))
+  (loop until (cli::session-breaks cli::*session*) do (base:yield-thread)))
+
+(test break.of-another-thread-reads-the-prompts-lines
+  (let ((written (type-at-terminal "(ars-magna.tests::break-elsewhere)"
+                                   "(push 42 ars-magna.tests::*went-on*)" "turn"
+                                   "(ars-magna.base:join-thread ars-magna.tests::*breaking*)"
+                                   "(+ 2 3)")))
+    (is (equal '(:turned-back 42) *went-on*))
+    (is-true (find-if (lambda (line) (has-words-p line "*BREAK* -> there" "another thread"))
+                      written))
+    (is-true (written-p "5" written))))
+
+(test break.of-another-thread-goes-on-when-the-prompt-is-left
+  (type-at-terminal "(ars-magna.tests::break-elsewhere)" "quit")
+  (base:join-thread *breaking*)
+  (is (equal '(:went-on) *went-on*)))

@@ -1,0 +1,96 @@
+;;;; cli-files.lisp -- the file of a world means the same on all roads, and sources what they say.
+
+(in-package :ars-magna.tests)
+
+(def-suite* cli-files :in ars-magna)
+
+;;; Roads to a world.
+
+(defun substance-on-road (road)
+  "Return the parameter of a wall in the world of a file that is loaded by ROAD, a function of its
+name, in Nisp's syntax and with a decimal fraction."
+  (uiop:with-temporary-file (:pathname path :stream out :type "lisp")
+    (format out "(defmap barn (9 9) (rect (0 0) (8 8) bricks 0.1))~@
+                 (defvar *truth* #t)~@
+                 (defrobot cow (barn (4 4) 0))")
+    :close-stream
+    (base:with-own-definitions ()
+      (funcall road (uiop:native-namestring path))
+      (world:cell-substance-parameter (world:map-cell (world:find-map 'barn) 0 0)))))
+
+(defun road-by-line (control)
+  "Return the road of the line that CONTROL makes of a file's name."
+  (lambda (name) (type-batch (format nil control name))))
+
+(defparameter *roads*
+  (list (cons "--world and WORLD" #'cli::world-robots-called)
+        (cons "(load ...)" (road-by-line "(load ~S)"))
+        (cons "world" (road-by-line "world ~S"))
+        (cons "--load" (lambda (name)
+                         (type-lines '() :batch t :files (list name)))))
+  "Ways to load a file of a world, by what a user calls them.")
+
+(test worlds.are-the-same-on-all-roads
+  (loop for (name . road) in *roads*
+        do (is (= (float 0.1f0 1d0) (substance-on-road road)) "~A" name)))
+
+(test numbers.typed-are-exact
+  (is (equal '("0.1") (type-batch "(values 0.1)")))
+  (is (equal '("T") (type-batch "(typep 0.1 'double-float)"))))
+
+(test names-of-files.may-have-any-characters
+  (dolist (name '("a b" "a'b" "a*b" "a?b" "a[b]" "-a" "é" "a\\b"))
+    (uiop:with-temporary-file (:pathname path)
+      (let* ((directory (uiop:native-namestring (uiop:pathname-directory-pathname path)))
+             (file (format nil "~Aars-magna ~A.lisp" directory name)))
+        (unwind-protect
+             (progn (with-open-file (out (base:native-path file) :direction :output)
+                      (format out "(defmap shed (5 5)) (defrobot hen (shed (2 2) 0))"))
+                    (base:with-own-definitions ()
+                      (is (equal '("HEN")
+                                 (mapcar #'symbol-name (cli::world-robots-called file)))
+                          "~A" name)))
+          (delete-file (base:native-path file)))))))
+
+;;; Other files.
+
+(test names-of-journals.may-have-any-characters
+  (dolist (name '("a b" "a*b" "a?b" "[ab]" "é" "a\\b"))
+    (let ((file (format nil "~Aars-magna ~A.journal"
+                        (uiop:native-namestring (uiop:temporary-directory)) name)))
+      (unwind-protect
+           (is (= 0 (nth-value 1 (type-batch "turn 1" (format nil "save-journal \"~A\"" file)
+                                             (format nil "replay \"~A\"" file))))
+               "~A" name)
+        (when (probe-file (base:native-path file)) (delete-file (base:native-path file)))))))
+
+;;; What is compiled of which sources.
+
+(defparameter *forgetting*
+  "set -e
+   root=$(mktemp -d)
+   cache=$root/cache
+   mkdir -p \"$root/src\" \"$root/rpl\" \"$root/cli\" \"$root/worlds\" \"$root/tests\"
+   mkdir -p \"$cache/project/src\"
+   touch \"$root/ars-magna.asd\"
+   for name in same changed; do
+       echo one >\"$root/src/$name.lisp\"
+       touch \"$cache/project/src/$name.fasl\"
+   done
+   . \"$1\"
+   forget_changed
+   touch \"$cache/project/src/same.fasl\" \"$cache/project/src/changed.fasl\"
+   echo two >\"$root/src/changed.lisp\"
+   touch -t 200001010000 \"$root/src/changed.lisp\"
+   forget_changed
+   ls \"$cache/project/src\"
+   rm -r \"$root\""
+  "A script that changes one of two sources, gives it an old date, and lists what is compiled.")
+
+(test sources.with-an-old-date-count-as-changed
+  (multiple-value-bind (status text)
+      (base:run-command "sh" (list "-c" *forgetting* "sh"
+                                   (base:native-name (project-file "cli/setup.sh")))
+                        :output :string)
+    (is (eql 0 status))
+    (is (string= (format nil "same.fasl~%") text))))
