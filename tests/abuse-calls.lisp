@@ -39,7 +39,9 @@
                                collect (if (and specs (eq argument :sensible))
                                            (sensible-argument (command:spec-type (first specs)))
                                            argument)))
-          (run-about))))))
+          (run-about)
+          ;; A function may be called if it came last, as the continuation.
+          (when (functionp (first (last arguments))) (setf *sprung* 0)))))))
 
 (define-abuse specifications (example)
     (list (base:roll-index 1000000000 dice)

@@ -80,7 +80,7 @@
   (let ((copy (copy-seq words)))
     (loop repeat (one-of dice 1 1 4)
           do (setf (aref copy (+ 2 (base:roll-index (- (length copy) 2) dice)))
-                   (one-of dice 0 (1- (expt 2 64)) (base:roll-index (expt 2 60) dice)
+                   (one-of dice 0 (1- (expt 2 64)) (base:roll-index 1000000000 dice)
                            (ash #x7FF 52) (ash 1 31) (ash 1 32) (ash 255 32)
                            (+ 107 (ash 1 32)) (+ 50 (ash 1 32)))))
     (setf (aref copy (1- world::+cache-header+)) (world::words-sum copy))

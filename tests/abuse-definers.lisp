@@ -168,9 +168,9 @@ is accepted, USE is done. OPTIONS are those of DEFINE-ABUSE and :KEEP, of FORM-M
                 (rpl:with-policy (rpl:wait-time 3) (rpl:n-times 2 (rpl:wait-time 1)))
                 (rpl:try-all (rpl:fail :class 'f) (rpl:wait-time 1))))
      (rpl:def-interp-proc abuse-plan ()
-       (let ((x (rpl:create-fluent 'f 1)))
-         (rpl:pursue (rpl:wait-for x) (rpl:wait-time 3))
-         (rpl:par-loop (y '(1 2)) (rpl:wait-time y))
+       (let ((abuse-one (rpl:create-fluent 'f 1)))
+         (rpl:pursue (rpl:wait-for abuse-one) (rpl:wait-time 3))
+         (rpl:par-loop (abuse-two '(1 2)) (rpl:wait-time abuse-two))
          (rpl:try-in-order (rpl:fail) (rpl:evap-protect (rpl:wait-time 1) 3)))))
   (run:call-with-simulation
    (lambda ()
@@ -179,11 +179,13 @@ is accepted, USE is done. OPTIONS are those of DEFINE-ABUSE and :KEEP, of FORM-M
    '(rover)))
 
 (define-form-abuse plan-macros (:author t)
-    ((rpl:def-interp-macro (abuse-macro for #.(nisp:make-matchvar 'x) do #.(nisp:make-matchvar 'y))
+    ((rpl:def-interp-macro (abuse-macro for #.(nisp:make-matchvar 'abuse-one)
+                                            do #.(nisp:make-matchvar 'abuse-two))
        "Twice."
-       (list 'rpl:n-times 2 x y))
-     (rpl:def-interp-macro (abuse-macro for #.(nisp:make-matchvar 'x) . #.(nisp:make-matchvar 'y))
-       (list 'rpl:par x (cons 'rpl:seq y))))
+       (list 'rpl:n-times 2 abuse-one abuse-two))
+     (rpl:def-interp-macro (abuse-macro for #.(nisp:make-matchvar 'abuse-one)
+                                            . #.(nisp:make-matchvar 'abuse-two))
+       (list 'rpl:par abuse-one (cons 'rpl:seq abuse-two))))
   (eval '(rpl:def-interp-proc abuse-plan () (abuse-macro for 1 do 2))))
 
 (defmacro keeping-packages (&body body)

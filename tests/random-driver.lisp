@@ -221,7 +221,7 @@ what has been seen."
   "Make a thing beside where the robots start, perhaps a container."
   (flet ((between (low high) (base:roll-between low high (ride-dice *ride*))))
     (world:make-new-thing
-     (pick '(ball box crate pin)) (list 'zoo (between 2.8 4.2) (between 2.8 4.2))
+     (pick '(ball box crate pin)) (list world:*world* (between 2.8 4.2) (between 2.8 4.2))
      `((:size ,(between .1 9)) (:weight ,(between 0 3)) (:capacity ,(if (luck .6) 8 0))
        (:color ,(pick '(red blue green)))))))
 

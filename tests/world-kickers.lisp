@@ -301,3 +301,12 @@ between one thing's kicks with the geometric law, as a draw per thing and tick w
         (thing-in world 'box (base:roll-between 0 20 dice) (base:roll-between 0 20 dice)
                   '((:obsmove t)) :kickers '(hop)))
       (loop repeat 20 do (run-world world 20) (is-sound world)))))
+
+(test kickers.of-the-least-probability-never-run
+  (with-own-definitions
+    (let ((world (open-world)) (ran 0))
+      (world:define-kicker 'hop :prob least-positive-double-float
+        :body (lambda (thing) (declare (ignore thing)) (incf ran)))
+      (thing-in world 'box 3 3 '() :kickers '(hop))
+      (run-world world 100)
+      (is (zerop ran)))))

@@ -41,7 +41,7 @@
 (defun gap-scale (probability)
   "Return the factor that turns the logarithm of a roll into a gap, see DRAW-GAP."
   (cond ((>= probability 1d0) 0d0)
-        ((< probability 1d-12) (- (/ probability)))
+        ((< probability 1d-12) (- (/ (max probability 1d-300))))
         (t (/ (log (- 1d0 probability))))))
 
 (declaim (inline draw-gap))
