@@ -90,7 +90,7 @@
     (base:roll-index 1000000000 dice)
   (with-temporary-file (file)
     (cached-octets file)
-    (let ((words (forged-words (world::read-words file) (base:make-dice seed))))
+    (let ((words (forged-words (world::read-words file 1000000) (base:make-dice seed))))
       (world::write-words words file)
       (eval (subst (namestring file) "CACHE" *cached-map* :test #'equal))
       (explore (newest-map)))))
