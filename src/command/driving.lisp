@@ -12,7 +12,7 @@
 when the speed is 0."
   `(let ((robot (operation-resource ,operation)))
      (declare #.*hot* (type operation ,operation) (type robot robot))
-     (if (zerop (the double-float (robot-speed-now robot)))
+     (if (standing-p robot)
          (fail-with ,operation :not-moving)
          (let ((,block (drive-tick robot)))
            ,@body
