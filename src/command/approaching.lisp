@@ -2,23 +2,36 @@
 
 (in-package :ars-magna.command)
 
-;;; The robot turns in place until it faces the designator, as far as it knows, and then drives,
-;;; making up each tick for what the designator has moved sideways. REACHED-P says when it has
-;;; arrived. The track tells where to go, so losing it ends the approach; arriving ends the track. A
-;;; false designator cannot be arrived at: the track is lost there. Each step either takes the robot
-;;; nearer to where the designator was, or ends the approach.
+;;; The robot turns in place until it faces what the camera tracks, and then drives, making up each
+;;; tick for what that has moved sideways. It goes by the track, as the camera does, not by the
+;;; estimated angle that programs read. REACHED-P says when it has arrived. Losing the track ends
+;;; the approach; arriving ends the track. A false designator cannot be arrived at: the track is
+;;; lost there. Each step either takes the robot nearer to where it goes, or ends the approach.
 
-(defun turn-to-designator (robot designator)
-  "Turn ROBOT towards DESIGNATOR, by no more than a tick's turn. True if it then faces it, as far as
-it knows."
-  (let ((angle (angle-difference (designator-angle designator) 0)))
-    (or (< (abs angle) +facing+)
-        (< (abs (turn-step robot angle)) +facing+))))
+(define-constant +aim+ 1d-6
+  :documentation "Facing its goal as exactly as this, in radians, a robot drives.")
+(define-constant +small-turn+ 1d-4
+  :documentation "After a turn of no more than this, in radians, a robot drives, wherever that has
+brought it.")
 
-(defun drive-to-designator (robot designator)
-  "Drive ROBOT for a tick, no farther than to DESIGNATOR. Return whether it has then arrived, and
-what blocked it, or NIL."
-  (let* ((distance (designator-distance designator))
+(defun angle-to-goal (robot designator)
+  "Return the angle by which ROBOT has to turn to face DESIGNATOR where it was last seen."
+  (let ((x (designator-x designator)) (y (designator-y designator)))
+    (if (zerop (distance-to robot x y))
+        0d0
+        (angle-difference (bearing-to robot x y) (robot-angle robot)))))
+
+(defun turn-to-goal (robot designator)
+  "Turn ROBOT towards DESIGNATOR, by no more than a tick's turn. True if it then faces it."
+  (let ((angle (angle-to-goal robot designator)))
+    (unless (< (abs angle) +facing+) (turn-step robot angle))
+    (or (<= (abs angle) +small-turn+)
+        (<= (abs (angle-to-goal robot designator)) +aim+))))
+
+(defun drive-to-goal (robot designator)
+  "Drive ROBOT for a tick, no farther than to DESIGNATOR where it was last seen. Return whether it
+has then arrived, and what blocked it, or NIL."
+  (let* ((distance (distance-to robot (designator-x designator) (designator-y designator)))
          (block (drive-tick robot distance)))
     (values (at-designator-p robot designator (<= distance (longest-step robot)) block)
             block)))
@@ -44,8 +57,8 @@ it (reading 111)."
          (fail-with operation :not-tracking camera designator))
         ((at-designator-p robot designator) (arrive operation camera designator))
         ((standing-p robot) (fail-with operation :not-moving camera designator))
-        ((turn-to-designator robot designator)
-         (multiple-value-bind (arrived block) (drive-to-designator robot designator)
+        ((turn-to-goal robot designator)
+         (multiple-value-bind (arrived block) (drive-to-goal robot designator)
            (cond (arrived (arrive operation camera designator))
                  (block (fail-with operation :robot-blocked camera designator)))))))
 

@@ -20,29 +20,29 @@
   (max (float cell 1d0)
        (min coordinate (* (float (1+ cell) 1d0) (- 1d0 double-float-negative-epsilon)))))
 
-(define-constant +corner-width+ 1d-9
-  :documentation "No farther than this from a corner, along either axis, a line passes through it, in
-metres.")
+(define-constant +contact-gap+ 1d-6
+  :documentation "How far from what blocks it a robot stops, in metres. No farther than this from a
+corner, along either axis, a line passes through it.")
 
-(defun closed-cell-p (world column row mask)
-  "True if the cell of WORLD at COLUMN and ROW has a flag of MASK, or is outside the map."
-  (let ((index (map-index (world-map world) column row)))
+(define-constant +blocking+ (logior +wall+ +obsmove+)
+  :documentation "The flags of a cell that keeps robots out.")
+
+(defun closed-cell-p (world x y mask)
+  "True if the cell of WORLD that holds (X,Y) has a flag of MASK, or is outside the map."
+  (let ((index (map-index (world-map world) x y)))
     (or (null index)
         (logtest mask (aref (world-flags world) index)))))
 
-(defun beyond-corner (world mask x y dx dy)
-  "If (X,Y) is at the corner of four cells and a line in direction (DX,DY) is not stopped by the two
-beside it, return the point just beyond the corner, in the cell opposite, as two values; else NIL.
-Cells with a flag of MASK stop it."
+(defun beyond-corner (world mask x y column row)
+  "If (X,Y) is at a corner of the cell at COLUMN and ROW, and a line from there is not stopped by the
+two cells beside the corner, return the point just beyond it, in the cell opposite, as two values;
+else NIL. Cells with a flag of MASK stop the line."
   (let ((corner-x (round x)) (corner-y (round y)))
-    (flet ((ahead (corner direction) (if (plusp direction) corner (1- corner)))
-           (behind (corner direction) (if (plusp direction) (1- corner) corner)))
-      (let ((column (ahead corner-x dx)) (row (ahead corner-y dy)))
-        (unless (or (zerop dx)
-                    (zerop dy)
-                    (> (abs (- x corner-x)) +corner-width+)
-                    (> (abs (- y corner-y)) +corner-width+)
-                    (and (closed-cell-p world column (behind corner-y dy) mask)
-                         (closed-cell-p world (behind corner-x dx) row mask)))
-          (values (within-cell (double corner-x) column)
-                  (within-cell (double corner-y) row)))))))
+    (flet ((other (cell corner) (if (= cell corner) (1- corner) corner)))
+      (let ((other-column (other column corner-x)) (other-row (other row corner-y)))
+        (unless (or (> (abs (- x corner-x)) +contact-gap+)
+                    (> (abs (- y corner-y)) +contact-gap+)
+                    (and (closed-cell-p world other-column row mask)
+                         (closed-cell-p world column other-row mask)))
+          (values (within-cell (double corner-x) other-column)
+                  (within-cell (double corner-y) other-row)))))))

@@ -24,12 +24,6 @@ what rounding adds to it.")
     (and (<= (gap (robot-x robot) (floor x)) +contact+)
          (<= (gap (robot-y robot) (floor y)) +contact+))))
 
-(defun blocked-at-p (world x y)
-  "True if the cell of WORLD that holds (X,Y) keeps robots out, or is outside the map."
-  (let ((index (map-index (world-map world) x y)))
-    (or (null index)
-        (what-blocks (aref (world-flags world) index)))))
-
 (defun within-reach-p (robot x y)
   "True if (X,Y), in metres, is local to ROBOT: less than a metre away, or in the same cell, or in a
 cell that blocks ROBOT and that it stands at (reading 108)."
@@ -40,7 +34,7 @@ cell that blocks ROBOT and that it stands at (reading 108)."
          (or (< (+ (* dx dx) (* dy dy)) 1d0)
              (in-same-cell-p robot x y)
              (and (at-cell-p robot x y)
-                  (blocked-at-p (robot-world robot) x y))))))
+                  (closed-cell-p (robot-world robot) x y +blocking+))))))
 
 (defun reached-p (robot x y last-step block)
   "True if ROBOT, which has just driven for a tick, has thereby arrived at (X,Y). LAST-STEP is true

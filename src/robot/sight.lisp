@@ -6,15 +6,23 @@
 ;;; it. Neither the cell of the eye nor that of the target does. The walk ends after as many borders
 ;;; as lie between them, as by distance rounding could end it one cell before or behind the target.
 
-(defun corner-clear-p (world x y to-x to-y)
-  "True if the line to (TO-X,TO-Y), obstructed at (X,Y), only meets a corner there and goes on beyond
-it."
-  (multiple-value-bind (beyond-x beyond-y)
-      (beyond-corner world +opaque+ x y (- to-x x) (- to-y y))
-    (and beyond-x
-         (or (and (= (floor beyond-x) (floor to-x)) (= (floor beyond-y) (floor to-y)))
-             (not (closed-cell-p world beyond-x beyond-y +opaque+)))
-         (line-clear-p world beyond-x beyond-y to-x to-y))))
+(defun same-cell-p (x y to-x to-y)
+  (and (= (floor x) (floor to-x))
+       (= (floor y) (floor to-y))))
+
+(defun corner-clear-p (world x y dx dy to-x to-y)
+  "True if the line in direction (DX,DY) to (TO-X,TO-Y), obstructed at (X,Y), only meets a corner
+there and goes on beyond it."
+  (flet ((before (position direction)
+           (if (plusp direction) (1- (round position)) (round position))))
+    (multiple-value-bind (beyond-x beyond-y)
+        (beyond-corner world +opaque+ x y (before x dx) (before y dy))
+      (and beyond-x
+           (/= 0 dx)
+           (/= 0 dy)
+           (or (same-cell-p beyond-x beyond-y to-x to-y)
+               (and (not (closed-cell-p world beyond-x beyond-y +opaque+))
+                    (line-clear-p world beyond-x beyond-y to-x to-y)))))))
 
 (defun line-clear-p (world x y to-x to-y)
   "True if nothing in WORLD obstructs the line from (X,Y) to (TO-X,TO-Y), points of the map."
@@ -33,7 +41,7 @@ it."
                         (map-width map) (map-height map) x y dx dy +no-limit+)))
     (declare (type fixnum left) (type double-float at))
     (or clear
-        (corner-clear-p world (+ x (* dx at)) (+ y (* dy at)) to-x to-y))))
+        (corner-clear-p world (+ x (* dx at)) (+ y (* dy at)) dx dy to-x to-y))))
 
 (defun in-sight-p (world x y to-x to-y)
   "True if in WORLD the cell of (TO-X,TO-Y), or a good part of it, can be seen from (X,Y)."
