@@ -9,10 +9,9 @@
 ;;; lost there. Each step either takes the robot nearer to where it goes, or ends the approach.
 
 (define-constant +aim+ 1d-6
-  :documentation "Facing its goal as exactly as this, in radians, a robot drives.")
-(define-constant +small-turn+ 1d-4
-  :documentation "After a turn of no more than this, in radians, a robot drives, wherever that has
-brought it.")
+  :documentation "Facing its goal as exactly as this, in radians, a robot sets out.")
+(defconstant +aiming-turns+ 3
+  "After so many turns that should have done it, a robot sets out wherever it faces.")
 
 (defun angle-to-goal (robot designator)
   "Return the angle by which ROBOT has to turn to face DESIGNATOR where it was last seen."
@@ -22,11 +21,18 @@ brought it.")
         (angle-difference (bearing-to robot x y) (robot-angle robot)))))
 
 (defun turn-to-goal (robot designator)
-  "Turn ROBOT towards DESIGNATOR, by no more than a tick's turn. True if it then faces it."
+  "Turn ROBOT towards DESIGNATOR, by no more than a tick's turn. True if it then faces it, but for the
+error of turning."
   (let ((angle (angle-to-goal robot designator)))
-    (unless (< (abs angle) +facing+) (turn-step robot angle))
-    (or (<= (abs angle) +small-turn+)
-        (<= (abs (angle-to-goal robot designator)) +aim+))))
+    (or (< (abs angle) +facing+)
+        (< (abs (turn-step robot angle)) +facing+))))
+
+(defun ready-p (operation robot designator)
+  "True if ROBOT, which faces DESIGNATOR but for the error of turning, is to drive: it has aimed well
+enough, or often enough, or is on its way."
+  (when (or (>= (incf (operation-count operation)) +aiming-turns+)
+            (<= (abs (angle-to-goal robot designator)) +aim+))
+    (setf (operation-count operation) +aiming-turns+)))
 
 (defun drive-to-goal (robot designator)
   "Drive ROBOT for a tick, no farther than to DESIGNATOR where it was last seen. Return whether it
@@ -57,7 +63,7 @@ it (reading 111)."
          (fail-with operation :not-tracking camera designator))
         ((at-designator-p robot designator) (arrive operation camera designator))
         ((standing-p robot) (fail-with operation :not-moving camera designator))
-        ((turn-to-goal robot designator)
+        ((and (turn-to-goal robot designator) (ready-p operation robot designator))
          (multiple-value-bind (arrived block) (drive-to-goal robot designator)
            (cond (arrived (arrive operation camera designator))
                  (block (fail-with operation :robot-blocked camera designator)))))))
