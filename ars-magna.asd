@@ -154,7 +154,7 @@
                  (:file "journals-forged") (:file "journals-definitions") (:file "worlds")
                  (:file "worlds-moving") (:file "looking") (:file "looking-views")
                  (:file "looking-tracks") (:file "looking-cameras") (:file "looking-approach")
-                 (:file "approaching")
+                 (:file "corners") (:file "approaching")
                  (:file "handling") (:file "handling-inside") (:file "handling-bins")
                  (:file "handling-chance") (:file "manipulations")
                  (:file "shipped-manipulations") (:file "statistics") (:file "rpl-fluents")

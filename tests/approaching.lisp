@@ -257,3 +257,63 @@ turning, one for each of driving, and one for what rounding leaves."
   (is (<= (length (failed-approaches (free-settings 200)
                                      :parameters *noise-of-motion-and-angles*))
           2)))
+
+;;; What moves.
+
+(world:defkicker wander (thing) (:prob 1/2)
+  (flet ((step-length () (base:roll-within 1/4 (world:world-dice world:*world* :user))))
+    (world:kick-thing thing (step-length) (step-length) t)))
+
+(defun wanderers-met (count &rest options)
+  "Return how many of COUNT robots reach what wanders about a bare room, in 300 ticks."
+  (loop for setting in (free-settings count 9000)
+        count (let ((heard '()))
+                (setf (setting-walls setting) '())
+                (run:call-with-simulation
+                 (lambda ()
+                   (let* ((robot (symbol-value 'goer)) (camera (robot:robot-camera robot 0))
+                          (thing (world:make-new-thing
+                                  'wanderer (cons world:*world* (setting-target setting)) '()
+                                  :kickers '(wander))))
+                     (robot:start-track camera (robot:add-designator robot :denotation thing) nil)
+                     (command:robot-goto-designator robot camera
+                                                    (lambda (&rest call) (push call heard)))
+                     (run:run-ticks 300)))
+                 (list (build-setting setting))
+                 :seed (setting-seed setting) :clean (getf options :clean)
+                 :parameters (getf options :parameters))
+                (equal '(nil) (mapcar #'first heard)))))
+
+(test approach.reaches-what-wanders
+  (is (= 40 (wanderers-met 40 :clean t)))
+  (is (<= 39 (wanderers-met 40 :parameters *noise-of-motion-and-angles*))))
+
+(test approach.is-repeated-from-a-journal
+  (let ((setting (first (free-settings 1 77))))
+    (run:call-with-simulation
+     (lambda ()
+       (furnish setting)
+       (let* ((robot (symbol-value 'goer)) (camera (robot:robot-camera robot 0)) (code :none))
+         (put 'target (setting-target setting) :color 'world:red)
+         (apply #'robot:place-robot robot
+                (append (setting-start setting)
+                        (list (straight-to (setting-start setting) (setting-target setting)))))
+         (command:camera-get-object-designator
+          camera :non-local '((:color red))
+          (lambda (err camera designator)
+            (unless err
+              (command:camera-track camera designator)
+              (command:robot-goto-designator robot camera
+                                             (lambda (err &rest more)
+                                               (declare (ignore more))
+                                               (setf code err))))))
+         (run:run-ticks 15)
+         ;; A copy, made on the way, goes the same way.
+         (let ((copy (run:copy-simulation time:*simulation*)))
+           (run:run-ticks 200)
+           (is (null code))
+           (run:run-ticks 200 copy)
+           (is (= (run:state-digest) (run:state-digest copy))))
+         (is (= (run:state-digest)
+                (nth-value 1 (run:replay (end-journal time:*simulation*)))))))
+     (list (build-setting setting)) :clean t :journal t)))

@@ -76,7 +76,7 @@ it (reading 111)."
 
 ;; As reading 112 says.
 (defmethod approaching-p ((operation operation) camera)
-  (and (eq 'approach-on (operation-step operation))
+  (and (eq 'robot-goto-designator (command-name (operation-command operation)))
        (eq camera (first (operation-arguments operation)))))
 
 (defun approach (operation robot designator)

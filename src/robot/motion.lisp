@@ -100,7 +100,11 @@ another column."
     (declare (type fixnum cell-x cell-y) (type double-float at))
     (if (or done (< distance at))
         (values distance cell-x cell-y nil nil)
-        (values at cell-x cell-y (or block :wall) sideways))))
+        (values at cell-x cell-y (or block :wall)
+                (if block
+                    sideways
+                    (<= (abs (- (+ x (* dx at)) (if back-x 0 (map-width map))))
+                        (abs (- (+ y (* dy at)) (if back-y 0 (map-height map))))))))))
 
 (defun pass-corner (robot x y column row)
   "Put ROBOT, which has come to (X,Y) in the cell at COLUMN and ROW and is blocked, into the cell

@@ -23,7 +23,8 @@
 CODE."))
 
 (defgeneric approaching-p (event camera)
-  (:documentation "True if EVENT, pending on a robot, takes it to what CAMERA tracks.")
+  (:documentation "True if EVENT, pending on a robot, takes it to what CAMERA tracks, now or after its
+delay.")
   (:method (event camera)
     (declare (ignore event camera))
     nil))
