@@ -45,7 +45,7 @@
                  (:file "timeline") (:file "pacing") (:file "schedule")))
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "blueprint") (:file "parts") (:file "odometer")
-                 (:file "corners") (:file "motion") (:file "reach")
+                 (:file "corners") (:file "sweeping") (:file "motion") (:file "reach")
                  (:file "designator") (:file "place-sense") (:file "sight") (:file "tracks")
                  (:file "new-designators") (:file "inside") (:file "making") (:file "retiring")
                  (:file "defrobot")

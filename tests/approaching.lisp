@@ -27,8 +27,8 @@ stands at TARGET, in a cell of its own."
 ;;; The judge.
 
 (defun overlap (from to low)
-  "Return where on the way from FROM to TO, from 0 to 1, one is within LOW and LOW + 1: a list (first
-last), or NIL. A way along the border belongs to the cell behind it."
+  "Return where on the way from FROM to TO, from 0 to 1, one is within LOW and LOW + 1: a list
+(first last), or NIL. A way along the border belongs to the cell behind it."
   (let ((way (- to from)))
     (if (zerop way)
         (and (<= low from) (< from (1+ low)) (list 0 1))
@@ -45,8 +45,8 @@ last), or NIL. A way along the border belongs to the cell behind it."
         (and (<= first last) (list first last))))))
 
 (defun straight-way-free-p (start target cells)
-  "True if the way from START to TARGET crosses none of CELLS, and passes between no two of them that
-touch."
+  "True if the way from START to TARGET crosses none of CELLS, and passes between no two of them
+that touch."
   (let ((meetings (loop for cell in cells
                         for meeting = (meeting start target cell)
                         when meeting collect meeting)))

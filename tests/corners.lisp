@@ -12,8 +12,8 @@
   (loop for (x y) in cells do (put 'block (list (+ x .5) (+ y .5)) :obsmove t :obsview t)))
 
 (defun ride (start direction blocks &key (speed 1) (ticks 6))
-  "Let RIDER drive from START, a list (x y), in DIRECTION, in radians, with BLOCKS, cells, in the way.
-Return where it comes to, x and y, and the error code."
+  "Let RIDER drive from START, a list (x y), in DIRECTION, in radians, with BLOCKS, cells, in the
+way. Return where it comes to, x and y, and the error code."
   (let ((code :none))
     (run:with-simulation (rider :clean t)
       (blocks blocks)

@@ -21,15 +21,15 @@
         (angle-difference (bearing-to robot x y) (robot-angle robot)))))
 
 (defun turn-to-goal (robot designator)
-  "Turn ROBOT towards DESIGNATOR, by no more than a tick's turn. True if it then faces it, but for the
-error of turning."
+  "Turn ROBOT towards DESIGNATOR, by no more than a tick's turn. True if it then faces it, but for
+the error of turning."
   (let ((angle (angle-to-goal robot designator)))
     (or (< (abs angle) +facing+)
         (< (abs (turn-step robot angle)) +facing+))))
 
 (defun ready-p (operation robot designator)
-  "True if ROBOT, which faces DESIGNATOR but for the error of turning, is to drive: it has aimed well
-enough, or often enough, or is on its way."
+  "True if ROBOT, which faces DESIGNATOR but for the error of turning, is to drive: it has aimed
+well enough, or often enough, or is on its way."
   (when (or (>= (incf (operation-count operation)) +aiming-turns+)
             (<= (abs (angle-to-goal robot designator)) +aim+))
     (setf (operation-count operation) +aiming-turns+)))

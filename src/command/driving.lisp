@@ -3,8 +3,8 @@
 (in-package :ars-magna.command)
 
 ;;; Each movement begins after ROBOT-MOVE-DELAY*, takes at least a tick, and ends in the tick of its
-;;; last step, without braking. So it does when anything interrupts it but ROBOT-STOP, which lets the
-;;; robot coast.
+;;; last step, without braking. So it does when anything interrupts it but ROBOT-STOP, which lets
+;;; the robot coast.
 
 (defmacro drive-on ((block operation) &body body)
   "Drive the robot of OPERATION for a tick, and run BODY with BLOCK bound to what blocks it, :WALL,

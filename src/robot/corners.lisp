@@ -34,9 +34,9 @@ corner, along either axis, a line passes through it.")
         (logtest mask (aref (world-flags world) index)))))
 
 (defun beyond-corner (world mask x y column row)
-  "If (X,Y) is at a corner of the cell at COLUMN and ROW, and a line from there is not stopped by the
-two cells beside the corner, return the point just beyond it, in the cell opposite, as two values;
-else NIL. Cells with a flag of MASK stop the line."
+  "If (X,Y) is at a corner of the cell at COLUMN and ROW, and a line from there is not stopped by
+the two cells beside the corner, return the point just beyond it, in the cell opposite, as two
+values; else NIL. Cells with a flag of MASK stop the line."
   (let ((corner-x (round x)) (corner-y (round y)))
     (flet ((other (cell corner) (if (= cell corner) (1- corner) corner)))
       (let ((other-column (other column corner-x)) (other-row (other row corner-y)))

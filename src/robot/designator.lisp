@@ -127,8 +127,8 @@ a container or in a bin, and within reach. False of places."
 ;;; While a robot turns, the world stands still.
 
 (defun turn-designators (robot angle)
-  "Let the designators of ROBOT, which has turned by ANGLE, keep their directions in the world; those
-that have none, being where the robot is, turn along with it."
+  "Let the designators of ROBOT, which has turned by ANGLE, keep their directions in the world;
+those that have none, being where the robot is, turn along with it."
   (loop for designator across (robot-designators robot)
         when (and designator (designator-bearing-p designator))
           do (decf (designator-angle designator) angle)))

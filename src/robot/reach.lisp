@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.robot)
 
-;;; Searches, tracks, hands and approaches share one idea of what is next to a robot: WITHIN-REACH-P.
-;;; A cell that blocks robots cannot be entered, so all that is in it counts as next to a robot that
-;;; stands at the cell. What a robot has arrived at is always within its reach (reading 108).
+;;; Searches, tracks, hands and approaches share one idea of what is next to a robot, that of
+;;; WITHIN-REACH-P. A cell that blocks robots cannot be entered, so all that is in it counts as next
+;;; to a robot that stands at the cell. What a robot has arrived at is always within its reach.
 
 (define-constant +contact+ (* 1.001d0 +contact-gap+)
   :documentation "No farther than this from a cell, in metres, a robot stands at it: the gap, and

@@ -4,9 +4,10 @@
 
 ;;; SCAN-DENSITY* rays cross the field of view. Whatever lies in a cell that one of them meets is in
 ;;; view, up to and with the first cell that is a wall or holds something that obstructs vision; so
-;;; is all that lies in the robot's own cell. What is within reach needs no ray, as rays from next to
-;;; a thing may all pass it: its direction has to be in the field of view. A camera inside a container or storage bin sees
-;;; what is directly in it, at distance 0. What a hand holds is where the hand is.
+;;; is all that lies in the robot's own cell. What is within reach needs no ray, as rays from next
+;;; to a thing may all pass it: its direction has to be in the field of view. A camera inside a
+;;; container or storage bin sees what is directly in it, at distance 0. What a hand holds is where
+;;; the hand is.
 
 (declaim (inline mark-seen))
 (defun mark-seen (flags index flag)

@@ -6,9 +6,9 @@
 ;;; there. It is lost when the denotation is occluded, moves too fast -- its direction from the
 ;;; robot changes in a tick by more than half the field of view -- or is arrived at, and by chance.
 ;;; The robot's own turning does not count as fast: the camera makes up for it. Nor does what is
-;;; within reach, or was a tick before. Whoever goes to something ends the track on arrival;
-;;; else only the robot's own cell does. A local designator of something that is out of reach becomes a non-local
-;;; one, if it is in the open. A false designator drifts.
+;;; within reach, or was a tick before. Whoever goes to something ends the track on arrival; else
+;;; only the robot's own cell does. A local designator of something that is out of reach becomes a
+;;; non-local one, if it is in the open. A false designator drifts.
 
 ;;; Refreshing.
 
@@ -50,7 +50,7 @@ changed (reading 226)."
               (setf (designator-bearing-p designator) nil)))))))
 
 (defun near-p (designator before)
-  "True if what DESIGNATOR denotes is within reach, or was so a tick before, at the distance BEFORE."
+  "True if what DESIGNATOR denotes is within reach, or was a tick before, at the distance BEFORE."
   (or (< before 1d0)
       (within-reach-p (designator-robot designator)
                       (designator-x designator) (designator-y designator))))

@@ -8,8 +8,7 @@
 ;;; for the track is told only in the tracks phase, so after the command that ended it has told
 ;;; its own. Only an interruption is told at once. A designator that was tracked does not
 ;;; survive the loss of its last track; one that was not does not survive that its denotation
-;;; moves, but for a local one when a hand takes it up or sets it down, or that a local one is out of
-;;; reach.
+;;; moves -- unless a hand takes that up or sets it down -- or that a local one is out of reach.
 
 ;; As reading 82 says.
 (define-kind (track :constructor (make-track (designator operation)))
@@ -23,8 +22,7 @@
 CODE."))
 
 (defgeneric approaching-p (event camera)
-  (:documentation "True if EVENT, pending on a robot, takes it to what CAMERA tracks, now or after its
-delay.")
+  (:documentation "True if EVENT, pending on a robot, is to take it to what CAMERA tracks.")
   (:method (event camera)
     (declare (ignore event camera))
     nil))

@@ -23,8 +23,8 @@ in order of arrival. Can be set; the setter does not touch the things."))
 storage bin."))
 
 (defgeneric location-full-p (location)
-  (:documentation "True if nothing can be made in LOCATION because it holds as many things as it can,
-whatever their size.")
+  (:documentation "True if nothing can be made in LOCATION because it holds as many things as it
+can, whatever their size.")
   (:method (location)
     (declare (ignore location))
     nil))
