@@ -77,6 +77,6 @@ blocked."
      (:report () "Robot stopped"))
     "Stop ROBOT: if that interrupts its driving, let it coast for BRAKING* ticks first."
   (setf (operation-count operation) braking*)
-  (if (and (operation-cut-short-p operation) (driving-p robot) (plusp braking*))
+  (if (and (operation-subject operation) (driving-p robot) (plusp braking*))
       (drive operation robot 'coast)
       (succeed operation)))

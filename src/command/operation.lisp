@@ -23,8 +23,8 @@
    (count 0 fixnum "how many ticks it is yet to go on")
    (left 0d0 double-float "what is left to be turned, in radians")
    (reading 0d0 double-float "what the odometry has read so far, in radians")
-   (subject nil t "what it is about: what is held, was found, is done")
-   (cut-short-p nil boolean "another command was under way when it took the resource over"))
+   (subject nil t "what it is about: what is held, was found, is done; at first, the name of the
+command that it cut short, or NIL"))
   (:link
    (continuation nil t "what to call when it ends, or NIL")))
 
@@ -192,10 +192,12 @@ followed by (robot-go-forward ...) sets the speed (reading 77)."
          (call-step rival 'start-body))
         (t (interrupt-event agenda rival))))
 
-(defun under-way-p (event)
-  "True if EVENT, pending on a resource, is a command whose delay is over."
+(defun under-way (event)
+  "Return the name of the command that EVENT, pending on a resource, carries out, if its delay is
+over; else NIL."
   (and (operation-p event)
-       (not (member (operation-step event) '(nil start-body)))))
+       (not (eq (operation-step event) 'start-body))
+       (command-name (operation-command event))))
 
 (defun begin (operation)
   "Take over the resource of OPERATION and let it wait for its command's delay."
@@ -203,7 +205,7 @@ followed by (robot-go-forward ...) sets the speed (reading 77)."
          (rival (pending-event agenda (operation-resource operation)))
          (delay (funcall (command-delay (operation-command operation)))))
     (when rival
-      (setf (operation-cut-short-p operation) (under-way-p rival))
+      (setf (operation-subject operation) (under-way rival))
       (make-way agenda rival))
     (go-on operation 'start-body delay)))
 

@@ -36,7 +36,8 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
   ;; motion
   (:export #:set-robot-pose #:set-robot-angle #:drive-tick #:coast-tick #:turn-tick
            #:robot-speed-now #:standing-p #:longest-step #:robot-turn-angle-now #:robot-moved
-           #:robot-turned-low #:robot-turned-high #:begin-movement #:robot-last-move #:robot-last-move-estimate
+           #:robot-turned-low #:robot-turned-high #:begin-movement #:robot-last-move
+           #:robot-last-move-estimate
            #:robot-cell-index)
   ;; reach
   (:export #:within-reach-p #:in-same-cell-p #:reached-p)
