@@ -5,15 +5,18 @@
 (define-constant +straight+ 1d-12
   :documentation "A component of a heading that is nearer to 0 is rounding, and taken for 0.")
 
+(declaim (inline component))
 (defun component (number)
   "Return NUMBER, a component of a heading; 0 if it is so small that only rounding can be behind it.
 So a robot can drive along the border of two cells, and stay in one of them."
+  (declare (type double-float number))
   (if (< (abs number) +straight+) 0d0 number))
 
 (defun set-robot-angle (robot angle)
   "Turn ROBOT to the heading ANGLE, in radians, at once; its odometers do not notice."
   (let ((angle (double angle)))
-    (turn-designators robot (- angle (robot-angle robot)))
+    (when (plusp (length (robot-designators robot)))
+      (turn-designators robot (- angle (robot-angle robot))))
     (setf (robot-angle robot) angle
           (robot-cos robot) (component (cos angle))
           (robot-sin robot) (component (sin angle))))
@@ -50,7 +53,7 @@ So a robot can drive along the border of two cells, and stay in one of them."
 (declaim (inline standing-p))
 (defun standing-p (robot)
   "True if ROBOT cannot drive because its speed is 0, or next to it."
-  (< (the double-float (step-now robot)) +standstill+))
+  (< (the double-float (robot-speed-now robot)) +standstill+))
 
 (defun longest-step (robot)
   "Return how far ROBOT can come in a tick at most, in metres."

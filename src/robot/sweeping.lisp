@@ -25,17 +25,19 @@ another column."
   (let* ((map (world-map world)) (flags (world-flags world))
          (cell-x (cell-number x)) (cell-y (cell-number y))
          (back-x (minusp dx)) (back-y (minusp dy))
+         (step-x (if back-x -1 1)) (step-y (if back-y -1 1))
          (done nil) (block nil) (sideways nil)
          (at (walk-grid (lambda (index at column)
-                          (or (setf done (if (if column back-x back-y)
-                                             (>= at distance)
-                                             (> at distance)))
-                              (setf sideways column
-                                    block (what-blocks (aref flags index)))
-                              (progn (if column
-                                         (incf cell-x (if back-x -1 1))
-                                         (incf cell-y (if back-y -1 1)))
-                                     nil)))
+                          (cond ((and (>= at distance)
+                                      (or (> at distance) (if column back-x back-y)))
+                                 (setf done t))
+                                ((setf block (what-blocks (aref flags index)))
+                                 (setf sideways column)
+                                 t)
+                                (t (if column
+                                       (incf cell-x step-x)
+                                       (incf cell-y step-y))
+                                   nil)))
                         (map-width map) (map-height map) x y dx dy +no-limit+ t)))
     (declare (type fixnum cell-x cell-y) (type double-float at))
     (if (or done (< distance at))
@@ -56,7 +58,6 @@ opposite if only a corner is in its way. True if so."
         (setf (robot-x robot) beyond-x
               (robot-y robot) beyond-y)))))
 
-(declaim (inline brushes-p))
 (defun brushes-p (direction left)
   "True if a robot that moves LEFT metres comes no farther than the contact gap in DIRECTION."
   (<= (* left (abs direction)) +contact-gap+))
@@ -69,48 +70,59 @@ be taken over the nearest border: it goes there anyway, or it goes along."
         ((= cell (round position)) (minusp direction))
         (t (plusp direction))))
 
+(declaim (inline stand))
+(defun stand (robot dx dy moved cell-x cell-y)
+  "Move ROBOT by MOVED metres in direction (DX,DY), into the cell at CELL-X and CELL-Y."
+  (declare (type robot robot) (type double-float dx dy moved))
+  (setf (robot-x robot) (within-cell (+ (robot-x robot) (* dx moved)) cell-x)
+        (robot-y robot) (within-cell (+ (robot-y robot) (* dy moved)) cell-y)
+        (robot-moved robot) moved))
+
 (declaim (inline pass-cells))
-(defun pass-cells (robot dx dy distance)
-  "Move ROBOT, in the map, by DISTANCE in direction (DX,DY), or to what blocks it. Leave the metres
-in ROBOT-MOVED; return :WALL, :THING or NIL."
-  (declare (type robot robot) (type double-float dx dy distance))
-  (let ((x (robot-x robot)) (y (robot-y robot)))
-    (multiple-value-bind (moved cell-x cell-y block sideways)
-        (free-way (robot-world robot) x y dx dy distance)
-      (declare (type double-float moved))
-      (let ((left (- distance moved)))
-        (flet ((stand (moved)
-                 (setf (robot-x robot) (within-cell (+ x (* dx moved)) cell-x)
-                       (robot-y robot) (within-cell (+ y (* dy moved)) cell-y)
-                       (robot-moved robot) moved)))
-          (declare (inline stand))
-          (cond ((null block) (stand moved) nil)
-                ((brushes-p (if sideways dx dy) left)
-                 (stand moved)
-                 (if sideways
-                     (pass-on robot 0d0 dy left moved)
-                     (pass-on robot dx 0d0 left moved)))
-                ((and (if sideways
-                          (over-border-p (+ y (* dy moved)) cell-y dy left)
-                          (over-border-p (+ x (* dx moved)) cell-x dx left))
-                      (pass-corner robot (+ x (* dx moved)) (+ y (* dy moved)) cell-x cell-y))
-                 (pass-on robot dx dy left moved))
-                (t (stand (max 0d0 (- moved +contact-gap+)))
-                   block)))))))
+(defun pass-cells (robot world dx dy distance)
+  "Move ROBOT, in the map of WORLD, by DISTANCE in direction (DX,DY), or to what blocks it. Leave
+the metres in ROBOT-MOVED; return :WALL, :THING or NIL."
+  (declare (type robot robot) (type world world) (type double-float dx dy distance))
+  (multiple-value-bind (moved cell-x cell-y block sideways)
+      (free-way world (robot-x robot) (robot-y robot) dx dy distance)
+    (declare (type double-float moved))
+    (cond (block
+           (meet robot block dx dy moved (- distance moved) cell-x cell-y sideways))
+          (t (stand robot dx dy moved cell-x cell-y)
+             nil))))
+
+(defun meet (robot block dx dy moved left cell-x cell-y sideways)
+  "Let ROBOT come to BLOCK, in the next column if SIDEWAYS, else in the next row, after MOVED metres
+with LEFT to go; and go on if that only touches its way. Return what blocks it, or NIL."
+  (let ((x (+ (robot-x robot) (* dx moved))) (y (+ (robot-y robot) (* dy moved))))
+    (cond ((brushes-p (if sideways dx dy) left)
+           (stand robot dx dy moved cell-x cell-y)
+           (if sideways
+               (pass-on robot 0d0 dy left moved)
+               (pass-on robot dx 0d0 left moved)))
+          ((and (if sideways
+                    (over-border-p y cell-y dy left)
+                    (over-border-p x cell-x dx left))
+                (pass-corner robot x y cell-x cell-y))
+           (pass-on robot dx dy left moved))
+          (t (stand robot dx dy (max 0d0 (- moved +contact-gap+)) cell-x cell-y)
+             block))))
 
 (defun pass-on (robot dx dy distance moved)
   "Do as PASS-CELLS does, for a ROBOT that has come MOVED metres already."
-  (prog1 (pass-cells robot dx dy distance)
+  (prog1 (pass-cells robot (robot-world robot) dx dy distance)
     (incf (robot-moved robot) moved)))
 
 (defun leave-cell (robot)
   "Move ROBOT out of its cell along its heading by ROBOT-MOVED metres, or to what blocks it. Leave
 the metres in ROBOT-MOVED; return :WALL, :THING or NIL. From outside the map there is no way."
   (declare #.*hot* (type robot robot))
-  (cond ((point-index (world-map (robot-world robot)) (robot-x robot) (robot-y robot))
-         (pass-cells robot (robot-cos robot) (robot-sin robot) (robot-moved robot)))
-        (t (setf (robot-moved robot) 0d0)
-           :wall)))
+  (let ((world (robot-world robot)))
+    (declare (type world world))
+    (cond ((point-index (world-map world) (robot-x robot) (robot-y robot))
+           (pass-cells robot world (robot-cos robot) (robot-sin robot) (robot-moved robot)))
+          (t (setf (robot-moved robot) 0d0)
+             :wall))))
 
 (declaim (inline sweep))
 (defun sweep (robot distance)
