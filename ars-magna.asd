@@ -50,7 +50,7 @@
                  (:file "schedule")))
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "blueprint") (:file "parts") (:file "odometer")
-                 (:file "motion")
+                 (:file "corners") (:file "sweeping") (:file "motion") (:file "reach")
                  (:file "designator") (:file "place-sense") (:file "sight") (:file "tracks")
                  (:file "new-designators") (:file "inside") (:file "making") (:file "retiring")
                  (:file "defrobot")
@@ -161,6 +161,7 @@
                  (:file "journals-forged") (:file "journals-definitions") (:file "worlds")
                  (:file "worlds-moving") (:file "looking") (:file "looking-views")
                  (:file "looking-tracks") (:file "looking-cameras") (:file "looking-approach")
+                 (:file "corners") (:file "approaching")
                  (:file "handling") (:file "handling-inside") (:file "handling-bins")
                  (:file "handling-chance") (:file "manipulations")
                  (:file "shipped-manipulations") (:file "statistics")

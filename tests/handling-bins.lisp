@@ -122,12 +122,18 @@
   (with-cook (:clean t)
     (world:move-thing (thing 'apple) (hand 0))
     (world:move-thing (thing 'melon) (hand 0))
-    (world:make-new-thing 'plum (hand 0) '((:size 1)))
     (run:run-ticks 1)
     (is (equal (list (thing 'apple)) (robot:hand-contents (hand 0))))
-    (is (equal '(:floor :floor) (mapcar #'world:thing-location
-                                        (list (thing 'melon) (thing 'plum)))))
-    (is (equal '(5.5d0 5.5d0) (multiple-value-list (world:thing-position (thing 'plum)))))))
+    (is (eq :floor (world:thing-location (thing 'melon))))
+    (is (equal '(5.5d0 5.5d0) (multiple-value-list (world:thing-position (thing 'melon)))))))
+
+(test new-thing.in-a-full-hand-is-refused
+  (with-cook (:clean t)
+    (world:make-new-thing 'plum (hand 0) '((:size 1)))
+    (is (eq (thing 'plum) (robot:hand-holding (hand 0))))
+    (dolist (location (list (hand 0) (list :with (thing 'plum))))
+      (signals base:misuse (world:make-new-thing 'fig location '((:size 1)))))
+    (is (null (thing 'fig)))))
 
 (test hand.in-something-closed-keeps-what-it-holds
   (with-cook (:clean t)

@@ -4,6 +4,12 @@
 
 (in-suite looking)
 
+;;; A hall as large as the things of the manual's own maps need.
+(world:defmap wide-hall (50 40)
+  (rect (0 0) (49 39) bricks 10))
+
+(robot:defrobot walker (wide-hall (5.5 10.5) 0) :cameras (((/ pi 2) 5)))
+
 (defun track-at-once (designator &optional (camera (eye)))
   "Let CAMERA track DESIGNATOR, from before the next tick. Return DESIGNATOR."
   (robot:start-track camera designator nil)
@@ -103,13 +109,72 @@
       (is (equal '(:not-tracking)
                  (codes (call-times 10 'command:robot-goto-designator other (eye))))))))
 
+(test goto.arrives-at-what-blocks-it
+  "Wherever in its cell a thing is, what stands at the cell is next to it."
+  (dolist (start '((35.5 15.5) (45.5 15) (40 20) (40 10) (40.9 18.9) (41 16) (37 12)))
+    (run:with-simulation (walker :clean t)
+      (robot:set-robot-pose walker (first start) (second start))
+      (let* ((table (put 'table '(40 15) :obsmove t :size 14))
+             (camera (robot:robot-camera walker 0))
+             (designator (track-at-once (robot:add-designator walker :denotation table) camera)))
+        (is (equal (list nil walker camera designator)
+                   (rest (first (call-times 80 'command:robot-goto-designator walker camera)))))
+        (is-true (robot:within-reach-p walker 40 15))
+        (is (eq table (robot:designator-denotation
+                       (third (call-once 'command:camera-get-object-designator camera :local
+                                         '())))))))))
+
 (test goto.is-blocked
   (with-watcher (:clean t)
-    (let ((designator (nth-value 1 (tracked-ball 9.5 10.5 :obsmove t))))
+    (let ((designator (nth-value 1 (tracked-ball 15.5 10.5))))
+      (put 'glass-door '(9.5 10.5) :obsmove t)
       (is (equal (list :robot-blocked watcher (eye) designator) (rest (first (go-there)))))
-      ;; The thing is now within reach, but the track is of a non-local designator.
-      (is (robot:within-reach-p watcher 9.5 10.5))
+      (is (< 8.99999 (robot:robot-x watcher) 9))
       (is (robot:tracking-p (eye) designator)))))
+
+(test goto.along-an-axis-to-whole-coordinates
+  (loop for (x y angle) in `((5 20 0) (35 20 ,pi) (20 5 ,(/ pi 2)) (20 35 ,(/ pi -2)) (8 8 0))
+        do (run:with-simulation (walker :clean t)
+             (robot:set-robot-pose walker x y angle)
+             (let* ((lamp (put 'lamp '(20 20))) (camera (robot:robot-camera walker 0)) (codes '())
+                    (designator (robot:add-designator walker :denotation lamp)))
+               (track-at-once designator camera)
+               (command:robot-goto-designator walker camera
+                                              (lambda (code &rest more)
+                                                (declare (ignore more))
+                                                (push code codes)))
+               (run:run-ticks 50)
+               (is (equal '(nil) codes) "from ~D ~D" x y)
+               (is-false (robot:designator-valid-p designator))))))
+
+(test goto.ends-its-own-track-only
+  (with-watcher (:clean t)
+    (let ((designator (nth-value 1 (tracked-ball 10 10.5 :obsmove t))))
+      (track-at-once designator (eye 1))
+      (is (equal '(nil) (codes (go-there))))
+      (is (null (robot:camera-tracks (eye 0))))
+      (is (eq designator (robot:camera-tracks (eye 1)))))))
+
+(test goto.success-is-told-first-when-the-thing-comes
+  (with-watcher (:clean t)
+    (let ((heard '()) (ball (put 'ball '(15.5 10.5))))
+      (flet ((listener (name)
+               (lambda (code &rest more) (declare (ignore more)) (push (list name code) heard))))
+        (command:camera-track (eye) (find-object '()) (listener :track))
+        (run:run-ticks 5)
+        (command:robot-goto-designator watcher (eye) (listener :goto))
+        (run:run-ticks 7)
+        (world:put-kicker jump-in (thing ball) (:prob 1)
+          (world:move-thing thing (list (robot:robot-x watcher) (robot:robot-y watcher))))
+        (run:run-ticks 3)
+        (is (equal '((:track nil) (:goto nil) (:track :lost-track)) (reverse heard)))))))
+
+(test goto.does-not-creep
+  "A speed that is lost in rounding is none."
+  (with-watcher (:clean t)
+    (tracked-ball 15.5 10.5)
+    (command:robot-set-speed watcher 1d-300)
+    (is (equal '(:not-moving) (codes (go-there 20))))))
 
 (test goto.ends-when-the-track-does
   (with-watcher (:clean t)
@@ -156,11 +221,12 @@
     (is (find :not-tracking codes))))
 
 (test goto.a-false-designator-in-a-clean-world
-  "It does not drift; where it is, the track is lost."
-  (with-watcher (:clean t)
-    (let ((designator (track-at-once (phantom 10.5 10.5))))
-      (is (equal (list :not-tracking watcher (eye) designator) (rest (first (go-there)))))
-      (is (= 10 (floor (robot:robot-x watcher)))))))
+  "It does not drift; where it is, the track is lost, also at whole coordinates."
+  (loop for (x y) in '((10.5 10.5) (10 10.5) (11 11) (3 9))
+        do (with-watcher (:clean t)
+             (let ((designator (track-at-once (phantom x y))))
+               (is (equal (list :not-tracking watcher (eye) designator) (rest (first (go-there)))))
+               (is-true (robot:within-reach-p watcher x y))))))
 
 (test false-designator.local-is-grasped-in-vain
   (with-watcher (:clean t)

@@ -20,8 +20,7 @@
 (test designator.local-lasts-within-reach
   (with-watcher (:clean t)
     (multiple-value-bind (ball here) (ball-at 5.9 10.5 :size 1)
-      (world:move-thing ball '(5.8 10.5))
-      (is (robot:designator-valid-p here))
+      ;; By hand: its trajectory can be followed.
       (robot:take-up (robot:robot-hand watcher 0) ball)
       (is (robot:designator-local-p* here))
       (robot:set-down (robot:robot-hand watcher 0) ball)
@@ -30,7 +29,21 @@
       (robot:set-robot-pose watcher 3.5 10.5)
       (is (not (robot:designator-local-p* here)))
       (run:run-ticks 1)
+      (is (not (robot:designator-valid-p here))))
+    (multiple-value-bind (ball here) (ball-at 3.9 10.5)
+      (world:move-thing ball '(3.8 10.5))
       (is (not (robot:designator-valid-p here))))))
+
+(test designator.untracked-keeps-its-direction-when-the-robot-turns
+  "Manual 3.4.1: the angle is relative to the robot's current heading."
+  (with-watcher (:seed 4)
+    (multiple-value-bind (ball far) (ball-at 9.5 12.5)
+      (declare (ignore ball))
+      (let ((before (+ (robot:designator-angle far) (robot:robot-angle watcher))))
+        (call-once 'command:robot-turn watcher 2)
+        (is (near before (+ (robot:designator-angle far) (robot:robot-angle watcher))))
+        (robot:place-robot watcher 5 10 -3)
+        (is (near before (- (robot:designator-angle far) 3)))))))
 
 (test designator.of-a-place-stays
   (with-watcher (:clean t)
@@ -49,6 +62,15 @@
         (dotimes (index 6) (find-object '() :camera (eye 1)))
         (is (= 5 (length (robot:live-designators watcher))))
         (is (robot:designator-valid-p first))))))
+
+(test designators.past-the-limit-are-not-returned
+  (with-watcher (:clean t)
+    (let ((robot:*designator-limit* 5))
+      (dotimes (index 9) (put 'ball '(9.5 10.5)))
+      (let ((found (third (call-once 'command:camera-get-all-object-designators
+                                     (eye) :non-local '()))))
+        (is (= 5 (length found)))
+        (is (every #'robot:designator-valid-p found))))))
 
 ;;; Turning cameras.
 

@@ -200,6 +200,16 @@ returns what the continuation was called with since last asked: (tick code camer
       (is (eq :interrupt (code-after-jump 12.49)))
       (is (eq :lost-track (code-after-jump 12.51))))))
 
+(test track.of-what-is-within-reach-is-not-lost-by-speed
+  "The robot passes something at half a metre, through its neighbour cell."
+  (with-watcher (:clean t)
+    (let ((designator (nth-value 1 (ball-at 8.5 11.05))))
+      (with-track (calls designator (eye 1))
+        (command:robot-go-forward watcher 7)
+        (run:run-ticks 20)
+        (is (< 10.5 (robot:robot-x watcher)))
+        (is (equal '(nil) (codes (calls))))))))
+
 (test track.is-lost-on-arrival
   (with-watcher (:clean t)
     (multiple-value-bind (ball designator) (ball-at 8.5 10.5)
@@ -353,5 +363,5 @@ returns what the continuation was called with since last asked: (tick code camer
       (with-track (calls designator (eye) 2)
         (command:camera-view (eye))
         (run:run-ticks 10)
-        (is (equal '(:interrupt) (codes (calls))))
+        (is (equal (list (list :interrupt (eye) designator)) (mapcar #'rest (calls))))
         (is (null (robot:camera-tracks (eye))))))))

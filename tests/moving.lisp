@@ -116,6 +116,26 @@ exactly once."
         (outcome () command:robot-stop)
         (is (= before (robot:robot-x rover)) "a robot at rest does not coast")))))
 
+(test stop.after-a-natural-end-does-not-coast
+  (with-rover (:clean t)
+    (command:robot-go-forward rover 3 (lambda (err robot)
+                                        (declare (ignore err))
+                                        (command:robot-stop robot)))
+    (run:run-ticks 20)
+    (is (< (abs (- (robot:robot-x rover) (+ 5.5 (* 3 0.8d0)))) 1d-9))))
+
+(test stop.after-another-interruption-does-not-coast
+  (dolist (interrupt (list (lambda () (command:robot-turn rover 1))
+                           (lambda () (command:robot-set-speed rover 1))
+                           (lambda () (time:grab-resource rover))))
+    (with-rover (:clean t)
+      (command:robot-go-forward rover 100)
+      (run:run-ticks 7)
+      (let ((before (robot:robot-x rover)))
+        (funcall interrupt)
+        (outcome (:ticks 10) command:robot-stop)
+        (is (= before (robot:robot-x rover)))))))
+
 (test other-commands.stop-at-once
   (with-rover (:clean t)
     (command:robot-go-forward rover 100)

@@ -41,7 +41,9 @@
      (camera-angle-max-error* 0.02d0 "radians" :noise (real 0 #.+largest+)
       "The largest error of a designator's angle and of a camera's report of its turn.")
      (scan-density* 50 "rays" :limit (integer 1 100000)
-      "How many evenly spaced rays sample the field of view in a search for a designator.")
+      "How many evenly spaced rays sample the field of view in a search for a designator. What lies
+between two rays is not seen: 50 over a right angle may miss a thing beyond 30 m, even dead ahead,
+as an even number of rays has none in the middle.")
      (prob-lose-track* 0.01d0 "probability per tick" :noise (real 0 1)
       "The chance that a track is lost for no reason.")
      (prob-lose-false-track* 0.4d0 "probability per tick" :noise (real 0 1)

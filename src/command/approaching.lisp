@@ -2,34 +2,70 @@
 
 (in-package :ars-magna.command)
 
-;;; The robot turns in place until it faces the designator, as far as it knows, and then drives,
-;;; making up each tick for what the designator has moved sideways. It has arrived when it is in
-;;; the cell of what is denoted. The track tells where to go, so losing it ends the approach. A
-;;; false designator cannot be arrived at: the track is lost there.
+;;; The robot turns in place until it faces what the camera tracks, and then drives, making up each
+;;; tick for what that has moved sideways. It goes by the track, as the camera does, not by the
+;;; estimated angle that programs read. REACHED-P says when it has arrived. Losing the track ends
+;;; the approach; arriving ends the track. A false designator cannot be arrived at: the track is
+;;; lost there. Each step either takes the robot nearer to where it goes, or ends the approach.
 
-(defun at-designator-p (robot designator)
-  "True if ROBOT is in the cell of what DESIGNATOR denotes (reading 110)."
-  (and (designator-denotation designator)
-       (multiple-value-bind (x y) (designator-position designator)
-         (and x (in-same-cell-p robot x y)))))
+(define-constant +aim+ 1d-6
+  :documentation "Facing its goal as exactly as this, in radians, a robot sets out.")
+(defconstant +aiming-turns+ 3
+  "After so many turns that should have done it, a robot sets out wherever it faces.")
 
-(defun turn-to-designator (robot designator)
-  "Turn ROBOT towards DESIGNATOR, by no more than a tick's turn. True if it then faces it as well as
-can be told."
-  (let ((angle (angle-difference (designator-angle designator) 0)))
-    (or (<= (abs angle) (max 1d-9 (double camera-angle-max-error*)))
+(defun angle-to-goal (robot designator)
+  "Return the angle by which ROBOT has to turn to face DESIGNATOR where it was last seen."
+  (let ((x (designator-x designator)) (y (designator-y designator)))
+    (if (zerop (distance-to robot x y))
+        0d0
+        (angle-difference (bearing-to robot x y) (robot-angle robot)))))
+
+(defun turn-to-goal (robot designator)
+  "Turn ROBOT towards DESIGNATOR, by no more than a tick's turn. True if it then faces it, but for
+the error of turning."
+  (let ((angle (angle-to-goal robot designator)))
+    (or (< (abs angle) +facing+)
         (< (abs (turn-step robot angle)) +facing+))))
+
+(defun ready-p (operation robot designator)
+  "True if ROBOT, which faces DESIGNATOR but for the error of turning, is to drive: it has aimed
+well enough, or often enough, or is on its way."
+  (when (or (>= (incf (operation-count operation)) +aiming-turns+)
+            (<= (abs (angle-to-goal robot designator)) +aim+))
+    (setf (operation-count operation) +aiming-turns+)))
+
+(defun drive-to-goal (robot designator)
+  "Drive ROBOT for a tick, no farther than to DESIGNATOR where it was last seen. Return whether it
+has then arrived, and what blocked it, or NIL."
+  (let* ((distance (distance-to robot (designator-x designator) (designator-y designator)))
+         (block (drive-tick robot distance)))
+    (values (at-designator-p robot designator (<= distance (longest-step robot)) block)
+            block)))
+
+(defun at-designator-p (robot designator &optional last-step block)
+  "True if ROBOT has arrived at what DESIGNATOR denotes, or seems to; see REACHED-P."
+  (multiple-value-bind (x y) (designator-position designator)
+    (reached-p robot x y last-step block)))
+
+(defun arrive (operation camera designator)
+  "End OPERATION where DESIGNATOR, tracked by CAMERA, is, and with it the track (readings 108
+and 110)."
+  (cond ((designator-denotation designator)
+         (succeed operation camera designator)
+         (end-on-arrival camera))
+        (t (end-on-arrival camera)
+           (fail-with operation :not-tracking camera designator))))
 
 (defun approach-step (operation robot camera designator)
   "Take ROBOT one tick nearer to DESIGNATOR, tracked by CAMERA, and end OPERATION if that ends
 it (reading 111)."
-  (cond ((at-designator-p robot designator) (succeed operation camera designator))
-        ((not (tracking-p camera designator))
+  (cond ((not (tracking-p camera designator))
          (fail-with operation :not-tracking camera designator))
-        ((zerop (robot-speed-now robot)) (fail-with operation :not-moving camera designator))
-        ((turn-to-designator robot designator)
-         (let ((block (drive-tick robot (designator-distance designator))))
-           (cond ((at-designator-p robot designator) (succeed operation camera designator))
+        ((at-designator-p robot designator) (arrive operation camera designator))
+        ((standing-p robot) (fail-with operation :not-moving camera designator))
+        ((and (turn-to-goal robot designator) (ready-p operation robot designator))
+         (multiple-value-bind (arrived block) (drive-to-goal robot designator)
+           (cond (arrived (arrive operation camera designator))
                  (block (fail-with operation :robot-blocked camera designator)))))))
 
 (defun approach-on (operation)
@@ -37,6 +73,11 @@ it (reading 111)."
   (approach-step operation (operation-resource operation)
                  (first (operation-arguments operation)) (operation-subject operation))
   (unless (operation-finished-p operation) (once-more operation)))
+
+;; As reading 112 says.
+(defmethod approaching-p ((operation operation) camera)
+  (and (eq 'robot-goto-designator (command-name (operation-command operation)))
+       (eq camera (first (operation-arguments operation)))))
 
 (defun approach (operation robot designator)
   "Let ROBOT go to DESIGNATOR, beginning in this tick."
@@ -57,7 +98,8 @@ it (reading 111)."
               (:robot-blocked "Robot is blocked")
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report (camera designator) (format nil "Robot is at ~A" designator)))
-    "Drive ROBOT next to what CAMERA tracks, into the same cell."
+    "Drive ROBOT next to what CAMERA tracks, so that it is local. That ends the track, and the
+designator if no other camera tracks it."
   (let ((designator (and (eq (camera-robot camera) robot) (camera-tracks camera))))
     (cond ((null designator) (fail-with operation :not-tracking camera))
           ((eq (designator-type designator) :local)

@@ -32,6 +32,8 @@ function of the operation that returns one."
   (parameters '() :type list :read-only t)
   (results '() :type list :read-only t)
   (errors '() :type list :read-only t)
+  ;; The names of the results that are arguments, and are told after an interruption, too.
+  (echo '() :type list :read-only t)
   (delay nil :type function :read-only t)
   ;; True if it is done in the tick after it was issued, whatever is issued with it.
   (instant-p nil :type boolean :read-only t)

@@ -70,10 +70,10 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
     (dolist (option options)
       (check (and (consp option)
                   (member (first option)
-                          '(:family :section :delay :errors :report :prompt :prefix)))
+                          '(:family :section :delay :errors :report :echo :prompt :prefix)))
              option
              (format nil "(:family ...), (:section ...), (:delay ...), (:errors ...), ~
-                          (:report ...), (:prompt ...) or (:prefix ...)")))
+                          (:report ...), (:echo ...), (:prompt ...) or (:prefix ...)")))
     (let ((family (assoc :family options)))
       (check (and family (member (second family) *command-families*)) (or family options)
              (format nil "(:family family), one of ~{~(~S~)~^, ~}" *command-families*)))))
@@ -97,6 +97,8 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
   (:errors (keyword text)...)          its error codes; TEXT, a form, gives a string or a
                                        function of the operation, for the error message
   (:report lambda-list form)           what the message of success says, from the results
+  (:echo name...)                      those of RESULTS that are the parameters of the same names:
+                                       the continuation gets them after an interruption, too
   (:prompt name) (:prefix string)      unlike the rule of DEFAULT-PROMPT-NAME
 BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now or
 later (reading 149)."
@@ -124,6 +126,7 @@ later (reading 149)."
                                 collect (spec-form (list result t text))))
          :errors (list ,@(loop for (keyword text) in errors
                                collect `(make-error-code ,keyword ,text)))
+         :echo ',(option :echo options)
          :delay (lambda () ,(first (option :delay options '(1))))
          :instant-p ,(null (assoc :delay options))
          :report ,(when report

@@ -3,8 +3,8 @@
 (in-package :ars-magna.command)
 
 ;;; Each movement begins after ROBOT-MOVE-DELAY*, takes at least a tick, and ends in the tick of its
-;;; last step. It ends at once, without braking, when it is interrupted by anything but
-;;; ROBOT-STOP, which finds the robot in motion and lets it coast.
+;;; last step, without braking. So it does when anything interrupts it but ROBOT-STOP, which lets
+;;; the robot coast.
 
 (defmacro drive-on ((block operation) &body body)
   "Drive the robot of OPERATION for a tick, and run BODY with BLOCK bound to what blocks it, :WALL,
@@ -12,7 +12,7 @@
 when the speed is 0."
   `(let ((robot (operation-resource ,operation)))
      (declare #.*hot* (type operation ,operation) (type robot robot))
-     (if (zerop (the double-float (robot-speed-now robot)))
+     (if (standing-p robot)
          (fail-with ,operation :not-moving)
          (let ((,block (drive-tick robot)))
            ,@body
@@ -75,8 +75,8 @@ blocked."
     ()
     ((:family :moving) (:section "3.5") (:delay 1)
      (:report () "Robot stopped"))
-    "Stop ROBOT: if it is driving, let it coast for BRAKING* ticks first."
+    "Stop ROBOT: if that interrupts its driving, let it coast for BRAKING* ticks first."
   (setf (operation-count operation) braking*)
-  (if (and (driving-p robot) (plusp braking*))
+  (if (and (operation-subject operation) (driving-p robot) (plusp braking*))
       (drive operation robot 'coast)
       (succeed operation)))

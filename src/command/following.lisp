@@ -54,7 +54,7 @@ then looks there, but for the error of turning."
   (let ((robot (operation-resource operation)))
     (destructuring-bind (side heading) (operation-subject operation)
       (cond ((not (steer robot heading)) (once-more operation))
-            ((zerop (robot-speed-now robot)) (fail-with operation :not-moving))
+            ((standing-p robot) (fail-with operation :not-moving))
             (t (drive-along operation robot side))))))
 
 ;; As reading 107 says.

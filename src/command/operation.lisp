@@ -23,7 +23,8 @@
    (count 0 fixnum "how many ticks it is yet to go on")
    (left 0d0 double-float "what is left to be turned, in radians")
    (reading 0d0 double-float "what the odometry has read so far, in radians")
-   (subject nil t "what it is about: what is held, was found, is done"))
+   (subject nil t "what it is about: what is held, was found, is done; at first, the name of the
+command that it cut short, or NIL"))
   (:link
    (continuation nil t "what to call when it ends, or NIL")))
 
@@ -120,8 +121,18 @@ the resource and RESULTS. The second end of an operation changes nothing."
   "End OPERATION with the error CODE; its continuation gets that, the resource and RESULTS."
   (apply #'finish operation code results))
 
+(defun known-results (operation)
+  "Return the results of OPERATION that are known before it ends: the arguments that it echoes."
+  (let ((command (operation-command operation)))
+    (loop for result in (command-results command)
+          collect (loop for spec in (command-parameters command)
+                        for argument in (operation-arguments operation)
+                        when (and (eq (spec-name spec) (spec-name result))
+                                  (member (spec-name spec) (command-echo command)))
+                          return argument))))
+
 (defun interrupt-operation (operation)
-  (finish operation :interrupt))
+  (apply #'finish operation :interrupt (known-results operation)))
 
 ;;; Beginning and going on.
 
@@ -181,12 +192,21 @@ and has only just been issued is carried out first, anything else is interrupted
         (t (note-interruption rival operation (1+ (agenda-tick agenda)))
            (interrupt-event agenda rival))))
 
+(defun command-cut-short (event)
+  "Return the name of the command that EVENT, pending on a resource, carries out, if its delay is
+over; else NIL."
+  (and (operation-p event)
+       (not (eq (operation-step event) 'start-body))
+       (command-name (operation-command event))))
+
 (defun begin (operation)
   "Take over the resource of OPERATION and let it wait for its command's delay."
   (let* ((agenda (operation-agenda operation))
          (rival (pending-event agenda (operation-resource operation)))
          (delay (funcall (command-delay (operation-command operation)))))
-    (when rival (make-way operation agenda rival))
+    (when rival
+      (setf (operation-subject operation) (command-cut-short rival))
+      (make-way operation agenda rival))
     (go-on operation 'start-body delay)))
 
 ;; A robot may have been retired since the command was issued.

@@ -22,10 +22,12 @@ that the attributes can have, and of a range the lower end first"
   (format nil "~A found ~{~A~^, ~}" (operation-resource operation) designators))
 
 (defun name-sightings (camera sightings)
-  "Return designators for those of SIGHTINGS that CAMERA still has."
-  (loop for sighting in sightings
-        for designator = (designate sighting camera)
-        when designator collect designator))
+  "Return designators for those of SIGHTINGS that CAMERA still has. Of more than a robot keeps, the
+first are pushed out by the last."
+  (let ((designators (loop for sighting in sightings
+                           for designator = (designate sighting camera)
+                           when designator collect designator)))
+    (remove-if-not #'designator-valid-p designators)))
 
 (defun designate-first (operation sightings)
   "End OPERATION with a designator for the first of SIGHTINGS."

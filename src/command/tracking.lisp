@@ -45,7 +45,7 @@ robot (reading 140)."
 (define-command camera-track (operation (camera camera)
                               (designator designator "what to track"))
     ((designator "the designator"))
-    ((:family :looking) (:section "3.4.3") (:delay camera-desig-delay*)
+    ((:family :looking) (:section "3.4.3") (:delay camera-desig-delay*) (:echo designator)
      (:errors (:already-tracking #'already-tracking-text)
               (:local-not-local (text-of "~*~A is not local any more"))
               (:camera-inside (text-of "~A is inside a container and cannot track ~A"))

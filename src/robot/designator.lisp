@@ -102,18 +102,6 @@ a hand is where the hand is."
           ((hand-p location) (part-location location))
           (t location))))
 
-(defun within-reach-p (robot x y)
-  "True if (X,Y), in metres, is local to ROBOT: less than a metre away or in the same cell (manual
-2.1, 3.5; reading 108)."
-  (let ((dx (- x (robot-x robot))) (dy (- y (robot-y robot))))
-    (or (< (+ (* dx dx) (* dy dy)) 1d0)
-        (in-same-cell-p robot x y))))
-
-(defun in-same-cell-p (robot x y)
-  "True if (X,Y), in metres, is in the cell of ROBOT."
-  (and (= (floor x) (floor (robot-x robot)))
-       (= (floor y) (floor (robot-y robot)))))
-
 (addition designator-position)
 (defun designator-position (designator)
   "Return, as two values, where what DESIGNATOR denotes really is, or seems to be, in metres; NIL
@@ -135,6 +123,15 @@ a container or in a bin, and within reach. False of places."
              (eq (thing-space denotation) (designator-location designator)))
          (multiple-value-bind (x y) (designator-position designator)
            (and x (within-reach-p (designator-robot designator) x y))))))
+
+;;; While a robot turns, the world stands still.
+
+(defun turn-designators (robot angle)
+  "Let the designators of ROBOT, which has turned by ANGLE, keep their directions in the world;
+those that have none, being where the robot is, turn along with it."
+  (loop for designator across (robot-designators robot)
+        when (and designator (designator-bearing-p designator))
+          do (decf (designator-angle designator) angle)))
 
 ;;; In a journal: also one that has been dropped can be named, perhaps in a run before this one,
 ;;; whose serial numbers are given again. So it has none.

@@ -2,21 +2,24 @@
 
 (in-package :ars-magna.robot)
 
-;;; Motion is swept: the robot passes through each cell between where it is and where it would
-;;; be, and stops just short of the first that blocks. The cell it stands in never does, so that it
-;;; is never trapped by a thing that comes to it. What cells block is in the world's flags.
+(define-constant +straight+ 1d-12
+  :documentation "A component of a heading that is nearer to 0 is rounding, and taken for 0.")
 
-(define-constant +contact-gap+ 1d-6
-  :documentation "How far from what blocks it the robot stops, in metres.")
-(define-constant +border-gap+ 1d-12
-  :documentation "How far from its far borders a cell ends for a robot that rounding took out.")
+(declaim (inline component))
+(defun component (number)
+  "Return NUMBER, a component of a heading; 0 if it is so small that only rounding can be behind it.
+So a robot can drive along the border of two cells, and stay in one of them."
+  (declare (type double-float number))
+  (if (< (abs number) +straight+) 0d0 number))
 
 (defun set-robot-angle (robot angle)
   "Turn ROBOT to the heading ANGLE, in radians, at once; its odometers do not notice."
   (let ((angle (double angle)))
+    (when (plusp (length (robot-designators robot)))
+      (turn-designators robot (- angle (robot-angle robot))))
     (setf (robot-angle robot) angle
-          (robot-cos robot) (cos angle)
-          (robot-sin robot) (sin angle)))
+          (robot-cos robot) (component (cos angle))
+          (robot-sin robot) (component (sin angle))))
   robot)
 
 (defun set-robot-pose (robot x y &optional (angle (robot-angle robot)))
@@ -33,89 +36,32 @@
   "Return the index of the cell that ROBOT is in, or NIL if it has been put outside the map."
   (map-index (world-map (robot-world robot)) (robot-x robot) (robot-y robot)))
 
+;; Speeds this low are lost in the rounding of positions.
+(define-constant +standstill+ 1d-12
+  :documentation "A robot that is slower, in metres per tick, does not move.")
+
 (declaim (inline robot-speed-now))
 (defun robot-speed-now (robot)
   "Return the speed of ROBOT within MAX-SPEED* as it is now, in metres per tick (reading 93)."
   (min (robot-speed robot) (double max-speed*)))
 
+(declaim (inline step-now))
+(defun step-now (robot)
+  "Return how far ROBOT means to drive in a tick at its speed, in metres."
+  (* (the double-float (robot-speed-now robot)) (double tick-quantum*)))
+
+(declaim (inline standing-p))
+(defun standing-p (robot)
+  "True if ROBOT cannot drive because its speed is 0, or next to it."
+  (< (the double-float (robot-speed-now robot)) +standstill+))
+
+(defun longest-step (robot)
+  "Return how far ROBOT can come in a tick at most, in metres."
+  (* (step-now robot) (+ 1d0 (double motion-noise*))))
+
 (defun robot-turn-angle-now (robot)
   "Return the turn angle of ROBOT within its limits as they are now, in radians per tick."
   (max (double min-turn-angle*) (min (robot-turn-angle robot) (double max-turn-angle*))))
-
-;;; Sweeping.
-
-(declaim (inline what-blocks))
-(defun what-blocks (flag)
-  "Return what keeps a robot out of a cell with FLAG: :WALL, :THING or NIL (reading 101)."
-  (declare (type (unsigned-byte 8) flag))
-  (cond ((logtest flag +wall+) :wall)
-        ((logtest flag +obsmove+) :thing)))
-
-(declaim (inline whole-part))
-(defun whole-part (x)
-  (declare (type double-float x))
-  (the fixnum (floor (the (double-float -1d9 1d9) x))))
-
-(declaim (inline within-cell))
-(defun within-cell (coordinate cell)
-  "Return COORDINATE, or the nearest inside CELL if rounding took it out."
-  (declare (type double-float coordinate) (type fixnum cell))
-  (max (float cell 1d0) (min coordinate (- (float (1+ cell) 1d0) +border-gap+))))
-
-;; Inline, so that no float has to be boxed on the way.
-(declaim (inline free-way))
-(defun free-way (world x y dx dy distance)
-  "Return how far one can go from (X,Y), in the map, in direction (DX,DY), at most DISTANCE; column
-and row of the cell where that is; and what blocks the way: :WALL, :THING or NIL."
-  (declare (type world world) (type double-float x y dx dy distance))
-  (let* ((map (world-map world)) (flags (world-flags world))
-         (cell-x (cell-number x)) (cell-y (cell-number y))
-         (step-x (if (minusp dx) -1 1)) (step-y (if (minusp dy) -1 1))
-         (block nil)
-         (at (walk-grid (lambda (index at column)
-                          (or (>= at distance)
-                              (setf block (what-blocks (aref flags index)))
-                              (progn (if column (incf cell-x step-x) (incf cell-y step-y))
-                                     nil)))
-                        (map-width map) (map-height map) x y dx dy +no-limit+ t)))
-    (declare (type fixnum cell-x cell-y) (type double-float at))
-    (if (>= at distance)
-        (values distance cell-x cell-y nil)
-        (values (max 0d0 (- at +contact-gap+)) cell-x cell-y (or block :wall)))))
-
-(defun leave-cell (robot)
-  "Move ROBOT out of its cell along its heading by ROBOT-MOVED metres, or to what blocks it. Leave
-the metres in ROBOT-MOVED; return :WALL, :THING or NIL. From outside the map there is no way."
-  (declare #.*hot* (type robot robot))
-  (let ((world (robot-world robot))
-        (x (robot-x robot)) (y (robot-y robot)) (dx (robot-cos robot)) (dy (robot-sin robot)))
-    (declare (type world world))
-    (cond ((point-index (world-map world) x y)
-           (multiple-value-bind (moved cell-x cell-y block)
-               (free-way world x y dx dy (robot-moved robot))
-             (declare (type double-float moved))
-             (setf (robot-x robot) (within-cell (+ x (* dx moved)) cell-x)
-                   (robot-y robot) (within-cell (+ y (* dy moved)) cell-y)
-                   (robot-moved robot) moved)
-             block))
-          (t (setf (robot-moved robot) 0d0)
-             :wall))))
-
-(declaim (inline sweep))
-(defun sweep (robot distance)
-  "Move ROBOT along its heading by DISTANCE, or to what blocks it. Leave the metres in
-ROBOT-MOVED; return :WALL, :THING or NIL (reading 100)."
-  (declare #.*hot* (type robot robot) (type double-float distance))
-  (let* ((x (robot-x robot)) (y (robot-y robot))
-         (cell-x (whole-part x)) (cell-y (whole-part y))
-         (new-x (+ x (* (robot-cos robot) distance)))
-         (new-y (+ y (* (robot-sin robot) distance))))
-    (declare (type double-float new-x new-y))
-    (setf (robot-moved robot) distance)
-    (cond ((and (= (whole-part new-x) cell-x) (= (whole-part new-y) cell-y))
-           (setf (robot-x robot) new-x (robot-y robot) new-y)
-           nil)
-          (t (leave-cell robot)))))
 
 ;;; Driving and turning.
 
@@ -152,7 +98,7 @@ speed; the odometers read an interval that contains it (reading 96)."
   (declare #.*hot* (type robot robot) (type double-float limit))
   (let* ((world (robot-world robot))
          (noise (double motion-noise*))
-         (nominal (min limit (* (robot-speed-now robot) (double tick-quantum*))))
+         (nominal (min limit (step-now robot)))
          (distance (* nominal (+ 1d0 (* noise (- (* 2d0 (roll (world-dice world :motion)))
                                                  1d0)))))
          (block (sweep robot distance))

@@ -35,15 +35,18 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:reset-odometer-ang #:get-odometer-pos #:get-odometer-ang)
   ;; motion
   (:export #:set-robot-pose #:set-robot-angle #:drive-tick #:coast-tick #:turn-tick
-           #:robot-speed-now #:robot-turn-angle-now #:robot-moved #:robot-turned-low
-           #:robot-turned-high #:begin-movement #:robot-last-move #:robot-last-move-estimate
+           #:robot-speed-now #:standing-p #:longest-step #:robot-turn-angle-now #:robot-moved
+           #:robot-turned-low #:robot-turned-high #:begin-movement #:robot-last-move
+           #:robot-last-move-estimate
            #:robot-cell-index)
+  ;; reach
+  (:export #:within-reach-p #:in-same-cell-p #:reached-p)
   ;; designator
   (:export #:designator #:designator-p #:designator-type #:designator-angle #:designator-data
            #:designator-robot #:designator-number #:designator-denotation
            #:designator-distance #:designator-valid-p #:designator-x #:designator-y
            #:designator-location #:find-designator #:live-designators #:designators-on
-           #:*designator-limit* #:thing-space #:within-reach-p #:designator-position
+           #:*designator-limit* #:thing-space #:designator-position
            #:designator-local-p*)
   ;; sight, tracks
   (:export #:line-clear-p #:in-sight-p
@@ -55,7 +58,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:designate #:look-for-things #:tend-tracks #:tracks-busy-p
            #:track #:track-operation #:track-ended #:serial-designator #:make-designator
            #:look-for-places #:camera-heading #:take-view #:start-track #:trackable-p
-           #:in-same-cell-p)
+           #:approaching-p #:end-on-arrival #:distance-to #:bearing-to)
   ;; inside
   (:export #:in-location #:outer-location #:inside-p #:part-inside #:part-reaches-p
            #:part-reaches-bin-p #:take-up #:set-down #:move-part #:space-around #:settle-parts

@@ -229,5 +229,6 @@ among those, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 
 (defmethod location-world ((part part)) (robot-world (part-robot part)))
 (defmethod location-closed-p ((hand hand)) nil)
+(defmethod location-full-p ((hand hand)) (hand-contents hand))
 (defmethod location-closed-p ((bin storage-bin)) (storage-bin-closed-p bin))
 (defmethod location-name ((part part)) (princ-to-string part))

@@ -4,8 +4,10 @@
 
 ;;; SCAN-DENSITY* rays cross the field of view. Whatever lies in a cell that one of them meets is in
 ;;; view, up to and with the first cell that is a wall or holds something that obstructs vision; so
-;;; is all that lies in the robot's own cell. A camera inside a container or storage bin sees
-;;; what is directly in it, at distance 0. What a hand holds is where the hand is.
+;;; is all that lies in the robot's own cell. What is within reach needs no ray, as rays from next
+;;; to a thing may all pass it: its direction has to be in the field of view. A camera inside a
+;;; container or storage bin sees what is directly in it, at distance 0. What a hand holds is where
+;;; the hand is.
 
 (declaim (inline mark-seen))
 (defun mark-seen (flags index flag)
@@ -79,14 +81,45 @@ meet within REACH columns and rows."
                                 (camera-heading camera) (camera-field-of-view camera)
                                 scan-density* reach)))))
 
-(defun things-in-open-view (camera local)
-  "Return the things on the floor that CAMERA has in view, those within reach if LOCAL, else the
-others (reading 131)."
-  (let* ((robot (camera-robot camera)) (cells (world-cells (robot-world robot))))
-    (loop for index in (cells-in-view camera (if local 1 +no-limit+))
-          append (loop for thing in (svref cells index)
+(defun faced-p (camera thing)
+  "True if CAMERA looks straight at THING, within reach on the floor, or is where that is."
+  (let ((robot (camera-robot camera)) (x (thing-x thing)) (y (thing-y thing)))
+    (or (<= (distance-to robot x y) +contact+)
+        (and (<= (abs (angle-difference (bearing-to robot x y) (camera-heading camera)))
+                 (* 0.5d0 (camera-field-of-view camera)))
+             (in-sight-p (robot-world robot) (robot-x robot) (robot-y robot) x y)))))
+
+(defun cells-around (robot)
+  "Return a list of the cells of the map around that of ROBOT, and its own."
+  (let ((map (world-map (robot-world robot)))
+        (column (floor (robot-x robot))) (row (floor (robot-y robot))))
+    (loop for y from (1- row) to (1+ row)
+          append (loop for x from (1- column) to (1+ column)
+                       for index = (map-index map x y)
+                       when index collect index))))
+
+(defun things-in-cells (cells camera local)
+  "Return the things on the floor of CELLS that are within the reach of CAMERA's robot, or if not
+LOCAL the others (reading 131)."
+  (let* ((robot (camera-robot camera)) (things (world-cells (robot-world robot))))
+    (loop for index in cells
+          append (loop for thing in (svref things index)
                        when (eq local (within-reach-p robot (thing-x thing) (thing-y thing)))
                          collect thing))))
+
+(defun things-faced (camera cells)
+  "Return the things within reach in other cells than CELLS that CAMERA looks straight at."
+  (let ((others (remove-if (lambda (index) (member index cells))
+                           (cells-around (camera-robot camera)))))
+    (remove-if-not (lambda (thing) (faced-p camera thing))
+                   (things-in-cells others camera t))))
+
+(defun things-in-open-view (camera local)
+  "Return the things on the floor that CAMERA has in view, those within reach if LOCAL, else the
+others."
+  (let ((cells (cells-in-view camera (if local 1 +no-limit+))))
+    (append (things-in-cells cells camera local)
+            (and local cells (things-faced camera cells)))))
 
 (defun things-in-view (camera type)
   "Return the things that CAMERA has in view and that are of TYPE, :LOCAL or

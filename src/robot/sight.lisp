@@ -6,22 +6,42 @@
 ;;; it. Neither the cell of the eye nor that of the target does. The walk ends after as many borders
 ;;; as lie between them, as by distance rounding could end it one cell before or behind the target.
 
+(defun same-cell-p (x y to-x to-y)
+  (and (= (floor x) (floor to-x))
+       (= (floor y) (floor to-y))))
+
+(defun corner-clear-p (world x y dx dy to-x to-y)
+  "True if the line in direction (DX,DY) to (TO-X,TO-Y), obstructed at (X,Y), only meets a corner
+there and goes on beyond it."
+  (flet ((before (position direction)
+           (if (plusp direction) (1- (round position)) (round position))))
+    (multiple-value-bind (beyond-x beyond-y)
+        (beyond-corner world +opaque+ x y (before x dx) (before y dy))
+      (and beyond-x
+           (/= 0 dx)
+           (/= 0 dy)
+           (or (same-cell-p beyond-x beyond-y to-x to-y)
+               (and (not (closed-cell-p world beyond-x beyond-y +opaque+))
+                    (line-clear-p world beyond-x beyond-y to-x to-y)))))))
+
 (defun line-clear-p (world x y to-x to-y)
   "True if nothing in WORLD obstructs the line from (X,Y) to (TO-X,TO-Y), points of the map."
   (declare #.*hot* (type world world) (type double-float x y to-x to-y))
   (let* ((flags (world-flags world)) (map (world-map world))
+         (dx (- to-x x)) (dy (- to-y y))
          (left (+ (abs (- (whole-part to-x) (whole-part x)))
                   (abs (- (whole-part to-y) (whole-part y)))))
-         (clear t))
-    (declare (type fixnum left))
-    (walk-grid (lambda (index at column)
-                 (declare (ignore at column))
-                 (or (<= (decf left) 0)
-                     (when (logtest +opaque+ (aref flags index))
-                       (setf clear nil)
-                       t)))
-               (map-width map) (map-height map) x y (- to-x x) (- to-y y) +no-limit+)
-    clear))
+         (clear t)
+         (at (walk-grid (lambda (index at column)
+                          (declare (ignore at column))
+                          (or (<= (decf left) 0)
+                              (when (logtest +opaque+ (aref flags index))
+                                (setf clear nil)
+                                t)))
+                        (map-width map) (map-height map) x y dx dy +no-limit+)))
+    (declare (type fixnum left) (type double-float at))
+    (or clear
+        (corner-clear-p world (+ x (* dx at)) (+ y (* dy at)) dx dy to-x to-y))))
 
 (defun in-sight-p (world x y to-x to-y)
   "True if in WORLD the cell of (TO-X,TO-Y), or a good part of it, can be seen from (X,Y)."

@@ -25,6 +25,7 @@
   "At no more than this, in metres, things have no direction.")
 
 (defun distance-to (robot x y)
+  "Return the distance from ROBOT to (X,Y), in metres."
   (let ((dx (- x (robot-x robot))) (dy (- y (robot-y robot))))
     (sqrt (+ (* dx dx) (* dy dy)))))
 

@@ -5,9 +5,10 @@
 ;;; A track refreshes angle and distance of its designator, never the data, and points the camera
 ;;; there. It is lost when the denotation is occluded, moves too fast -- its direction from the
 ;;; robot changes in a tick by more than half the field of view -- or is arrived at, and by chance.
-;;; The robot's own turning does not count as fast: the camera makes up for it. Nor does what passes
-;;; within reach. A local designator of something that is out of reach becomes a non-local
-;;; one, if it is in the open. A false designator drifts.
+;;; The robot's own turning does not count as fast: the camera makes up for it. Nor does what is
+;;; within reach, or was a tick before. Whoever goes to something ends the track on arrival; else
+;;; only the robot's own cell does. A local designator of something that is out of reach becomes a
+;;; non-local one, if it is in the open. A false designator drifts.
 
 ;;; Refreshing.
 
@@ -35,7 +36,7 @@
 (defun refresh-designator (designator dice)
   "Bring the tracked DESIGNATOR up to date; DESIGNATOR-SWING is then how far its direction has
 changed (reading 226)."
-  (let ((robot (designator-robot designator)))
+  (let ((robot (designator-robot designator)) (before (designator-distance designator)))
     (unless (designator-denotation designator) (drift designator dice))
     (multiple-value-bind (x y) (designator-position designator)
       (setf (designator-x designator) x
@@ -45,14 +46,20 @@ changed (reading 226)."
         (let ((distance (distance-to robot x y)))
           (setf (designator-distance designator) distance)
           (if (> distance +no-distance+)
-              (swing-to designator (bearing-to robot x y) dice)
+              (swing-to designator (bearing-to robot x y) before dice)
               (setf (designator-bearing-p designator) nil)))))))
 
-(defun swing-to (designator bearing dice)
-  "Let DESIGNATOR now be in the true direction BEARING."
+(defun near-p (designator before)
+  "True if what DESIGNATOR denotes is within reach, or was a tick before, at the distance BEFORE."
+  (or (< before 1d0)
+      (within-reach-p (designator-robot designator)
+                      (designator-x designator) (designator-y designator))))
+
+(defun swing-to (designator bearing before dice)
+  "Let DESIGNATOR now be in the true direction BEARING, and BEFORE have been its distance."
   (let ((relative (- bearing (robot-angle (designator-robot designator))))
         (known (designator-bearing-p designator)))
-    (when known
+    (when (and known (not (near-p designator before)))
       (setf (designator-swing designator)
             (abs (angle-difference bearing (designator-bearing designator)))))
     (unless (and known (= relative (designator-relative-bearing designator)))
@@ -104,6 +111,19 @@ changed (reading 226)."
 (defun too-fast-p (camera designator)
   (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))
 
+(defun approached-p (camera)
+  "True if its robot is on the way to what CAMERA tracks."
+  (let ((event (resource-event (camera-robot camera))))
+    (and event (approaching-p event camera))))
+
+(defun gone-p (camera designator)
+  "True if CAMERA cannot follow the non-local DESIGNATOR any longer. Arrival at the end of an
+approach is the approach's to tell (reading 112)."
+  (if (arrived-p designator)
+      (not (approached-p camera))
+      (or (not (trackable-p designator))
+          (too-fast-p camera designator))))
+
 (defun keep-or-lose (camera designator dice)
   "Point CAMERA at DESIGNATOR, unless chance makes it lose that (reading 235)."
   (if (lost-by-chance-p designator dice)
@@ -125,8 +145,7 @@ changed (reading 226)."
   (refresh-once designator tick dice)
   (cond ((eq (designator-type designator) :local)
          (tend-local-track camera designator dice))
-        ((or (not (trackable-p designator)) (too-fast-p camera designator))
-         (lose-track camera))
+        ((gone-p camera designator) (lose-track camera))
         (t (keep-or-lose camera designator dice))))
 
 ;;; The tracks phase.
@@ -182,3 +201,14 @@ TRACK-ENDED (reading 142)."
       (setf (designator-swing designator) 0d0)))
   (setf (camera-angle camera) (designator-angle designator)
         (camera-tracking camera) (make-track designator operation)))
+
+;;; Arriving.
+
+(defun end-on-arrival (camera)
+  "Let CAMERA lose its track, as the robot has arrived at what it tracks; to the last it has pointed
+there (reading 108)."
+  (let ((designator (camera-tracks camera)))
+    (when (designator-denotation designator)
+      (refresh-designator designator (world-dice (robot-world (camera-robot camera)) :tracking))
+      (setf (camera-angle camera) (designator-angle designator)))
+    (lose-track camera)))

@@ -8,7 +8,7 @@
 ;;; for the track is told only in the tracks phase, so after the command that ended it has told
 ;;; its own. Only an interruption is told at once. A designator that was tracked does not
 ;;; survive the loss of its last track; one that was not does not survive that its denotation
-;;; moves, or that a local one is out of reach.
+;;; moves -- unless a hand takes that up or sets it down -- or that a local one is out of reach.
 
 ;; As reading 82 says.
 (define-kind (track :constructor (make-track (designator operation)))
@@ -20,6 +20,12 @@
 (defgeneric track-ended (operation code designator)
   (:documentation "Let OPERATION know that the track of DESIGNATOR, which it began, has ended with
 CODE."))
+
+(defgeneric approaching-p (event camera)
+  (:documentation "True if EVENT, pending on a robot, is to take it to what CAMERA tracks.")
+  (:method (event camera)
+    (declare (ignore event camera))
+    nil))
 
 (addition camera-tracks)
 (defun camera-tracks (camera)
@@ -93,20 +99,21 @@ is lost and no other camera tracks the designator, that is dropped."
 
 (defun watch-thing (thing old-location new-location)
   "Let the robots' designators know that THING has moved. A world's move watcher."
-  (declare (ignore old-location))
-  (dolist (robot (world-robots (thing-world thing)))
-    (when (plusp (length (robot-designators robot)))
-      (mapc (if new-location #'denotation-moved #'drop-designator)
-            (designators-on robot thing)))))
+  (let ((by-hand (or (hand-p old-location) (hand-p new-location))))
+    (dolist (robot (world-robots (thing-world thing)))
+      (when (plusp (length (robot-designators robot)))
+        (dolist (designator (designators-on robot thing))
+          (unless (and new-location (survives-move-p designator by-hand))
+            (drop-designator designator)))))))
 
-(defun denotation-moved (designator)
-  "Drop DESIGNATOR if it does not survive that its denotation has moved (reading 139)."
-  (let ((thing (designator-denotation designator)))
-    (unless (if (tracked-p designator)
-                (eq (thing-space thing) (designator-location designator))
-                (and (eq (designator-type designator) :local)
-                     (designator-local-p* designator)))
-      (drop-designator designator))))
+(defun survives-move-p (designator by-hand)
+  "True if DESIGNATOR stays valid although its denotation has moved, BY-HAND if it was taken up or
+set down: if a camera tracks it and can follow, or if it is local and so stays (reading 139)."
+  (if (tracked-p designator)
+      (eq (thing-space (designator-denotation designator)) (designator-location designator))
+      (and by-hand
+           (eq (designator-type designator) :local)
+           (designator-local-p* designator))))
 
 (defun part-moved (part old-location)
   "Let PART, a camera or hand, have been taken from OLD-LOCATION into PART-LOCATION: a camera loses

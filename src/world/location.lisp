@@ -22,6 +22,13 @@ in order of arrival. Can be set; the setter does not touch the things."))
   (:documentation "True if nothing can be kicked, put or taken out of LOCATION: a closed thing or
 storage bin."))
 
+(defgeneric location-full-p (location)
+  (:documentation "True if nothing can be made in LOCATION because it holds as many things as it
+can, whatever their size.")
+  (:method (location)
+    (declare (ignore location))
+    nil))
+
 (defgeneric location-name (location)
   (:documentation "Return the symbol or string that LOCATION is called, for messages."))
 

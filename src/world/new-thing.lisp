@@ -29,6 +29,12 @@ but evaluated, stands for."
                        "NIL, what holds things, (:with thing) or (map x y)"))
         (t (values (check-holder 'new-thing nil location) location))))
 
+(defun check-not-full (location)
+  "Signal MISUSE if nothing can be made in LOCATION."
+  (when (location-full-p location)
+    (reject-use "new-thing: ~A holds ~{~A~^, ~} and nothing else. Let go of that first."
+                (location-name location) (location-contents location))))
+
 ;; What is noted does not depend on what becomes of a prototype, or of a map's name.
 (defun noted-location (location world)
   "Return LOCATION, in WORLD, for MAKE-THING-AGAIN."
@@ -42,10 +48,12 @@ but evaluated, stands for."
 LOCATION is NIL for a prototype, a container, hand or storage bin, or a list (:with thing) or
 (map x y), in metres; the map may also be a name or a world. PROTOTYPE is a thing whose attributes
 and contents are copied first. CONTENTS, ours, is a list of recipes made by THING-RECIPE; KICKERS,
-ours, a list of kickers or their names. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+ours, a list of kickers or their names. Signals WRONG-ARGUMENT and UNKNOWN-NAME, and MISUSE for a
+hand that holds something."
   (let ((recipe (write-recipe 'new-thing name descriptor :prototype prototype
                                                          :contents contents :kickers kickers)))
     (multiple-value-bind (world place x y) (resolve-location location)
+      (check-not-full place)
       (if world
           (note-slips name descriptor world)
           (warn-of-slips "new-thing" name descriptor))
@@ -93,7 +101,8 @@ LOCATION is one of
   (map x y) -- in a map, at coordinates in metres; all three are forms, but a symbol that is no
     variable is the name of a map.
 PROTOTYPE is a form whose value is a thing; its attributes and contents are copied first, its
-kickers are not. To compute name or descriptor use MAKE-NEW-THING. Signals WRONG-ARGUMENT.
+kickers are not. To compute name or descriptor use MAKE-NEW-THING. Signals WRONG-ARGUMENT, and
+MISUSE for a hand that holds something.
 See readings 12 and 167."
   (unless (and name (symbolp name))
     (reject-clause "new-thing" name "a symbol as the name of the thing"))

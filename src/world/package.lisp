@@ -49,7 +49,7 @@
   (:export #:change-world #:changing #:writing #:writing-p #:world-writer)
   ;; location
   (:export #:location-contents #:location-position #:location-world #:location-closed-p
-           #:location-name #:remaining-capacity)
+           #:location-full-p #:location-name #:remaining-capacity)
   ;; thing
   (:export #:thing #:thing-p #:thing-name #:thing-serial #:thing-world #:thing-location
            #:thing-x #:thing-y #:thing-attributes #:thing-contents #:thing-kickers
