@@ -188,7 +188,7 @@
                  (:file "manual-3-3") (:file "manual-3-4") (:file "manual-3-4-2")
                  (:file "manual-3-4-2-readings") (:file "manual-3-4-3")
                  (:file "manual-3-4-3-searches") (:file "manual-3-4-3-tracking")
-                 (:file "manual-3-4-3-moving") (:file "manual-a")
+                 (:file "manual-3-4-3-moving") (:file "manual-reach") (:file "manual-a")
                  (:file "manual-3-5") (:file "manual-3-5-stopping") (:file "manual-3-5-places")
                  (:file "manual-3-5-approach") (:file "manual-3-5-arrival")
                  (:file "manual-3-6")
