@@ -37,10 +37,12 @@ when the speed is 0."
       (:thing (fail-with operation :robot-blocked)))))
 
 (defun coast (operation)
-  "Drive for a tick of those that are left; OPERATION succeeds after the last, or where it is
-blocked."
-  (drive-on (block operation)
-    (when (or block (zerop (decf (operation-count operation)))) (succeed operation))))
+  "Drive for a tick of those that are left; OPERATION succeeds after the last, where it is blocked,
+and if the robot has stopped meanwhile."
+  (if (standing-p (operation-resource operation))
+      (succeed operation)
+      (drive-on (block operation)
+        (when (or block (zerop (decf (operation-count operation)))) (succeed operation)))))
 
 ;; As reading 233 says.
 (define-command robot-go-forward (operation (robot robot)
