@@ -15,7 +15,7 @@
                  (:file "packages") (:file "files") (:file "processes")
                  (:file "environments") (:file "interrupts") (:file "debuggers")
                  (:file "abridging")
-                 (:file "conditions") (:file "threads") (:file "dice") (:file "names")
+                 (:file "conditions") (:file "telling") (:file "threads") (:file "dice") (:file "names")
                  (:file "digest") (:file "sources") (:file "variables") (:file "definitions")
                  (:file "user-macros")
                  (:file "registry") (:file "own-definitions")

@@ -131,7 +131,7 @@ far these have come to the east."
           repeat 3
           do (turn-and shrew (lambda () (deep 0)))
              (is (= tick (run:run-ticks 20)))
-             (is-true (told-p "Error in the continuation of robot-turn")))))
+             (is-true (told-p "robot-turn: The stack has overflowed")))))
 
 (test error.whose-report-is-endless-is-told
   (with-shrew ()

@@ -56,6 +56,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:time-limit #:deferring-interrupts #:allowing-interrupts #:let-interrupts-in
            #:call-holding-interrupts #:call-open-to-interrupts
            #:debugger-p #:answering-debugger #:calls-under-way #:debugger-hook)
+  ;; telling
+  (:export #:format-briefly #:blank-p #:one-line #:cut #:own-text #:text-of-condition)
   ;; dice
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance)
@@ -90,7 +92,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; user code
   (:export #:call-user-code #:*break-on-user-error* #:in-any-case #:call-each
            #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*
-           #:interruptibly #:abort-user-code #:text-of-condition #:text-of-origin)
+           #:interruptibly #:abort-user-code #:brief-text #:text-of-origin)
   ;; parameters
   (:export #:parameter #:parameter-p #:parameter-name #:parameter-default #:parameter-unit
            #:parameter-kind #:parameter-group #:parameter-sentence #:parameter-value

@@ -187,9 +187,6 @@ MISUSE if it is not there."
 
 ;;; What a text or form says, as a number.
 
-(defun blank-p (char)
-  (find char '(#\Space #\Tab #\Newline #\Return #\Page)))
-
 (defun paren-p (char)
   (find char "()"))
 

@@ -74,12 +74,9 @@ names its origin, and the run goes on.")
 
 ;;; Reporting.
 
-(defun text-of-condition (condition)
+(defun brief-text (condition)
   "Return what CONDITION reports, on one line and of bounded length."
-  (let* ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil)
-         (text (handler-case (princ-to-string condition)
-                 (serious-condition () (string (type-of condition))))))
-    (substitute #\Space #\Newline (subseq text 0 (min (length text) 2000)))))
+  (cut (one-line (text-of-condition condition)) 2000))
 
 (defun text-of-origin (origin)
   "Return ORIGIN, an item or list of items, as one text."
@@ -87,14 +84,14 @@ names its origin, and the run goes on.")
 
 (defun report-user-error (condition origin)
   (apply #'error-set "Error in "
-         (append (ensure-list origin) (list ": " (text-of-condition condition)))))
+         (append (ensure-list origin) (list ": " (brief-text condition)))))
 
 (defun report-aborted (origin)
   (apply #'error-set (append (ensure-list origin) (list " was aborted"))))
 
 (defun report-break (condition origin)
   (apply #'message-set "Break in "
-         (append (ensure-list origin) (list ": " (text-of-condition condition)))))
+         (append (ensure-list origin) (list ": " (brief-text condition)))))
 
 ;;; Calling.
 

@@ -83,8 +83,7 @@ form; then FILE is as it was."
 
 (defun one-line-text (condition)
   "Return what CONDITION says as the part of a sentence."
-  (let ((text (substitute #\Space #\Newline (princ-to-string condition))))
-    (string-right-trim "." (subseq text 0 (min 400 (length text))))))
+  (string-right-trim "." (cut (one-line (text-of-condition condition)) 400)))
 
 (defun read-short-line (in)
   "Return the next line of IN, or NIL; of one that is too long, no more than its beginning."

@@ -49,7 +49,7 @@
 
 (defun pause-for (pacing trouble)
   "Pause the clock of PACING, as TROUBLE has come up that no user code answers for."
-  (error-set "The simulator failed and is paused; RESUME goes on: " (text-of-condition trouble))
+  (error-set "The simulator failed and is paused; RESUME goes on: " (brief-text trouble))
   (setf (pacing-paused-p pacing) t))
 
 (defun pass-tick (pacing)

@@ -1,0 +1,50 @@
+;;;; telling.lisp -- what goes wrong, in words of bounded length.
+
+(in-package :ars-magna.base)
+
+;;; A condition may have to report a list without an end, or an object that cannot be printed.
+
+(defun format-briefly (destination control &rest arguments)
+  "Do as FORMAT does. Of ARGUMENTS that are deep, long or circular, only a part is shown."
+  (let ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
+    (apply #'format destination control arguments)))
+
+(defun blank-p (char)
+  "True if CHAR is a space, newline or the like."
+  (member char '(#\Space #\Tab #\Return #\Page #\Newline)))
+
+(defun one-line (text)
+  "Return TEXT with each run of blanks as one space."
+  (string-trim " " (with-output-to-string (out)
+                     (loop for previous = #\Space then char
+                           for char across text
+                           for blank = (blank-p char)
+                           unless (and blank (blank-p previous))
+                             do (write-char (if blank #\Space char) out)))))
+
+(defun cut (text length)
+  "Return TEXT, or its beginning if it is longer than LENGTH."
+  (if (> (length text) length)
+      (concatenate 'string (subseq text 0 (- length 3)) "...")
+      text))
+
+;;; Conditions.
+
+(defun storage-text (condition)
+  "Return what CONDITION, that there is no room for something, means to a user."
+  (if (search "STACK" (string (type-of condition)))
+      (format nil "The stack has overflowed: functions call each other too deeply, or lists stand ~
+                   too deeply in lists. Mend what has no end.")
+      "There is not enough memory for that. Ask for less at a time."))
+
+(defun own-text (condition)
+  "Return what CONDITION, or another object, says of itself; an empty text if it cannot."
+  (handler-case (format-briefly nil "~A" condition)
+    ((or error storage-condition) () "")))
+
+(defun text-of-condition (condition)
+  "Return what CONDITION says, or what it is if it cannot say that."
+  (let ((text (if (typep condition 'storage-condition)
+                  (storage-text condition)
+                  (own-text condition))))
+    (if (string= text "") (string-downcase (type-of condition)) text)))
