@@ -112,6 +112,16 @@ has begun."
           ((last-answer-p name (first results) answers) (remhash call (ride-pending *ride*)))
           (t (incf (gethash call (ride-pending *ride*)))))))
 
+(defun misbehave ()
+  "Do what users' code should not: fail, be aborted, or leave the tick."
+  (funcall (pick (list (lambda () (error "Code that fails."))
+                       #'abort
+                       (lambda () (throw 'ride-out t))))))
+
+(defun ride-on (ticks)
+  "Pass TICKS, or fewer if somebody leaves one."
+  (catch 'ride-out (run:run-ticks ticks)))
+
 (defun rider (name)
   "Return a continuation for the command NAME, which notes its calls, sometimes goes on with
 another command, and sometimes fails."
@@ -123,7 +133,7 @@ another command, and sometimes fails."
                 (keep-designators (rest results))
                 (unless (ride-over-p ride)
                   (if (luck .8) (follow-up name results) (when (luck .1) (command-at-random)))
-                  (when (luck .01) (error "A continuation that fails.")))))
+                  (when (luck .01) (misbehave)))))
             call)))
 
 ;;; Arguments.
@@ -321,7 +331,7 @@ what has been seen."
       (map nil #'time:grab-resource (robot:robot-cameras robot))
       (map nil #'time:grab-resource (robot:robot-hands robot))
       (map nil #'time:grab-resource (robot:robot-bins robot)))
-    (run:run-ticks (if (zerop i) 1 100)))
+    (ride-on (if (zerop i) 1 100)))
   (loop for (name) being the hash-keys of (ride-pending *ride*)
         do (complain "~A was not answered" name)))
 
@@ -335,7 +345,7 @@ what has been seen."
         ((luck .06) (manipulate-at-random))
         (t (command-at-random)))
   (when (luck .01) (populate))
-  (run:run-ticks (pick '(0 0 1 2 5 12))))
+  (ride-on (pick '(0 0 1 2 5 12))))
 
 (defun drive (commands)
   "Issue COMMANDS commands at random, or until something is wrong."

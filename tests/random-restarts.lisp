@@ -11,7 +11,9 @@
 (defun redefine-kicker ()
   (world:define-kicker (pick '(ride-hop ride-vanish ride-change)) :prob (pick '(0 .01 .1))
     :body (if (luck .5)
-              (lambda (thing) (world:kick-thing thing (pick '(-.5 .5)) .2 (luck .5)))
+              (lambda (thing)
+                (world:kick-thing thing (pick '(-.5 .5)) .2 (luck .5))
+                (when (luck .01) (misbehave)))
               (lambda (thing) (world:set-attribute thing :weight (pick '(.1 1 nil)))))))
 
 (defun redefine-place-type ()
@@ -57,9 +59,9 @@
          (designator (first (robot:live-designators robot))))
     (when designator
       (issue-command 'command:camera-track camera designator)
-      (run:run-ticks 2)
+      (ride-on 2)
       (issue-command 'command:robot-goto-designator robot camera)
-      (run:run-ticks (pick '(1 5 30))))))
+      (ride-on (pick '(1 5 30))))))
 
 (defun drive-through-run (commands seed)
   "Issue COMMANDS commands in a run of its own, which ends whatever is under way."
