@@ -80,7 +80,7 @@ itself: it will come with the next tick."
       (setf (watcher-wanted-p watcher) t)
       (fetch watcher))))
 
-(defun pace (watcher)
+(defun run-pacer (watcher)
   (loop until (watcher-over-p watcher)
         do (cond ((wait-on-semaphore (watcher-painted watcher) +patience+)
                   (wait-on-semaphore (watcher-over watcher) +pause+)
@@ -111,7 +111,7 @@ itself: it will come with the next tick."
   "Let WATCHER begin its work, on SIMULATION. Return WATCHER."
   (watch-simulation watcher simulation)
   (setf (watcher-pacer watcher)
-        (start-thread (lambda () (pace watcher))
+        (start-thread (lambda () (run-pacer watcher))
                       (format nil "pacer of ~A" (watcher-robot watcher))))
   watcher)
 
