@@ -90,7 +90,7 @@ it (reading 111)."
                                        (camera camera "the camera that tracks the designator"))
     ((camera "the camera")
      (designator "the designator that it tracked"))
-    ((:family :moving) (:section "3.5") (:delay robot-move-delay*)
+    ((:family :moving) (:section "3.5") (:delay robot-move-delay*) (:echo camera designator)
      (:errors (:not-tracking (lambda (operation)
                                (format nil "~A is not tracking anything"
                                        (first (operation-arguments operation)))))

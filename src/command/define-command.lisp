@@ -97,8 +97,9 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
   (:errors (keyword text)...)          its error codes; TEXT, a form, gives a string or a
                                        function of the operation, for the error message
   (:report lambda-list form)           what the message of success says, from the results
-  (:echo name...)                      those of RESULTS that are the parameters of the same names:
-                                       the continuation gets them after an interruption, too
+  (:echo name...)                      those of RESULTS that the continuation gets after an
+                                       interruption, too: parameters of the same names, or else
+                                       the operation's subject, once it has begun
   (:prompt name) (:prefix string)      unlike the rule of DEFAULT-PROMPT-NAME
 BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now or
 later (reading 149)."

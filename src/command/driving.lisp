@@ -77,8 +77,10 @@ and if the robot has stopped meanwhile."
     ()
     ((:family :moving) (:section "3.5") (:delay 1)
      (:report () "Robot stopped"))
-    "Stop ROBOT: if that interrupts its driving, let it coast for BRAKING* ticks first."
-  (setf (operation-count operation) braking*)
+    "Stop ROBOT: if that interrupts its driving, let it coast for BRAKING* ticks first. Who stops it
+once more meanwhile does not prolong that."
+  (when (zerop (operation-count operation))
+    (setf (operation-count operation) braking*))
   (if (and (operation-subject operation) (driving-p robot) (plusp braking*))
       (drive operation robot 'coast)
       (succeed operation)))

@@ -121,15 +121,20 @@ the resource and RESULTS. The second end of an operation changes nothing."
   "End OPERATION with the error CODE; its continuation gets that, the resource and RESULTS."
   (apply #'finish operation code results))
 
+(defun begun-p (operation)
+  "True if OPERATION does not wait for its command's delay any more."
+  (not (eq (operation-step operation) 'start-body)))
+
 (defun known-results (operation)
-  "Return the results of OPERATION that are known before it ends: the arguments that it echoes."
-  (let ((command (operation-command operation)))
+  "Return the results of OPERATION that are known before it ends: of those that it echoes, arguments
+of the same name, or else, once it has begun, what it is about."
+  (let* ((command (operation-command operation))
+         (names (mapcar #'spec-name (command-parameters command))))
     (loop for result in (command-results command)
-          collect (loop for spec in (command-parameters command)
-                        for argument in (operation-arguments operation)
-                        when (and (eq (spec-name spec) (spec-name result))
-                                  (member (spec-name spec) (command-echo command)))
-                          return argument))))
+          for position = (position (spec-name result) names)
+          collect (cond ((not (member (spec-name result) (command-echo command))) nil)
+                        (position (nth position (operation-arguments operation)))
+                        ((begun-p operation) (operation-subject operation))))))
 
 (defun interrupt-operation (operation)
   (apply #'finish operation :interrupt (known-results operation)))
@@ -192,12 +197,20 @@ and has only just been issued is carried out first, anything else is interrupted
         (t (note-interruption rival operation (1+ (agenda-tick agenda)))
            (interrupt-event agenda rival))))
 
-(defun command-cut-short (event)
-  "Return the name of the command that EVENT, pending on a resource, carries out, if its delay is
-over; else NIL."
-  (and (operation-p event)
-       (not (eq (operation-step event) 'start-body))
-       (command-name (operation-command event))))
+(defun named-p (operation name)
+  "True if OPERATION, an event, carries out the command called NAME."
+  (and (operation-p operation)
+       (eq name (command-name (operation-command operation)))))
+
+(defun note-cut-short (operation rival)
+  "Let OPERATION know what it cuts short by interrupting RIVAL: nothing, if that has not begun. A
+stop that interrupts another goes on where that was."
+  (cond ((not (operation-p rival)))
+        ((and (named-p operation 'robot-stop) (named-p rival 'robot-stop))
+         (setf (operation-subject operation) (operation-subject rival)
+               (operation-count operation) (operation-count rival)))
+        ((begun-p rival)
+         (setf (operation-subject operation) (command-name (operation-command rival))))))
 
 (defun begin (operation)
   "Take over the resource of OPERATION and let it wait for its command's delay."
@@ -205,7 +218,7 @@ over; else NIL."
          (rival (pending-event agenda (operation-resource operation)))
          (delay (funcall (command-delay (operation-command operation)))))
     (when rival
-      (setf (operation-subject operation) (command-cut-short rival))
+      (note-cut-short operation rival)
       (make-way operation agenda rival))
     (go-on operation 'start-body delay)))
 

@@ -102,6 +102,15 @@ a hand is where the hand is."
           ((hand-p location) (part-location location))
           (t location))))
 
+(defun denotation-space (designator)
+  "Return the THING-SPACE of the thing that DESIGNATOR denotes, as its robot sees it: another robot's
+hand hides what it holds, and is returned."
+  (let* ((thing (designator-denotation designator)) (location (thing-location thing)))
+    (if (and (hand-p location)
+             (not (eq (part-robot location) (designator-robot designator))))
+        location
+        (thing-space thing))))
+
 (addition designator-position)
 (defun designator-position (designator)
   "Return, as two values, where what DESIGNATOR denotes really is, or seems to be, in metres; NIL
@@ -120,7 +129,7 @@ a container or in a bin, and within reach. False of places."
     (and (designator-valid-p designator)
          (not (place-p denotation))
          (or (null denotation)
-             (eq (thing-space denotation) (designator-location designator)))
+             (eq (denotation-space designator) (designator-location designator)))
          (multiple-value-bind (x y) (designator-position designator)
            (and x (within-reach-p (designator-robot designator) x y))))))
 

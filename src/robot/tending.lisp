@@ -78,7 +78,7 @@ changed (reading 226)."
   (let ((denotation (designator-denotation designator)))
     (and (null (designator-location designator))
          (or (not (thing-p denotation))
-             (null (thing-space denotation))))))
+             (null (denotation-space designator))))))
 
 (defun visible-p (designator)
   "True if nothing hides the non-local DESIGNATOR's denotation from its robot."

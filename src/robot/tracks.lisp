@@ -110,7 +110,7 @@ is lost and no other camera tracks the designator, that is dropped."
   "True if DESIGNATOR stays valid although its denotation has moved, BY-HAND if it was taken up or
 set down: if a camera tracks it and can follow, or if it is local and so stays (reading 139)."
   (if (tracked-p designator)
-      (eq (thing-space (designator-denotation designator)) (designator-location designator))
+      (eq (denotation-space designator) (designator-location designator))
       (and by-hand
            (eq (designator-type designator) :local)
            (designator-local-p* designator))))
