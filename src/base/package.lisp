@@ -53,9 +53,9 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:start-thread #:join-thread #:interrupt-thread #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; interrupts, debuggers
-  (:export #:time-limit #:deferring-interrupts #:allowing-interrupts #:let-interrupts-in
+  (:export #:time-limit #:deferring-interrupts #:allowing-interrupts
            #:call-holding-interrupts #:call-open-to-interrupts
-           #:debugger-p #:answering-debugger #:calls-under-way #:debugger-hook)
+           #:restore-stack #:debugger-p #:answering-debugger #:calls-under-way #:debugger-hook)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:own-text #:text-of-condition)
   ;; dice
@@ -92,7 +92,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; user code
   (:export #:call-user-code #:*break-on-user-error* #:in-any-case #:call-each
            #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*
-           #:interruptibly #:abort-user-code #:brief-text #:text-of-origin)
+           #:user-calls-waiting-p
+           #:as-users-code #:abort-user-code #:brief-text #:text-of-origin)
   ;; parameters
   (:export #:parameter #:parameter-p #:parameter-name #:parameter-default #:parameter-unit
            #:parameter-kind #:parameter-group #:parameter-sentence #:parameter-value
