@@ -192,6 +192,17 @@
                          (rpl:par (:tag worker (note :before) (rpl:evaporate worker) (note :after))
                                   :other))))))))
 
+(test evaporate.oneself-cleans-up
+  "A task that runs cleans up before it is gone, and takes as long as that does."
+  (is (equal '((:before 0) (:cleaned 2) (:next 2))
+             (with-log (note)
+               (plan-value
+                 (rpl:par (:tag worker
+                            (rpl:evap-protect
+                                (rpl:seq (note :before) (rpl:evaporate worker) (note :after))
+                              (rpl:seq (rpl:wait-time 2) (note :cleaned)))))
+                 (note :next))))))
+
 ;;; Valves.
 
 (test with-valve.one-at-a-time-first-come-first-served
