@@ -58,7 +58,7 @@
                 (first (type-batch (format nil "(error-set \"a~Cb\")" #\Esc)))))))
 
 (test complaints.say-whose-name-it-is-and-how-to-have-it
-  (is-true (has-words-p (complaint "(defun robot-turn (x) x)")
+  (is-true (has-words-p (complaint "(defparameter robot-turn 1)")
                         "ROBOT-TURN is a name of ARS-MAGNA" "(shadow 'ROBOT-TURN)"))
   (is-true (has-words-p (complaint "(intern \"NO-NAME-OF-OURS\" :ars)") "lock" "NO-NAME-OF-OURS")))
 

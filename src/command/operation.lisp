@@ -163,9 +163,15 @@ on, are messages and end that with :FAILED."
       (funcall (the symbol step) operation)))
 
 (defun run-operation (operation)
-  "Call the step of OPERATION: what is to be done in this tick."
+  "Call the step of OPERATION: what is to be done in this tick. If that is left halfway, as by a
+time limit, OPERATION is interrupted."
   (unless (operation-finished-p operation)
-    (call-step operation (operation-step operation))))
+    (let ((returned nil))
+      (in-any-case
+        (progn (call-step operation (operation-step operation))
+               (setf returned t))
+        (unless (or returned (event-pending-p operation) (operation-finished-p operation))
+          (interrupt-operation operation))))))
 
 (declaim (inline once-more))
 (defun once-more (operation)

@@ -33,8 +33,8 @@
           (set-robot blueprint (settle-robot blueprint))))))
 
 (defun end-world (world reason)
-  "End whatever run WORLD has, and let its robots take no more commands, for REASON. Nobody can start
-it meanwhile, nor afterwards."
+  "End whatever run WORLD has, and let its robots take no more commands, for REASON. Nobody can
+start it meanwhile, nor afterwards."
   (call-alone (ensure-timeline world)
               (lambda ()
                 (retire-robots (world-robots world) reason)
