@@ -173,7 +173,7 @@
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "cli-files") (:file "kinds")
-                 (:file "digests") (:file "runs") (:file "outliving") (:file "users-parts")
+                 (:file "digests") (:file "runs") (:file "outliving") (:file "outliving-live") (:file "users-parts")
                  (:file "user-package")
                  (:file "definitions") (:file "definitions-names")
                  (:file "definitions-mistakes") (:file "definitions-maps")

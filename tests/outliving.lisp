@@ -200,159 +200,6 @@ far these have come to the east."
       (is-true (told-p "Look at THIS"))
       (is (= 1 passed) "goes on after the break"))))
 
-;;; Live.
-
-(defmacro with-live-shrew (&body body)
-  "Run BODY with the shrew live, users' code that hangs being noticed soon, and messages collected."
-  `(with-messages
-     (let ((time:*hog-seconds* .05))
-       (unwind-protect (progn (run:simulator 'shrew :rate :free :display nil)
-                              ,@body)
-         (run:stop-simulator (robot:find-robot 'shrew))))))
-
-(defun live-shrew () (robot:find-robot 'shrew))
-
-(defun goes-on-p (robot)
-  "True if a command of ROBOT, which is live, comes to its end."
-  (let ((done (base:make-semaphore "done")))
-    (turn-and robot (lambda () (base:signal-semaphore done)))
-    (base:wait-on-semaphore done 60)))
-
-(defun message-with (text)
-  "Wait for a message with TEXT in the current queue. True if it has come."
-  (loop with come = (base:make-semaphore "come") and queue = base:*message-queue*
-          initially (setf (base:message-queue-listener queue)
-                          (lambda () (base:signal-semaphore come)))
-        when (told-p text) return t
-        while (base:wait-on-semaphore come 60)))
-
-(test live.an-abort-is-a-message-and-the-clock-goes-on
-  (with-live-shrew
-    (turn-and (live-shrew) #'abort)
-    (is-true (message-with "robot-turn was aborted"))
-    (is-true (goes-on-p (live-shrew)))))
-
-(test live.a-thread-that-is-ended-can-be-replaced
-  "It is said so; nothing hangs, and the simulator starts again."
-  (with-live-shrew
-    (turn-and (live-shrew) #'sb-thread:abort-thread)
-    (is-true (message-with "ended from outside"))
-    (is-false (time:live-p))
-    (is (integerp (run:state-digest)) "who asks is answered")
-    (run:simulator 'shrew :rate :free :display nil)
-    (is-true (goes-on-p (live-shrew)))))
-
-(test live.ending-its-thread-from-another-leaves-no-tick-unfinished
-  (with-live-shrew
-    (let ((thread (run:simulation-thread time:*simulation*)))
-      (sb-thread:terminate-thread thread)
-      (is-true (message-with "ended from outside"))
-      (is-false (run:simulation-ticking-p time:*simulation*))
-      (run:simulator 'shrew :rate :free :display nil)
-      (is-true (goes-on-p (live-shrew))))))
-
-(defun hang () (loop))
-
-(test live.code-that-hangs-is-named-and-can-be-stopped
-  (with-live-shrew
-    (turn-and (live-shrew) #'hang)
-    (is-true (message-with "robot-turn has kept the simulator waiting"))
-    (run:stop-simulator)
-    (is-false (time:live-p))
-    (is-true (told-p "robot-turn was aborted"))
-    (run:simulator 'shrew :rate :free :display nil)
-    (is-true (goes-on-p (live-shrew)))))
-
-(test live.a-kicker-that-hangs-can-be-stopped
-  (with-own-definitions
-    (world:define-kicker 'brood :prob 1 :test nil :body (lambda (thing)
-                                                          (declare (ignore thing))
-                                                          (hang)))
-    (with-live-shrew
-      (world:set-kicker (world:find-thing 'log) 'brood)
-      (is-true (message-with "has kept the simulator waiting"))
-      (run:simulator 'shrew :rate :free :display nil)
-      (is-true (goes-on-p (live-shrew))))))
-
-(test live.the-debugger-can-stop-the-simulator
-  (let ((base:*user-calls* (base:make-user-calls (lambda () (throw 'out :stopped)))))
-    (with-shrew ()
-      (with-debugger (condition) (invoke-restart (find 'stop-simulator (compute-restarts condition)
-                                                       :key #'restart-name :test #'string=))
-        (turn-and shrew (lambda () (error "bad wiring")))
-        (is (eq :stopped (run-catching 20)))))))
-
-;;; Several worlds.
-
-(test worlds.that-ask-each-other-do-not-wait-for-ever
-  (with-messages
-    (let ((told (base:make-semaphore "told")) (meet (base:make-semaphore "meet")))
-      (flet ((ask-other (robot)
-               (lambda ()
-                 (base:signal-semaphore meet)
-                 (base:wait-on-semaphore meet 1)
-                 (time:ask robot (lambda () (robot:robot-x robot)))
-                 (base:signal-semaphore told))))
-        (unwind-protect
-             (progn
-               (run:simulator 'shrew :rate :free :display nil)
-               (run:simulator 'vole :rate :free :display nil)
-               (loop repeat 20
-                     do (turn-and (robot:find-robot 'shrew) (ask-other (robot:find-robot 'vole)))
-                        (turn-and (robot:find-robot 'vole) (ask-other (robot:find-robot 'shrew)))
-                        (is-true (base:wait-on-semaphore told 60))
-                        (is-true (base:wait-on-semaphore told 60))))
-          (run:stop-simulator (robot:find-robot 'shrew))
-          (run:stop-simulator (robot:find-robot 'vole)))))))
-
-(test worlds.others-are-not-asked-inside-a-tick
-  (with-messages
-    (unwind-protect
-         (progn
-           (run:simulator 'vole :rate :free :display nil)
-           (let ((vole (robot:find-robot 'vole)))
-             (with-shrew ()
-               (time:schedule (nil) (time:ask vole (lambda () 1)))
-               (run:run-ticks 1)
-               (is-true (told-p "between ticks")))))
-      (run:stop-simulator (robot:find-robot 'vole)))))
-
-(test run-ticks.is-refused-in-a-continuation
-  (with-shrew ()
-    (turn-and shrew (lambda () (run:run-ticks 1)))
-    (is (= 20 (run:run-ticks 20)))
-    (is-true (told-p "time cannot pass inside it"))))
-
-(test simulator.is-refused-while-it-starts
-  "A continuation that hears of the end of its run starts no other on the way to one."
-  (with-live-shrew
-    (let ((codes '()))
-      (is-true (goes-on-p (live-shrew)))
-      (time:pause)
-      (command:robot-go-forward (live-shrew) 5
-                                (lambda (code &rest ignore)
-                                  (declare (ignore ignore))
-                                  (push code codes)
-                                  (run:simulator 'shrew :rate :free :display nil)))
-      (run:simulator 'shrew :rate :free :display nil)
-      (is (equal '(:interrupt) codes))
-      (is-true (told-p "is being started already"))
-      (is-true (goes-on-p (live-shrew))))))
-
-(test simulator.from-many-threads-leaves-one-that-works
-  (with-live-shrew
-    (let ((threads (loop repeat 4
-                         collect (base:start-thread
-                                  (lambda ()
-                                    (loop repeat 5
-                                          do (run:simulator 'shrew :rate :free :display nil)
-                                             (run:stop-simulator (live-shrew))))
-                                  "starter"))))
-      (mapc #'base:join-thread threads)
-      (run:simulator 'shrew :rate :free :display nil)
-      (is-true (goes-on-p (live-shrew)))
-      (is-true (replays-p (progn (run:stop-simulator) time:*simulation*))))))
-
 (test changes.of-what-has-been-destroyed-are-nobodys-business
   "They are made, and are not in the journal, where nothing would be called so."
   (with-shrew (:journal t)
@@ -367,3 +214,10 @@ far these have come to the east."
         (is (= count (length (run:journal-entries (run:simulation-journal time:*simulation*)))))
         (run:run-ticks 3)
         (is-true (replays-p time:*simulation*))))))
+
+(test condition.that-is-no-error-is-told-and-ends-the-call-only
+  "Also where somebody further out offers to continue, as when a file is loaded."
+  (with-shrew ()
+    (turn-and shrew (lambda () (error (make-condition 'condition))))
+    (is (eql 20 (with-simple-restart (continue "Go on elsewhere.") (run:run-ticks 20))))
+    (is-true (told-p "Break in the continuation of robot-turn"))))
