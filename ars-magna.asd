@@ -128,7 +128,8 @@
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
                  (:file "status-lines") (:file "running-lines") (:file "loading") (:file "worlds")
                  (:file "world-lines") (:file "plans") (:file "plan-lines")
-                 (:file "picture-lines") (:file "debugger") (:file "prompt") (:file "options") (:file "main")))))
+                 (:file "picture-lines") (:file "debugger") (:file "prompt")
+                 (:file "options") (:file "main")))))
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."
@@ -173,7 +174,8 @@
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "cli-files") (:file "kinds")
-                 (:file "digests") (:file "runs") (:file "outliving") (:file "outliving-live") (:file "users-parts")
+                 (:file "digests") (:file "runs") (:file "outliving") (:file "outliving-live")
+                 (:file "users-parts")
                  (:file "user-package")
                  (:file "definitions") (:file "definitions-names")
                  (:file "definitions-mistakes") (:file "definitions-maps")

@@ -317,3 +317,28 @@ turning, one for each of driving, and one for what rounding leaves."
          (is (= (run:state-digest)
                 (nth-value 1 (run:replay (end-journal time:*simulation*)))))))
      (list (build-setting setting)) :clean t :journal t)))
+
+(test goto.loses-what-another-robot-takes-into-its-hand
+  "To all others a hand hides what it holds: they can no longer track, approach or find it."
+  (with-own-definitions
+    (eval '(world:defmap lot (12 12) (obj cone (8.5 5.5) ((:size 1) (:color red)))))
+    (eval '(robot:defrobot seeker (lot (2.5 5.5) 0) :cameras ((2 9))))
+    (eval '(robot:defrobot taker (lot (8.5 6.5) 0) :hands (10)))
+    (run:with-simulation ((seeker taker) :clean t)
+      (destructuring-bind (seeker taker) (run:simulation-robots time:*simulation*)
+        (let ((camera (robot:robot-camera seeker 0)) (codes '()))
+          (flet ((search-for-cone ()
+                   (run:run-ticks 1)
+                   (end-code 'command:camera-get-object-designator camera :non-local
+                                 '((:color red)))))
+            (is (null (search-for-cone)))
+            (command:camera-track camera (first (robot:live-designators seeker)))
+            (command:robot-goto-designator seeker camera
+                                           (lambda (code &rest ignore)
+                                             (declare (ignore ignore))
+                                             (push code codes)))
+            (run:run-ticks 8)
+            (world:move-thing (world:find-thing 'cone) (robot:robot-hand taker 0))
+            (run:run-ticks 30)
+            (is (equal '(:not-tracking) codes))
+            (is (eq :designator-not-found (search-for-cone)))))))))

@@ -214,3 +214,15 @@ is."
       (is (string= (format nil "*WARNING* -> robot-turn was interrupted~@
                                 robot-stop: Robot stopped")
                    (said 'ars:robot-stop))))))
+
+(test manual-3-5.who-stops-again-and-again-does-not-drive-on
+  "3.5, reading 95: the robot coasts for BRAKING* ticks in all."
+  (flet ((gone-with (stops)
+           (with-sprinter (:clean t)
+             (under-way 'ars:robot-go-forward 50)
+             (let ((x (ars:robot-x sprinter)))
+               (loop repeat stops do (ars:robot-stop sprinter) (ars:run-ticks 1))
+               (ars:run-ticks 20)
+               (- (ars:robot-x sprinter) x)))))
+    (is (plusp (gone-with 1)))
+    (is (= (gone-with 1) (gone-with 2) (gone-with 15)))))
