@@ -14,7 +14,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
            #:read-file-into-string #:starts-with-subseq #:define-constant #:proper-list-p)
   ;; policy
-  (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:cell-index
+  (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:regain-room #:cell-index
            #:tick-count #:document-functions)
   ;; public
   (:export #:public #:addition #:settable #:settable-p #:addition-p #:public-symbols #:*marking-p*)
@@ -55,7 +55,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; interrupts, debuggers
   (:export #:time-limit #:deferring-interrupts #:allowing-interrupts #:let-interrupts-in
            #:call-holding-interrupts #:call-open-to-interrupts
-           #:debugger-p #:answering-debugger #:calls-under-way #:debugger-hook)
+           #:debugger-p #:answering-debugger #:calls-under-way #:debugger-hook
+           #:with-debugger-hook)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:own-text #:text-of-condition)
   ;; dice

@@ -32,7 +32,7 @@
 
 (defun storage-text (condition)
   "Return what CONDITION, that there is no room for something, means to a user."
-  (if (search "STACK" (string (type-of condition)))
+  (if (stack-full-p condition)
       (format nil "The stack has overflowed: functions call each other too deeply, or lists stand ~
                    too deeply in lists. Mend what has no end.")
       "There is not enough memory for that. Ask for less at a time."))
