@@ -13,7 +13,7 @@
                  (:file "floats") (:file "numbers") (:file "globals") (:file "tables")
                  (:file "atomic") (:file "classes")
                  (:file "packages") (:file "files") (:file "processes")
-                 (:file "environments") (:file "interrupts") (:file "debuggers")
+                 (:file "environments") (:file "interrupts") (:file "stacks") (:file "debuggers")
                  (:file "abridging")
                  (:file "conditions") (:file "telling") (:file "threads") (:file "dice") (:file "names")
                  (:file "digest") (:file "sources") (:file "variables") (:file "definitions")

@@ -131,7 +131,10 @@ line."
                    (subseq text start) (takes line)))
     (error (condition)
       (reject-line "~A cannot be read: ~A. ~A" (subseq text start)
-                   (one-line (condition-text condition)) (takes line)))))
+                   (one-line (if (typep condition 'reader-error)
+                                 (reading-trouble condition)
+                                 (condition-text condition)))
+                   (takes line)))))
 
 (defun check-read (value slot line)
   (unless (argument-of-type-p value (slot-type slot))

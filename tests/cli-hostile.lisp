@@ -57,6 +57,11 @@
     (is (notany #'cli::obeyed-p
                 (first (type-batch (format nil "(error-set \"a~Cb\")" #\Esc)))))))
 
+(test complaints.say-whose-name-it-is-and-how-to-have-it
+  (is-true (has-words-p (complaint "(defun robot-turn (x) x)")
+                        "ROBOT-TURN is a name of ARS-MAGNA" "(shadow 'ROBOT-TURN)"))
+  (is-true (has-words-p (complaint "(intern \"NO-NAME-OF-OURS\" :ars)") "lock" "NO-NAME-OF-OURS")))
+
 (test complaints.are-short
   (is (< (length (complaint (format nil "turn ~A" (make-string 100000 :initial-element #\x))))
          1100))

@@ -15,6 +15,30 @@
       (is (= 3.5d0 (display::thing-image-x (aref (display:snapshot-things before) 0))))
       (is (= 6.5d0 (display:robot-image-x (first (display:snapshot-robots before))))))))
 
+(defun shown-of (robot display)
+  "Return what DISPLAY shows of ROBOT now, as a window sees it."
+  (display:display-content display (first (display:snapshot-robots
+                                           (display:take-snapshot (robot:robot-world robot))))))
+
+(test snapshot.tells-which-displays-look-otherwise
+  "What each change is to be seen in, and nowhere else."
+  (in-studio (robot)
+    (loop with box = (world:find-thing 'box)
+          with all = '(:state :designators :cameras :hands :bins)
+          for (change . displays)
+            in `((,(lambda () (robot:place-robot robot 5 5 0)) :state)
+                 (,(lambda () (robot:place-robot robot 5 5 1)) :state :cameras)
+                 (,(lambda () (robot:add-designator robot :x 8 :y 6)) :designators)
+                 (,(lambda () (world:move-thing box (robot:robot-hand robot 0))) :hands)
+                 (,(lambda () (world:move-thing box (robot:robot-storage-bin robot 0)))
+                  :hands :bins))
+          for before = (mapcar (lambda (display) (shown-of robot display)) all)
+          do (funcall change)
+             (is (equal displays (loop for display in all
+                                       for old in before
+                                       unless (equal old (shown-of robot display))
+                                         collect display))))))
+
 (test snapshot.shares-what-has-not-changed-with-the-one-before
   (in-studio (robot)
     (let* ((world (robot:robot-world robot))

@@ -349,6 +349,20 @@
       (is (mentions-p picture ">in </text>"))
       (is (mentions-p picture ">BOX#1</text>")))))
 
+(defun y-of-text (picture text)
+  "Return what PICTURE says of the height at which the last TEXT stands in it."
+  (let ((start (search " y=\"" picture :from-end t :end2 (search text picture :from-end t))))
+    (subseq picture (+ start 4) (position #\" picture :start (+ start 4)))))
+
+(test details.what-a-camera-tracks-stands-under-what-it-sees-on-one-line
+  (in-studio (robot)
+    (let ((box (robot:add-designator robot :denotation (world:find-thing 'box) :x 8 :y 6.5)))
+      (robot:start-track (robot:robot-camera robot 0) box nil)
+      (let ((picture (detail robot :cameras)))
+        (is (string= (y-of-text picture "local ") (y-of-text picture ">BOX#1<")))
+        (is (< (parse-integer (y-of-text picture ">View"))
+               (parse-integer (y-of-text picture "local "))))))))
+
 (test details.all-displays-fit-in-one-picture
   (in-studio (robot)
     (let ((picture (detail robot :all)))

@@ -232,6 +232,32 @@
         (run:save-journal file simulation)
         (is (eql (run:state-digest simulation) (replay-outcome file)))))))
 
+(test live-journal.knows-parameters-that-anybody-has-set
+  "What another thread sets holds in the run, and what a continuation sets holds for others."
+  (with-messages
+    (let* ((simulation (run:fresh-simulation '(rover) :seed 41 :journal t))
+           (robot (first (run:simulation-robots simulation)))
+           (seen '()))
+      (flet ((turn-and-set (value)
+               (command:robot-turn robot .1 (lambda (&rest ignore)
+                                              (declare (ignore ignore))
+                                              (push base:braking* seen)
+                                              (when value (setf base:braking* value))))
+               (is-true (run:await-idle simulation))))
+        (unwind-protect
+             (progn
+               (run:start-clock simulation :rate :free)
+               (setf base:braking* 7)
+               (turn-and-set 9)
+               (turn-and-set nil)
+               (is (= 9 base:braking*)))
+          (run:stop-clock simulation)))
+      (is (equal '(9 7) seen))
+      (is (equal '(7 9) (loop for (nil operator name value) in (run:journal-entries
+                                                                (run:simulation-journal simulation))
+                              when (and (eq operator 'run::parameter) (equal name "braking*"))
+                                collect value))))))
+
 (test live-journal.is-there-when-asked-for
   "A run without one says so; the next has one, of what is defined when it starts."
   (with-messages

@@ -188,12 +188,12 @@
 
 (test goto.is-interrupted
   (with-watcher (:clean t)
-    (tracked-ball 15.5 10.5)
-    (let ((calls '()))
+    (let ((calls '()) (ball (tracked-ball 15.5 10.5)))
       (command:robot-goto-designator watcher (eye) (lambda (&rest call) (push call calls)))
       (run:run-ticks 8)
       (call-once 'command:robot-stop watcher)
-      (is (equal (list (list :interrupt watcher nil nil)) calls))
+      (is (equal (list (list :interrupt watcher (eye) (robot:camera-tracks (eye)))) calls))
+      (is-true ball)
       (is (robot:camera-tracks (eye))))))
 
 (test goto.arrives-in-spite-of-noise

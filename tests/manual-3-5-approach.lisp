@@ -155,7 +155,7 @@ is behind it."
       (ars:robot-goto-designator sprinter (lens) (recorder :goto))
       (ars:run-ticks 8)
       (sprint 'ars:robot-stop)
-      (is (equal (list (list :interrupt sprinter nil nil)) (answers-to :goto)))
+      (is (equal (list (list :interrupt sprinter (lens) designator)) (answers-to :goto)))
       (is (eq designator (ars:camera-tracks (lens)))))))
 
 (test manual-3-5.goto-designator-chases-what-is-not-there

@@ -26,6 +26,13 @@
   (is (equal '(docker clerk) (list (robot-name docker) (robot-name clerk))))
   (is (eq docker (find-robot 'docker))))
 
+(test manual-5-2.a-robot-is-found-though-its-variable-has-lost-it
+  "5.2 (ours): where the variable holds something else, the name finds the robot that stands there."
+  (let ((robot docker))
+    (setf docker 5)
+    (unwind-protect (is (eq robot (find-robot 'docker)))
+      (setf docker robot))))
+
 (test manual-5-2.robots-start-where-they-are-defined
   "5.2, readings 50 and 54: in the environment, at (x,y), heading ANG, all just as written:
 positions are not moved to cells' centres, angles not reduced."

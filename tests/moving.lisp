@@ -217,8 +217,14 @@ exactly once."
              (append arguments (list (lambda (&rest results) (push results calls)))))
       (apply (first then) rover (rest then))
       (run:run-ticks 100)
-      (values calls (list (list* :interrupt rover
-                                 (make-list (length (command:command-results command)))))))))
+      (values calls (list (list* :interrupt rover (results-known command rover)))))))
+
+(defun results-known (command robot)
+  "Return what the continuation of COMMAND gets if ROBOT is interrupted before that begins: its
+camera, if it is a result, and NIL for all else."
+  (loop for result in (command:command-results command)
+        collect (and (base:same-name-p 'camera (command:spec-name result))
+                     (robot:robot-camera robot 0))))
 
 (test commands.are-interrupted-on-their-resource
   "By a grab all of them, by another command those that take time."

@@ -192,6 +192,20 @@
                          (rpl:par (:tag worker (note :before) (rpl:evaporate worker) (note :after))
                                   :other))))))))
 
+(test evaporate.oneself-cleans-up
+  "A task that ends itself cleans up before it is gone, also in the step in which it comes to wait."
+  (flet ((log-of (body)
+           (with-log (note)
+             (plan-value
+               (rpl:par (:tag worker
+                          (rpl:evap-protect
+                              (rpl:seq (rpl:wait-time (progn (funcall body worker) 5))
+                                       (note :after))
+                            (rpl:seq (rpl:wait-time 2) (note :cleaned)))))
+               (note :next)))))
+    (is (equal '((:after 5) (:cleaned 7) (:next 7)) (log-of #'identity)))
+    (is (equal '((:cleaned 2) (:next 2)) (log-of #'rpl:evaporate)))))
+
 ;;; Valves.
 
 (test with-valve.one-at-a-time-first-come-first-served

@@ -31,6 +31,18 @@
     (is (= 2 (length driver:camera-moved*)))
     (is (= 2 (length driver:storage-bin-jammer*)))))
 
+;;; Taking part.
+
+(test interface.takes-part-until-another-does
+  "A robot given to plans anew is told of each tick once, however often that is done."
+  (with-fitter ()
+    (let ((simulation (time:current-simulation)))
+      (dotimes (count 3)
+        (driver:rpl-init-robot fitter)
+        (is (equal (list driver::*interface*) (run::simulation-participants simulation))))
+      (driver::close-interface driver::*interface*)
+      (is (null (run::simulation-participants simulation))))))
+
 (test arguments.wrong-ones-say-so
   (with-fitter ()
     (dolist (call (list (lambda () (driver:rpl-camera-turn 2 1))

@@ -242,6 +242,22 @@
       (is (equal '(1 2 3 4 5 6 7 8 9 10) (reverse ticks)))
       (is (= 11 (run:run-ticks 1)) "and go on passing"))))
 
+(test ticks.other-threads-are-answered-between-them
+  "Who asks in tick 1 of a headless run is answered before tick 2, not when all ticks have passed."
+  (with-pony ()
+    (let* ((simulation time:*simulation*) (asker nil) (told nil)
+           (custody (time::timeline-custody (run:simulation-timeline simulation))))
+      (flet ((ask-tick ()
+               (time:asking (simulation) (setf told (run:simulation-tick simulation)))))
+        (run:add-observer (lambda (simulation)
+                            (declare (ignore simulation))
+                            (unless asker
+                              (setf asker (base:start-thread #'ask-tick "asker"))
+                              (await (lambda () (time::custody-questions custody)))))))
+      (is (= 5 (run:run-ticks 5)))
+      (base:join-thread asker)
+      (is (eql 1 told)))))
+
 (test live.nobody-waits-for-himself
   (with-messages
     (let ((done (base:make-semaphore "done")))

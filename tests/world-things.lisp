@@ -82,6 +82,14 @@
     (world:make-new-thing 'sheep nil '((:substance phlogiston)))
     (is (search "phlogiston" (first (message-texts))))))
 
+(test substance.numbers-need-no-name
+  "A substance without a name is no unknown one: nothing is said."
+  (with-own-definitions
+    (world:make-new-thing 'sheep nil '((:substance 7)))
+    (is (null (message-texts)))
+    (world:make-new-thing 'goat nil '((:substance (phlogiston 7))))
+    (is (= 1 (length (message-texts))))))
+
 (test attributes.are-set-and-merged
   (with-own-definitions
     (let ((thing (world:make-new-thing 'box nil '((:size 5) (:color red) (:shape cube)))))

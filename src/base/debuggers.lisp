@@ -19,14 +19,15 @@ an editor, that has set HOOK or *DEBUGGER-HOOK*."
         (t (and (interactive-stream-p *standard-input*) (interactive-stream-p *debug-io*)))))
 
 (defun call-answering-debugger (function answer)
-  "Call FUNCTION and return its values. If it enters a debugger and nobody is there to talk to that,
-call ANSWER with the condition instead, which is not to return."
+  "Call FUNCTION and return its values. If it enters a debugger, call ANSWER with the condition, and
+whether somebody is there to talk to the debugger. If nobody is, it is not to return."
   (declare (type function function answer))
   (let ((hook sb-ext:*invoke-debugger-hook*))
     (flet ((decide (condition this-hook)
              (declare (ignore this-hook))
-             (cond ((not (debugger-p hook)) (funcall answer condition))
-                   ((and hook (not (disabled-p hook))) (funcall hook condition hook)))))
+             (funcall answer condition (debugger-p hook))
+             (when (and hook (not (disabled-p hook)))
+               (funcall hook condition hook))))
       (declare (dynamic-extent #'decide))
       (let ((sb-ext:*invoke-debugger-hook* #'decide))
         (funcall function)))))

@@ -3,8 +3,9 @@
 (in-package :ars-magna.base)
 
 ;;; What interrupts a thread is a time limit, Ctrl-C, another thread, or that it is to end. It may
-;;; leave what it interrupts. So it waits while a run's own code works, which could be left halfway,
-;;; and is let in where users' code runs and between ticks.
+;;; leave what it interrupts. Where that would lock others out for ever, it waits for a moment. Not
+;;; for longer, though: Lisp's own runtime dies if a timer strikes while memory is collected in a
+;;; thread that holds interrupts off.
 
 (deftype time-limit ()
   "The condition that is signalled when the time for a form is up, as by WITH-TIMEOUT."
@@ -17,11 +18,6 @@
 (defmacro allowing-interrupts (&body body)
   "Run BODY, in which this thread can be interrupted."
   `(sb-sys:with-interrupts ,@body))
-
-(declaim (inline let-interrupts-in))
-(defun let-interrupts-in ()
-  "Let what has been waiting interrupt this thread now."
-  (when sb-sys:*interrupt-pending* (allowing-interrupts nil)))
 
 ;;; The same for functions, and strictly: what happens to be called in between cannot let any in.
 

@@ -14,7 +14,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
            #:read-file-into-string #:starts-with-subseq #:define-constant #:proper-list-p)
   ;; policy
-  (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:regain-room #:cell-index
+  (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:cell-index
            #:tick-count #:document-functions)
   ;; public
   (:export #:public #:addition #:settable #:settable-p #:addition-p #:public-symbols #:*marking-p*)
@@ -53,12 +53,13 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:start-thread #:join-thread #:interrupt-thread #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; interrupts, debuggers
-  (:export #:time-limit #:deferring-interrupts #:allowing-interrupts #:let-interrupts-in
+  (:export #:time-limit #:deferring-interrupts #:allowing-interrupts
            #:call-holding-interrupts #:call-open-to-interrupts
-           #:debugger-p #:answering-debugger #:calls-under-way #:debugger-hook
-           #:with-debugger-hook)
+           #:regain-room #:debugger-p #:answering-debugger #:calls-under-way
+           #:debugger-hook #:with-debugger-hook)
   ;; telling
-  (:export #:format-briefly #:blank-p #:one-line #:cut #:own-text #:text-of-condition)
+  (:export #:format-briefly #:blank-p #:one-line #:cut #:own-text #:reading-trouble
+           #:text-of-condition)
   ;; dice
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance)
@@ -93,7 +94,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; user code
   (:export #:call-user-code #:*break-on-user-error* #:in-any-case #:call-each
            #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*
-           #:interruptibly #:abort-user-code #:brief-text #:text-of-origin)
+           #:user-calls-waiting-p
+           #:as-users-code #:abort-user-code #:brief-text #:text-of-origin)
   ;; parameters
   (:export #:parameter #:parameter-p #:parameter-name #:parameter-default #:parameter-unit
            #:parameter-kind #:parameter-group #:parameter-sentence #:parameter-value

@@ -18,16 +18,9 @@
   "Return for how many bytes of objects this Lisp has room, in use or not."
   (sb-ext:dynamic-space-size))
 
-(defun stack-full-p (condition)
-  "True if CONDITION is that a stack has overflowed."
-  (and (typep condition 'storage-condition)
-       (search "STACK" (string (type-of condition)))))
-
-(defun regain-room (condition)
-  "Make room for objects, if CONDITION is that there was none. What has taken it must have been
-left."
-  (when (and (typep condition 'storage-condition) (not (stack-full-p condition)))
-    (sb-ext:gc :full t)))
+(defun give-memory-back ()
+  "Make room for objects where there are others that nobody can reach any more."
+  (sb-ext:gc :full t))
 
 (deftype cell-index ()
   "The index of a grid cell: maps have at most 2^30 cells."

@@ -7,7 +7,7 @@
 ;;; ended, and a message says so. It may be left, as by THROW or because its thread is to end; then
 ;;; its callers are left too, and see to it that the tick is finished first (IN-ANY-CASE). And it
 ;;; may not end at all: who watches is told where the thread is (USER-CALLS) and can have the call
-;;; aborted from outside (ABORT-USER-CODE). Nowhere else does a run let in what interrupts it.
+;;; aborted from outside (ABORT-USER-CODE).
 
 (addition *break-on-user-error*)
 (defvar *break-on-user-error* nil
@@ -38,33 +38,41 @@ names its origin, and the run goes on.")
   "What users' code a thread calls. STOP is a function that ends what the thread does."
   (origin nil :type t)
   (count 0 :type fixnum)
+  ;; It is in a debugger.
+  (waiting-p nil :type t)
   (stop nil :type (or null function) :read-only t))
 
 (document-functions
   make-user-calls "Return a record of users' code called by a thread which the function STOP stops."
   user-calls-origin "Return whose code the thread is in, an item or a list of items, or NIL."
-  user-calls-count "Return how many calls of users' code the thread has begun.")
+  user-calls-count "Return how many calls of users' code the thread has begun."
+  user-calls-waiting-p "True if the last of them waits for an answer in a debugger.")
 
 (defvar *user-calls* nil
   "The USER-CALLS of this thread, or NIL if nobody watches them.")
 
-(defun call-interruptibly (function origin)
-  "Call FUNCTION, of which ORIGIN says whose code it is, so that it can be interrupted."
+(defun call-as-users-code (function origin)
+  "Call FUNCTION, of which ORIGIN says whose code it is, so that whoever watches sees that."
   (declare (type function function))
   (let ((calls *user-calls*))
     (if calls
         (let ((outer (user-calls-origin calls)))
           (incf (user-calls-count calls))
-          (setf (user-calls-origin calls) origin)
-          (unwind-protect (allowing-interrupts (funcall function))
+          (setf (user-calls-origin calls) origin
+                (user-calls-waiting-p calls) nil)
+          (unwind-protect (funcall function)
             (setf (user-calls-origin calls) outer)))
-        (allowing-interrupts (funcall function)))))
+        (funcall function))))
 
-(defmacro interruptibly ((origin) &body body)
-  "Run BODY as CALL-INTERRUPTIBLY would a function."
+(defmacro as-users-code ((origin) &body body)
+  "Run BODY as CALL-AS-USERS-CODE would a function."
   `(flet ((body () ,@body))
      (declare (dynamic-extent #'body))
-     (call-interruptibly #'body ,origin)))
+     (call-as-users-code #'body ,origin)))
+
+(defun note-waiting ()
+  "Let whoever watches know that users' code waits for an answer in a debugger."
+  (when *user-calls* (setf (user-calls-waiting-p *user-calls*) t)))
 
 (defun abort-user-code (count)
   "Abort the users' code that this thread is in, if that is still the call numbered COUNT."
@@ -124,6 +132,18 @@ thread can be stopped STOP-SIMULATOR."
      (declare (dynamic-extent #'body))
      (call-offering #'body ,go-on ,again)))
 
+(defun our-abort-p (restart)
+  (and (eq 'abort (restart-name restart))
+       (string= (princ-to-string restart) (with-output-to-string (out) (offer-abort out)))))
+
+(defun continue-inside (condition)
+  "Continue after CONDITION, if what offers that has been called by users' code, not around it."
+  (let ((restart (find-if (lambda (restart)
+                            (or (our-abort-p restart) (eq 'continue (restart-name restart))))
+                          (compute-restarts condition))))
+    (when (and restart (eq 'continue (restart-name restart)))
+      (invoke-restart restart))))
+
 (defun call-user-code (function origin &rest arguments)
   "Call FUNCTION with ARGUMENTS and return its values. Should it signal an error or be aborted,
 queue an error message saying that it came from ORIGIN (an item or list of items) and return NIL."
@@ -131,29 +151,36 @@ queue an error message saying that it came from ORIGIN (an item or list of items
   (prog (trouble)
    again
      (setf trouble nil)
-     (flet ((go-on ()
-              (if trouble
-                  (report-user-error trouble origin)
-                  (report-aborted origin))
-              (return nil))
-            (again () (go again)))
-       (declare (dynamic-extent #'go-on #'again))
-       (flet ((note (condition)
-                ;; A limit to the time of more than this call is for those who set it.
-                (when (typep condition 'time-limit) (signal condition))
-                (setf trouble condition)
-                (when *break-on-user-error* (invoke-debugger condition))
-                (go-on))
-              (answer (condition)
-                (cond ((typep condition 'serious-condition) (setf trouble condition))
-                      (t (report-break condition origin)
-                         (continue)))
-                (go-on)))
-         (declare (dynamic-extent #'note #'answer))
-         (return
-           (offering (#'go-on #'again)
-             (handler-bind (((or error storage-condition) #'note))
-               (answering-debugger (#'answer)
-                 (interruptibly (origin)
-                  (let ((*asker* origin))
-                    (apply function arguments)))))))))))
+     (block call
+       (flet ((go-on ()
+                (cond ((null trouble) (report-aborted origin))
+                      ((typep trouble 'storage-condition))
+                      (t (report-user-error trouble origin)))
+                (return-from call))
+              (again () (go again)))
+         (declare (dynamic-extent #'go-on #'again))
+         (flet ((note (condition)
+                  ;; A limit to the time of more than this call is for those who set it.
+                  (when (typep condition 'time-limit) (signal condition))
+                  (setf trouble condition)
+                  (when *break-on-user-error* (invoke-debugger condition))
+                  (go-on))
+                (answer (condition somebody-p)
+                  (cond (somebody-p (note-waiting))
+                        (t (if (typep condition 'serious-condition)
+                               (setf trouble condition)
+                               (report-break condition origin))
+                           (unless trouble (continue-inside condition))
+                           (go-on)))))
+           (declare (dynamic-extent #'note #'answer))
+           (return
+             (offering (#'go-on #'again)
+               (handler-bind (((or error storage-condition time-limit) #'note))
+                 (answering-debugger (#'answer)
+                   (as-users-code (origin)
+                     (let ((*asker* origin))
+                       (apply function arguments))))))))))
+     ;; There is room to say so only now.
+     (when (typep trouble 'storage-condition)
+       (regain-room trouble)
+       (report-user-error trouble origin))))

@@ -103,8 +103,8 @@ a hand is where the hand is."
           (t location))))
 
 (defun denotation-space (designator)
-  "Return the THING-SPACE of the thing that DESIGNATOR denotes, as its robot sees it: another robot's
-hand hides what it holds, and is returned."
+  "Return the THING-SPACE of the thing that DESIGNATOR denotes, as its robot sees it: another
+robot's hand hides what it holds, and is returned."
   (let* ((thing (designator-denotation designator)) (location (thing-location thing)))
     (if (and (hand-p location)
              (not (eq (part-robot location) (designator-robot designator))))

@@ -46,12 +46,10 @@ Nobody else can do that meanwhile, continuations neither."
   (let* ((timeline (simulation-timeline simulation)) (custody (timeline-custody timeline)))
     (setf (timeline-passing-p timeline) t)
     (in-any-case
-      (deferring-interrupts
-        (loop repeat count
-              until (timeline-over timeline)
-              do (tick simulation)
-                 (when (custody-questions custody) (answer-questions custody))
-                 (let-interrupts-in)))
+      (loop repeat count
+            until (timeline-over timeline)
+            do (tick simulation)
+               (when (custody-questions custody) (answer-questions custody)))
       (setf (timeline-passing-p timeline) nil))))
 
 (addition run-ticks)

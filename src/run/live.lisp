@@ -129,9 +129,10 @@ is true and it keeps none. With SEED, all chance in it comes from that."
              simulation))))
 
 (defun passing-ticks-p ()
-  "True if this thread is one that passes the ticks of the current simulation."
+  "True if this thread is one that passes the ticks of the current simulation, also if it has been
+told to stop."
   (and *simulation*
-       (eq (simulation-thread *simulation*) (current-thread))))
+       (pacer-p (simulation-timeline *simulation*))))
 
 (defun call-as-starter (custody function)
   "Call FUNCTION, which starts the world in CUSTODY, which this thread has. Signals MISUSE if that
@@ -162,19 +163,23 @@ is what it is doing already, and FUNCTION has been called on the way."
     (setf (global-value '*simulation*) simulation
           (global-value '*world*) (simulation-world simulation))))
 
-(defun start-live (world rate seed journal)
-  "Run WORLD live at RATE, with SEED and a JOURNAL or without, and make its run the current one."
-  (let ((everywhere (passing-ticks-p)))
-    (call-starting
-     world
-     (lambda ()
-       (let ((simulation (run-to-start world seed journal)))
-         (if journal
-             (renew-definitions simulation)
-             (setf (simulation-journal simulation) nil))
-         (setf (simulation-messages simulation) (residents-queue))
-         (make-current simulation everywhere)
-         (start-clock simulation :rate rate))))))
+(defun start-world (world rate seed journal everywhere)
+  "Run WORLD, which this thread is starting, live at RATE, with SEED and a JOURNAL or without, and
+make its run the current one, EVERYWHERE or here. Return the run."
+  (let ((simulation (run-to-start world seed journal)))
+    (if journal
+        (renew-definitions simulation)
+        (setf (simulation-journal simulation) nil))
+    (setf (simulation-messages simulation) (residents-queue))
+    (make-current simulation everywhere)
+    (start-clock simulation :rate rate)))
+
+(defun start-live (robot rate seed journal)
+  "Run the world of ROBOT as START-WORLD does. True unless ROBOT has been replaced meanwhile."
+  (let ((world (robot-world robot)) (everywhere (passing-ticks-p)))
+    (call-starting world (lambda ()
+                           (unless (robot-retired robot)
+                             (start-world world rate seed journal everywhere))))))
 
 (public simulator)
 (defun simulator (robot &rest options
@@ -187,8 +192,8 @@ STOP-SIMULATOR stops it. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if the
 fits into its map. See reading 238."
   (check-rate rate)
   (check-argument simulator seed (typep seed '(or null integer)) "an integer, or NIL")
-  (let ((robot (robot-to-start robot)))
-    (start-live (robot-world robot) rate seed journal)
+  (let ((robot (loop for candidate = (robot-to-start robot)
+                     when (start-live candidate rate seed journal) return candidate)))
     (dolist (hook *simulator-hooks*) (funcall hook robot options))
     robot))
 

@@ -32,15 +32,22 @@
                              (map-name map) trouble))
           (set-robot blueprint (settle-robot blueprint))))))
 
+(defun end-world (world reason)
+  "End whatever run WORLD has, and let its robots take no more commands, for REASON. Nobody can start
+it meanwhile, nor afterwards."
+  (call-alone (ensure-timeline world)
+              (lambda ()
+                (retire-robots (world-robots world) reason)
+                (end-simulation (world-simulation world) reason))))
+
 (defmethod map-replaced ((old map) new)
   (let* ((world (map-resident old))
          ;; Also where there was none: somebody may be asking for it at this moment.
          (simulation (and world (world-simulation world)))
          (reason (if new "its map has been defined anew" "its map has been taken back")))
     (when world
-      (retire-robots (world-robots world) reason)
       (say-stopped old simulation new)
-      (end-simulation simulation reason))
+      (end-world world reason))
     (when new (move-robots new))))
 
 (defmethod map-replaced ((old null) (new map))

@@ -27,16 +27,26 @@ world, and if FUNCTION is aborted."
   ;; Whoever asked has left.
   (given-up-p nil :type t))
 
+(defun note-trouble (question condition)
+  "Let QUESTION have come to CONDITION instead of an answer."
+  (setf (question-trouble question)
+        (if (typep condition 'serious-condition) condition :aborted)))
+
 (defun call-for-other (question)
   "Call the function of QUESTION, and note in it what comes of that."
   (setf (question-trouble question) :aborted)
   (restart-case
       (handler-case
-          (setf (question-values question)
-                (multiple-value-list (interruptibly ("what another thread has asked for")
-                                       (funcall (question-function question))))
-                (question-trouble question) nil)
-        (serious-condition (condition) (setf (question-trouble question) condition)))
+          (answering-debugger ((lambda (condition somebody-p)
+                                 (unless somebody-p
+                                   (note-trouble question condition)
+                                   (throw 'no-answer nil))))
+            (catch 'no-answer
+              (setf (question-values question)
+                    (multiple-value-list (as-users-code ("what another thread has asked for")
+                                           (funcall (question-function question))))
+                    (question-trouble question) nil)))
+        (serious-condition (condition) (note-trouble question condition)))
     (abort () :report "Tell who asked that it was aborted.")))
 
 (defun answer (question)

@@ -62,8 +62,7 @@
   "Pass ticks as PACING says, until it is to stop or another thread has been handed CUSTODY."
   (loop with due = (seconds-now)
         until (or (pacing-stopping-p pacing) (not (mine-p custody)))
-        do (let-interrupts-in)
-           (answer-questions custody)
+        do (answer-questions custody)
            (cond ((nothing-to-do-p pacing)
                   (rest-thread custody pacing)
                   (setf due (seconds-now)))
@@ -85,14 +84,13 @@
 (defun run-thread (pacing ready start)
   "Signal READY as soon as whatever ends this thread finds it prepared; run PACING after START."
   (let ((custody (pacing-custody pacing)))
-    (deferring-interrupts
-      (let ((*held* (list custody))
-            (*user-calls* (pacing-calls pacing)))
-        (in-any-case
-          (progn (signal-semaphore ready)
-                 (wait-on-semaphore start)
-                 (run-paced custody pacing))
-          (let-go custody pacing))))))
+    (let ((*held* (list custody))
+          (*user-calls* (pacing-calls pacing)))
+      (in-any-case
+        (progn (signal-semaphore ready)
+               (wait-on-semaphore start)
+               (run-paced custody pacing))
+        (let-go custody pacing)))))
 
 ;;; Starting.
 

@@ -15,7 +15,16 @@
   (loop with calls = (pacing-calls pacing) and seen = nil and looks = 0
         until (ended-p pacing (/ (hog-seconds) 2))
         do (let ((origin (user-calls-origin calls)) (count (user-calls-count calls)))
-             (cond ((not (and origin (eql count seen)))
+             (cond ((or (null origin) (/= count (or seen -1)) (user-calls-waiting-p calls))
                     (setf seen (and origin count) looks 1))
                    ((= 3 (incf looks))
+                    (setf (pacing-hog pacing) count)
                     (warn-of-hog origin))))))
+
+(defun abort-hog (simulation)
+  "Abort the users' code that keeps the live SIMULATION waiting, if it has been named for that. True
+if there is such."
+  (let ((pacing (timeline-pacing (timeline-of simulation))))
+    (and pacing
+         (eql (pacing-hog pacing) (user-calls-count (pacing-calls pacing)))
+         (interrupt-hog pacing))))

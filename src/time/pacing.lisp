@@ -31,6 +31,8 @@ what users' code the thread is in."
   (ended (make-semaphore "ended") :read-only t)
   (paused-p nil)
   (stopping-p nil)
+  ;; The number of the call of users' code that was named last for keeping the thread waiting.
+  (hog nil)
   ;; How many ticks to pass although it is paused.
   (steps 0 :type fixnum))
 
@@ -49,6 +51,11 @@ what users' code the thread is in."
   "Return the thread that paces TIMELINE, or NIL if none does, or it has been told to stop."
   (let ((pacing (timeline-pacing timeline)))
     (and pacing (not (pacing-stopping-p pacing)) (pacing-thread pacing))))
+
+(defun pacer-p (timeline)
+  "True if this thread is the one that paces TIMELINE, or did last."
+  (let ((pacing (timeline-pacing timeline)))
+    (and pacing (eq (current-thread) (pacing-thread pacing)))))
 
 (addition live-p)
 (defun live-p (&optional (simulation (current-simulation)))

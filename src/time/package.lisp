@@ -29,8 +29,8 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
   (:export #:custody-questions #:custody-starter #:answer-questions #:call-with-custody #:mine-p
            #:ask #:asking)
   ;; pacing, stopping, clock
-  (:export #:timeline-thread #:check-rate #:live-p #:paused-p #:pause #:resume
+  (:export #:timeline-thread #:pacer-p #:check-rate #:live-p #:paused-p #:pause #:resume
            #:let-pass #:pace #:set-rate #:*default-rate* #:*hog-seconds*
-           #:seconds-now #:stop-pacing #:call-alone #:start-pacing)
+           #:seconds-now #:abort-hog #:stop-pacing #:call-alone #:start-pacing)
   ;; schedule
   (:export #:schedule #:call-scheduled #:abandon #:grab-resource #:release-resource))
