@@ -100,8 +100,8 @@ comes of earlier lines if the session waits for that."
       (user-interrupt () (interrupted session)))))
 
 (defun interrupted (session)
-  "Tell the user of SESSION that his interrupt has ended the line. It ends, too, the users' code that
-keeps the simulator waiting."
+  "Tell the user of SESSION that his interrupt has ended the line. Users' code that keeps the
+simulator waiting is aborted, too."
   (when (session-batch-p session) (throw 'leave 130))
   (when *simulation* (abort-hog *simulation*))
   (answered (session-console session))
