@@ -3,8 +3,8 @@
 (in-package :ars-magna.cli)
 
 ;;; Arguments are read by the Lisp reader and not evaluated (manual E), and reading them runs
-;;; nothing; numbers stand for cameras, hands, storage bins and designators. A semicolon begins a
-;;; comment.
+;;; nothing; numbers stand for cameras, hands, storage bins and designators. What follows a
+;;; semicolon, or a # that stands alone, is a comment.
 
 ;; As reading 227 says.
 (defgeneric read-argument (type datum robot)
@@ -79,10 +79,20 @@ method, DATUM is the argument.")
 
 ;;; Reading.
 
+(defun comment-at-p (text position)
+  "True if a comment begins in TEXT at POSITION: with ;, or with # between blanks or ends of the
+line."
+  (flet ((blank-at-p (position)
+           (or (not (array-in-bounds-p text position))
+               (blank-p (char text position)))))
+    (case (char text position)
+      (#\; t)
+      (#\# (and (blank-at-p (1- position)) (blank-at-p (1+ position)))))))
+
 (defun skip-blanks (text start)
   "Return where, from START, TEXT goes on after blanks; its length if no more than a comment does."
   (let ((position (position-if-not #'blank-p text :start start)))
-    (if (and position (char/= (char text position) #\;))
+    (if (and position (not (comment-at-p text position)))
         position
         (length text))))
 
@@ -121,7 +131,10 @@ method, DATUM is the argument.")
                    (subseq text start) (takes line)))
     (error (condition)
       (reject-line "~A cannot be read: ~A. ~A" (subseq text start)
-                   (one-line (condition-text condition)) (takes line)))))
+                   (one-line (if (typep condition 'reader-error)
+                                 (reading-trouble condition)
+                                 (condition-text condition)))
+                   (takes line)))))
 
 (defun check-read (value slot line)
   (unless (argument-of-type-p value (slot-type slot))

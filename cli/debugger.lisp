@@ -6,7 +6,8 @@
 ;;; or an error that the user wants to look into, it asks how to go on before it reads the next
 ;;; line. When one in another thread breaks, such as the simulator's, that thread waits, and the
 ;;; lines typed at the prompt are for it until one says how it goes on. Where nobody sits, there is
-;;; no debugger: a break is a message.
+;;; no debugger: a break is a message. So it is for what is typed to answer a break: there is no
+;;; break in a break.
 
 (defstruct (breakage (:constructor make-breakage (condition restarts thread)) (:copier nil))
   "A program that has broken and waits in THREAD. ORDER is what it is to do next, a function."
@@ -19,11 +20,35 @@
 
 (defvar *session* nil "The session that the debugger asks, in whatever thread; the newest.")
 
-(defun restarts-to-offer (condition)
+(defun restarts-within (condition)
   "Return the restarts for CONDITION up to the one that ends the line, of each name the innermost."
   (let* ((all (remove nil (compute-restarts condition) :key #'restart-name))
          (last (position 'end-line all :key #'restart-name)))
     (remove-duplicates (subseq all 0 (and last (1+ last))) :key #'restart-name :from-end t)))
+
+(defun rank (restart condition)
+  "Return a number for RESTART, a lower one the more likely it is what the user wants."
+  (let ((first-names (if (typep condition 'serious-condition)
+                         '("ABORT" "RETRY" "STOP-SIMULATOR")
+                         '("CONTINUE"))))
+    (or (position (restart-name restart) first-names :test #'string=) (length first-names))))
+
+(defparameter *asking-restarts*
+  '("USE-VALUE" "STORE-VALUE" "RETURN-VALUE" "CALL-FORM" "REPLACE-FUNCTION" "SPECIFY-PACKAGE"
+    "USE-PACKAGE" "RENAME")
+  "The names of restarts, Lisp's own, that ask for what they need.")
+
+(defun asks-p (restart)
+  (member (restart-name restart) *asking-restarts* :test #'string=))
+
+(defun restarts-to-offer (condition session)
+  "Return the ways to go on after CONDITION that the user of SESSION can choose, those first that he
+may be expected to. Only the thread that has the prompt can ask him for a value."
+  (let ((restarts (restarts-within condition)))
+    (stable-sort (if (eq (session-thread session) (current-thread))
+                     restarts
+                     (remove-if #'asks-p restarts))
+                 #'< :key (lambda (restart) (rank restart condition)))))
 
 (defun here-p (breakage)
   (eq (breakage-thread breakage) (current-thread)))
@@ -62,13 +87,16 @@
   "Return a stream for questions to the user, which another thread than the prompt's cannot ask."
   (make-two-way-stream (make-concatenated-stream) (session-console session)))
 
+(defun call-ordered (session function)
+  "Call FUNCTION, ordered by SESSION, in this thread, which is not the prompt's."
+  (let ((*standard-output* (session-console session))
+        (*query-io* (nothing-to-read session)))
+    (with-simple-restart (end-line "End the line.")
+      (call-complaining session function))))
+
 (defun hand-order (session breakage function)
   "Let the thread of BREAKAGE, which is another, call FUNCTION, as soon as it can."
-  (setf (breakage-order breakage)
-        (lambda ()
-          (let ((*standard-output* (session-console session))
-                (*query-io* (nothing-to-read session)))
-            (call-complaining session function))))
+  (setf (breakage-order breakage) (lambda () (call-ordered session function)))
   (signal-semaphore (breakage-ordered breakage)))
 
 (defun order (session breakage function)
@@ -145,24 +173,31 @@ user's."
   "Leave what CONDITION has come up in, by the innermost restart that does."
   (invoke-restart (or (find-if (lambda (restart)
                                  (member (restart-name restart) '(abort end-line)))
-                               (restarts-to-offer condition))
+                               (restarts-within condition))
                       'abort)))
+
+(defun debug-breakage (session breakage)
+  "Let the user of SESSION say how BREAKAGE, of this thread, is to go on."
+  (if (eq (session-thread session) (current-thread))
+      (debug-here session breakage)
+      (debug-elsewhere session breakage)))
 
 (defun enter-debugger (condition hook)
   "Let the user of the prompt say how to go on after CONDITION. Called instead of Lisp's debugger."
   (declare (ignore hook))
   ;; What asks needs the room that is not there.
   (when (typep condition 'storage-condition) (give-up condition))
-  (let ((session *session*)
-        (breakage (make-breakage condition (restarts-to-offer condition) (current-thread))))
-    (cond ((null session))              ; It has just ended: Lisp's own debugger comes up.
-          ((eq (session-thread session) (current-thread)) (debug-here session breakage))
-          (t (debug-elsewhere session breakage)))))
+  (let ((session *session*))
+    (when session                       ; Or it has just ended: Lisp's own debugger comes up.
+      (with-debugger-hook ('debugger-disabled-hook)
+        (debug-breakage session
+                        (make-breakage condition (restarts-to-offer condition session)
+                                       (current-thread)))))))
 
 ;; By this name the rest of the program knows that there is none.
 (defun debugger-disabled-hook (condition hook)
   "Say what CONDITION is and go on, if it is no error, or give up what this thread is at. Called
-instead of Lisp's debugger where nobody sits."
+instead of Lisp's debugger where nobody sits, or a break is being answered."
   (declare (ignore hook))
   (when *session*
     (complain *session* (format nil "Break: ~A" (condition-text condition))))

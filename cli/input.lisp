@@ -64,6 +64,18 @@ line has at most; and whether there were more."
   (decf (typed-position stream))
   nil)
 
+;; A stream for questions that is made of this one asks for it.
+(defmethod stream-line-column ((stream typed-text))
+  nil)
+
+(defmethod stream-listen ((stream typed-text))
+  (or (< (typed-position stream) (length (typed-line stream)))
+      (listen (typed-octets stream))))
+
+(defmethod stream-clear-input ((stream typed-text))
+  (setf (typed-position stream) (length (typed-line stream)))
+  (clear-input (typed-octets stream)))
+
 (defun standard-input ()
   "Return what is typed into this process."
   (let ((octets (octet-input 0)))

@@ -68,6 +68,8 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
   "Do what OPTIONS say. Return the status to exit with."
   (let ((robot-name (first-robot options))
         (session (standard-session options)))
+    ;; What has been said of the world's definitions; a headless run has messages of its own.
+    (show-messages session)
     (if (and (session-batch-p session) (null (option-value :rate options)))
         (run-batch session robot-name (option-value :seed options 0))
         (run-live session robot-name options))
@@ -98,7 +100,9 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
     (handler-case (let ((*leave-unheard-p* t)) (call-open-to-interrupts function))
       (usage-error (condition) (give-reason condition 2))
       (user-interrupt () 130)
-      ((or error storage-condition) (condition) (give-reason condition 1)))))
+      ((or error storage-condition) (condition)
+        (regain-room condition)
+        (give-reason condition 1)))))
 
 (defun deliver (console status)
   "Write what CONSOLE still has. Return STATUS, or another if it could not be written."

@@ -11,7 +11,8 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:fundamental-character-output-stream #:fundamental-character-input-stream
                 #:stream-line-column #:stream-write-char #:stream-write-string
                 #:stream-force-output #:stream-finish-output
-                #:stream-read-char #:stream-read-line #:stream-unread-char)
+                #:stream-read-char #:stream-read-line #:stream-unread-char
+                #:stream-listen #:stream-clear-input)
   (:import-from :ars-magna.rpl
                 #:task-p #:task-name #:task-serial #:task-state #:task-result #:task-over-p
                 #:task-children #:task-awaits #:plan-failure #:failure-class #:failure-data
@@ -25,7 +26,8 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream
            #:stream-line-column #:stream-write-char #:stream-write-string
            #:stream-force-output #:stream-finish-output
-           #:stream-read-char #:stream-read-line #:stream-unread-char)
+           #:stream-read-char #:stream-read-line #:stream-unread-char
+           #:stream-listen #:stream-clear-input)
   ;; line, names
   (:export #:line #:line-name #:line-parameters #:line-sentence #:define-line #:all-lines
            #:all-line-names #:find-line #:bad-line)

@@ -76,13 +76,17 @@ comes of earlier lines if the session waits for that."
 ;;; Lines that go wrong.
 
 (defun debug-if-wanted (session condition)
-  (when (and *break-on-user-error* (terminal-p session) (not (typep condition 'ars-magna-error)))
+  (when (and *break-on-user-error*
+             (terminal-p session)
+             (not (typep condition '(or ars-magna-error storage-condition))))
     (invoke-debugger condition)))
 
 (defun call-complaining (session function)
   "Call FUNCTION; complain of what goes wrong in it."
   (handler-case (funcall function)
-    ((or error storage-condition) (condition) (complain session (condition-text condition)))))
+    ((or error storage-condition) (condition)
+      (regain-room condition)
+      (complain session (condition-text condition)))))
 
 (defun call-guarded (session function)
   "Call FUNCTION, which may be interrupted; complain of what goes wrong in it."
@@ -96,7 +100,10 @@ comes of earlier lines if the session waits for that."
       (user-interrupt () (interrupted session)))))
 
 (defun interrupted (session)
+  "Tell the user of SESSION that his interrupt has ended the line. Users' code that keeps the
+simulator waiting is aborted, too."
   (when (session-batch-p session) (throw 'leave 130))
+  (when *simulation* (abort-hog *simulation*))
   (answered (session-console session))
   (format (session-console session) "~&Interrupted.~:[~; Plans go on; STOP-PLAN ends them.~]~%"
           (plans)))

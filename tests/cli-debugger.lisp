@@ -90,6 +90,42 @@
     (is (= 1 (count-if (lambda (line) (search "*BREAK*" line)) written))
         "a line that makes no sense is no break")))
 
+;;; What is typed to answer a break.
+
+(test break.in-a-break-is-a-message
+  (let ((written (type-at-terminal "(break \"outer\")" "(progn (break \"inner\") 7)"
+                                   "(error \"no\")" "(invoke-debugger (make-condition 'error))"
+                                   "0" "(+ 2 3)")))
+    (dolist (line '("*BREAK* -> outer" "*ERROR* -> Break: inner" "7" "*ERROR* -> no"
+                    "*ERROR* -> Break: Condition ERROR" "5"))
+      (is-true (written-p line written) "~A is not in ~S" line written))
+    (is (= 1 (count-if (lambda (line) (search "*BREAK*" line)) written)))))
+
+(test break.reads-values-and-answers
+  (let* ((base:*break-on-user-error* t)
+         (written (type-at-terminal "(list (y-or-n-p \"sure?\"))" "y"
+                                    "(+ 1 ars-user::no-such-variable)" "use-value" "41" "(+ 2 3)")))
+    (dolist (line '("42" "5"))
+      (is-true (written-p line written) "~A is not in ~S" line written))
+    (is-true (find-if (lambda (line) (search "(T)" line)) written))))
+
+(test break.offers-first-what-is-expected
+  (flet ((names (condition)
+           (mapcar #'restart-name (cli::restarts-to-offer condition (cli:make-session)))))
+    (restart-case
+        (with-simple-restart (retry "Again.")
+          (with-simple-restart (abort "Report it.")
+            (with-simple-restart (continue "Go on.")
+              (restart-case
+                  (progn
+                    (is (equal '(abort retry continue)
+                               (subseq (names (make-condition 'error)) 0 3)))
+                    (is (eq 'continue (first (names (make-condition 'simple-condition)))))
+                    (is (not (member 'use-value (names (make-condition 'error))))
+                        "there is nobody in this thread to ask"))
+                (use-value (value) value)))))
+      (end-line ()))))
+
 ;;; In another thread.
 
 (defvar *breaking* nil "The thread of BREAK-ELSEWHERE.")
@@ -114,6 +150,15 @@
     (is-true (find-if (lambda (line) (has-words-p line "*BREAK* -> there" "another thread"))
                       written))
     (is-true (written-p "5" written))))
+
+(test break.in-a-break-of-another-thread-is-a-message
+  (let ((written (type-at-terminal "(ars-magna.tests::break-elsewhere)" "(break \"inner\")"
+                                   "(error \"no\")" "(invoke-debugger (make-condition 'error))"
+                                   "turn"
+                                   "(ars-magna.base:join-thread ars-magna.tests::*breaking*)")))
+    (dolist (line '("*ERROR* -> Break: inner" "*ERROR* -> no" "*ERROR* -> Break: Condition ERROR"))
+      (is-true (written-p line written) "~A is not in ~S" line written))
+    (is (equal '(:turned-back) *went-on*))))
 
 (test break.of-another-thread-goes-on-when-the-prompt-is-left
   (type-at-terminal "(ars-magna.tests::break-elsewhere)" "quit")

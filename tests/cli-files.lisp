@@ -52,6 +52,59 @@ name, in Nisp's syntax and with a decimal fraction."
                           "~A" name)))
           (delete-file (base:native-path file)))))))
 
+;;; What cannot be read.
+
+(defun trouble-in-file (text)
+  "Return what is said of a world's file that has TEXT, without the file's name."
+  (uiop:with-temporary-file (:pathname path :stream out :type "lisp")
+    (write-string text out)
+    :close-stream
+    (handler-case (progn (cli::load-lisp path) "")
+      (cli::file-trouble (condition)
+        (let ((text (princ-to-string condition)))
+          (subseq text (search ", line " text)))))))
+
+(test files.that-cannot-be-read-say-so-in-plain-words
+  (loop for (text line cause) in '(("(values 1)~%(values 2" "line 2" "parenthesis")
+                                   ("(values 1)~%~%(values 2))" "line 3" "parenthesis")
+                                   ("~%(values 1e400)" "line 2" "too large")
+                                   ("(values 51/0)" "line 1" "divided by 0")
+                                   ("(values 1)~%(nowhere:f)" "line 2" "NOWHERE"))
+        for said = (trouble-in-file (format nil text))
+        do (is-true (has-words-p said line "cannot be read" cause) "~A" said)
+           (is (not (search "STREAM" said)) "~A" said)))
+
+(test numbers.that-cannot-be-read-say-so-in-plain-words
+  (dolist (line '("turn 1e400" "turn 51/0" "(+ 1 1e400)" "(read-from-string \"(1\")"))
+    (let ((said (complaint line)))
+      (is-true (has-words-p said "cannot be read") "~A" said)
+      (is (not (search "STREAM" said)) "~A" said))))
+
+(test definitions.that-are-doubtful-are-told-on-the-command-line
+  (uiop:with-temporary-file (:pathname path :stream out :type "lisp")
+    (format out "(defmap doubtful-barn (9 9) (rect (0 0) (8 8) bricks 0.1))~@
+                 (warn 'ars-magna.base:definition-warning :text \"is that meant?\")~@
+                 (defrobot doubtful-cow (doubtful-barn (4 4) 0))")
+    :close-stream
+    (base:with-own-definitions ()
+      (let ((*standard-output* (make-string-output-stream))
+            (base:*message-queue* (base:make-message-queue)))
+        (cli::run-prompt (cli::parse-options (list "--batch" "--plan" "no-such-plan" "--world"
+                                                   (uiop:native-namestring path))))
+        (is-true (search "is that meant?" (get-output-stream-string *standard-output*)))))))
+
+;;; The shell script.
+
+(defun status-of-script (arguments)
+  "Return the status of ./cli/ars-magna with ARGUMENTS, shell text."
+  (values (base:run-command "sh" (list "-c" (format nil "exec \"$0\" ~A" arguments)
+                                       (base:native-name (project-file "cli/ars-magna"))))))
+
+(test script.says-what-goes-wrong
+  (is (eql 0 (status-of-script "--version")))
+  (is (eql 1 (status-of-script "--version >/dev/full")))
+  (is (eql 2 (status-of-script "--list --world \"$(printf 'caf\\351')\" </dev/null"))))
+
 ;;; Other files.
 
 (test names-of-journals.may-have-any-characters

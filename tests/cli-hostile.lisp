@@ -128,6 +128,17 @@
 (test memory.that-is-not-there-is-a-message
   (is-true (has-words-p (complaint "(make-array (expt 2 40))") "not enough memory")))
 
+(test memory.that-is-used-up-is-given-back
+  "In a process of its own: what is used up is not this one's."
+  (multiple-value-bind (status text)
+      (with-input-from-string (input (format nil "~A~%~:*~A~%(+ 1 2)~%"
+                                             "(loop with l do (push (make-array 1000000) l))"))
+        (base:run-command "sh" (list (base:native-name (project-file "cli/ars-magna")) "--batch")
+                          :input input :output :string))
+    (is (eql 1 status))
+    (is (= 2 (count-if (lambda (line) (search "not enough memory" line)) (lines-of text))))
+    (is (equal '("3") (last (lines-of text))))))
+
 (test maps.have-room-in-memory
   (handler-case (progn (world:define-map 'ars-user::vast 20000 20000)
                        (fail "a map of 400 million cells was made"))

@@ -218,7 +218,11 @@ of lines, and the number of errors."
 
 (test lines.may-be-blank-or-comments
   (is-true (answers-p '("3" "Tick 1.") '("" "   " "; nothing" "#!/bin/sh" "(+ 1 2) ; three"
-                                         "step 1 ; one"))))
+                                         "step 1 ; one")))
+  (is-true (answers-p '("3" "Tick 1." "Tick 3." "(T #(1) #\\#)")
+                      '("# note" "(+ 1 2) # three (" "step 1 # one" "step 2 #"
+                        "(list #t #(1) #\\#) # syntax" "quit # bye" "(+ 4 4)")))
+  (is-true (has-words-p (complaint "step 1 #no") "STEP")))
 
 ;;; The prompt's own commands.
 

@@ -46,3 +46,8 @@ says that there is nobody to talk to."
 
 (defun (setf debugger-hook) (function)
   (setf sb-ext:*invoke-debugger-hook* function))
+
+(defmacro with-debugger-hook ((function) &body body)
+  "Run BODY, in which this thread's debugger hook is FUNCTION. A hook that is called has none but
+for that."
+  `(let ((sb-ext:*invoke-debugger-hook* ,function)) ,@body))

@@ -55,9 +55,11 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; interrupts, debuggers
   (:export #:time-limit #:deferring-interrupts #:allowing-interrupts
            #:call-holding-interrupts #:call-open-to-interrupts
-           #:restore-stack #:debugger-p #:answering-debugger #:calls-under-way #:debugger-hook)
+           #:regain-room #:debugger-p #:answering-debugger #:calls-under-way
+           #:debugger-hook #:with-debugger-hook)
   ;; telling
-  (:export #:format-briefly #:blank-p #:one-line #:cut #:own-text #:text-of-condition)
+  (:export #:format-briefly #:blank-p #:one-line #:cut #:own-text #:reading-trouble
+           #:text-of-condition)
   ;; dice
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance)

@@ -18,6 +18,10 @@
   "Return for how many bytes of objects this Lisp has room, in use or not."
   (sb-ext:dynamic-space-size))
 
+(defun give-memory-back ()
+  "Make room for objects where there are others that nobody can reach any more."
+  (sb-ext:gc :full t))
+
 (deftype cell-index ()
   "The index of a grid cell: maps have at most 2^30 cells."
   '(unsigned-byte 30))

@@ -1,4 +1,4 @@
-;;;; stacks.lisp -- a thread's stack after it has overflowed.
+;;;; stacks.lisp -- a thread's stack, or the memory, after it has overflowed.
 
 (in-package :ars-magna.base)
 
@@ -13,3 +13,15 @@
     ;; Opened or not, the page may be written to: if it is closed, that is what is waited for.
     (setf (sb-sys:sap-ref-8 (sb-sys:int-sap (+ end (* 2 sb-c:+backend-page-bytes+))) 0) 0))
   (values))
+
+(defun stack-full-p (condition)
+  "True if CONDITION, a STORAGE-CONDITION, is that a stack has overflowed."
+  (search "STACK" (string (type-of condition))))
+
+(defun regain-room (condition)
+  "Make room again for what comes next, after what CONDITION came up in has been left: if it is that
+there was no room on the stack, or for objects."
+  (when (typep condition 'storage-condition)
+    (if (stack-full-p condition)
+        (restore-stack)
+        (give-memory-back))))

@@ -32,10 +32,27 @@
 
 (defun storage-text (condition)
   "Return what CONDITION, that there is no room for something, means to a user."
-  (if (search "STACK" (string (type-of condition)))
+  (if (stack-full-p condition)
       (format nil "The stack has overflowed: functions call each other too deeply, or lists stand ~
                    too deeply in lists. Mend what has no end.")
       "There is not enough memory for that. Ask for less at a time."))
+
+(defun reader-p (condition)
+  "True if CONDITION is that a text, typed or of a program's, cannot be read as Lisp."
+  (or (typep condition 'reader-error)
+      (and (typep condition 'end-of-file)
+           (not (typep (stream-error-stream condition) 'file-stream)))))
+
+(defun reading-trouble (condition)
+  "Return why a text cannot be read, for which CONDITION came up. What Lisp says of that names
+streams that no user knows."
+  (let ((text (if (typep condition 'simple-condition)
+                  (format-briefly nil "~?" (simple-condition-format-control condition)
+                                  (simple-condition-format-arguments condition))
+                  "it ends too early; is a parenthesis or quote missing?")))
+    (if (starts-with-subseq "failed to build" text)
+        "a number is too large, too small, or divided by 0"
+        (string-right-trim "." text))))
 
 (defun own-text (condition)
   "Return what CONDITION, or another object, says of itself; an empty text if it cannot."
@@ -44,7 +61,8 @@
 
 (defun text-of-condition (condition)
   "Return what CONDITION says, or what it is if it cannot say that."
-  (let ((text (if (typep condition 'storage-condition)
-                  (storage-text condition)
-                  (own-text condition))))
+  (let ((text (cond ((typep condition 'storage-condition) (storage-text condition))
+                    ((reader-p condition)
+                     (sentence (format nil "This cannot be read: ~A" (reading-trouble condition))))
+                    (t (own-text condition)))))
     (if (string= text "") (string-downcase (type-of condition)) text)))

@@ -182,5 +182,5 @@ queue an error message saying that it came from ORIGIN (an item or list of items
                        (apply function arguments))))))))))
      ;; There is room to say so only now.
      (when (typep trouble 'storage-condition)
-       (restore-stack)
+       (regain-room trouble)
        (report-user-error trouble origin))))
