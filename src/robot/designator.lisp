@@ -54,7 +54,9 @@ robot's heading, in radians, not normalised (manual 3.4.1)")
 
 (addition find-designator)
 (defun find-designator (robot number)
-  "Return the designator of ROBOT with NUMBER, or NIL."
+  "Return the designator of ROBOT with NUMBER, or NIL. Signals WRONG-ARGUMENT unless ROBOT is a
+robot."
+  (check-argument find-designator robot (robot-p robot) "a robot")
   (let ((designators (robot-designators robot)))
     (and (integerp number)
          (< -1 number (length designators))
@@ -103,8 +105,8 @@ a hand is where the hand is."
           (t location))))
 
 (defun denotation-space (designator)
-  "Return the THING-SPACE of the thing that DESIGNATOR denotes, as its robot sees it: another robot's
-hand hides what it holds, and is returned."
+  "Return the THING-SPACE of the thing that DESIGNATOR denotes, as its robot sees it: another
+robot's hand hides what it holds, and is returned."
   (let* ((thing (designator-denotation designator)) (location (thing-location thing)))
     (if (and (hand-p location)
              (not (eq (part-robot location) (designator-robot designator))))
