@@ -103,7 +103,7 @@ outside (reading 71)."
 is exhausted storage, once the stack is unwound."
   (flet ((blame (condition)
            (blame-type type option (format nil "code that runs; at ~A: ~A" cell
-                                           (text-of-condition condition)))))
+                                           (string-right-trim "." (text-of-condition condition))))))
     (handler-case
         (handler-bind ((error (lambda (condition)
                                 (unless (typep condition '(or malformed-definition
