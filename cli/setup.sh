@@ -7,6 +7,30 @@ say() { printf 'ars-magna: %s\n' "$*" >&2; }
 
 give_up() { say "$*"; exit 1; }
 
+# Signals. Whoever ends a start ends what it has begun too. The shell heeds a signal only when its
+# child has ended, unless it waits for one in the background.
+
+watching=
+
+heeding() {  # COMMAND...: run it, and end it if this shell is told to end meanwhile.
+    watching=yes
+    "$@" &
+    wait $!
+    ended=$?
+    watching=
+    return $ended
+}
+
+# A Lisp may hang in what it does when it is told to end. Halves that it leaves are forgotten later.
+end_by() {  # SIGNAL: end the child and this shell, as if nothing heeded the signal.
+    trap '' HUP INT TERM
+    [ -z "$watching" ] || { kill -s KILL "$!" && wait "$!"; } 2>/dev/null
+    trap - "$1"
+    kill -s "$1" $$
+}
+
+for signal in HUP INT TERM; do trap "end_by $signal" "$signal"; done
+
 # Directories.
 
 home_directory() {  # VARIABLE'S-VALUE DEFAULT: the value if it is an absolute path.
@@ -43,7 +67,9 @@ libraries() {  # SYSTEM: the libraries that its definition names, one a line.
         grep -v -e '^ars-magna' -e '^sb-' -e '[^a-z0-9.-]' || :
 }
 
-plain_sbcl() { sbcl --noinform --no-sysinit --no-userinit --non-interactive "$@" </dev/null; }
+plain_sbcl() {
+    heeding sbcl --noinform --no-sysinit --no-userinit --non-interactive "$@" </dev/null
+}
 
 missing_packages() {  # SYSTEM...: the Debian packages that it takes and that are not there.
     # Words, on purpose, here and below.
@@ -84,11 +110,13 @@ ensure_packages() {  # SYSTEM...
 # goes on compiling when the start that wanted it has been killed.
 
 with_lock() {  # COMMAND...
-    if command -v flock >/dev/null; then
-        ( flock 9; "$@" ) 9>"$cache/lock"
-    else
-        "$@"
-    fi
+    command -v flock >/dev/null || { "$@"; return; }
+    { true 9>"$cache/lock"; } 2>/dev/null || return
+    exec 9>"$cache/lock"
+    heeding flock 9 && "$@"
+    locked=$?
+    exec 9>&-
+    return $locked
 }
 
 source_sums() {  # DIRECTORY...: a check sum of each source there, and its name.

@@ -73,3 +73,22 @@
 (test forms.are-evaluated-either-way
   (is (compiled-function-p (base:evaluate-form '(lambda () 1) :compile t)))
   (is (not (compiled-function-p (base:evaluate-form '(lambda () 1))))))
+
+(test files.without-use-are-refused-in-words
+  (loop for (name . words) in '(("" . "no name") ("/no/such/file" . "no such file")
+                                ("/tmp/" . "a directory") ("/tmp/a*.jrn" . "many files"))
+        do (is (search words (base:unusable-file-text name)))
+           (signals run:damaged-journal (run:read-journal name))))
+
+(test files.with-illegible-names-are-not-written
+  (signals error
+    (base:call-replacing-file
+     #'princ (base:native-path (format nil "/tmp/a~C" (code-char #xFFFD))))))
+
+(test arguments.of-readers-are-checked
+  (flet ((refused-p (name &rest arguments)
+           (typep (nth-value 1 (ignore-errors (apply name arguments))) 'base:wrong-argument)))
+    (is (refused-p 'world:things-at 5 1 1))
+    (is (refused-p 'robot:find-designator 0.5 0))
+    (is (refused-p 'run:run-until 't :simulation nil))
+    (is (refused-p 'base:undefine 'kicker '(1 2)))))

@@ -17,8 +17,8 @@
 (test input.may-be-any-octets
   (let ((input (octets-typed (list #xF7 #xB2 #xBB #x9B (string #\Newline)
                                    "a" #xC3 #xA9 "b" #xFF (string #\Newline) "last"))))
-    (is (string= "????" (read-line input)))
-    (is (string= (format nil "a~Cb?" (code-char 233)) (read-line input)))
+    (is (string= "����" (read-line input)))
+    (is (string= (format nil "a~Cb�" (code-char 233)) (read-line input)))
     (is (equal '("last" t) (multiple-value-list (read-line input))))
     (is (null (read-line input nil)))))
 
@@ -44,9 +44,9 @@
                              :element-type '(unsigned-byte 8))
     (write-sequence #(59 #xF7 #xB2 #xBB #x9B 10 40 43 32 49 32 #xFF 41 10) out)
     :close-stream
-    (is (string= (format nil ";????~%(+ 1 ?)~%") (base:file-text path)))
+    (signals error (base:file-text path))
     (signals run:damaged-journal (run:read-journal path))
-    (signals cli::file-trouble (cli::load-lisp path))))
+    (signals error (cli::load-lisp path))))
 
 ;;; What is shown.
 

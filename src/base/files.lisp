@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.base)
 
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defconstant +illegible+ (code-char #xFFFD)
+    "Unicode's character for octets that cannot be read as text."))
+
 ;;; In a native name no character has a meaning of its own, as * has in one of Lisp's.
 
 (defun native-name (path)
@@ -28,9 +32,25 @@ nothing."
   (= sb-posix:s-ifreg
      (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (native-name path))))))
 
+(defun unusable-file-text (path)
+  "Return why PATH, a pathname or string, is the name of no file of bytes, in words, or NIL."
+  (cond ((wild-pathname-p path)
+         "its name stands for many files; write \\\\ before each * ? and [ in a string of Lisp")
+        ((string= "" (native-name path)) "that is no name; give the name of a file")
+        ((not (ignore-errors (sb-posix:stat (native-name path))))
+         "there is no such file, or none that may be seen")
+        ((not (plain-file-p path)) "it is a directory or a device")))
+
+(defun check-name-legible (path)
+  "Signal an error if a byte in the name PATH could not be read as text: other names look the same."
+  (when (find +illegible+ (native-name path))
+    (error "its name has bytes that are not UTF-8; give it a name in UTF-8")))
+
 (defun new-file-for (file)
   "Return the absolute path of the file that is to be written for FILE: where a link leads to, if it
-is one. Signals an error if there is something that is no file of bytes, or no directory for it."
+is one. Signals an error if there is something that is no file of bytes, or no directory for it, or
+the name is illegible."
+  (check-name-legible file)
   (let ((path (or (probe-file file)
                   (uiop:ensure-absolute-pathname (merge-pathnames file) #'uiop:getcwd))))
     (when (and (probe-file path) (not (plain-file-p path)))
@@ -55,11 +75,17 @@ when FUNCTION has returned; if that or anything else fails, FILE is as it was. R
 
 (defun decoded (octets)
   "Return the text in UTF-8 whose octets the characters of OCTETS, read as Latin 1, stand for, with
-a question mark for each that cannot be read."
++ILLEGIBLE+ for each that cannot be read."
   (sb-ext:octets-to-string (map '(vector (unsigned-byte 8)) #'char-code octets)
-                           :external-format '(:utf-8 :replacement #\?)))
+                           :external-format '(:utf-8 :replacement #.+illegible+)))
 
 (defun file-text (path)
-  "Return the text in the file PATH, whatever octets it has. Signals an error if it has none."
+  "Return the text in the file PATH, without a byte order mark. Signals an error if it has none, or
+octets that are no text in UTF-8."
   (unless (plain-file-p path) (error "~A is a directory or a device" (native-name path)))
-  (decoded (read-file-into-string path :external-format :latin-1)))
+  (let* ((text (decoded (read-file-into-string path :external-format :latin-1)))
+         (illegible (position +illegible+ text)))
+    (when illegible
+      (error "~A, line ~D: it has bytes that are not UTF-8. Save the file in UTF-8"
+             (native-name path) (1+ (count #\Newline text :end illegible))))
+    (string-left-trim '(#.(code-char #xFEFF)) text)))

@@ -32,7 +32,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
   ;; files, processes
-  (:export #:native-name #:native-path #:existing-path #:replace-file #:plain-file-p
+  (:export #:native-name #:native-path #:existing-path #:replace-file #:plain-file-p 
+           #:unusable-file-text
            #:call-replacing-file #:decoded #:file-text
            #:environment-value #:run-command)
   ;; environments

@@ -234,8 +234,10 @@ BEFORE is an object of the registry to come directly before, instead of last. Re
 (defun undefine (kind name)
   "Take back the definition of NAME, of KIND: MAP, PLACE-TYPE, ATTRIBUTE, SUBSTANCE, KICKER,
 MANIPULATION, ROBOT or PLAN, a symbol of any package. Its variable becomes unbound; worlds that are
-under way keep what they have. Return NAME. Signals UNKNOWN-NAME, and MISUSE for what is no user's
-to define."
+under way keep what they have. Return NAME. Signals UNKNOWN-NAME, MISUSE for what is no user's
+to define, and WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
+  (check-argument undefine kind (typep kind '(or symbol string)) "a kind of definition, as MAP")
+  (check-argument undefine name (typep name '(or symbol string)) "a symbol, the name of what goes")
   (let ((registry (find-registry kind)))
     (find-definition name registry t)
     (let ((entry (lookup-entry name registry)))

@@ -54,7 +54,9 @@ robot's heading, in radians, not normalised (manual 3.4.1)")
 
 (addition find-designator)
 (defun find-designator (robot number)
-  "Return the designator of ROBOT with NUMBER, or NIL."
+  "Return the designator of ROBOT with NUMBER, or NIL. Signals WRONG-ARGUMENT unless ROBOT is a
+robot."
+  (check-argument find-designator robot (robot-p robot) "a robot")
   (let ((designators (robot-designators robot)))
     (and (integerp number)
          (< -1 number (length designators))

@@ -163,7 +163,9 @@ INTERVAL, if given, is modified and returned (manual 3.2.2)."
 
 (public robot-odometer)
 (defun robot-odometer (robot name)
-  "Return the odometer of ROBOT called NAME, or NIL (manual 3.2.2)."
+  "Return the odometer of ROBOT called NAME, or NIL (manual 3.2.2). Signals WRONG-ARGUMENT unless
+NAME is a symbol or a string."
+  (check-argument robot-odometer name (typep name '(or symbol string)) "an odometer's name")
   (find name (robot-odometers robot) :key #'odometer-name :test #'same-name-p))
 
 (public robot-main-odometer)

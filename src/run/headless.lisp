@@ -70,8 +70,11 @@ its ticks."
 (addition run-until)
 (defun run-until (predicate &key (limit 100000) (simulation (current-simulation)))
   "Pass ticks of the headless SIMULATION until PREDICATE, a function of no arguments, returns
-true, but at most LIMIT. Return what it returned and the tick reached; NIL means the limit."
-  (check-argument run-until predicate (typep predicate '(or function symbol)) "a function")
+true, but at most LIMIT. Return what it returned and the tick reached; NIL means the limit.
+Signals WRONG-ARGUMENT, and MISUSE as RUN-TICKS does."
+  (check-argument run-until predicate (or (functionp predicate)
+                                        (and (symbolp predicate) (fboundp predicate)))
+                  "a function of no arguments")
   (check-argument run-until limit (typep limit '(integer 0)) "a number of ticks, 0 or more")
   (check-headless simulation 'run-until)
   (check-not-over simulation 'run-until)

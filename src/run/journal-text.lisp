@@ -12,8 +12,9 @@
 (defconstant +latest-end+ (expt 10 9) "The last tick that a journal on file can end at.")
 
 (defun shown-name (file)
-  "Return FILE, a pathname or string, as the operating system writes it."
-  (if (pathnamep file) (native-name file) file))
+  "Return FILE, a pathname or string, as the operating system writes it; an empty name in quotes."
+  (let ((name (if (and (pathnamep file) (not (wild-pathname-p file))) (native-name file) file)))
+    (if (equal name "") "\"\"" name)))
 
 (addition damaged-journal)
 (define-condition damaged-journal (ars-magna-error)
@@ -254,8 +255,8 @@ is wrong, and in which entry."
 
 (defun read-journal-file (file)
   "Return the journal in FILE. Signals an error if it is none."
-  (unless (probe-file file) (error "there is no such file"))
-  (unless (plain-file-p file) (error "it is a directory or a device"))
+  (let ((trouble (unusable-file-text file)))
+    (when trouble (error "~A" trouble)))
   (with-open-file (in file :external-format :latin-1)
     (when (< +longest-file+ (file-length in))
       (error "it has ~D bytes, more than journals have" (file-length in)))
@@ -267,5 +268,7 @@ entry is to blame; WRONG-ARGUMENT unless FILE is a name."
   (check-argument read-journal file (typep file '(or string pathname))
                   "a journal, or the name of a file that holds one")
   (handler-case (read-journal-file file)
+    (stream-error ()
+      (error 'damaged-journal :file file :reason "the system does not let it be read"))
     ((or error storage-condition) (trouble)
       (error 'damaged-journal :file file :reason (one-line-text trouble)))))

@@ -99,13 +99,18 @@ outside (reading 71)."
                    expected)))
 
 (defun call-blaming-type (function cell type option)
-  "Call FUNCTION, which runs the OPTION of TYPE for CELL, a cursor. Errors in it are TYPE's."
-  (handler-bind ((error (lambda (condition)
-                          (unless (typep condition '(or malformed-definition undefined-function
-                                                     unbound-variable))
-                            (blame-type type option
-                                        (format nil "code that runs; at ~A: ~A" cell condition))))))
-    (funcall function)))
+  "Call FUNCTION, which runs the OPTION of TYPE for CELL, a cursor. Errors in it are TYPE's, and so
+is exhausted storage, once the stack is unwound."
+  (flet ((blame (condition)
+           (blame-type type option (format nil "code that runs; at ~A: ~A" cell
+                                           (string-right-trim "." (text-of-condition condition))))))
+    (handler-case
+        (handler-bind ((error (lambda (condition)
+                                (unless (typep condition '(or malformed-definition
+                                                           undefined-function unbound-variable))
+                                  (blame condition)))))
+          (funcall function))
+      (storage-condition (condition) (blame condition)))))
 
 (defun check-checked (type cell values)
   "Signal unless VALUES, which the checker of TYPE returned for CELL, say where a place is."

@@ -119,6 +119,7 @@ meanwhile are left out."
 (defun things-at (world x y)
   "Return the list of things on the floor of the cell of WORLD that holds the point (X, Y), in
 order of arrival; do not alter it. NIL outside the map. Signals WRONG-ARGUMENT."
+  (check-argument things-at world (world-p world) "a world, as (robot-world ROBOT) returns")
   (check-point 'things-at x y)
   (let ((index (map-index (world-map world) x y)))
     (and index (svref (world-cells world) index))))
