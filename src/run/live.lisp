@@ -174,10 +174,18 @@ make its run the current one, EVERYWHERE or here. Return the run."
     (make-current simulation everywhere)
     (start-clock simulation :rate rate)))
 
+(defun in-replaced-map-p (robot)
+  "True if ROBOT is in the world of a map that another has replaced, perhaps while it was made."
+  (let* ((world (robot-world robot)) (map (world-map world)))
+    (and (eq world (map-resident map))
+         (not (eq map (find-map (map-name map) nil))))))
+
 (defun start-live (robot rate seed journal)
   "Run the world of ROBOT as START-WORLD does. True unless ROBOT has been replaced meanwhile."
   (let ((world (robot-world robot)) (everywhere (passing-ticks-p)))
     (call-starting world (lambda ()
+                           (when (in-replaced-map-p robot)
+                             (retire-robot robot "its map has been defined anew"))
                            (unless (robot-retired robot)
                              (start-world world rate seed journal everywhere))))))
 
