@@ -80,20 +80,29 @@
                  (:file "subjects") (:file "contents") (:file "terrain") (:file "place-marks")
                  (:file "world-display") (:file "details") (:file "displays")
                  (:file "picture") (:file "animation") (:file "opening")))
-   (:module "rpl" :serial t
-    :components ((:file "package") (:file "ring") (:file "fluent") (:file "network")
-                 (:file "propagation") (:file "operators") (:file "timer") (:file "failure")
+   (:module "rpl/fluents" :serial t
+    :components ((:file "package") (:file "fluent") (:file "network") (:file "propagation")
+                 (:file "operators")))
+   (:module "rpl/tasks" :serial t
+    :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
                  (:file "task") (:file "trace") (:file "runner") (:file "machine")
-                 (:file "ending") (:file "stepping") (:file "source")
-                 (:file "procedure") (:file "scope") (:file "suspension")
+                 (:file "ending") (:file "stepping") (:file "blame") (:file "procedure")
+                 (:file "report") (:file "engine") (:file "alone")))
+   (:module "rpl/language" :serial t
+    :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
                  (:file "leaf") (:file "compiler") (:file "steps") (:file "binding")
                  (:file "leaving") (:file "branching") (:file "repeating") (:file "tags")
-                 (:file "failing") (:file "waiting") (:file "trying") (:file "parallel")
-                 (:file "policy") (:file "ordering") (:file "valve") (:file "local-functions")
-                 (:file "definitions") (:file "report") (:file "engine") (:file "alone")
-                 (:file "robot-package") (:file "robot-fluents") (:file "robot-interface")
-                 (:file "robot-accessors") (:file "robot-outcomes") (:file "robot-commands")
-                 (:file "robot-runs")))
+                 (:file "calling") (:file "local-functions") (:file "definitions")
+                 (:file "construct")))
+   (:module "rpl/constructs" :serial t
+    :components ((:file "package") (:file "waiting") (:file "whenever") (:file "failing")
+                 (:file "handling") (:file "trying") (:file "protecting") (:file "parallel")
+                 (:file "policy") (:file "blocking") (:file "ordering") (:file "valve")))
+   (:module "rpl" :serial t
+    :components ((:file "rpl")))
+   (:module "rpl/robot" :serial t
+    :components ((:file "package") (:file "fluents") (:file "interface") (:file "accessors")
+                 (:file "outcomes") (:file "commands") (:file "runs")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.

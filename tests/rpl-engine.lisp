@@ -89,21 +89,21 @@
       (is (= 7 (rpl:next-wake-time runner))))))
 
 (test timers.heap-agrees-with-sorting
-  (let ((dice (base:make-dice 3)) (timers (rpl::make-timers)) (live '()) (called '()))
+  (let ((dice (base:make-dice 3)) (timers (tasks::make-timers)) (live '()) (called '()))
     (dotimes (i 500)
-      (push (rpl::set-timer timers (base:roll-index 100 dice)
+      (push (tasks::set-timer timers (base:roll-index 100 dice)
                             (lambda (timer) (push timer called)) i)
             live)
       (when (base:chance .4 dice)
         (let ((victim (base:roll-element live dice)))
           (setf live (remove victim live))
-          (rpl::cancel-timer victim timers))))
-    (rpl::run-timers timers 60)
-    (is (equal (mapcar #'rpl::timer-client
-                       (stable-sort (remove-if (lambda (timer) (> (rpl::timer-due timer) 60))
+          (tasks::cancel-timer victim timers))))
+    (tasks::run-timers timers 60)
+    (is (equal (mapcar #'tasks::timer-client
+                       (stable-sort (remove-if (lambda (timer) (> (tasks::timer-due timer) 60))
                                                (reverse live))
-                                    #'< :key #'rpl::timer-due))
-               (mapcar #'rpl::timer-client (reverse called))))))
+                                    #'< :key #'tasks::timer-due))
+               (mapcar #'tasks::timer-client (reverse called))))))
 
 ;;; Posting from threads.
 
@@ -225,7 +225,7 @@
     (is (search "Deadlock at tick 2" text))
     (is (search "waits for (and robot-stopped* arrived*)" text))
     (is (search "waits for arrived*" text))
-    (is (search "(rpl:par" text))))
+    (is (search "(constructs:par" text))))
 
 (test plan-deadlocked-p.not-while-something-may-still-come
   (let ((busy t))
@@ -251,8 +251,8 @@
       (rpl:react runner)
       (let ((lines (with-output-to-string (stream) (rpl:print-tasks runner stream))))
         (is (= 3 (count #\Newline lines)))
-        (is (search "  2 waiting: door-watch (rpl:wait-for f) waits for door-open" lines))
-        (is (search "  3 waiting: (rpl:wait-time 4) waits for tick 4" lines))
+        (is (search "  2 waiting: door-watch (constructs:wait-for f) waits for door-open" lines))
+        (is (search "  3 waiting: (constructs:wait-time 4) waits for tick 4" lines))
         (let ((task (first (rpl:task-children (first (rpl:plan-runner-tasks runner))))))
           (is (eq 'door-watch (rpl:task-name task)))
           (is (= 2 (rpl:task-serial task)))

@@ -81,10 +81,10 @@
     (plan-value (rpl:pursue (rpl:wait-for (> (+ f 1) 10))
                             (rpl:wait-for (and (> f 3) (< f 5)))
                             (rpl:seq (rpl:wait-time 1)
-                                     (is (rpl::fluent-first-link f))
+                                     (is (fluents::fluent-first-link f))
                                      (rpl:set-value f 4))))
-    (is (null (rpl::fluent-first-link f)))
-    (is (null (rpl::fluent-first-watcher f)))))
+    (is (null (fluents::fluent-first-link f)))
+    (is (null (fluents::fluent-first-watcher f)))))
 
 (test network.is-computed-once-for-each-change-of-a-diamond
   (let* ((f (fluent 0)) (computed 0)
@@ -126,16 +126,16 @@
                                                     (list (lambda ()
                                                             (funcall mix (funcall a)
                                                                      (funcall b))))))))
-               (let ((watcher (rpl::make-watcher (aref nodes 23) #'list nil)))
-                 (rpl::watch watcher)
+               (let ((watcher (fluents::make-watcher (aref nodes 23) #'list nil)))
+                 (fluents::watch watcher)
                  (loop repeat 30
                        do (rpl:set-value (base:roll-element bases dice) (base:roll-index 5 dice))
                           (unless (every (lambda (node thunk)
                                            (= (rpl:fluent-value node) (funcall thunk)))
                                          nodes thunks)
                             (fail "a network is out of date")))
-                 (rpl::unwatch watcher)
-                 (is (every (lambda (f) (null (rpl::fluent-first-link f))) bases)))))))
+                 (fluents::unwatch watcher)
+                 (is (every (lambda (f) (null (fluents::fluent-first-link f))) bases)))))))
 
 (test set-value.refuses-networks-and-what-is-no-fluent
   (signals ars-magna.base:wrong-argument
@@ -181,7 +181,7 @@
                (plan-value
                  (rpl:par (rpl:seq (rpl:wait-time 2) (rpl:pulse f :in-time))
                           (list (rpl:wait-for f :timeout 4) (rpl:plan-time))))))
-    (is (null (rpl::fluent-first-watcher f)))))
+    (is (null (fluents::fluent-first-watcher f)))))
 
 (test pulse.wakes-all-who-wait-and-leaves-the-fluent-false
   (let ((f (fluent)) (woken 0))

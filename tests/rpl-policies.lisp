@@ -44,7 +44,7 @@
                                          (rpl:whenever f (return :enough))))))
     (plan-failure-of (rpl:par (rpl:seq (rpl:wait-time 1) (rpl:pulse f))
                               (rpl:whenever f (rpl:fail))))
-    (is (null (rpl::fluent-first-watcher f)))))
+    (is (null (fluents::fluent-first-watcher f)))))
 
 (test with-policy.starts-before-the-body-and-precedes-it
   (let ((trouble (fluent :left-over)) (steps '()))
@@ -74,7 +74,7 @@
     (is (eq :body (plan-value (rpl:with-policy (rpl:whenever f (rpl:fail))
                                 (rpl:wait-time 2)
                                 :body))))
-    (is (null (rpl::fluent-first-watcher f)))
+    (is (null (fluents::fluent-first-watcher f)))
     (is (eq :body (plan-value (rpl:with-policy (rpl:wait-time 1) (rpl:wait-time 2) :body))))
     (is (eq :in-body (rpl:failure-class
                       (plan-failure-of (rpl:with-policy (rpl:whenever f (rpl:fail))
@@ -248,7 +248,7 @@
     (plan-value (rpl:par (rpl:with-valve (hand) (rpl:wait-time 5))
                          (rpl:pursue (rpl:with-valve (hand) (rpl:fail))
                                      (rpl:wait-time 2))))
-    (is (null (rpl::valve-requests hand)))))
+    (is (null (constructs::valve-requests hand)))))
 
 (test with-valve.parts-of-the-owner-have-it
   (let ((hand (rpl:make-valve 'hand)))

@@ -197,10 +197,10 @@ last one run with its start."
     (values (with-output-to-string (stream) (rpl:write-trace (rpl:plan-trace runner) stream))
             (list (rpl:plan-runner-tasks runner)
                   (rpl:next-wake-time runner)
-                  (remove nil (mapcar #'rpl::fluent-first-watcher fluents))
-                  (remove nil (mapcar #'rpl::fluent-first-link fluents))
+                  (remove nil (mapcar #'fluents::fluent-first-watcher fluents))
+                  (remove nil (mapcar #'fluents::fluent-first-link fluents))
                   (remove nil (mapcar #'rpl:valve-owner valves))
-                  (mapcan #'copy-list (mapcar #'rpl::valve-requests valves))))))
+                  (mapcan #'copy-list (mapcar #'constructs::valve-requests valves))))))
 
 (test stress.stopped-plans-leave-nothing-behind-and-repeat-exactly
   (let ((dice (base:make-dice 1992 "stopped plans")) (wrong '()))

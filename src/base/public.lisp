@@ -15,7 +15,8 @@
 (defvar *marks* '() "All marks, in order of definition.")
 
 (defparameter *layers-of-nisp*
-  '("ARS-MAGNA.NISP" "ARS-MAGNA.CANVAS" "ARS-MAGNA.RPL" "ARS-MAGNA.RPL-ROBOT")
+  '("ARS-MAGNA.NISP" "ARS-MAGNA.CANVAS" "ARS-MAGNA.RPL.FLUENTS" "ARS-MAGNA.RPL.TASKS"
+    "ARS-MAGNA.RPL.LANGUAGE" "ARS-MAGNA.RPL.CONSTRUCTS" "ARS-MAGNA.RPL-ROBOT")
   "The packages whose public names NISP shows, unless a mark says otherwise; ARS shows all others.")
 
 (defun face-of (symbol)

@@ -1,0 +1,114 @@
+;;;; fluent.lisp -- quantities that vary in time, and who watches them (manual C).
+
+(in-package :ars-magna.rpl.fluents)
+
+;;; A fluent belongs to the thread that runs the plans; other threads only post settings.
+;;;
+;;; A base fluent is set. A derived fluent is computed from others, its sources. While nobody
+;;; uses it, it is computed on demand and its sources do not know of it; its first user (a watcher,
+;;; or a derived fluent that is itself used) makes it a dependent of its sources and the last one
+;;; to go undoes that, so that nothing leaks. HEIGHT is the longest way down to a base fluent.
+
+(public fluent)
+(defstruct (fluent (:constructor %make-fluent (name now)) (:copier nil))
+  "A quantity that varies in time. Plans wait for fluents to become true (manual C)."
+  (name nil :read-only t)
+  (now nil)
+  (height 0 :type fixnum)
+  (first-watcher nil :type (or null watcher))
+  (last-watcher nil :type (or null watcher))
+  (first-link nil :type (or null link))
+  (last-link nil :type (or null link)))
+
+(defstruct (derived (:include fluent) (:constructor %make-derived (name operator sources height))
+                    (:copier nil))
+  "A fluent whose value is what OPERATOR returns for the values of SOURCES, fluents and others.
+TROUBLE is the error that it met when it was last computed."
+  (operator #'list :type function :read-only t)
+  (sources '() :type list :read-only t)
+  (users 0 :type fixnum)
+  (links '() :type list)
+  (trouble nil :type (or null condition))
+  (queued nil :type boolean)
+  (successor nil :type (or null derived)))
+
+(defstruct (watcher (:constructor make-watcher (fluent wake client)) (:copier nil))
+  "Somebody who wants to know when FLUENT changes to something true: WAKE is called with the
+watcher, the value, and NIL or the error met in computing it. PENDING counts events not yet heard."
+  (fluent nil :type fluent :read-only t)
+  (wake #'list :type function :read-only t)
+  (client nil :read-only t)
+  (pending 0 :type fixnum)
+  (previous nil :type (or null watcher))
+  (next nil :type (or null watcher)))
+
+(defstruct (link (:constructor make-link (source dependent)) (:copier nil))
+  "Says that DEPENDENT is to be computed anew when SOURCE changes."
+  (source nil :type fluent :read-only t)
+  (dependent nil :type derived :read-only t)
+  (previous nil :type (or null link))
+  (next nil :type (or null link)))
+
+(declaim-final derived watcher link fluent)
+
+(addition fluent-p fluent-name)
+(setf (documentation 'fluent-name 'function)
+      "Return the name that the fluent was created with; of a network, its operator."
+      (documentation 'fluent-p 'function)
+      "True of fluents, networks included.")
+
+(public create-fluent)
+(defun create-fluent (name &optional value)
+  "Return a new fluent called NAME with VALUE (manual D.4)."
+  (%make-fluent name value))
+
+(public state)
+(defun state (name)
+  "Return a new fluent called NAME, at first false: NAME is the proposition that the fluent stands
+for (manual D.2)."
+  (create-fluent name nil))
+
+(addition create-fluent-vector)
+(defun create-fluent-vector (name count &optional value)
+  "Return a vector of COUNT new fluents with VALUE, one for each part of a kind (manual C). Signals
+WRONG-ARGUMENT unless COUNT is an integer from 0 to a million."
+  (check-argument create-fluent-vector count (whole-p count 0 1000000)
+                  "an integer from 0 to 1000000")
+  (let ((vector (make-array count)))
+    (dotimes (i count vector)
+      (setf (svref vector i) (create-fluent (format nil "~A ~D" name i) value)))))
+
+;;; Doubly linked lists, so that leaving one costs the same however many are in it.
+
+(defmacro define-membership (type list-of &key join leave)
+  "Define JOIN and LEAVE, functions of a member of TYPE that append it to and remove it from the
+list that the fluent (LIST-OF member) keeps in its slots FIRST-TYPE and LAST-TYPE."
+  (let ((first (symbolicate 'fluent-first- type))
+        (last (symbolicate 'fluent-last- type))
+        (previous (symbolicate type '-previous))
+        (next (symbolicate type '-next)))
+    `(progn
+       (defun ,join (member)
+         (let* ((fluent (,list-of member))
+                (tail (,last fluent)))
+           (setf (,previous member) tail
+                 (,next member) nil
+                 (,last fluent) member)
+           (if tail
+               (setf (,next tail) member)
+               (setf (,first fluent) member))))
+       (defun ,leave (member)
+         (let ((fluent (,list-of member))
+               (before (,previous member))
+               (after (,next member)))
+           (if before
+               (setf (,next before) after)
+               (setf (,first fluent) after))
+           (if after
+               (setf (,previous after) before)
+               (setf (,last fluent) before))
+           (setf (,previous member) nil
+                 (,next member) nil))))))
+
+(define-membership watcher watcher-fluent :join join-watchers :leave leave-watchers)
+(define-membership link link-source :join join-links :leave leave-links)

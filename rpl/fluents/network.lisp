@@ -1,0 +1,152 @@
+;;;; network.lisp -- fluents computed from fluents.
+
+(in-package :ars-magna.rpl.fluents)
+
+;;; Computing.
+
+(declaim (inline stored-value))
+(defun stored-value (source)
+  "Return what SOURCE, a fluent in use or any other object, stands for."
+  (if (fluent-p source) (fluent-now source) source))
+
+(defun source-trouble (derived)
+  "Return the error of a source of DERIVED, or NIL. All its sources are in use."
+  (dolist (source (derived-sources derived))
+    (when (and (derived-p source) (derived-trouble source))
+      (return (derived-trouble source)))))
+
+(defun compute (derived)
+  "Return the value of DERIVED for the stored values of its sources, all in use."
+  (declare #.*hot*)                     ; 12 ns for two sources
+  (let* ((operator (derived-operator derived))
+         (sources (derived-sources derived))
+         (others (rest sources)))
+    (cond ((null others) (values (funcall operator (stored-value (first sources)))))
+          ((null (rest others))
+           (values (funcall operator (stored-value (first sources)) (stored-value (first others)))))
+          (t (values (apply operator (mapcar #'stored-value sources)))))))
+
+(defun recompute (derived)
+  "Compute the value of DERIVED, in use, anew. True if it changed, or if computing met an error."
+  (declare #.*hot*)
+  (let ((trouble (source-trouble derived))
+        (value nil))
+    (unless trouble
+      (handler-case (setf value (compute derived))
+        (error (condition) (setf trouble condition))))
+    (cond ((and (null trouble) (null (derived-trouble derived)) (eql value (fluent-now derived)))
+           nil)
+          (t (setf (fluent-now derived) value
+                   (derived-trouble derived) trouble)
+             t))))
+
+;;; Being used.
+
+(defun acquire (fluent)
+  "Note one more user of FLUENT. With the first one it starts to follow its sources."
+  (when (and (derived-p fluent) (= 1 (incf (derived-users fluent))))
+    (dolist (source (derived-sources fluent))
+      (when (fluent-p source)
+        (acquire source)
+        (let ((link (make-link source fluent)))
+          (join-links link)
+          (push link (derived-links fluent)))))
+    (recompute fluent)))
+
+(defun release (fluent)
+  "Note one user of FLUENT less. With the last one it stops following its sources."
+  (when (and (derived-p fluent) (= 0 (decf (derived-users fluent))))
+    (dolist (link (shiftf (derived-links fluent) '()))
+      (leave-links link)
+      (release (link-source link)))
+    (setf (fluent-now fluent) nil
+          (derived-trouble fluent) nil)))
+
+(defun watch (watcher)
+  "Let WATCHER hear of its fluent from now on, after those who watch it already."
+  (acquire (watcher-fluent watcher))
+  (join-watchers watcher))
+
+(defun unwatch (watcher)
+  "Let WATCHER hear nothing more."
+  (leave-watchers watcher)
+  (release (watcher-fluent watcher)))
+
+;;; Reading.
+
+(defun value-in-use (fluent)
+  "Return the value of FLUENT, which is in use; signal the error that computing it met, if any."
+  (when (and (derived-p fluent) (derived-trouble fluent))
+    (error (derived-trouble fluent)))
+  (fluent-now fluent))
+
+(defun current-value (fluent)
+  "Return the value of FLUENT, computing it if it is derived and not in use."
+  (cond ((or (not (derived-p fluent)) (plusp (derived-users fluent))) (value-in-use fluent))
+        ((= 1 (fluent-height fluent)) (compute fluent))
+        (t (acquire fluent)
+           (unwind-protect (value-in-use fluent)
+             (release fluent)))))
+
+(declaim (inline fluent-value))
+(public fluent-value)
+(settable fluent-value)
+(defun fluent-value (object)
+  "Return the value that OBJECT, a fluent, has now. Any other OBJECT is its own value. Can be set:
+see SET-VALUE (manual D.2)."
+  (if (fluent-p object) (current-value object) object))
+
+;;; Building.
+
+(defun make-derived (name operator sources)
+  (%make-derived name operator sources
+                 (1+ (loop for source in sources
+                           when (fluent-p source) maximize (fluent-height source)))))
+
+(defun lift (name function &rest arguments)
+  "Return FUNCTION of ARGUMENTS; if there is a fluent among these, the fluent called NAME whose
+value is always FUNCTION of their values."
+  (if (some #'fluent-p arguments)
+      (make-derived name function arguments)
+      (apply function arguments)))
+
+(defun function-label (function)
+  (if (symbolp function)
+      function
+      (let ((name (nth-value 2 (function-lambda-expression function))))
+        (if (symbolp name) name 'function))))
+
+(addition fl-funcall)
+(defun fl-funcall (function &rest arguments)
+  "Return a fluent whose value is always what FUNCTION returns for the values of ARGUMENTS, some of
+them fluents. FUNCTION must depend on nothing else and set no fluent. Without fluents among
+ARGUMENTS, call FUNCTION at once."
+  (apply #'lift (function-label function) (coerce function 'function) arguments))
+
+(addition fl-apply)
+(defun fl-apply (function &rest arguments)
+  "Do as FL-FUNCALL; the last of ARGUMENTS is a list of further ones, as for APPLY."
+  (apply #'fl-funcall function (apply #'list* arguments)))
+
+;;; Printing.
+
+(defun write-network (fluent stream)
+  "Write FLUENT as the expression that it was made by."
+  (if (derived-p fluent)
+      (format stream "(~A~{ ~A~})" (fluent-name fluent)
+              (loop for source in (derived-sources fluent)
+                    collect (if (fluent-p source)
+                                (with-output-to-string (out) (write-network source out))
+                                (prin1-to-string source))))
+      (format stream "~A" (fluent-name fluent))))
+
+(defun fluent-text (fluent)
+  "Return what FLUENT is called, in lower case: its name or its network."
+  (let ((*print-case* :downcase) (*print-length* 5) (*print-level* 4))
+    (with-output-to-string (stream) (write-network fluent stream))))
+
+(defmethod print-object ((fluent fluent) stream)
+  (print-unreadable-object (fluent stream)
+    (format stream "fluent ~A = " (fluent-text fluent))
+    (handler-case (prin1 (current-value fluent) stream)
+      (error (condition) (format stream "error: ~A" (type-of condition))))))

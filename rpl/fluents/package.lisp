@@ -1,0 +1,23 @@
+;;;; package.lisp -- quantities that vary in time, and networks of them.
+
+(defpackage :ars-magna.rpl.lifted
+  (:documentation "Lisp's operators as plans understand them, for ordinary code that wants them:
+conditions read fluents by value, operators given a fluent return a network. Inside a plan the
+operators of Common Lisp mean these without further ado.")
+  (:use)
+  (:export #:if #:when #:unless #:cond #:loop
+           #:and #:or #:not #:< #:> #:<= #:>= #:= #:+ #:- #:* #:/ #:eq #:eql #:equal))
+
+(defpackage :ars-magna.rpl.fluents
+  (:documentation "Fluents, networks of fluents, and how a change reaches those who watch. Knows no plan.")
+  (:use :cl :ars-magna.base)
+  (:local-nicknames (:lifted :ars-magna.rpl.lifted))
+  ;; fluent
+  (:export #:create-fluent #:create-fluent-vector #:fluent #:fluent-name #:fluent-p
+           #:make-watcher #:state #:watcher #:watcher-client #:watcher-pending #:watcher-fluent #:watcher-p)
+  ;; network
+  (:export #:fl-apply #:fl-funcall #:fluent-text #:fluent-value #:unwatch #:watch)
+  ;; propagation
+  (:export #:*backlog* #:apply-settings #:backlog #:make-backlog #:pulse #:set-value)
+  ;; operators
+  (:export #:lifting #:lifting-and #:lifting-or))

@@ -1,0 +1,165 @@
+;;;; propagation.lisp -- setting and pulsing fluents, and who hears of it.
+
+(in-package :ars-magna.rpl.fluents)
+
+;;; A change is heard by the watchers of what was set, in order of arrival, and then by the
+;;; dependent fluents in order of height, so that none is computed from a mixture of old and new
+;;; values and each at most once. Watchers hear only of true values (and of errors). Whoever was
+;;; heard to be true is committed to waking: what happens to the fluent afterwards is no matter.
+
+(defstruct (backlog (:constructor make-backlog ()) (:copier nil))
+  "Derived fluents to be computed, by height: those of each height in order of arrival."
+  (heads (make-array 8 :initial-element nil) :type simple-vector)
+  (tails (make-array 8 :initial-element nil) :type simple-vector)
+  (highest 0 :type fixnum))
+
+(defvar *backlog* nil
+  "The backlog of the plan runner at work, so that a change need not make one.")
+
+(defvar *spreading* nil
+  "True while a change is being spread: networks must not set fluents.")
+
+(defun grow-backlog (backlog height)
+  (flet ((grown (vector)
+           (replace (make-array (* 2 (1+ height)) :initial-element nil) vector)))
+    (setf (backlog-heads backlog) (grown (backlog-heads backlog))
+          (backlog-tails backlog) (grown (backlog-tails backlog)))))
+
+(defun enqueue (derived backlog)
+  (let ((height (fluent-height derived)))
+    (unless (derived-queued derived)
+      (when (>= height (length (backlog-heads backlog))) (grow-backlog backlog height))
+      (setf (derived-queued derived) t
+            (derived-successor derived) nil
+            (backlog-highest backlog) (max height (backlog-highest backlog)))
+      (let ((tail (svref (backlog-tails backlog) height)))
+        (if tail
+            (setf (derived-successor tail) derived)
+            (setf (svref (backlog-heads backlog) height) derived))
+        (setf (svref (backlog-tails backlog) height) derived)))))
+
+(defun dequeue (height backlog)
+  "Return the next derived fluent of HEIGHT, or NIL."
+  (let ((derived (svref (backlog-heads backlog) height)))
+    (when derived
+      (let ((successor (shiftf (derived-successor derived) nil)))
+        (setf (svref (backlog-heads backlog) height) successor
+              (derived-queued derived) nil)
+        (unless successor (setf (svref (backlog-tails backlog) height) nil))
+        derived))))
+
+(defun announce (fluent)
+  "Tell the watchers of FLUENT, whose value has changed, if it is true now."
+  (let ((value (fluent-now fluent))
+        (trouble (and (derived-p fluent) (derived-trouble fluent))))
+    (when (or value trouble)
+      (loop for watcher = (fluent-first-watcher fluent) then next
+            while watcher
+            for next = (watcher-next watcher)
+            do (funcall (watcher-wake watcher) watcher value trouble)))))
+
+(defun enqueue-dependents (fluent backlog)
+  (loop for link = (fluent-first-link fluent) then (link-next link)
+        while link
+        do (enqueue (link-dependent link) backlog)))
+
+(defun spread-by-height (backlog)
+  "Compute all that is in BACKLOG, and what depends on it, lowest first."
+  (loop for height from 1
+        while (<= height (backlog-highest backlog))
+        do (loop for derived = (dequeue height backlog)
+                 while derived
+                 do (when (and (plusp (derived-users derived)) (recompute derived))
+                      (announce derived)
+                      (enqueue-dependents derived backlog))))
+  (setf (backlog-highest backlog) 0))
+
+(defun spread-to-dependents (fluent)
+  "Compute what depends on FLUENT. As long as only one fluent does, no backlog is needed."
+  (declare #.*hot*)
+  (let ((*spreading* t))
+    (loop
+      (let ((link (fluent-first-link fluent)))
+        (cond ((null link) (return))
+              ((link-next link)
+               (let ((backlog (or *backlog* (make-backlog))))
+                 (enqueue-dependents fluent backlog)
+                 (return (spread-by-height backlog))))
+              (t (setf fluent (link-dependent link))
+                 (if (recompute fluent)
+                     (announce fluent)
+                     (return))))))))
+
+(defun spread (fluent)
+  "Let everybody concerned know that the base fluent FLUENT has changed."
+  (announce fluent)
+  (when (fluent-first-link fluent)
+    (spread-to-dependents fluent)))
+
+(defun spread-all (fluents)
+  "Let everybody concerned know that the base FLUENTS have changed, all at one instant."
+  (if (and fluents (null (rest fluents)))
+      (spread (first fluents))
+      (let ((backlog (or *backlog* (make-backlog)))
+            (*spreading* t))
+        (mapc #'announce fluents)
+        (dolist (fluent fluents) (enqueue-dependents fluent backlog))
+        (spread-by-height backlog))))
+
+(defun check-settable (operator fluent)
+  (unless (and (fluent-p fluent) (not (derived-p fluent)))
+    (error 'wrong-argument :operator operator :name 'fluent :value fluent
+                           :expected "a fluent made by create-fluent or state"))
+  (when *spreading*
+    (reject-use "A function lifted over fluents set ~A. Networks only compute: set it in a plan."
+                fluent)))
+
+(public set-value)
+(defun set-value (fluent value)
+  "Give FLUENT the value VALUE and return it. Those who wait for FLUENT, or for a network that it
+is in, hear of it if that changed something (EQL) and the outcome is true. FLUENT must not be a
+network (manual D.2)."
+  (check-settable 'set-value fluent)
+  (unless (eql value (fluent-now fluent))
+    (setf (fluent-now fluent) value)
+    (spread fluent))
+  value)
+
+(defun (setf fluent-value) (value fluent)
+  (set-value fluent value))
+
+;;; A pulse is one instant at which the fluents are true, and then they are false.
+
+(defun pulse-all (fluents values)
+  (loop for fluent in fluents
+        for value in values
+        do (setf (fluent-now fluent) value))
+  (spread-all fluents)
+  (dolist (fluent fluents) (setf (fluent-now fluent) nil))
+  (spread-all fluents))
+
+(public pulse)
+(defun pulse (fluent &optional (value t))
+  "Let FLUENT have VALUE for an instant and be false afterwards. All who wait for it, or for a
+network that is true at that instant, will wake. Return VALUE (manual C)."
+  (check-settable 'pulse fluent)
+  (setf (fluent-now fluent) value)
+  (spread fluent)
+  (setf (fluent-now fluent) nil)
+  (spread fluent)
+  value)
+
+(defun apply-settings (settings)
+  "Apply SETTINGS at one instant: first each (:set fluent value), then each (:pulse fluent [value]),
+all together. So whoever sees the pulses sees the values that came with them (reading 177)."
+  (let ((changed '()) (pulsed '()) (values '()))
+    (loop for (kind fluent . more) in settings
+          do (check-settable kind fluent)
+             (ecase kind
+               (:set (unless (eql (first more) (fluent-now fluent))
+                       (setf (fluent-now fluent) (first more))
+                       (pushnew fluent changed)))
+               (:pulse (push fluent pulsed)
+                (push (if more (first more) t) values))))
+    (when changed (spread-all (nreverse changed)))
+    (when pulsed (pulse-all (nreverse pulsed) (nreverse values)))))

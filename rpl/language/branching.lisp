@@ -1,0 +1,73 @@
+;;;; branching.lisp -- if, when, unless, cond, case, and, or, not.
+
+(in-package :ars-magna.rpl.language)
+
+(define-node branch ((chooser function) (branches simple-vector))
+  "The one of BRANCHES whose index CHOOSER returns; nothing if it returns NIL."
+  :step step-branch)
+
+(defun step-branch (node task frame value)
+  (declare (ignore task value))
+  (let* ((environment (frame-environment frame))
+         (index (funcall (branch-chooser node) environment)))
+    (if index
+        (enter-last (the node (svref (branch-branches node) index)) environment frame)
+        (values (frame-up frame) nil))))
+
+(defun choice-code (form test then else scope)
+  "Return code for a choice by TEST, whose source is FORM. THEN and ELSE are lists of forms."
+  (if (suspends-p test scope)
+      (with-gensyms (value)
+        (plan-code (note-own-text `(let ((,value ,test))
+                                     (if ,value (progn ,@then) (progn ,@else))))
+                   scope))
+      `(make-branch :form ',form
+                    :chooser ,(leaf-lambda
+                               (as-lisp `(if ,(condition-form test (scope-environment scope)) 0 1)
+                                          scope)
+                               scope)
+                    :branches (vector ,(body-code then scope) ,(body-code else scope)))))
+
+(define-plan-form "IF" nil (test then &rest else) (form scope)
+  (choice-code form test (list then) else scope))
+
+(define-plan-form "WHEN" nil (test &rest body) (form scope)
+  (choice-code form test body '() scope))
+
+(define-plan-form "UNLESS" nil (test &rest body) (form scope)
+  (choice-code form test '() body scope))
+
+(define-plan-form "COND" nil (&rest clauses) (form scope)
+  (if (null clauses)
+      (leaf-code nil scope)
+      (destructuring-bind ((test . body) . more) clauses
+        (let ((more (note-own-text `(cond ,@more))))
+          (if body
+              (choice-code form test body (list more) scope)
+              (plan-code (note-own-text `(or ,test ,more)) scope))))))
+
+(define-plan-form "CASE" nil (key &rest clauses) (form scope)
+  (if (suspends-p key scope)
+      (with-gensyms (value)
+        (plan-code (note-own-text `(let ((,value ,key)) (case ,value ,@clauses))) scope))
+      `(make-branch :form ',form
+                    :chooser ,(value-lambda `(case (fluent-value ,key)
+                                               ,@(loop for (keys) in clauses
+                                                       for index from 0
+                                                       collect (list keys index)))
+                                            scope)
+                    :branches (vector ,@(loop for (nil . body) in clauses
+                                              collect (body-code body scope))))))
+
+(define-plan-form "AND" nil (&rest forms) (form scope)
+  (if (rest forms)
+      (choice-code form (first forms) (list (note-own-text `(and ,@(rest forms)))) '() scope)
+      (plan-code (if forms (first forms) t) scope)))
+
+(define-plan-form "OR" nil (&rest forms) (form scope)
+  (if (rest forms)
+      (with-gensyms (value)
+        (plan-code (note-own-text `(let ((,value ,(first forms)))
+                                     (if ,value ,value (or ,@(rest forms)))))
+                   scope))
+      (plan-code (first forms) scope)))

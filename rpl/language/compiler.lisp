@@ -1,0 +1,140 @@
+;;;; compiler.lisp -- from a plan's text to code that builds its nodes.
+
+(in-package :ars-magna.rpl.language)
+
+;;; Every function here named X-CODE returns a form; evaluated once, when the plan is loaded, that
+;;; form builds the nodes.
+
+(defun element-names (lambda-list)
+  "Return the variables of LAMBDA-LIST, a destructuring one without defaults."
+  (cond ((null lambda-list) '())
+        ((atom lambda-list)
+         (unless (member lambda-list lambda-list-keywords) (list lambda-list)))
+        (t (append (element-names (car lambda-list)) (element-names (cdr lambda-list))))))
+
+(defmacro define-plan-form (name suspends lambda-list (form scope) &body body)
+  "Let plans understand the operator called NAME: BODY returns the code for FORM in SCOPE, its
+arguments bound by LAMBDA-LIST. SUSPENDS says whether it makes a task wait: see SUSPENSION."
+  (let ((names (element-names lambda-list)))
+    (with-gensyms (fits values)
+      `(setf (gethash ,name *plan-forms*)
+             (make-plan-form
+              ,name ,suspends
+              (lambda (,form ,scope)
+                (declare (ignorable ,scope))
+                (multiple-value-bind (,fits ,values)
+                    (ignore-errors
+                     (values t (destructuring-bind ,lambda-list (rest ,form) (list ,@names))))
+                  (unless ,fits (reject-shape ,form ',lambda-list))
+                  (destructuring-bind ,names ,values
+                    (declare (ignorable ,@names))
+                    ,@body))))))))
+
+(defun reject-shape (form lambda-list)
+  (let ((*print-case* :downcase))
+    (reject-clause "plan" form (format nil "(~A~{ ~A~})" (operator-text form) lambda-list))))
+
+(defun refuse-code (form scope)
+  "Return code for FORM, which plans cannot wait inside: a leaf, or an error if it would wait."
+  (multiple-value-bind (suspends reason) (suspension form scope)
+    (if (eq suspends :must)
+        (reject-suspension reason form)
+        (leaf-code form scope))))
+
+(defun suspends-p (form scope)
+  (and (consp form) (suspension form scope)))
+
+;;; An expression of which a part that Lisp is to use makes the task wait.
+
+(defun hoisted-code (form scope &optional (fixed 1))
+  "Return code for FORM; those of its elements after the first FIXED that suspend are bound before
+it, and those to the left of them too, to keep the order."
+  (let* ((parts (nthcdr fixed form))
+         (count (1+ (position-if (lambda (part) (suspends-p part scope)) parts :from-end t)))
+         (names (loop for part in (subseq parts 0 count)
+                      collect (if (constantp part) nil (gensym "PART")))))
+    (plan-code (note-own-text
+                `(let ,(loop for name in names
+                             for part in parts
+                             when name collect (list name part))
+                   (,@(subseq form 0 fixed)
+                    ,@(loop for name in names
+                            for part in parts
+                            collect (or name part))
+                    ,@(nthcdr count parts))))
+               scope)))
+
+(defun call-code (form scope)
+  "Return code for FORM, a call of a procedure or an unknown function; its arguments do not wait."
+  (let* ((local (cdr (assoc (first form) (scope-procedures scope))))
+         (arguments (loop for argument in (rest form) collect (as-lisp argument scope)))
+         (outer (and local (list (environment-form scope (second local))))))
+    `(make-call :form ',form
+                :procedure ,(if local (first local) `(ensure-procedure ',(first form)))
+                :caller ,(leaf-lambda `(funcall %function ,@outer ,@arguments) scope
+                                      '%function))))
+
+(defun function-form-code (form scope)
+  "Return code for FORM, a call whose operator has no meaning of its own in plans."
+  (cond ((some (lambda (argument) (suspends-p argument scope)) (rest form))
+         (hoisted-code form scope))
+        ((call-suspends form scope (scope-environment scope)) (call-code form scope))
+        (t (leaf-code form scope))))
+
+(defun container-p (form)
+  "True if FORM is of a kind for which there is advice: plans cannot wait inside."
+  (some (lambda (entry) (member (first form) (car entry) :test #'string=)) *advice*))
+
+(defun plan-code (form scope)
+  "Return code that builds the node for FORM."
+  (if (not (suspends-p form scope))
+      (leaf-code form scope)
+      (let* ((environment (scope-environment scope))
+             (plan-form (find-plan-form form environment)))
+        (cond (plan-form (funcall (plan-form-compiler plan-form) form scope))
+              ((not (symbolp (first form))) (refuse-code form scope))
+              ((assoc (first form) (scope-procedures scope)) (function-form-code form scope))
+              ((local-function-p (first form) environment)
+               (if (macro-function (first form) environment)
+                   (expansion-code form scope)
+                   (function-form-code form scope)))
+              ((container-p form) (refuse-code form scope))
+              ((macro-function (first form) environment) (expansion-code form scope))
+              ((special-operator-p (first form)) (refuse-code form scope))
+              ((operator-in-p form *stirring-functions*)
+               (if (some (lambda (argument) (suspends-p argument scope)) (rest form))
+                   (hoisted-code form scope)
+                   (leaf-code form scope)))
+              (t (function-form-code form scope))))))
+
+(defun expansion-code (form scope)
+  "Return code for FORM, a macro call."
+  (let ((expansion (macroexpand-1 form (scope-environment scope))))
+    (unless (lisps-own-p (first form)) (note-own-text expansion))
+    (plan-code expansion scope)))
+
+;;; Bodies.
+
+(defun body-code (forms scope)
+  "Return code for FORMS as the steps of a body, of which the last one gives the values."
+  (cond
+    ((null forms) '+nothing+)
+    ((null (rest forms)) (plan-code (first forms) scope))
+    (t (let ((single (single-scope scope)))
+        `(make-steps :form '(seq ,@forms)
+                     :parts (vector ,@(loop for (form . more) on forms
+                                            collect (plan-code form (if more single scope)))))))))
+
+(defun binding-body-code (forms scope)
+  "Return code for FORMS, a body that may start with declarations; these are for the reader only."
+  (body-code (remove-if #'declaration-p forms) scope))
+
+(defun declaration-p (form)
+  (and (consp form) (eq (first form) 'declare)))
+
+(defun declared-special (variables forms)
+  "Return those of VARIABLES that the declarations in FORMS call special."
+  (loop for form in forms
+        when (declaration-p form)
+          append (loop for (kind . names) in (rest form)
+                       when (eq kind 'special) append (intersection names variables))))

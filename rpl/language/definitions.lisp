@@ -1,0 +1,108 @@
+;;;; definitions.lisp -- def-interp-proc, def-interp-macro, and plans without a name.
+
+(in-package :ars-magna.rpl.language)
+
+(defun procedure-parts (parameters environment)
+  "Return the scope of a procedure's body, and the lambda expression for its entry."
+  (let ((scope (make-scope :environment environment))
+        (variables (lambda-list-variables parameters)))
+    (check-lambda-list parameters scope)
+    (values (variable-scope scope variables)
+            (entry-lambda parameters scope nil))))
+
+(defun split-documentation (body)
+  "Return BODY without the string that it may start with, and that."
+  (if (and (stringp (first body)) (rest body))
+      (values (rest body) (first body))
+      (values body nil)))
+
+(defun procedure-form (name parameters body environment)
+  "Return the form that defines the plan procedure NAME in ENVIRONMENT."
+  (let* ((definition (title "def-interp-proc" name))
+         (parameters (untyped-lambda-list parameters definition))
+         (form (list* name parameters body)))
+    (declare-procedure name)
+    (with-own-text (form)
+      (multiple-value-bind (body documentation) (split-documentation body)
+        (multiple-value-bind (scope entry) (procedure-parts parameters environment)
+          `(progn
+             (eval-when (:compile-toplevel :load-toplevel :execute)
+               (declare-procedure ',name)
+               (declaim (ftype function ,name)))
+             (install-procedure ',name ',parameters ,documentation
+                                ,entry ,(procedure-body-code name form body scope)
+                                ',(source-here))))))))
+
+(public def-interp-proc)
+(define-user-macro def-interp-proc (&whole form name parameters &body body &environment environment)
+  "Define NAME as a plan procedure with PARAMETERS, an ordinary lambda list in which a hyphen and a
+type may follow each variable; BODY is plan text and may start with a documentation string. The
+value is that of its last form. Defining it anew takes effect at the next call, also in running
+plans (manual D.2)."
+  (check-function-name (title "def-interp-proc" name) name)
+  (call-with-definition form (lambda () (procedure-form name parameters body environment))))
+
+(addition interp-lambda)
+(define-user-macro interp-lambda ((&rest parameters) &body body &environment environment)
+  "Return a plan procedure without a name: PARAMETERS and BODY are as for DEF-INTERP-PROC. BODY sees
+the variables around it, but not blocks, tags and local plans. Run it by CALL-PLAN."
+  (let ((parameters (untyped-lambda-list parameters "interp-lambda"))
+        (form (list* 'interp-lambda parameters body)))
+    (with-own-text (form)
+      (multiple-value-bind (scope entry) (procedure-parts parameters environment)
+        `(anonymous-procedure ',parameters ,entry
+                              ,(procedure-body-code nil form body scope))))))
+
+(defun make-plan (form &key compile)
+  "Return a plan procedure without parameters that does FORM, plan text made by a program. Its Lisp
+code is interpreted, which costs little now and more when it runs, or compiled if COMPILE is true."
+  (evaluate-form `(interp-lambda () ,form) :compile compile))
+
+;;; Macros.
+
+(defun pattern-parameters (pattern)
+  "Return PATTERN as a macro lambda list: ?x stands for the variable x, ?() for anything; and a list
+of the variable and the word for each word that must be there literally."
+  (let ((literals '()))
+    (labels ((parameter (pattern)
+               (cond ((variable-of pattern))
+                     ((consp pattern) (parameters pattern))
+                     (t (let ((variable (gensym "LITERAL")))
+                          (push (list variable pattern) literals)
+                          variable))))
+             (parameters (pattern)
+               (cond ((null pattern) '())
+                     ((consp pattern) (cons (parameter (car pattern)) (parameters (cdr pattern))))
+                     (t (list '&rest (parameter pattern))))))
+      (values (parameters pattern) (nreverse literals)))))
+
+(defun variable-of (pattern)
+  "Return the variable that PATTERN, perhaps ?x, stands for, or NIL."
+  (cond ((matchvar-p pattern) (or (matchvar-name pattern) (gensym "ANY")))
+        ((and (symbolp pattern) (starts-with-subseq "?" (symbol-name pattern)))
+         (if (string= "?" (symbol-name pattern))
+             (gensym "ANY")
+             (intern (subseq (symbol-name pattern) 1))))))
+
+(defun check-literal (name form given expected)
+  (unless (or (eq given expected)
+              (and given expected (symbolp given) (symbolp expected) (same-name-p given expected)))
+    (reject-clause (format nil "~(~A~)" name) form (format nil "the word ~(~S~)" expected))))
+
+(public def-interp-macro)
+(define-user-macro def-interp-macro ((name &rest pattern) &body template)
+  "Define NAME as a macro for plans. ?x in PATTERN stands for any form, to which the variable x is
+bound while TEMPLATE is evaluated; a pattern may end in a dot and ?x for all forms that are left.
+The value of TEMPLATE is the plan text to use. A documentation string may come before TEMPLATE
+(manual D.8)."
+  (check-function-name (title "def-interp-macro" name) name)
+  (multiple-value-bind (parameters literals) (pattern-parameters pattern)
+    (multiple-value-bind (body documentation) (split-documentation template)
+      (with-gensyms (form)
+        (user-macro-form
+         name `(&whole ,form ,@parameters) (cons name pattern)
+         `(,@(when documentation (list documentation))
+           (declare (ignorable ,@(remove-if #'symbol-package (element-names parameters))))
+           ,@(loop for (variable word) in literals
+                   collect `(check-literal ',name ,form ,variable ',word))
+           ,@body))))))

@@ -1,0 +1,97 @@
+;;;; leaf.lisp -- Lisp code within a plan: compiled as Lisp, with the plan's meaning of operators.
+
+(in-package :ars-magna.rpl.language)
+
+;;; Where the plan's own text says so, conditions read fluents by value and operators are lifted.
+
+(defun own-operation-p (form environment names)
+  "True if FORM is the plan's own call of one of the operators NAMES."
+  (and (consp form)
+       (own-text-p form)
+       (operator-in-p form names)
+       (not (local-function-p (first form) environment))))
+
+(defun operand-form (form environment)
+  "Return the form for the value of FORM, an argument of a lifted operator in a condition."
+  (cond ((own-operation-p form environment '("NOT")) (condition-form form environment))
+        ((own-operation-p form environment *lifted-operators*)
+         (list* (first form)
+                (loop for argument in (rest form) collect (operand-form argument environment))))
+        ((constantp form environment) form)
+        (t `(fluent-value ,form))))
+
+(defun condition-form (form environment)
+  "Return a form that is true if FORM is, fluents counting by their values."
+  (flet ((conditions (forms)
+           (loop for form in forms collect (condition-form form environment))))
+    (cond ((own-operation-p form environment '("AND")) `(and ,@(conditions (rest form))))
+          ((own-operation-p form environment '("OR")) `(or ,@(conditions (rest form))))
+          ((own-operation-p form environment '("NOT")) `(not ,@(conditions (rest form))))
+          (t (operand-form form environment)))))
+
+(defun plan-meaning (form environment)
+  "Return what FORM, a call in the plan's own text, means; FORM itself if just what it says."
+  (let ((name (or (plan-operator-name form) "")))
+    (flet ((condition (form) (condition-form form environment))
+           (is (&rest names) (member name names :test #'string=)))
+      (cond ((is "IF") `(if ,(condition (second form)) ,@(cddr form)))
+            ((is "WHEN") `(when ,(condition (second form)) ,@(cddr form)))
+            ((is "UNLESS") `(unless ,(condition (second form)) ,@(cddr form)))
+            ((is "COND") `(cond ,@(loop for (test . body) in (rest form)
+                                        collect `(,(condition test) ,@body))))
+            ((is "CASE") `(case (fluent-value ,(second form)) ,@(cddr form)))
+            ((is "LET" "LET*") (let-meaning form))
+            ((is "AND") `(lifting-and ,@(rest form)))
+            ((is "OR") `(lifting-or ,@(rest form)))
+            ((is "LOOP") (if (plan-loop-p form) (loop-meaning (rest form) environment) form))
+            ((operator-in-p form *lifted-operators*) `(lifting ,@form))
+            (t form)))))
+
+(defun let-meaning (form)
+  "Return FORM, a LET, without types; FORM itself if there are none."
+  (if (and (listp (second form)) (find '- (second form)))
+      `(,(first form) ,(untyped-bindings (second form)) ,@(cddr form))
+      form))
+
+(defun loop-meaning (forms environment)
+  (cond ((keyword-test forms "UNTIL")
+         `(loop (when ,(condition-form (second forms) environment) (return)) ,@(cddr forms)))
+        ((keyword-test forms "WHILE")
+         `(loop (unless ,(condition-form (second forms) environment) (return)) ,@(cddr forms)))
+        (t `(loop ,@forms))))
+
+(defun leaf-meaning (form environment)
+  "Return FORM, met in a leaf, with its plan meaning."
+  (cond ((not (and (consp form) (symbolp (first form)) (own-text-p form))) form)
+        ((plan-in-leaf-p form) (values form t))
+        (t (let ((meaning (if (local-function-p (first form) environment)
+                              form
+                              (plan-meaning form environment))))
+             (if (and (eq meaning form)
+                      (macro-function (first form) environment)
+                      (not (lisps-own-p (first form))))
+                 (note-own-text (macroexpand-1 form environment))
+                 meaning)))))
+
+(defun as-lisp (form scope)
+  "Return FORM, a leaf's, as Lisp is to compile it."
+  (if (atom form)
+      form
+      (walk-form form (scope-environment scope) #'leaf-meaning)))
+
+(defun test-lambda (form scope)
+  "Return the lambda expression, of the environment, for FORM as a condition."
+  (leaf-lambda (as-lisp (condition-form form (scope-environment scope)) scope) scope))
+
+(defun value-lambda (form scope)
+  "Return the lambda expression, of the environment, for the one value of FORM."
+  (leaf-lambda (as-lisp form scope) scope))
+
+(defun leaf-code (form scope)
+  "Return code that builds the leaf for FORM."
+  (let ((meaning (as-lisp form scope)))
+    `(make-leaf :form ',form
+                :function ,(leaf-lambda (if (and (scope-several scope) (consp form))
+                                            `(multiple-value-call #'bundle-up ,meaning)
+                                            meaning)
+                                        scope))))

@@ -1,0 +1,121 @@
+;;;; scope.lisp -- what is visible at a place in a plan's text.
+
+(in-package :ars-magna.rpl.language)
+
+;;; Variables that a plan binds live in environments, vectors linked by element 0. A leaf is a Lisp
+;;; function of the environment at its place; within it each visible variable is a symbol macro for
+;;; its element. Local functions live in environments too.
+
+(defstruct (scope (:copier copy-scope))
+  "What is visible at a place in a plan. VARIABLE is what leaves call their environment; it is one
+procedure's own, so that plans can be written in the leaves of others. LAYERS tell, innermost first,
+how leaves get to see what is visible. The others map names to the variables, in the code that
+builds the plan, that hold their nodes."
+  (variable (gensym "ENVIRONMENT") :type symbol)
+  (environment nil)
+  (level 0 :type fixnum)
+  (layers '() :type list)
+  (blocks '() :type list)
+  (tags '() :type list)
+  (procedures '() :type list)
+  (retry nil :type symbol)
+  (task-tags '() :type list)
+  (several nil :type boolean))
+
+(defmacro inner-scope (scope &rest changes)
+  "Return a copy of SCOPE in which the slots named in CHANGES, a property list, have new values."
+  (with-gensyms (inner)
+    `(let ((,inner (copy-scope ,scope)))
+       (setf ,@(loop for (slot value) on changes by #'cddr
+                     append `((,(symbolicate 'scope- slot) ,inner) ,value)))
+       ,inner)))
+
+(defun layered-scope (scope layer level &rest additions)
+  "Return SCOPE with LAYER, at LEVEL, as its innermost; macros get to see ADDITIONS."
+  (inner-scope scope
+               :level level
+               :layers (cons layer (scope-layers scope))
+               :environment (apply #'extended-environment (scope-environment scope) additions)))
+
+(defun single-scope (scope)
+  "Return SCOPE for an expression of which only one value matters."
+  (if (scope-several scope) (inner-scope scope :several nil) scope))
+
+(defun several-scope (scope)
+  "Return SCOPE for an expression all of whose values matter."
+  (inner-scope scope :several t))
+
+(defun variable-scope (scope variables)
+  "Return SCOPE with VARIABLES bound in an environment of their own."
+  (let ((level (1+ (scope-level scope)))
+        (special (find-if (lambda (variable)
+                            (special-variable-p variable (scope-environment scope)))
+                          variables)))
+    (when special
+      (reject-clause "plan" special "the name of a lexical variable; this one is special"))
+    (layered-scope scope (list :variables level variables) level
+                   :variable (remove-duplicates variables))))
+
+(defun function-scope (scope names)
+  "Return SCOPE with the local functions NAMES held in an environment of their own."
+  (let ((level (1+ (scope-level scope))))
+    (layered-scope scope (list :functions level names) level :function names)))
+
+(defun wrapped-scope (scope wrapping &rest additions)
+  "Return SCOPE with WRAPPING, a form to be completed by a body, around leaves; macros get to see
+ADDITIONS."
+  (apply #'layered-scope scope (list :wrapping wrapping) (scope-level scope) additions))
+
+(defun scope-variables (scope)
+  "Return the variables of the plan that are visible in SCOPE."
+  (loop for (kind nil names) in (scope-layers scope)
+        when (eq kind :variables) append names))
+
+;;; How a leaf sees its scope.
+
+(defun element-form (scope level index)
+  "Return the form, within a leaf of SCOPE, for element INDEX of the environment made at LEVEL."
+  `(svref ,(loop with form = (scope-variable scope)
+                 repeat (- (scope-level scope) level)
+                 do (setf form `(the simple-vector (svref ,form 0)))
+                 finally (return form))
+          ,index))
+
+(defun environment-form (scope level)
+  "Return the form, within a leaf of SCOPE, for the environment made at LEVEL."
+  (second (element-form scope level 0)))
+
+(defun layer-wrapping (layer scope)
+  "Return the form, to be completed by a body, that makes LAYER visible in a leaf of SCOPE."
+  (destructuring-bind (kind &rest parts) layer
+    (ecase kind
+      (:variables
+       (destructuring-bind (level variables) parts
+         `(symbol-macrolet
+              ,(remove-duplicates
+                (loop for variable in variables
+                      for index from 1
+                      collect (list variable (element-form scope level index)))
+                :key #'first))))
+      (:functions
+       (destructuring-bind (level names) parts
+         `(flet ,(loop for name in names
+                       for index from 1
+                       collect `(,name (&rest arguments)
+                                  (declare (dynamic-extent arguments))
+                                  (apply (the function ,(element-form scope level index))
+                                         arguments)))
+            (declare (ignorable ,@(loop for name in names collect `(function ,name)))))))
+      (:wrapping (first parts)))))
+
+(defun wrap-for-leaf (form scope)
+  "Return FORM with everything that is visible in SCOPE around it."
+  (dolist (layer (scope-layers scope) form)
+    (unless (equal (cddr layer) '(()))  ; no variables
+      (setf form `(,@(layer-wrapping layer scope) ,form)))))
+
+(defun leaf-lambda (form scope &rest parameters)
+  "Return the lambda expression for FORM in SCOPE: it takes the environment and PARAMETERS."
+  `(lambda (,(scope-variable scope) ,@parameters)
+     (declare (type simple-vector ,(scope-variable scope)) (ignorable ,(scope-variable scope)))
+     ,(wrap-for-leaf form scope)))

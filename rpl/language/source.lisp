@@ -1,0 +1,126 @@
+;;;; source.lisp -- reading a plan's text: what its operators are called, what is its own text.
+
+(in-package :ars-magna.rpl.language)
+
+;;; Inside a plan, IF, AND, < and so on have their plan meaning whether they are read as Common
+;;; Lisp's, the Nisp dialect's or ours: operators are known by name, as long as they are Lisp's or
+;;; belong to a package of this system.
+;;;
+;;; That holds for the plan's own text only: an AND that DOTIMES or PUSH expands into stays Lisp's.
+;;; So the conses of the text are remembered, and those of what other macros than Lisp's expand
+;;; into.
+
+(define-condition misplaced-suspension (ars-magna-error)
+  ((form :initarg :form :reader misplaced-form)
+   (container :initarg :container :reader misplaced-container)
+   (advice :initarg :advice :reader misplaced-advice))
+  (:report (lambda (condition stream)
+             (let ((*print-case* :downcase))
+               (format stream "A plan cannot wait inside ~A:~%  ~S~%with, inside,~%  ~S~%~A"
+                       (operator-text (misplaced-container condition))
+                       (misplaced-container condition) (misplaced-form condition)
+                       (misplaced-advice condition)))))
+  (:documentation "A plan waits, fails or runs another plan inside a form that only Lisp runs."))
+
+(setf (documentation 'misplaced-form 'function) "Return the form that would make the task wait."
+      (documentation 'misplaced-container 'function) "Return the form that it cannot wait inside."
+      (documentation 'misplaced-advice 'function) "Return a sentence on what to write instead.")
+
+(defun operator-text (form)
+  (format nil "~(~A~)" (if (consp form) (first form) form)))
+
+(defparameter *advice*
+  '((("UNWIND-PROTECT") . "Write (evap-protect form cleanup): the cleanup may wait.")
+    (("HANDLER-CASE" "HANDLER-BIND" "IGNORE-ERRORS" "RESTART-CASE" "WITH-SIMPLE-RESTART")
+     . "Write (handle-failure ((type (e) ...)) body...): it also handles Lisp errors.")
+    (("CATCH" "THROW") . "Write block and return-from: they work across tasks.")
+    (("LOOP") . "Write (loop UNTIL test ...), dolist, dotimes, n-times or par-loop.")
+    (("LAMBDA" "FUNCTION" "NAMED-LAMBDA" "CONTINUATION")
+     . "Write dolist or par-loop for mapcar, flet or labels for a local plan.")
+    (("LET" "LET*" "PROGV" "MULTIPLE-VALUE-BIND")
+     . "Special variables hold for the whole thread: bind a lexical variable or a fluent.")
+    (("MULTIPLE-VALUE-CALL" "MULTIPLE-VALUE-PROG1") . "Write multiple-value-bind.")
+    (("WITH-OPEN-FILE" "WITH-OPEN-STREAM")
+     . "Open the file in a leaf, and close it in the cleanup of an evap-protect."))
+  "What to write instead of Lisp forms that a plan cannot wait inside.")
+
+(defun advice-for (form)
+  (or (and (consp form) (symbolp (first form))
+           (cdr (find-if (lambda (names) (member (first form) names :test #'string=))
+                         *advice* :key #'car)))
+      "Bind the value that it needs with let before, so that the plan waits there."))
+
+(defun reject-suspension (form container)
+  "Signal MISPLACED-SUSPENSION: FORM would make the task wait inside CONTAINER."
+  (error 'misplaced-suspension :form form :container container :advice (advice-for container)))
+
+(defun misplaced (name arguments)
+  "Signal MISUSE: the construct called NAME was met in ordinary Lisp code."
+  (reject-use "~S is part of the plan language. Write it in a def-interp-proc, or outside of any ~
+               lambda or Lisp form there that keeps plans from waiting."
+              (cons name arguments)))
+
+;;; Names of operators.
+
+(defun our-symbol-p (symbol)
+  "True if SYMBOL is Common Lisp's, or belongs to a package of this system."
+  (let ((package (symbol-package symbol)))
+    (or (eq package #.(find-package :cl))
+        (and package (starts-with-subseq "ARS-MAGNA." (package-name package))))))
+
+(defun plan-operator-name (form)
+  "Return the name of the operator of FORM if plans may have a meaning for it, or NIL."
+  (cond ((not (and (consp form) (symbolp (first form)))) nil)
+        ((our-symbol-p (first form)) (symbol-name (first form)))
+        ((eq (first form) :tag) ":TAG")))
+
+(defun operator-in-p (form names)
+  (let ((name (plan-operator-name form)))
+    (and name (member name names :test #'string=))))
+
+(defun plan-in-leaf-p (form)
+  "True if FORM makes a plan: its text is for itself to read."
+  (operator-in-p form '("INTERP-LAMBDA" "DEF-INTERP-PROC")))
+
+(defparameter *lifted-operators*
+  '("NOT" "<" ">" "<=" ">=" "=" "+" "-" "*" "/" "EQ" "EQL" "EQUAL"))
+
+(defun keyword-test (forms name)
+  "True if FORMS start with the symbol NAME and a test, as after LOOP."
+  (and (rest forms)
+       (symbolp (first forms))
+       (string= (first forms) name)))
+
+(defun plan-loop-p (form)
+  "True if FORM, a LOOP, is a plan's: (loop [UNTIL or WHILE test] compound-form...)."
+  (let ((forms (rest form)))
+    (every #'consp (if (or (keyword-test forms "UNTIL") (keyword-test forms "WHILE"))
+                       (cddr forms)
+                       forms))))
+
+;;; The plan's own text.
+
+(defvar *own-conses* nil
+  "While a plan is compiled: a table of the conses of its text.")
+
+(defun note-own-text (form)
+  "Remember that FORM and all in it is the plan's own text. Return FORM."
+  (labels ((note (form)
+             (loop while (and (consp form) (not (gethash form *own-conses*)))
+                   do (setf (gethash form *own-conses*) t)
+                      (note (car form))
+                      (setf form (cdr form)))
+             (when (form-behind-comma form) (note (form-behind-comma form)))))
+    (note form))
+  form)
+
+(defun own-text-p (form)
+  (gethash form *own-conses*))
+
+(defmacro with-own-text ((form) &body body)
+  "Run BODY while FORM, and what is noted besides, is known to be a plan's text. What is made of it
+has the same names every time, so that traces can be compared."
+  `(let ((*own-conses* (make-hash-table :test 'eq))
+         (*gensym-counter* 0))
+     (note-own-text ,form)
+     ,@body))

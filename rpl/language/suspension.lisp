@@ -1,0 +1,99 @@
+;;;; suspension.lisp -- whether an expression can make its task wait.
+
+(in-package :ars-magna.rpl.language)
+
+;;; An expression MUST be run by the plan machine if somewhere in it is a construct that waits,
+;;; fails or calls a plan procedure. It MAY be run by it if somewhere in it is a call of a function
+;;; that is not known yet (it could turn out to be a procedure), or something after which policies
+;;; should get a chance, such as SET-VALUE. Anything else is a leaf.
+
+(defstruct (plan-form (:constructor make-plan-form (name suspends compiler)) (:copier nil))
+  "What a plan makes of the operator called NAME. SUSPENDS is :must, :may or NIL; COMPILER takes the
+form and its scope and returns code that builds a node."
+  (name "" :type string :read-only t)
+  (suspends nil :type (member :must :may nil) :read-only t)
+  (compiler #'list :type function :read-only t))
+
+(defvar *plan-forms* (make-hash-table :test 'equal)
+  "The operators that plans have a meaning of their own for.")
+
+(defparameter *stirring-functions* '("SET-VALUE" "PULSE")
+  "Functions after which somebody else may be ready.")
+
+(defun find-plan-form (form environment)
+  "Return the plan form that FORM is one of, or NIL."
+  (let ((name (plan-operator-name form)))
+    (and name
+         (not (local-function-p (first form) environment))
+         (or (string/= name "LOOP") (plan-loop-p form))
+         (gethash name *plan-forms*))))
+
+(defvar *inner-exits* '()
+  "Names of blocks and tags inside the expression that is being looked at.")
+
+(defun exit-suspends-p (form scope)
+  "True if FORM leaves for a block or tag of the plan, outside the expression looked at."
+  (let ((name (second form)))
+    (and (not (member name *inner-exits*))
+         (if (eq (first form) 'go)
+             (assoc name (scope-tags scope))
+             (assoc name (scope-blocks scope))))))
+
+(defun check-own-form (form)
+  "Signal MALFORMED-DEFINITION if FORM is an IF of the plan's text that is none of a plan's."
+  (when (and (own-text-p form) (operator-in-p form '("IF")))
+    (unless (typep form '(cons t (cons t (cons t (or null (cons t null))))))
+      (reject-clause "plan" form "(if test then [else]): put several forms into (seq ...)"))))
+
+(defun call-suspends (form scope environment)
+  "Return :MUST, :MAY or NIL for FORM, a call or special form, its parts left aside."
+  (let ((name (first form)))
+    (cond ((local-function-p name environment)
+           (and (assoc name (scope-procedures scope)) :must))
+          ((member name '(return-from go))
+           (and (exit-suspends-p form scope) :must))
+          ((eq name 'function)
+           (and (symbolp (second form)) (assoc (second form) (scope-procedures scope)) :must))
+          ((operator-in-p form *stirring-functions*) :may)
+          ((procedure-name-p name) :must)
+          ((or (macro-function name environment)
+               (special-operator-p name)
+               (known-function-p name environment))
+           nil)
+          (t :may))))
+
+(defun exits-in (form plan-form)
+  "Return the parts of FORM and the names of the blocks or tags that it gives them, if any."
+  (cond ((eq (first form) 'block) (values (cddr form) (list (second form))))
+        ((eq (first form) 'tagbody)
+         (values (remove-if #'atom (rest form)) (remove-if #'consp (rest form))))
+        ((and plan-form (string= "LOOP" (plan-form-name plan-form)))
+         (values (remove-if #'atom (rest form)) '(nil)))))
+
+(defun suspension (form scope)
+  "Return :MUST, :MAY or NIL, and the expression in FORM that is the reason."
+  (let ((result nil) (reason nil))
+    (labels ((note (kind form)
+               (when (or (null result) (and (eq kind :must) (eq result :may)))
+                 (setf result kind
+                       reason form)))
+             (walk-inside (forms environment exits)
+               (let ((*inner-exits* (append exits *inner-exits*)))
+                 (dolist (form forms) (walk-form form environment #'visit))))
+             (visit (form environment)
+               (cond ((or (atom form) (not (symbolp (first form)))) form)
+                     ((plan-in-leaf-p form) (values form t))
+                     (t (check-own-form form)
+                        (visit-call form environment (find-plan-form form environment)))))
+             (visit-call (form environment plan-form)
+               (let ((kind (or (and plan-form (plan-form-suspends plan-form))
+                               (call-suspends form scope environment))))
+                 (when kind (note kind form))
+                 (multiple-value-bind (parts exits) (exits-in form plan-form)
+                   (cond ((eq kind :must) (values form t))
+                         (exits
+                          (walk-inside parts environment exits)
+                          (values form t))
+                         (t form))))))
+      (walk-form form (scope-environment scope) #'visit))
+    (values result reason)))

@@ -1,0 +1,103 @@
+;;;; tags.lisp -- tasks by name: with-tags, (:tag name form), the status of a task.
+
+(in-package :ars-magna.rpl.language)
+
+;;; WITH-TAGS binds the name of each (:tag name form) in it to a task that is yet to start, so that
+;;; other branches can refer to it before. A second run of the same form gets a task of its own.
+
+(define-node tagged ((name symbol) (place function) (body node))
+  "BODY as a task of its own called NAME. PLACE returns the environment that holds the task and
+its index there, NIL if none does."
+  :step step-tagged :child-ended tagged-part-over)
+
+(defun tag-task (node environment)
+  "Return the task that is to run NODE, which is tagged."
+  (multiple-value-bind (holder index) (funcall (tagged-place node) environment)
+    (let ((task (and holder (svref holder index))))
+      (if (and task (eq (task-state task) :created))
+          task
+          (let ((task (make-task (tagged-name node) (tagged-body node))))
+            (when holder (setf (svref holder index) task))
+            task)))))
+
+(defun start-branch (branch task environment index level)
+  "Start BRANCH as the part number INDEX of TASK; as the task of its tag, if it is tagged."
+  (if (tagged-p branch)
+      (spawn task (tagged-body branch) environment index level (tag-task branch environment))
+      (spawn task branch environment index level)))
+
+(defun tagged-part-over (node task frame child how result)
+  (declare (ignore node frame child))
+  (unless (fail-or-escape task how result)
+    (complete task result)))
+
+(defun step-tagged (node task frame value)
+  (cond ((plusp (frame-counter frame)) (values (frame-up frame) value))
+        (t (setf (frame-counter frame) 1)
+           (start-branch node task (frame-environment frame) 0 (task-level task))
+           (park task nil)
+           +parked+)))
+
+(define-plan-form ":TAG" :must (name &rest body) (form scope)
+  (destructuring-bind (&optional level index) (cdr (assoc name (scope-task-tags scope)))
+    `(make-tagged :form ',form :name ',name
+                  :place ,(if level
+                              `(lambda (,(scope-variable scope))
+                                 (values ,(environment-form scope level) ,index))
+                              '(constantly nil))
+                  :body ,(body-code body (single-scope scope)))))
+
+(defun tags-in (forms)
+  "Return the names of the tags in FORMS, not counting those that belong to a WITH-TAGS in them."
+  (let ((names '()))
+    (labels ((search-in (form)
+               (cond ((atom form))
+                     ((and (eq (first form) :tag) (typep (rest form) '(cons symbol t)))
+                      (pushnew (second form) names)
+                      (search-all (cddr form)))
+                     ((or (eq (first form) 'quote)
+                          (operator-in-p form '("WITH-TAGS" "PARTIAL-ORDER" "PLAN"))))
+                     (t (search-all form))))
+             (search-all (forms)
+               (loop for tail = forms then (cdr tail)
+                     while (consp tail) do (search-in (car tail)))))
+      (search-all forms))
+    (nreverse names)))
+
+(defun with-tags-code (form names scope coder)
+  "Return the code that CODER returns for a scope in which NAMES are bound to tasks."
+  (if names
+      (let* ((inner (variable-scope scope names))
+             (level (scope-level inner))
+             (tags (loop for name in names
+                         for index from 1
+                         collect (list name level index))))
+        `(make-binding
+          :form ',form
+          :fill (lambda (environment)
+                  (vector environment
+                          ,@(loop for name in names collect `(make-task ',name +nothing+))))
+          :body ,(funcall coder (inner-scope inner
+                                             :task-tags (append tags (scope-task-tags scope))))))
+      (funcall coder scope)))
+
+(addition with-tags)
+(defmacro with-tags (&body body)
+  "Run BODY in a plan with the name of each (:tag name form) in it bound to the task that runs that
+form: see TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. A procedure's body is a WITH-TAGS too."
+  (misplaced 'with-tags body))
+
+(define-plan-form "WITH-TAGS" :must (&rest body) (form scope)
+  (with-tags-code form (tags-in body) scope (lambda (scope) (body-code body scope))))
+
+(addition task-status)
+(defun task-status (task)
+  "Return a fluent that is :created, :running, :blocked, :succeeded, :failed or :evaporated, as TASK
+is."
+  (or (task-status-fluent task)
+      (setf (task-status-fluent task)
+            (create-fluent (or (task-name task) 'task)
+                           (cond ((or (task-over-p task) (eq (task-state task) :created))
+                                  (task-state task))
+                                 ((plusp (task-blocked task)) :blocked)
+                                 (t :running))))))

@@ -1,0 +1,119 @@
+;;;; outcomes.lisp -- how plan functions are made of commands (manual C).
+
+(in-package :ars-magna.rpl-robot)
+
+;;; The functions follow from the commands' definitions: what is the robot's is left out, cameras,
+;;; hands and bins are given by index, and any argument may be a fluent. What becomes of the
+;;; fluents when a command ends is said by DEFINE-OUTCOME, in the table of robot-commands.lisp.
+
+(defun fluent-of (variable part)
+  "Return the fluent in VARIABLE, which for a PART is a vector."
+  (let ((value (symbol-value variable)))
+    (if (simple-vector-p value) (svref value (part-index part)) value)))
+
+(defun part-kind (type)
+  "Return the kind of part that arguments of TYPE are, or NIL if they are no parts."
+  (let ((kind (find type (all-kinds 'part) :key #'kind-name :test #'same-name-p)))
+    (and kind (kind-name kind))))
+
+(defun convert-argument (value type operator)
+  "Return what VALUE, perhaps a fluent or an index, stands for as an argument of
+TYPE (reading 181)."
+  (let ((value (fluent-value value)))
+    (cond ((part-kind type) (find-part (part-kind type) value operator))
+          ((and (same-name-p type 'destination) (integerp value))
+           (find-part 'storage-bin value operator))
+          (t value))))
+
+(defun convert-resource (arguments type operator)
+  "Return the resource that ARGUMENTS begin with, and the rest; the robot is implied."
+  (if (same-name-p type (quote robot))
+      (values (rpl-robot) arguments)
+      (values (convert-argument (first arguments) type operator) (rest arguments))))
+
+(defun ends-p (command err)
+  "True if an answer of COMMAND with the error code ERR is its last: a track that begins will end."
+  (or err (not (eq 'camera-track (command-name command)))))
+
+(defun answering (interface command outcome)
+  "Return a continuation for COMMAND: it posts what OUTCOME makes of the answer."
+  (atomic-incf (interface-under-way interface))
+  (lambda (err resource &rest results)
+    (post-batch (interface-runner interface) (apply outcome resource err results))
+    (when (ends-p command err)
+      (atomic-decf (interface-under-way interface)))))
+
+(defun command-in-plan (operator command outcome arguments)
+  "Issue COMMAND as the plan function OPERATOR, and post what OUTCOME, a function of the resource,
+the error code and the results, makes of its end."
+  (let ((interface (the-interface)))
+    (multiple-value-bind (resource arguments)
+        (convert-resource arguments (spec-type (command-resource command)) operator)
+      (let ((arguments (loop for spec in (command-parameters command)
+                             for argument in arguments
+                             collect (convert-argument argument (spec-type spec) operator))))
+        (check-in-plan operator command arguments)
+        (apply (command-name command) resource
+               (append arguments (list (answering interface command outcome))))))))
+
+(defun check-in-plan (operator command arguments)
+  "Signal WRONG-ARGUMENT in the name of OPERATOR if COMMAND does not take ARGUMENTS."
+  (loop for spec in (command-parameters command)
+        for argument in arguments
+        unless (argument-of-type-p argument (spec-type spec))
+          do (error 'wrong-argument :operator operator :name (spec-name spec) :value argument
+                                    :expected (argument-type-text (spec-type spec)))))
+
+(defun plan-function-name (command-name)
+  "Return the symbol of the plan function for COMMAND-NAME, in the package at hand."
+  (symbolicate 'rpl- command-name))
+
+(defun parameters-in-plan (resource parameters)
+  "Return the names of what the plan function takes for a command with RESOURCE, (variable type),
+and PARAMETERS, lists (variable type text)."
+  (append (unless (same-name-p 'robot (second resource)) (list (first resource)))
+          (mapcar #'first parameters)))
+
+(defun check-fluent (name clause)
+  (unless (or (assoc name *fluent-variables*) (known-variable-p name nil))
+    (reject-clause "define-outcome" clause "a fluent variable, as DEFINE-FLUENTS defines")))
+
+(defun clause-form (clause)
+  "Return a form that makes a list of settings from CLAUSE of DEFINE-OUTCOME."
+  (case (and (consp clause) (first clause))
+    (:set (destructuring-bind (fluent value) (rest clause)
+            (check-fluent fluent clause)
+            `(list (list :set (fluent-of ',fluent resource) ,value))))
+    (:pulse (check-fluent (second clause) clause)
+     `(list (list :pulse (fluent-of ',(second clause) resource))))
+    (:when (destructuring-bind (test . clauses) (rest clause)
+             `(when ,test (append ,@(mapcar #'clause-form clauses)))))
+    (t (reject-clause "define-outcome" clause
+                      "(:set fluent form), (:pulse fluent) or (:when form clause...)"))))
+
+(defun clause-fluents (clauses)
+  (loop for clause in clauses
+        append (case (first clause)
+                 ((:set :pulse) (list (second clause)))
+                 (:when (clause-fluents (cddr clause))))))
+
+(defmacro define-outcome (commands (&rest results) &body clauses)
+  "Define the plan functions of COMMANDS. When one ends, CLAUSES are carried out with ERR bound to
+its error code and RESULTS to its results: (:set fluent form), (:pulse fluent), (:when form
+clause...). See reading 179."
+  `(progn
+     ,@(loop for command-name in commands
+             for (resource specifications sentence) = (command-shape command-name)
+             for name = (plan-function-name command-name)
+             for parameters = (parameters-in-plan resource specifications)
+             collect `(public ,name)
+             collect `(defun ,name ,parameters
+                        ,(format nil "~A~%Returns nothing; sets ~(~{~A~^, ~}~). Arguments may be ~
+                                      fluents. (Manual C.)"
+                                 sentence (remove-duplicates (clause-fluents clauses)))
+                        (command-in-plan ',name (find-command ',command-name)
+                                         (lambda (resource err &optional ,@results &rest more)
+                                           (declare (ignore more)
+                                                    (ignorable resource err ,@results))
+                                           (append ,@(mapcar #'clause-form clauses)))
+                                         (list ,@parameters))))))

@@ -1,0 +1,32 @@
+;;;; alone.lisp -- running a plan by itself, in virtual time.
+
+(in-package :ars-magna.rpl.tasks)
+
+(defun pass-time (runner)
+  "Let the next tick come at which something happens."
+  (advance-timers runner
+                  (if (any-ready-p runner)
+                      (1+ (runner-tick runner))
+                      (next-wake-time runner))))
+
+(defun run-until-over (runner task limit)
+  "Run the plans of RUNNER until TASK is over. Return its state, or :deadlock, or :limit when it is
+past tick LIMIT."
+  (loop
+    (react runner)
+    (cond ((task-over-p task) (return (task-state task)))
+          ((apply-next-batch runner))
+          ((not (or (any-ready-p runner) (next-wake-time runner))) (return :deadlock))
+          ((and limit (> (or (next-wake-time runner) (runner-tick runner)) limit)) (return :limit))
+          (t (pass-time runner)))))
+
+(addition run-plan-alone)
+(defun run-plan-alone (plan &key arguments (runner (make-plan-runner)) limit)
+  "Run PLAN, a plan procedure or the name of one, with the list ARGUMENTS by RUNNER in virtual time:
+when no task is ready the next tick at which one wakes comes at once. Return the plan's value, its
+failure if it failed, and as a second value :succeeded, :failed, :evaporated, :deadlock (reported as
+an error message) or :limit (tick LIMIT came first)."
+  (let* ((task (apply #'start-plan runner plan arguments))
+         (state (run-until-over runner task limit)))
+    (when (eq state :deadlock) (report-deadlock runner))
+    (values (task-result task) state)))

@@ -1,0 +1,54 @@
+;;;; blame.lisp -- what is known of a failure: where it happened and because of what.
+
+(in-package :ars-magna.rpl.tasks)
+
+(defun plan-backtrace (task frame)
+  "Return the expressions under way in TASK at FRAME and around it, innermost first."
+  (loop with forms = '()
+        for each = task then (task-parent each)
+        for innermost = frame then (and each (task-frame each))
+        while each
+        do (loop for frame = innermost then (frame-up frame)
+                 while frame
+                 do (push (current-form (frame-node frame) frame) forms))
+        finally (return (nreverse forms))))
+
+(defun handled-failure (task frame)
+  "Return the failure that TASK at FRAME, or a task around it, is handling or cleaning up after."
+  (loop for each = task then (task-parent each)
+        for innermost = frame then (and each (task-frame each))
+        while each
+        do (loop for frame = innermost then (frame-up frame)
+                 while frame
+                 do (when (typep (frame-data frame) 'plan-failure)
+                      (return-from handled-failure (frame-data frame))))))
+
+(defun failure-of (condition task frame)
+  "Return the failure that CONDITION, met by TASK at FRAME, means, with all that is known of it."
+  (let ((failure (if (typep condition 'plan-failure)
+                     condition
+                     (make-condition 'lisp-failure :condition condition
+                                                   :backtrace (lisp-backtrace)))))
+    (unless (failure-task-path failure)
+      (setf (failure-task-path failure) (task-path task)
+            (failure-tick failure) (runner-tick (task-runner task))
+            (failure-plan-backtrace failure) (plan-backtrace task frame)
+            (failure-form failure) (first (failure-plan-backtrace failure))
+            (failure-cause failure) (or (failure-cause failure) (handled-failure task frame))))
+    failure))
+
+(defun engine-call-p (call)
+  (member (first call) '(run-steps step-leaf call-catching-trouble)))
+
+(defun signalling-call-p (call)
+  (and (symbolp (first call)) (string= "%SIGNAL" (first call))))
+
+(defun lisp-backtrace ()
+  "Return as a string the Lisp calls under way in a plan's code that has just signalled an error."
+  (let* ((calls (calls-under-way))
+         (signalled (member-if #'signalling-call-p calls)))
+    (with-output-to-string (stream)
+      (loop for call in (if signalled (rest signalled) calls)
+            for number from 0
+            until (engine-call-p call)
+            do (format stream "    ~D: ~A~%" number (form-text call 100))))))

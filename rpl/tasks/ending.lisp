@@ -1,0 +1,146 @@
+;;;; ending.lisp -- how a task ends: well, by a signal that nothing takes care of, by evaporation.
+
+(in-package :ars-magna.rpl.tasks)
+
+;;; What ends tells the construct that it is part of, which may then end too, and so on up. A task
+;;; that is to evaporate does so at once, unless something in it has to be cleaned up first.
+
+(defun note-status (task state)
+  (when (task-status-fluent task)
+    (set-value (task-status-fluent task) state)))
+
+(defun finish (task state result &optional (how state))
+  "End TASK in STATE with RESULT. HOW says it to the construct that TASK is part of."
+  (note-event task (ecase state (:succeeded :succeed) (:failed :fail) (:evaporated :evaporate))
+              (and (eq state :failed) (failure-text result)))
+  (setf (task-state task) state
+        (task-result task) result
+        (task-frame task) nil
+        (task-value task) nil
+        (task-signal task) nil)
+  (note-status task state)
+  (let ((parent (task-parent task)))
+    (cond (parent
+           (unlink-child task)
+           (child-over parent task how result))
+          (t (let ((runner (task-runner task)))
+               (setf (runner-roots runner) (remove task (runner-roots runner)))
+               (funcall (runner-on-end runner) task))))))
+
+(defun child-over (parent child how result)
+  "Let PARENT know that its CHILD has ended. Once PARENT has a signal, only the last one matters."
+  (cond ((null (task-signal parent))
+         (let* ((frame (task-frame parent))
+                (node (frame-node frame)))
+           (funcall (the function (node-child-ended node)) node parent frame child how result)))
+        ((task-newest-child parent))
+        ((eq (task-signal parent) :evaporate) (evaporate-now parent))
+        (t (make-ready parent))))
+
+(defun decide (parent signal)
+  "Let SIGNAL happen to PARENT, which waits for its children, when they are all gone; evaporate
+those that are not over."
+  (setf (task-signal parent) signal
+        (task-awaiting parent) nil)
+  (if (task-newest-child parent)
+      (evaporate-children parent)
+      (make-ready parent)))
+
+(defun complete (parent value)
+  "End with VALUE the construct in which PARENT waits for its children."
+  (if (task-newest-child parent)
+      (decide parent (make-completion value))
+      (wake parent value)))
+
+(defun fail-or-escape (task how result)
+  "Let TASK fail or be left as its child did that ended as HOW with RESULT. True if it did so."
+  (when (member how '(:failed :escaped))
+    (decide task result)
+    t))
+
+(defun complete-when-alone (task value)
+  (unless (task-newest-child task) (complete task value)))
+
+;;; Unwinding.
+
+(defun finish-by-signal (task signal)
+  (cond ((eq signal :evaporate) (finish task :evaporated nil))
+        ((escape-p signal) (finish task :succeeded signal :escaped))
+        (t (finish task :failed signal))))
+
+(defun unwind (task frame signal)
+  "Send SIGNAL up from FRAME. Return what a step returns: the frame that takes care of it, or, when
+none does and TASK has ended, +PARKED+."
+  (loop while frame
+        do (let* ((node (frame-node frame))
+                  (handler (node-unwind node)))
+             (when handler
+               (multiple-value-bind (handled next value) (funcall handler node task frame signal)
+                 (cond (handled (return-from unwind (values next value)))
+                       (next (setf signal next)))))
+             (setf frame (frame-up frame))))
+  (finish-by-signal task signal)
+  +parked+)
+
+(defun receive (task frame signal)
+  "Let SIGNAL happen to TASK at FRAME. Return what a step returns."
+  (if (completion-p signal)
+      (values (frame-up frame) (completion-value signal))
+      (unwind task frame signal)))
+
+;;; Evaporating.
+
+(defgeneric withdraw (task awaited)
+  (:documentation "Take TASK out of the list of those that wait for AWAITED.")
+  (:method (task awaited) (declare (ignore task awaited))))
+
+(defun stop-waiting (task)
+  (let ((awaited (shiftf (task-awaiting task) nil))
+        (timer (shiftf (task-timer task) nil)))
+    (cond ((null awaited))
+          ((watcher-p awaited) (unwatch awaited))
+          (t (withdraw task awaited)))
+    (when timer (cancel-timer timer (runner-timers (task-runner task))))))
+
+(defun release-held (runner)
+  "Queue again the tasks that were put aside because they were blocked."
+  (dolist (task (nreverse (shiftf (runner-held runner) '())))
+    (when (eq (task-state task) :ready) (make-ready task))))
+
+(defun evaporate-now (task)
+  "Let TASK, which does not run and has no children, evaporate at once, or start to clean up."
+  (let ((queued (eq (task-state task) :ready)))
+    (setf (task-signal task) nil)
+    (multiple-value-bind (frame value) (unwind task (task-frame task) :evaporate)
+      (unless (eq frame +parked+)
+        (setf (task-frame task) frame
+              (task-value task) value)
+        (if queued
+            (release-held (task-runner task))
+            (make-ready task))))))
+
+(defun evaporate-children (task)
+  "Evaporate the children of TASK, newest first."
+  (loop for child = (task-newest-child task) then older
+        while child
+        for older = (task-older child)
+        do (evaporate child)))
+
+(addition evaporate)
+(defun evaporate (task)
+  "End TASK, because it is no longer needed, with all that it consists of, newest first. What it
+has protected by EVAP-PROTECT is done first and may take time. A task that has not started, is over
+or evaporates already is left alone. Call it only from plans; from elsewhere post it."
+  (cond ((or (task-over-p task) (task-doomed task) (eq (task-state task) :created)))
+        (t (setf (task-doomed task) t)
+           (cond ((task-cleaning task)
+                  (setf (frame-data (first (last (task-cleaning task)))) :evaporate))
+                 ((eq (task-state task) :running)
+                  (setf (task-signal task) :evaporate)
+                  (setf (runner-mask (task-runner task))
+                        (logior +interrupt+ (runner-mask (task-runner task)))))
+                 (t (stop-waiting task)
+                    (cond ((task-newest-child task)
+                           (setf (task-signal task) :evaporate)
+                           (evaporate-children task))
+                          (t (evaporate-now task))))))))

@@ -1,0 +1,111 @@
+;;;; failure.lisp -- how plans fail.
+
+(in-package :ars-magna.rpl.tasks)
+
+;;; A failure is a condition but no error: a plan that fails is part of the plan's business, and
+;;; IGNORE-ERRORS in a plan's Lisp code must not swallow it. It spreads from a task to the
+;;; construct that the task is part of, until something handles it.
+
+(addition plan-failure)
+(define-condition plan-failure (serious-condition)
+  ((class :initarg :class :initform nil :reader failure-class)
+   (data :initarg :data :initform '() :reader failure-data)
+   (form :initform nil :accessor failure-form)
+   (task-path :initform nil :accessor failure-task-path)
+   (tick :initform nil :accessor failure-tick)
+   (cause :initarg :cause :initform nil :accessor failure-cause)
+   (suppressed :initform '() :accessor failure-suppressed)
+   (plan-backtrace :initform '() :accessor failure-plan-backtrace))
+  (:report (lambda (failure stream) (write-failure failure stream)))
+  (:documentation "A plan could not do what it is for. Conditions of a user's own may inherit from
+this; (fail :class name ...) makes one of them, or a plain one of class NAME."))
+
+(addition composite-failure)
+(define-condition composite-failure (plan-failure)
+  ((failures :initarg :failures :initform '() :reader composite-failures))
+  (:documentation "Everything that could have been tried has failed."))
+
+(addition lisp-failure)
+(define-condition lisp-failure (plan-failure)
+  ((condition :initarg :condition :reader lisp-failure-condition)
+   (backtrace :initarg :backtrace :initform "" :reader lisp-failure-backtrace))
+  (:documentation "Lisp code of a plan signalled an error."))
+
+(addition failure-class failure-data failure-form failure-task-path failure-tick failure-cause
+          failure-suppressed failure-plan-backtrace composite-failures lisp-failure-condition
+          lisp-failure-backtrace)
+(loop for (reader text) in
+      '((failure-class "Return the class that FAIL was given, NIL if none.")
+        (failure-data "Return what else FAIL was given, a property list.")
+        (failure-form "Return the plan's expression that failed.")
+        (failure-task-path "Return the names of the tasks from the plan's top to the failed one.")
+        (failure-tick "Return the tick at which the failure happened.")
+        (failure-cause "Return the failure that was being handled when this one happened, or NIL.")
+        (failure-suppressed "Return failures that happened while cleaning up after this one.")
+        (failure-plan-backtrace "Return the expressions under way when the failure happened,
+innermost first.")
+        (composite-failures "Return the failures that make up a composite one, in order.")
+        (lisp-failure-condition "Return the Lisp condition behind the failure.")
+        (lisp-failure-backtrace "Return the Lisp backtrace of the error, a string."))
+      do (setf (documentation reader 'function) text))
+
+(defgeneric write-failure (failure stream)
+  (:documentation "Write on one line to STREAM what FAILURE is.")
+  (:method ((failure plan-failure) stream)
+    (format stream "Plan failure~@[ ~S~]~{ ~S~}" (failure-class failure) (failure-data failure)))
+  (:method ((failure composite-failure) stream)
+    (format stream "All ~D attempts failed: ~{~A~^; ~}" (length (composite-failures failure))
+            (mapcar #'failure-text (composite-failures failure))))
+  (:method ((failure lisp-failure) stream)
+    (format stream "Lisp error in a plan: ~A" (failure-text (lisp-failure-condition failure)))))
+
+(defun failure-text (failure)
+  "Return what FAILURE, or another condition, reports; its type if that signals an error."
+  (handler-case (princ-to-string failure)
+    (error () (format nil "~S, whose report fails" (type-of failure)))))
+
+(defun failure-type-p (object)
+  (and (symbolp object)
+       (find-class object nil)
+       (subtypep object 'plan-failure)))
+
+(defun make-failure (arguments)
+  "Return the failure that (fail ARGUMENTS...) means."
+  (destructuring-bind (&optional (head nil) &rest more) arguments
+    (cond ((null arguments) (make-condition 'plan-failure))
+          ((typep head 'plan-failure) head)
+          ((typep head 'condition) (make-condition 'lisp-failure :condition head))
+          ((and (eq head :class) (consp more)) (make-failure-of-class (first more) (rest more)))
+          ((failure-type-p head) (apply #'make-condition head more))
+          (t (make-condition 'plan-failure :class head :data more)))))
+
+(defun make-failure-of-class (class data)
+  (if (failure-type-p class)
+      (apply #'make-condition class data)
+      (make-condition 'plan-failure :class class :data data)))
+
+(public fail)
+(defun fail (&rest arguments)
+  "Let the task fail. ARGUMENTS are nothing; or :class, a name or a condition class inheriting from
+PLAN-FAILURE, and a property list of data or initargs, with or without the word :class; or a
+condition (manual D.2). The failure spreads to the nearest construct that can absorb it."
+  (error (make-failure arguments)))
+
+(defun failure-matches-p (failure type)
+  "True if a clause for TYPE is for FAILURE: T; a class that FAIL was given; a condition type of
+the failure or of the Lisp error behind it; or (or TYPE...)."
+  (cond ((eq type t) t)
+        ((consp type) (some (lambda (type) (failure-matches-p failure type)) (rest type)))
+        ((and (failure-class failure) (symbolp (failure-class failure))
+              (same-name-p type (failure-class failure))))
+        ((null (find-class type nil)) nil)
+        ((typep failure type) t)
+        ((typep failure 'lisp-failure) (typep (lisp-failure-condition failure) type))))
+
+(defun failure-subject (failure type)
+  "Return what a clause for TYPE gets to see of FAILURE: the Lisp condition, if it asked for that."
+  (if (and (typep failure 'lisp-failure)
+           (symbolp type) (not (eq type t)) (find-class type nil)
+           (not (typep failure type)))
+      (lisp-failure-condition failure)
+      failure))

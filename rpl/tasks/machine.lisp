@@ -1,0 +1,89 @@
+;;;; machine.lisp -- signals, kinds of nodes, leaves, and waiting.
+
+(in-package :ars-magna.rpl.tasks)
+
+;;; A signal is what can happen to a task other than going on: a PLAN-FAILURE; an ESCAPE to an
+;;; enclosing node, perhaps of an enclosing task; the word :EVAPORATE; or a COMPLETION, by which
+;;; the construct that the task waits in ends well. A signal reaches a task that has children only
+;;; when the last of them is gone.
+
+(defstruct (escape (:constructor make-escape (target value)) (:copier nil))
+  "A way out to the node TARGET, which knows what to do with VALUE."
+  (target nil :type node :read-only t)
+  (value nil :read-only t))
+
+(defstruct (completion (:constructor make-completion (value)) (:copier nil))
+  "The end of a construct, with VALUE."
+  (value nil :read-only t))
+
+(defstruct (bundle (:constructor make-bundle (values)) (:copier nil))
+  "Several values on their way from a leaf to whoever wants several."
+  (values '() :type list :read-only t))
+(declaim-final escape completion bundle)
+
+(declaim (inline single-value))
+(defun single-value (value)
+  "Return VALUE, or the first one of a bundle."
+  (if (bundle-p value) (first (bundle-values value)) value))
+
+;;; Defining nodes.
+
+(defmacro define-node (name (&rest slots) documentation &key step unwind child-ended)
+  "Define the node type NAME, or (NAME PARENT), with SLOTS, each (slot type), and the functions
+named for it."
+  (destructuring-bind (name &optional (parent 'node)) (ensure-list name)
+    `(defstruct (,name (:include ,parent
+                        (step #',step)
+                        ,@(when unwind `((unwind #',unwind)))
+                        ,@(when child-ended `((child-ended #',child-ended))))
+                       (:copier nil))
+       ,documentation
+       ,@(loop for (slot type) in slots
+               collect `(,slot (required-slot ',slot) :type ,type)))))
+
+(defun required-slot (slot)
+  (reject-use "A plan's node was made without its ~(~A~)." slot))
+
+(define-node leaf ((function function))
+  "An expression that cannot wait: FUNCTION takes the environment."
+  :step step-leaf)
+(declaim-final leaf)
+
+(defun step-leaf (node task frame value)
+  (declare (ignore task value))
+  (values (frame-up frame) (funcall (leaf-function node) (frame-environment frame))))
+
+(define-global +parked+ (make-frame (make-leaf :function #'identity) (vector) nil)
+  "What a step returns instead of a frame when its task does not go on now.")
+
+(define-global +nothing+ (make-leaf :form nil :function (constantly nil))
+  "The expression NIL.")
+
+(declaim (inline enter))
+(defun enter (node environment frame)
+  "Begin NODE in ENVIRONMENT for FRAME: return what a step returns. The next step of FRAME gets
+the value. A leaf takes no frame of its own."
+  (if (leaf-p node)
+      (values frame (funcall (leaf-function node) environment))
+      (values (make-frame node environment frame) nil)))
+
+(defun park (task awaiting)
+  "Note that TASK, at a step that will return +PARKED+, waits for AWAITING."
+  (setf (task-state task) :waiting
+        (task-awaiting task) awaiting)
+  (note-event task :wait (and awaiting (awaited-text awaiting))))
+
+(defgeneric awaited-text (awaited)
+  (:documentation "Return in words what a task that waits for AWAITED waits for.")
+  (:method (awaited) (princ-to-string awaited))
+  (:method ((fluent fluent)) (fluent-text fluent))
+  (:method ((watcher watcher)) (fluent-text (watcher-fluent watcher)))
+  (:method ((timer timer))
+    (format nil "tick ~A" (timer-due timer))))
+
+(defun wake (task value)
+  "Let TASK, which waits, go on with VALUE."
+  (setf (task-awaiting task) nil
+        (task-value task) value)
+  (note-event task :wake)
+  (make-ready task))

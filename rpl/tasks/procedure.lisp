@@ -1,0 +1,125 @@
+;;;; procedure.lisp -- plan procedures by name, and calling them.
+
+(in-package :ars-magna.rpl.tasks)
+
+;;; A name that a plan calls leads to a cell, whether or not there is a procedure of that name yet.
+;;; So procedures can be defined in any order, and defined anew while plans run: a call takes what
+;;; is in the cell when it happens. Calls go by the very symbol. Who asks for a procedure by name,
+;;; as RUN-PLAN does, need not know the package that it was defined in.
+
+(defstruct (procedure (:constructor make-procedure (name)) (:copier nil))
+  "A plan with parameters. ENTRY takes the arguments and returns the environment to run BODY in;
+it is NIL as long as there is only the name. STUB is what Lisp code gets that calls the name."
+  (name nil :type symbol :read-only t)
+  (lambda-list '() :type list)
+  (entry nil :type (or null function))
+  (body nil :type (or null node))
+  (stub nil :type (or null function)))
+(addition procedure-p procedure-name procedure-lambda-list)
+(setf (documentation 'procedure-p 'function) "True of plan procedures."
+      (documentation 'procedure-name 'function)
+      "Return the name of a plan procedure, NIL for one made by INTERP-LAMBDA."
+      (documentation 'procedure-lambda-list 'function)
+      "Return the lambda list of a plan procedure.")
+
+(define-registry procedure "plan procedure" :object-p procedure-p :by-symbol t :synonyms ("PLAN")
+  :finder registered-procedure :lister registered-procedures :internal t)
+
+(defvar *cells* (make-hash-table :test 'eq :synchronized t)
+  "The cells of all names that plans define or call.")
+
+(defun ensure-procedure (name)
+  "Return the cell of the procedure called NAME."
+  (or (gethash name *cells*)
+      (setf (gethash name *cells*) (make-procedure name))))
+
+(defun defined-p (procedure)
+  "True if PROCEDURE is defined and its name has not been defined as a Lisp function since."
+  (and (procedure-entry procedure)
+       (or (null (procedure-stub procedure))
+           (let ((name (procedure-name procedure)))
+             (and (fboundp name)
+                  (eq (symbol-function name) (procedure-stub procedure)))))))
+
+(addition all-procedures find-procedure)
+(defun all-procedures ()
+  "Return a list of all plan procedures that are defined, in order of definition."
+  (remove-if-not #'defined-p (registered-procedures)))
+
+(defun live-namesake (name)
+  "Return the live procedure defined last of those called NAME in any package, or NIL."
+  (find-if (lambda (procedure)
+             (and (same-name-p name (procedure-name procedure)) (defined-p procedure)))
+           (registered-procedures) :from-end t))
+
+(defun find-procedure (name &optional (errorp t))
+  "Return the plan procedure called NAME, a symbol or string: that of the very symbol, or else the
+one defined last of those called the same in other packages. If there is none, signal UNKNOWN-NAME,
+or return NIL if ERRORP is NIL."
+  (let ((known (registered-procedure name nil)))
+    (cond ((and known (defined-p known)) known)
+          ((and (typep name '(or symbol string)) (live-namesake name)))
+          (errorp (reject-name "plan procedure" name
+                               (mapcar #'procedure-name (all-procedures)))))))
+
+(defmethod print-object ((procedure procedure) stream)
+  (print-unreadable-object (procedure stream :type t)
+    (format stream "~:[~;~:*~A ~]~:A" (procedure-name procedure)
+            (procedure-lambda-list procedure))))
+
+;;; Which names are plans' is also known while the file that defines them is compiled.
+
+(defvar *declared-procedures* (make-hash-table :test 'eq :synchronized t)
+  "Names that a DEF-INTERP-PROC has been compiled or loaded for.")
+
+(defun declare-procedure (name)
+  (setf (gethash name *declared-procedures*) t))
+
+(defun procedure-name-p (name)
+  "True if NAME is known to name a plan procedure."
+  (and (gethash name *declared-procedures*)
+       (let ((procedure (gethash name *cells*)))
+         (or (null procedure) (null (procedure-entry procedure)) (defined-p procedure)))))
+
+(defun procedure-stub-for (name)
+  "Return the Lisp function called NAME: it says that NAME is a plan."
+  (lambda (&rest arguments)
+    (declare (ignore arguments))
+    (reject-use "~S is a plan procedure and was called by Lisp code. Call it from a plan, outside ~
+                 of any lambda; at top level run it: (run-plan-alone '~S ...)." name name)))
+
+(defun install-procedure (name lambda-list documentation entry body &optional source)
+  "Make NAME a plan procedure, as SOURCE defines it. Calls from now on, also in running plans, mean
+this one."
+  (let ((procedure (ensure-procedure name)))
+    (declare-procedure name)
+    (setf (procedure-lambda-list procedure) lambda-list
+          (procedure-entry procedure) entry
+          (procedure-body procedure) body
+          (procedure-stub procedure) (procedure-stub-for name)
+          (documentation name 'function) documentation)
+    (reinstate procedure)
+    (let ((*definition* (make-defining source (list "def-interp-proc" name))))
+      (register *procedures* name procedure))
+    name))
+
+(defmethod reinstate ((procedure procedure))
+  (setf (fdefinition (procedure-name procedure)) (procedure-stub procedure))
+  procedure)
+
+(defmethod take-back ((procedure procedure))
+  (when (defined-p procedure) (fmakunbound (procedure-name procedure)))
+  (setf (procedure-entry procedure) nil))
+
+(defun anonymous-procedure (lambda-list entry body)
+  (let ((procedure (make-procedure nil)))
+    (setf (procedure-lambda-list procedure) lambda-list
+          (procedure-entry procedure) entry
+          (procedure-body procedure) body)
+    procedure))
+
+(defun enter-plan (plan &rest arguments)
+  "Return the body of PLAN, a procedure or the name of one, and its environment for ARGUMENTS."
+  (let ((procedure (if (procedure-p plan) plan (find-procedure plan))))
+    (values (procedure-body procedure)
+            (apply (procedure-entry procedure) arguments))))

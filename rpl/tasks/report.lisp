@@ -1,0 +1,74 @@
+;;;; report.lisp -- showing tasks, failures and deadlocks to people.
+
+(in-package :ars-magna.rpl.tasks)
+
+(addition task-awaits)
+(defun task-awaits (task)
+  "Return in words what TASK waits for: a fluent or network, a tick, a valve; NIL if it does not, or
+waits for its own parts."
+  (and (eq (task-state task) :waiting)
+       (task-awaiting task)
+       (awaited-text (task-awaiting task))))
+
+(defun task-state-text (task)
+  (format nil "~(~A~)~:[~;, evaporating~]~:[~;, blocked~]" (task-state task)
+          (and (task-doomed task) (not (task-over-p task)))
+          (plusp (task-blocked task))))
+
+(defun write-task-line (task depth stream)
+  (format stream "~V@T~D ~A: ~:[~;~:*~(~A~) ~]~A~@[ waits for ~A~]~%"
+          (* 2 depth) (task-serial task) (task-state-text task)
+          (task-name task) (form-text (task-form task)) (task-awaits task)))
+
+(defun write-task-tree (task depth stream)
+  (write-task-line task depth stream)
+  (dolist (child (task-children task))
+    (write-task-tree child (1+ depth) stream)))
+
+(addition print-tasks)
+(defun print-tasks (&optional (which *runner*) (stream *standard-output*))
+  "Write to STREAM the tree of tasks of WHICH, a task or a plan runner (all its tasks): number,
+state, expression, and what each waits for."
+  (if (task-p which)
+      (write-task-tree which 0 stream)
+      (dolist (task (plan-runner-tasks which))
+        (write-task-tree task 0 stream))))
+
+;;; Failures.
+
+(defun write-failure-report (failure stream)
+  (format stream "~A~%  at tick ~A in ~A~%  task: ~{~A~^ > ~}~%"
+          (failure-text failure) (failure-tick failure) (form-text (failure-form failure))
+          (failure-task-path failure))
+  (format stream "  plan:~%~{    ~A~%~}"
+          (mapcar #'form-text (failure-plan-backtrace failure)))
+  (when (failure-cause failure)
+    (format stream "  while handling: ~A~%" (failure-text (failure-cause failure))))
+  (dolist (suppressed (failure-suppressed failure))
+    (format stream "  and in a cleanup: ~A~%" (failure-text suppressed)))
+  (when (and (typep failure 'lisp-failure) (string/= "" (lisp-failure-backtrace failure)))
+    (format stream "  Lisp:~%~A" (lisp-failure-backtrace failure))))
+
+(defun report-failure (failure)
+  "Queue an error message with all that is known of FAILURE, of a plan: where it happened, in which
+task, what was under way, and the Lisp backtrace of an error."
+  (error-set (with-output-to-string (stream) (write-failure-report failure stream))))
+
+(defvar *plan-end-hooks* '()
+  "Functions, or their names, called with each top-level task that has ended; the report of its
+failure is left to the first that returns true. In any thread that lets plans react.")
+
+(defun report-end (task)
+  "Report the failure of TASK, a top-level task that has just ended, if it failed."
+  (unless (some (lambda (hook) (funcall hook task)) *plan-end-hooks*)
+    (when (eq (task-state task) :failed)
+      (report-failure (task-result task)))))
+
+;;; Deadlock.
+
+(defun report-deadlock (runner)
+  "Queue an error message that says that no task of RUNNER can go on, with the tasks and what they
+wait for."
+  (error-set "Deadlock at tick " (runner-tick runner)
+             ": nothing can wake these tasks." t
+             (with-output-to-string (stream) (print-tasks runner stream))))

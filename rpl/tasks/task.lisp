@@ -1,0 +1,151 @@
+;;;; task.lisp -- nodes, frames and tasks: what a running plan is made of.
+
+(in-package :ars-magna.rpl.tasks)
+
+;;; A plan is a graph of nodes, its expressions. A task runs one of them as a chain of frames, the
+;;; innermost of which is the task's own FRAME. Everything that a task knows is in its frames and
+;;; their environments, on the heap. Children of a task exist only while its innermost frame is
+;;; that of a construct that waits for them.
+;;;
+;;; An environment is a vector: element 0 is the environment around it, the others are variables.
+
+(defstruct (node (:constructor nil) (:copier nil))
+  "An expression of a plan. STEP takes the node, task, frame and the value of the inner expression
+that has ended, and returns the frame to go on with and a value for it. UNWIND is called with the
+same arguments but a signal when a signal passes the frame, and returns a frame that takes care of
+it, or NIL and, if another signal is to go on instead, that. CHILD-ENDED is called with node, task,
+frame, child, the child's state and its result."
+  (form nil)
+  (step #'list :type function)
+  (unwind nil :type (or null function))
+  (child-ended nil :type (or null function)))
+
+(declaim (inline make-frame))
+(defstruct (frame (:constructor make-frame (node environment up)) (:copier nil))
+  "One run of NODE on behalf of the frame UP. COUNTER and DATA are the node's business."
+  (node nil :type node)
+  (environment #() :type simple-vector)
+  (up nil :type (or null frame))
+  (counter 0 :type fixnum)
+  (data nil))
+
+(addition task)
+(defstruct (task (:constructor make-task (name node)) (:copier nil))
+  "One incarnation of a plan's expression. FRAME and VALUE say how it will go on; SIGNAL, if any,
+what will happen to it instead. LEVEL 0 is the plan proper, a policy is one above what it guards."
+  (name nil)
+  (node nil :type node)
+  (runner nil)
+  (serial 0 :type fixnum)
+  (state :created :type keyword)
+  (doomed nil :type boolean)
+  (level 0 :type (integer 0 7))
+  (index 0 :type fixnum)
+  (frame nil :type (or null frame))
+  (value nil)
+  (signal nil)
+  (awaiting nil)
+  (timer nil :type (or null timer))
+  (cleaning '() :type list)
+  (blocked 0 :type fixnum)
+  (result nil)
+  (status-fluent nil :type (or null fluent))
+  (parent nil :type (or null task))
+  (newest-child nil :type (or null task))
+  (older nil :type (or null task))
+  (newer nil :type (or null task)))
+(declaim-final frame task)
+
+(addition task-p task-name task-state task-serial task-parent task-result)
+(loop for (reader text) in
+      '((task-name "Return what the task is called: its tag, its procedure, or NIL.")
+        (task-state "Return the task's state: :created, :ready, :running, :waiting, and when it is
+over :succeeded, :failed or :evaporated.")
+        (task-serial "Return the number of the task within its plan runner.")
+        (task-parent "Return the task that the task is part of, or NIL.")
+        (task-result "Return the value of a task that succeeded, the failure of one that failed.")
+        (task-p "True of tasks."))
+      do (setf (documentation reader 'function) text))
+
+(declaim (inline task-over-p))
+(addition task-over-p)
+(defun task-over-p (task)
+  "True if TASK has succeeded, failed or evaporated."
+  (member (task-state task) '(:succeeded :failed :evaporated)))
+
+(addition task-children)
+(defun task-children (task)
+  "Return the tasks that TASK consists of now, oldest first."
+  (loop with children = '()
+        for child = (task-newest-child task) then (task-older child)
+        while child do (push child children)
+        finally (return children)))
+
+(defgeneric current-form (node frame)
+  (:documentation "Return the source of the expression of NODE that FRAME is at.")
+  (:method (node frame)
+    (declare (ignore frame))
+    (node-form node)))
+
+(addition task-form)
+(defun task-form (task)
+  "Return the source of the expression that TASK is at."
+  (let ((frame (task-frame task)))
+    (if frame
+        (current-form (frame-node frame) frame)
+        (node-form (task-node task)))))
+
+(defun form-text (form &optional (width 60))
+  "Return FORM on one line of at most WIDTH characters."
+  (let* ((*print-case* :downcase) (*print-pretty* nil) (*print-length* 8) (*print-level* 4)
+         (text (substitute #\Space #\Newline (handler-case (prin1-to-string form)
+                                                (error () "what cannot be printed")))))
+    (if (> (length text) width)
+        (concatenate 'string (subseq text 0 (- width 3)) "...")
+        text)))
+
+(defmethod print-object ((node node) stream)
+  (print-unreadable-object (node stream :type t)
+    (write-string (form-text (node-form node) 40) stream)))
+
+(defmethod print-object ((frame frame) stream)
+  (print-unreadable-object (frame stream :type t)
+    (write-string (form-text (node-form (frame-node frame)) 40) stream)))
+
+(defun task-label (task)
+  "Return a short text that says which task TASK is."
+  (format nil "~:[~A~;~:*~(~A~)~*~]" (task-name task) (form-text (node-form (task-node task)) 40)))
+
+(addition task-path)
+(defun task-path (task)
+  "Return the labels of the tasks from the top of the plan to TASK."
+  (loop with path = '()
+        for each = task then (task-parent each)
+        while each do (push (task-label each) path)
+        finally (return path)))
+
+;; Whatever a plan asks for, in whatever task, is asked for by the plan as a whole.
+(defmethod asker-note ((task task))
+  (list "the plan " (first (task-path task))))
+
+(defmethod print-object ((task task) stream)
+  (print-unreadable-object (task stream :type t)
+    (format stream "~D ~(~A~) ~A" (task-serial task) (task-state task) (task-label task))))
+
+(defun link-child (child parent)
+  (let ((sibling (task-newest-child parent)))
+    (setf (task-parent child) parent
+          (task-older child) sibling
+          (task-newest-child parent) child)
+    (when sibling (setf (task-newer sibling) child))))
+
+(defun unlink-child (child)
+  "Take CHILD out of its parent's children. It still knows its parent."
+  (let ((older (task-older child))
+        (newer (task-newer child)))
+    (if newer
+        (setf (task-older newer) older)
+        (setf (task-newest-child (task-parent child)) older))
+    (when older (setf (task-newer older) newer))
+    (setf (task-older child) nil
+          (task-newer child) nil)))

@@ -1,0 +1,83 @@
+;;;; timer.lisp -- who is to be woken at which tick: a heap.
+
+(in-package :ars-magna.rpl.tasks)
+
+;;; Timers due at the same tick come in the order in which they were set. A timer knows its place
+;;; in the heap, so that one that is no longer wanted leaves at once.
+
+(defstruct (timer (:constructor make-timer (due serial wake client)) (:copier nil))
+  "At tick DUE, WAKE is to be called with this timer."
+  (due 0 :type real :read-only t)
+  (serial 0 :type fixnum :read-only t)
+  (wake #'list :type function :read-only t)
+  (client nil :read-only t)
+  (place nil :type (or null fixnum)))
+
+(defstruct (timers (:constructor make-timers ()) (:copier nil))
+  "A heap of timers, the earliest at 0."
+  (heap (make-array 16 :adjustable t :fill-pointer 0) :type (and vector (not simple-array)))
+  (count 0 :type fixnum))
+(declaim-final timer timers)
+
+(defun earlier-p (a b)
+  (or (< (timer-due a) (timer-due b))
+      (and (= (timer-due a) (timer-due b))
+           (< (timer-serial a) (timer-serial b)))))
+
+(defun put-timer (timer place heap)
+  (setf (aref heap place) timer
+        (timer-place timer) place))
+
+(defun sift-up (timer place heap)
+  "Put TIMER at PLACE of HEAP or as far above as it belongs."
+  (loop while (plusp place)
+        for above = (ash (1- place) -1)
+        while (earlier-p timer (aref heap above))
+        do (put-timer (aref heap above) place heap)
+           (setf place above))
+  (put-timer timer place heap))
+
+(defun sift-down (timer place heap)
+  "Put TIMER at PLACE of HEAP or as far below as it belongs."
+  (loop with count = (fill-pointer heap)
+        for left = (1+ (* 2 place))
+        while (< left count)
+        do (let* ((right (1+ left))
+                  (child (if (and (< right count) (earlier-p (aref heap right) (aref heap left)))
+                             right
+                             left)))
+             (unless (earlier-p (aref heap child) timer) (return))
+             (put-timer (aref heap child) place heap)
+             (setf place child)))
+  (put-timer timer place heap))
+
+(defun set-timer (timers due wake client)
+  "Return a new timer in TIMERS that will call WAKE at tick DUE on behalf of CLIENT."
+  (let ((timer (make-timer due (incf (timers-count timers)) wake client))
+        (heap (timers-heap timers)))
+    (vector-push-extend timer heap)
+    (sift-up timer (1- (fill-pointer heap)) heap)
+    timer))
+
+(defun cancel-timer (timer timers)
+  "Take TIMER out of TIMERS if it is still there."
+  (let ((place (timer-place timer))
+        (heap (timers-heap timers)))
+    (when place
+      (let ((last (vector-pop heap)))
+        (unless (eq last timer)
+          (sift-down last place heap)
+          (sift-up last (timer-place last) heap)))
+      (setf (timer-place timer) nil))))
+
+(defun next-timer (timers)
+  "Return the timer of TIMERS that is due first, or NIL."
+  (let ((heap (timers-heap timers)))
+    (and (plusp (fill-pointer heap)) (aref heap 0))))
+
+(defun run-timers (timers tick)
+  "Call those of TIMERS that are due at TICK or before, in order."
+  (loop for timer = (next-timer timers)
+        while (and timer (<= (timer-due timer) tick))
+        do (cancel-timer timer timers)
+           (funcall (timer-wake timer) timer)))
