@@ -33,7 +33,9 @@
   (if (fluent-p condition)
       (let ((watcher (make-watcher condition #'wake-waiter task)))
         (watch watcher)
-        (park task watcher))
+        (park task watcher)
+        (let ((value (fluent-value condition)))
+          (when value (wake-waiter watcher value nil))))
       (park task "what cannot change: no fluent")))
 
 (defun checked-timeout (timeout)

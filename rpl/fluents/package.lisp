@@ -17,7 +17,10 @@ operators of Common Lisp mean these without further ado.")
            #:make-watcher #:state #:watcher #:watcher-client #:watcher-pending #:watcher-fluent #:watcher-p)
   ;; network
   (:export #:fl-apply #:fl-funcall #:fluent-text #:fluent-value #:unwatch #:watch)
+  ;; home
+  (:export #:*runner* #:home #:home-on-post #:home-backlog #:at-home #:call-at-home #:post
+           #:next-entry #:posted-p)
   ;; propagation
-  (:export #:*backlog* #:apply-settings #:backlog #:make-backlog #:pulse #:set-value)
+  (:export #:apply-settings #:clear-backlog #:pulse #:set-value)
   ;; operators
   (:export #:lifting #:lifting-and #:lifting-or))

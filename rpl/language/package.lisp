@@ -27,7 +27,7 @@
   ;; tags
   (:export #:start-branch #:tags-in #:task-status #:with-tags #:with-tags-code)
   ;; calling
-  (:export #:call-plan)
+  (:export #:call-plan #:*plan-depth-limit*)
   ;; definitions
   (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan)
   ;; construct

@@ -13,9 +13,9 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
            #:failure-tick #:lisp-failure #:lisp-failure-backtrace #:lisp-failure-condition
            #:make-failure #:plan-failure)
   ;; task
-  (:export #:current-form #:frame #:frame-counter #:frame-data #:frame-environment #:frame-up
+  (:export #:current-form #:frame #:frame-counter #:frame-data #:frame-environment #:frame-node #:frame-up
            #:make-frame #:make-task #:node #:node-form #:task #:task-awaiting #:task-blocked
-           #:task-children #:task-cleaning #:task-form #:task-frame #:task-index #:task-label
+           #:task-children #:task-top #:task-cleaning #:task-form #:task-frame #:task-index #:task-label
            #:task-level #:task-name #:task-newest-child #:task-over-p #:task-p #:task-parent
            #:task-path #:task-result #:task-runner #:task-serial #:task-signal #:task-state
            #:task-status-fluent #:task-timer)
@@ -23,13 +23,13 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
   (:export #:trace-entry #:trace-entry-detail #:trace-entry-event #:trace-entry-form
            #:trace-entry-task #:trace-entry-tick #:write-trace)
   ;; runner
-  (:export #:*runaway-limit* #:*runner* #:alone-p #:current-task #:make-ready #:note-event
+  (:export #:*runaway-limit* #:exhaust-reaction #:alone-p #:current-task #:make-ready #:note-event
            #:plan-runner #:plan-runner-steps #:plan-runner-tasks #:plan-runner-tick #:plan-time
            #:plan-trace #:runner-blocks #:runner-dice #:runner-tick #:runner-ticks-per-second
            #:runner-timers)
   ;; machine
   (:export #:+nothing+ #:+parked+ #:awaited-text #:bundle-p #:bundle-values #:completion-p
-           #:define-node #:required-slot #:enter #:escape-p #:escape-target #:escape-value #:leaf-function
+           #:define-node #:required-slot #:enter #:call-leaf #:escape-p #:escape-target #:escape-value #:leaf-function
            #:leaf-p #:make-bundle #:make-completion #:make-escape #:make-leaf #:park
            #:single-value #:wake)
   ;; ending
@@ -46,7 +46,7 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
   ;; engine
   (:export #:advance-timers #:apply-next-batch #:digest-runner #:idle-p #:make-plan-runner
            #:next-wake-time #:plan-deadlocked-p #:post-batch #:post-call #:react #:reseed-runner
-           #:start-plan #:stop-plan)
+           #:start-plan #:stop-plan #:react-to-all #:close-runner)
   ;; alone
   (:export #:run-plan-alone)
   ;; stepping
