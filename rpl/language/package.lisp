@@ -16,20 +16,16 @@
   ;; compiler
   (:export #:binding-body-code #:body-code #:define-plan-form #:hoisted-code #:plan-code
            #:suspends-p)
-  ;; steps
-  (:export #:seq)
   ;; leaving
   (:export #:block-code #:make-leave)
-  ;; branching
-  (:export #:branch)
   ;; repeating
-  (:export #:each-code #:n-times)
+  (:export #:each-body-code #:give-way)
   ;; tags
-  (:export #:start-branch #:tags-in #:task-status #:with-tags #:with-tags-code)
-  ;; calling
-  (:export #:call-plan)
+  (:export #:start-branch #:tags-in #:task-status #:with-tags-code)
   ;; definitions
   (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan)
   ;; construct
-  (:export #:define-construct #:in-plans-only #:form #:build #:node #:frame #:value #:child #:how
-           #:result #:environment #:memory #:next))
+  (:export #:all-constructs #:define-construct #:in-plans-only #:form #:scope #:build #:hoisting)
+  ;; expression
+  (:export #:define-expression #:node #:task #:frame #:value #:child #:how #:result
+           #:environment #:memory #:next #:at-once #:in-state-p))

@@ -26,27 +26,15 @@
   "Return VALUE, or the first one of a bundle."
   (if (bundle-p value) (first (bundle-values value)) value))
 
-;;; Defining nodes.
-
-(defmacro define-node (name (&rest slots) documentation &key step unwind child-ended)
-  "Define the node type NAME, or (NAME PARENT), with SLOTS, each (slot type), and the functions
-named for it."
-  (destructuring-bind (name &optional (parent 'node)) (ensure-list name)
-    `(defstruct (,name (:include ,parent
-                        (step #',step)
-                        ,@(when unwind `((unwind #',unwind)))
-                        ,@(when child-ended `((child-ended #',child-ended))))
-                       (:copier nil))
-       ,documentation
-       ,@(loop for (slot type) in slots
-               collect `(,slot (required-slot ',slot) :type ,type)))))
+;;; Leaves.
 
 (defun required-slot (slot)
+  "Signal MISUSE: a node was made without its SLOT."
   (reject-use "A plan's node was made without its ~(~A~)." slot))
 
-(define-node leaf ((function function))
+(defstruct (leaf (:include node (step #'step-leaf)) (:copier nil))
   "An expression that cannot wait: FUNCTION takes the environment."
-  :step step-leaf)
+  (function (required-slot 'function) :type function))
 (declaim-final leaf)
 
 (defun step-leaf (node task frame value)

@@ -13,7 +13,8 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
            #:failure-tick #:lisp-failure #:lisp-failure-backtrace #:lisp-failure-condition
            #:make-failure #:plan-failure)
   ;; task
-  (:export #:current-form #:frame #:frame-counter #:frame-data #:frame-environment #:frame-up
+  (:export #:current-form #:frame #:frame-counter #:frame-data #:frame-environment #:frame-node #:frame-state
+           #:frame-up
            #:make-frame #:make-task #:node #:node-form #:task #:task-awaiting #:task-blocked
            #:task-children #:task-cleaning #:task-form #:task-frame #:task-index #:task-label
            #:task-level #:task-name #:task-newest-child #:task-over-p #:task-p #:task-parent
@@ -29,7 +30,7 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
            #:runner-timers)
   ;; machine
   (:export #:+nothing+ #:+parked+ #:awaited-text #:bundle-p #:bundle-values #:completion-p
-           #:define-node #:required-slot #:enter #:escape-p #:escape-target #:escape-value #:leaf-function
+           #:required-slot #:enter #:escape-p #:escape-target #:escape-value #:leaf-function
            #:leaf-p #:make-bundle #:make-completion #:make-escape #:make-leaf #:park
            #:single-value #:wake)
   ;; ending

@@ -14,20 +14,30 @@
 that has ended, and returns the frame to go on with and a value for it. UNWIND is called with the
 same arguments but a signal when a signal passes the frame, and returns a frame that takes care of
 it, or NIL and, if another signal is to go on instead, that. CHILD-ENDED is called with node, task,
-frame, child, the child's state and its result."
+frame, child, the child's state and its result. STATES are the names of what a frame may be in."
   (form nil)
+  (states #() :type simple-vector)
   (step #'list :type function)
   (unwind nil :type (or null function))
   (child-ended nil :type (or null function)))
 
 (declaim (inline make-frame))
 (defstruct (frame (:constructor make-frame (node environment up)) (:copier nil))
-  "One run of NODE on behalf of the frame UP. COUNTER and DATA are the node's business."
+  "One run of NODE on behalf of the frame UP. COUNTER, the number of a state, and DATA are the
+node's business."
   (node nil :type node)
   (environment #() :type simple-vector)
   (up nil :type (or null frame))
   (counter 0 :type fixnum)
   (data nil))
+
+(defun frame-state (frame)
+  "Return the name of the state that FRAME is in, a keyword; a number of parts begun, if its node
+has no states."
+  (let ((states (node-states (frame-node frame))))
+    (if (plusp (length states))
+        (svref states (frame-counter frame))
+        (frame-counter frame))))
 
 (addition task)
 (defstruct (task (:constructor make-task (name node)) (:copier nil))
