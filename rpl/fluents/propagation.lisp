@@ -13,6 +13,8 @@
   (tails (make-array 8 :initial-element nil) :type simple-vector)
   (highest 0 :type fixnum))
 
+(document-functions make-backlog "Return an empty backlog, which grows as needed.")
+
 (defvar *backlog* nil
   "The backlog of the plan runner at work, so that a change need not make one.")
 

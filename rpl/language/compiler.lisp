@@ -43,6 +43,7 @@ SUSPENSION."
         (leaf-code form scope))))
 
 (defun suspends-p (form scope)
+  "True if FORM in SCOPE makes its task wait, or may do so."
   (and (consp form) (suspension form scope)))
 
 ;;; An expression of which a part that Lisp is to use makes the task wait.

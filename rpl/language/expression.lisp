@@ -85,8 +85,8 @@ NIL. (next state) goes over to that for the next step; (at-once state) takes tha
 return the frame to go on with and its value: (values (frame-up frame) value) ends the expression,
 (enter part environment frame) runs a part; or +PARKED+ if TASK now waits.
 (:step form...): the same of an expression without states, which may count in (frame-counter frame).
-(:unwind form...): what is done when SIGNAL passes; see NODE. (:child-ended form...): what is done
-when CHILD has ended as HOW with RESULT. In both, (in-state-p state) is true if the frame is in that.
+(:unwind form...): what is done when SIGNAL passes, see NODE; (in-state-p state) is true if the
+frame is in that. (:child-ended form...): what is done when CHILD has ended as HOW with RESULT.
 (:hot): a profile has shown that this one must be fast."
   (check-clauses "define-expression" name clauses
                  '(:parts :steps :step :unwind :child-ended :hot))

@@ -27,6 +27,9 @@
     (enter result environment frame))
    (getting-result (unwind task frame (make-escape target value)))))
 
+(document-functions
+ make-leave "Return a node that leaves for its target, a node, with the value of its result, another.")
+
 (defun mentions-p (symbol code)
   (loop for tail = code then (cdr tail)
         while (consp tail)

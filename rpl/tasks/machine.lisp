@@ -21,6 +21,17 @@
   (values '() :type list :read-only t))
 (declaim-final escape completion bundle)
 
+(document-functions
+ make-escape "Return a signal to leave for a node, with a value for it."
+ escape-p "True of signals to leave for a node."
+ escape-target "Return the node that the escape leaves for."
+ escape-value "Return the value that the escape brings."
+ make-completion "Return the signal by which a construct ends well, with a value."
+ completion-p "True of signals by which a construct ends well."
+ make-bundle "Return a list of values as one object."
+ bundle-p "True of several values as one object."
+ bundle-values "Return the list of values in the bundle.")
+
 (declaim (inline single-value))
 (defun single-value (value)
   "Return VALUE, or the first one of a bundle."
@@ -36,6 +47,11 @@
   "An expression that cannot wait: FUNCTION takes the environment."
   (function (required-slot 'function) :type function))
 (declaim-final leaf)
+
+(document-functions
+ make-leaf "Return a leaf for a source form and a function of the environment."
+ leaf-p "True of leaves: nodes that cannot wait."
+ leaf-function "Return the function of the environment that does what the leaf does.")
 
 (defun step-leaf (node task frame value)
   (declare (ignore task value))

@@ -1,8 +1,9 @@
 ;;;; package.lisp -- what runs plans: tasks, how they go on, wait and end, and who runs next.
 
 (defpackage :ars-magna.rpl.tasks
-  (:documentation "Plans are cooperative tasks of one thread. A task runs nodes, a plan's expressions, as a chain of
-frames on the heap; a runner lets tasks react. Knows neither the text of plans nor a simulator.")
+  (:documentation "Plans are cooperative tasks of one thread. A task runs nodes, a plan's
+expressions, as a chain of frames on the heap; a runner lets tasks react. Knows neither the text of
+plans nor a simulator.")
   (:use :cl :ars-magna.base :ars-magna.rpl.fluents)
   ;; timer
   (:export #:cancel-timer #:set-timer #:timer #:timer-client)
@@ -13,8 +14,8 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
            #:failure-tick #:lisp-failure #:lisp-failure-backtrace #:lisp-failure-condition
            #:make-failure #:plan-failure)
   ;; task
-  (:export #:current-form #:frame #:frame-counter #:frame-data #:frame-environment #:frame-node #:frame-state
-           #:frame-up
+  (:export #:current-form #:frame #:frame-counter #:frame-data #:frame-environment #:frame-node
+           #:frame-state #:frame-up
            #:make-frame #:make-task #:node #:node-form #:task #:task-awaiting #:task-blocked
            #:task-children #:task-cleaning #:task-form #:task-frame #:task-index #:task-label
            #:task-level #:task-name #:task-newest-child #:task-over-p #:task-p #:task-parent
@@ -37,7 +38,8 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
   (:export #:complete #:complete-when-alone #:decide #:evaporate #:fail-or-escape #:note-status
            #:receive #:release-held #:stop-waiting #:unwind #:withdraw)
   ;; procedure
-  (:export #:ensure-procedure #:make-procedure #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p #:enter-plan
+  (:export #:ensure-procedure #:make-procedure #:all-procedures #:anonymous-procedure #:declare-procedure
+           #:defined-p #:enter-plan
            #:find-procedure #:install-procedure #:procedure #:procedure-body #:procedure-entry
            #:procedure-lambda-list #:procedure-name #:procedure-name-p #:procedure-p)
   ;; blame

@@ -45,6 +45,13 @@
   (on-tick '() :type list)
   (on-end #'identity :type function))
 
+(document-functions
+ runner-tick "Return the tick that it is for the plan runner."
+ runner-timers "Return the timers of the plan runner."
+ runner-blocks "Return how many blocks of tasks of the plan runner there are."
+ runner-dice "Return the dice by which the plan runner's tasks choose, or NIL."
+ runner-ticks-per-second "Return how many ticks are a second for the plan runner's tasks.")
+
 (defun plan-runner-tick (&optional (runner *runner*))
   "Return the tick that it is for RUNNER."
   (runner-tick runner))
