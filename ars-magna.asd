@@ -90,14 +90,16 @@
                  (:file "report") (:file "care") (:file "engine") (:file "alone")))
    (:module "rpl/language" :serial t
     :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
-                 (:file "leaf") (:file "compiler") (:file "steps") (:file "binding")
-                 (:file "leaving") (:file "branching") (:file "repeating") (:file "tags")
-                 (:file "calling") (:file "local-functions") (:file "definitions")
-                 (:file "construct")))
+                 (:file "leaf") (:file "compiler") (:file "expression") (:file "construct")
+                 (:file "steps") (:file "binding") (:file "leaving") (:file "branching")
+                 (:file "repeating") (:file "tags") (:file "calling")
+                 (:file "local-functions") (:file "definitions")))
    (:module "rpl/constructs" :serial t
-    :components ((:file "package") (:file "waiting") (:file "whenever") (:file "failing")
-                 (:file "handling") (:file "trying") (:file "protecting") (:file "parallel")
-                 (:file "policy") (:file "blocking") (:file "ordering") (:file "valve")))
+    :components ((:file "package") (:file "time") (:file "waiting") (:file "whenever")
+                 (:file "failing") (:file "handling") (:file "retry-counters") (:file "trying")
+                 (:file "par") (:file "pursue") (:file "try-all") (:file "par-loop")
+                 (:file "protecting") (:file "policy") (:file "blocking") (:file "ordering")
+                 (:file "valve")))
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t

@@ -126,8 +126,8 @@
 ;;; In the debugger.
 
 (defun answer-debugger (runner &rest answers)
-  "Let RUNNER react; when plans enter the debugger invoke the restarts ANSWERS, each (name value...),
-one after the other."
+  "Let RUNNER react; when plans enter the debugger invoke the restarts ANSWERS, each (name
+value...), one after the other."
   (let ((base:*break-on-user-error* t)
         (base:*message-queue* (base:make-message-queue)))
     (base:with-debugger-hook ((lambda (condition hook)

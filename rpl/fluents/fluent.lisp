@@ -50,6 +50,13 @@ watcher, the value, and NIL or the error met in computing it. PENDING counts eve
 
 (declaim-final derived watcher link fluent)
 
+(document-functions
+ make-watcher "Return somebody who is to be told of a fluent by a function, on behalf of a client."
+ watcher-p "True of watchers."
+ watcher-fluent "Return the fluent that the watcher watches."
+ watcher-client "Return on whose behalf the watcher watches, such as a task."
+ watcher-pending "Return how many events the watcher has been told of that nobody has answered.")
+
 (addition fluent-p fluent-name)
 (setf (documentation 'fluent-name 'function)
       "Return the name that the fluent was created with; of a network, its operator."

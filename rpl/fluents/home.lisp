@@ -76,4 +76,5 @@
 
 (document-functions
   home-on-post "Return the function that is called after each post, in the posting thread."
+  make-backlog "Return an empty backlog, which grows as needed."
   home-backlog "Return the derived fluents that are still to be computed.")

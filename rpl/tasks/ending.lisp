@@ -6,6 +6,7 @@
 ;;; that is to evaporate does so at once, unless something in it has to be cleaned up first.
 
 (defun note-status (task state)
+  "Let whoever looks at the status of TASK see STATE."
   (when (task-status-fluent task)
     (set-value (task-status-fluent task) state)))
 
@@ -59,6 +60,7 @@ those that are not over."
     t))
 
 (defun complete-when-alone (task value)
+  "End with VALUE the construct in which TASK waits for its children, unless some are left."
   (unless (task-newest-child task) (complete task value)))
 
 ;;; Unwinding.
@@ -95,6 +97,7 @@ none does and TASK has ended, +PARKED+."
   (:method (task awaited) (declare (ignore task awaited))))
 
 (defun stop-waiting (task)
+  "Let what TASK waits for, be it a fluent, a timer or another, forget it."
   (let ((awaited (shiftf (task-awaiting task) nil))
         (timer (shiftf (task-timer task) nil)))
     (cond ((null awaited))

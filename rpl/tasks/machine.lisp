@@ -21,32 +21,31 @@
   (values '() :type list :read-only t))
 (declaim-final escape completion bundle)
 
+(document-functions
+ make-escape "Return a signal to leave for a node, with a value for it."
+ escape-p "True of signals to leave for a node."
+ escape-target "Return the node that the escape leaves for."
+ escape-value "Return the value that the escape brings."
+ make-completion "Return the signal by which a construct ends well, with a value."
+ completion-p "True of signals by which a construct ends well."
+ make-bundle "Return a list of values as one object."
+ bundle-p "True of several values as one object."
+ bundle-values "Return the list of values in the bundle.")
+
 (declaim (inline single-value))
 (defun single-value (value)
   "Return VALUE, or the first one of a bundle."
   (if (bundle-p value) (first (bundle-values value)) value))
 
-;;; Defining nodes.
-
-(defmacro define-node (name (&rest slots) documentation &key step unwind child-ended)
-  "Define the node type NAME, or (NAME PARENT), with SLOTS, each (slot type), and the functions
-named for it."
-  (destructuring-bind (name &optional (parent 'node)) (ensure-list name)
-    `(defstruct (,name (:include ,parent
-                        (step #',step)
-                        ,@(when unwind `((unwind #',unwind)))
-                        ,@(when child-ended `((child-ended #',child-ended))))
-                       (:copier nil))
-       ,documentation
-       ,@(loop for (slot type) in slots
-               collect `(,slot (required-slot ',slot) :type ,type)))))
+;;; Leaves.
 
 (defun required-slot (slot)
+  "Signal MISUSE: a node was made without its SLOT."
   (reject-use "A plan's node was made without its ~(~A~)." slot))
 
-(define-node leaf ((function function))
+(defstruct (leaf (:include node (step #'step-leaf)) (:copier nil))
   "An expression that cannot wait: FUNCTION takes the environment."
-  :step step-leaf)
+  (function (required-slot 'function) :type function))
 (declaim-final leaf)
 
 (defvar *leaves-offer-restarts* nil
@@ -75,6 +74,11 @@ named for it."
           :report (lambda (stream) (format stream "Let ~A return a value." text))
           :interactive read-leaf-value
           (return value))))))
+
+(document-functions
+ make-leaf "Return a leaf for a source form and a function of the environment."
+ leaf-p "True of leaves: nodes that cannot wait."
+ leaf-function "Return the function of the environment that does what the leaf does.")
 
 (defun step-leaf (node task frame value)
   (declare (ignore task value))

@@ -17,8 +17,8 @@
 
 (defstruct (plan-runner (:include home) (:constructor %make-plan-runner) (:copier nil)
                         (:conc-name runner-))
-  "What runs plans: knows the tasks, the tick, the timers, and what was posted from outside. PAUSE is
-the number of steps at which the running task is to pause, LIMIT that at which the reaction is to
+  "What runs plans: knows the tasks, the tick, the timers, and what was posted from outside. PAUSE
+is the number of steps at which the running task is to pause, LIMIT that at which the reaction is to
 end. SPENT are the ready tasks that have used their slice in this ROUND, the last one first."
   (rings (coerce (loop repeat +levels+ collect (make-ring)) 'simple-vector)
    :type (simple-vector 8) :read-only t)
@@ -47,6 +47,13 @@ end. SPENT are the ready tasks that have used their slice in this ROUND, the las
   (busy-p (constantly nil) :type function)
   (on-tick '() :type list)
   (on-end #'identity :type function))
+
+(document-functions
+ runner-tick "Return the tick that it is for the plan runner."
+ runner-timers "Return the timers of the plan runner."
+ runner-blocks "Return how many blocks of tasks of the plan runner there are."
+ runner-dice "Return the dice by which the plan runner's tasks choose, or NIL."
+ runner-ticks-per-second "Return how many ticks are a second for the plan runner's tasks.")
 
 (defun plan-runner-tick (&optional (runner *runner*))
   "Return the tick that it is for RUNNER."
