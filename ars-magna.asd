@@ -180,6 +180,7 @@
                  (:file "rpl-fluents")
                  (:file "rpl-compiler") (:file "rpl-plans") (:file "rpl-policies")
                  (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-stress")
+                 (:file "rpl-constructs")
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-robot-live")
                  (:file "plans")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")

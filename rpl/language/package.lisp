@@ -15,8 +15,9 @@ DEFINE-CONSTRUCT adds to it.")
   ;; leaf
   (:export #:value-lambda)
   ;; compiler
-  (:export #:binding-body-code #:body-code #:define-plan-form #:hoisted-code #:plan-code
-           #:suspends-p)
+  (:export #:define-plan-form #:hoisted-code #:plan-code #:suspends-p)
+  ;; steps
+  (:export #:binding-body-code #:body-code)
   ;; leaving
   (:export #:block-code #:make-leave)
   ;; repeating

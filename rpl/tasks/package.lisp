@@ -38,7 +38,8 @@ plans nor a simulator.")
   (:export #:complete #:complete-when-alone #:decide #:evaporate #:fail-or-escape #:note-status
            #:receive #:release-held #:stop-waiting #:unwind #:withdraw)
   ;; procedure
-  (:export #:ensure-procedure #:make-procedure #:all-procedures #:anonymous-procedure #:declare-procedure
+  (:export #:ensure-procedure #:make-procedure #:all-procedures #:anonymous-procedure
+           #:declare-procedure
            #:defined-p #:enter-plan
            #:find-procedure #:install-procedure #:procedure #:procedure-body #:procedure-entry
            #:procedure-lambda-list #:procedure-name #:procedure-name-p #:procedure-p)
