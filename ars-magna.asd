@@ -81,13 +81,13 @@
                  (:file "world-display") (:file "details") (:file "displays")
                  (:file "picture") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
-    :components ((:file "package") (:file "fluent") (:file "network") (:file "propagation")
+    :components ((:file "package") (:file "home") (:file "fluent") (:file "network") (:file "propagation")
                  (:file "operators")))
    (:module "rpl/tasks" :serial t
     :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
                  (:file "task") (:file "trace") (:file "runner") (:file "machine")
                  (:file "ending") (:file "stepping") (:file "blame") (:file "procedure")
-                 (:file "report") (:file "engine") (:file "alone")))
+                 (:file "report") (:file "care") (:file "engine") (:file "alone")))
    (:module "rpl/language" :serial t
     :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
                  (:file "leaf") (:file "compiler") (:file "expression") (:file "construct")
@@ -181,6 +181,7 @@
                  (:file "rpl-compiler") (:file "rpl-plans") (:file "rpl-policies")
                  (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-stress")
                  (:file "rpl-constructs")
+                 (:file "rpl-fairness") (:file "rpl-care")
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-robot-live")
                  (:file "plans")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")

@@ -18,7 +18,10 @@
   (if (fluent-p condition)
       (let ((watcher (make-watcher condition #'wake-waiter task)))
         (watch watcher)
-        (park task watcher))
+        (park task watcher)
+        ;; Another thread may have set it since it was looked at.
+        (let ((value (fluent-value condition)))
+          (when value (wake-waiter watcher value nil))))
       (park task "what cannot change: no fluent")))
 
 (defun checked-timeout (timeout)
@@ -44,7 +47,7 @@ return NIL (manual C). TIMEOUT is a number up to 1e15."
       (cond (value (values (frame-up frame) value))
             ((and timeout (<= (the real timeout) 0)) (values (frame-up frame) nil))
             (t (next waiting)
-               (wait-until-heard task fluent)
                (when timeout (start-timer task timeout))
+               (wait-until-heard task fluent)
                +parked+))))
    (waiting (values (frame-up frame) value))))

@@ -2,8 +2,6 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-;;; A fluent belongs to the thread that runs the plans; other threads only post settings.
-;;;
 ;;; A base fluent is set. A derived fluent is computed from others, its sources. While nobody
 ;;; uses it, it is computed on demand and its sources do not know of it; its first user (a watcher,
 ;;; or a derived fluent that is itself used) makes it a dependent of its sources and the last one
@@ -14,6 +12,7 @@
   "A quantity that varies in time. Plans wait for fluents to become true (manual C)."
   (name nil :read-only t)
   (now nil)
+  (home nil :type (or null home))
   (height 0 :type fixnum)
   (first-watcher nil :type (or null watcher))
   (last-watcher nil :type (or null watcher))

@@ -19,7 +19,10 @@ no plan.")
            #:watcher-fluent #:watcher-p)
   ;; network
   (:export #:fl-apply #:fl-funcall #:fluent-text #:fluent-value #:unwatch #:watch)
+  ;; home
+  (:export #:*runner* #:home #:home-on-post #:home-backlog #:at-home #:call-at-home #:post
+           #:next-entry #:posted-p)
   ;; propagation
-  (:export #:*backlog* #:apply-settings #:backlog #:make-backlog #:pulse #:set-value)
+  (:export #:apply-settings #:clear-backlog #:pulse #:set-value)
   ;; operators
   (:export #:lifting #:lifting-and #:lifting-or))

@@ -12,6 +12,7 @@
    (begin
     (cond ((defined-p procedure)
            (next inside)
+           (note-depth task frame)
            (enter (the node (procedure-body procedure))
                   (funcall caller environment (procedure-entry procedure))
                   frame))
@@ -29,9 +30,37 @@ value."
   (:steps
    (begin
     (next inside)
+    (note-depth task frame)
     (multiple-value-bind (body environment) (funcall entry environment)
       (enter (the node body) environment frame)))
    (inside (values (frame-up frame) value))))
+
+;;; How deep the calls are in each other is kept in the memory of a call's frame.
+
+(addition *plan-depth-limit*)
+(defparameter *plan-depth-limit* 2000
+  "How deep calls of plans may be in each other, also across tasks, before the call fails with the
+class :TOO-DEEP: a number from 1. A plan that calls itself without end fails so (ours).")
+
+(defun depth-around (task frame)
+  "Return how deep the innermost call is that FRAME of TASK is part of, 0 if there is none."
+  (loop
+    (loop for each = frame then (frame-up each)
+          while each
+          do (when (or (call-p (frame-node each)) (call-plan-node-p (frame-node each)))
+               (when (frame-data each) (return-from depth-around (frame-data each)))))
+    (setf task (task-parent task))
+    (unless task (return 0))
+    (setf frame (task-frame task))))
+
+(defun note-depth (task frame)
+  "Note how deep the call of FRAME is, or let TASK fail if that is too deep."
+  (let ((depth (1+ (the fixnum (depth-around task (frame-up frame))))))
+    (when (> depth *plan-depth-limit*)
+      (fail :class :too-deep :depth depth))
+    (setf (frame-data frame) depth)))
+
+;;; Calling Lisp.
 
 (defun lisp-function (name)
   (if (and (fboundp name) (not (macro-function name)))

@@ -28,7 +28,7 @@
    (getting-result (unwind task frame (make-escape target value)))))
 
 (document-functions
- make-leave "Return a node that leaves for a node, its target, with the value of its result.")
+ make-leave "Return a node that leaves for its target with the value of its result, both nodes.")
 
 (defun mentions-p (symbol code)
   (loop for tail = code then (cdr tail)

@@ -24,6 +24,8 @@ DEFINE-CONSTRUCT adds to it.")
   (:export #:each-body-code #:give-way)
   ;; tags
   (:export #:start-branch #:tags-in #:task-status #:with-tags-code)
+  ;; calling
+  (:export #:*plan-depth-limit*)
   ;; definitions
   (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan)
   ;; construct

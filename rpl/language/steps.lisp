@@ -7,7 +7,7 @@
   "Begin NODE as the last thing that FRAME does."
   (let ((up (frame-up frame)))
     (if (leaf-p node)
-        (values up (funcall (leaf-function node) environment))
+        (values up (call-leaf node environment))
         (values (make-frame node environment up) nil))))
 
 (define-expression steps

@@ -48,6 +48,33 @@
   (function (required-slot 'function) :type function))
 (declaim-final leaf)
 
+(defvar *leaves-offer-restarts* nil
+  "True while plans may enter the debugger: leaves offer to be done again, and to return a value.")
+
+(declaim (inline call-leaf))
+(defun call-leaf (leaf environment)
+  "Return what LEAF returns in ENVIRONMENT."
+  (if *leaves-offer-restarts*
+      (call-leaf-offering leaf environment)
+      (funcall (leaf-function leaf) environment)))
+
+(defun read-leaf-value ()
+  (format *query-io* "~&The value to return, a form: ")
+  (finish-output *query-io*)
+  (list (evaluate-form (read *query-io*))))
+
+(defun call-leaf-offering (leaf environment)
+  "Return what LEAF returns in ENVIRONMENT, with the restarts RETRY and USE-VALUE."
+  (let ((text (form-text (node-form leaf))))
+    (loop
+      (restart-case (return (funcall (leaf-function leaf) environment))
+        (retry ()
+          :report (lambda (stream) (format stream "Do ~A again." text)))
+        (use-value (value)
+          :report (lambda (stream) (format stream "Let ~A return a value." text))
+          :interactive read-leaf-value
+          (return value))))))
+
 (document-functions
  make-leaf "Return a leaf for a source form and a function of the environment."
  leaf-p "True of leaves: nodes that cannot wait."
@@ -55,7 +82,7 @@
 
 (defun step-leaf (node task frame value)
   (declare (ignore task value))
-  (values (frame-up frame) (funcall (leaf-function node) (frame-environment frame))))
+  (values (frame-up frame) (call-leaf node (frame-environment frame))))
 
 (define-global +parked+ (make-frame (make-leaf :function #'identity) (vector) nil)
   "What a step returns instead of a frame when its task does not go on now.")
@@ -68,7 +95,7 @@
   "Begin NODE in ENVIRONMENT for FRAME: return what a step returns. The next step of FRAME gets
 the value. A leaf takes no frame of its own."
   (if (leaf-p node)
-      (values frame (funcall (leaf-function node) environment))
+      (values frame (call-leaf node environment))
       (values (make-frame node environment frame) nil)))
 
 (defun park (task awaiting)

@@ -42,7 +42,8 @@ has no states."
 (addition task)
 (defstruct (task (:constructor make-task (name node)) (:copier nil))
   "One incarnation of a plan's expression. FRAME and VALUE say how it will go on; SIGNAL, if any,
-what will happen to it instead. LEVEL 0 is the plan proper, a policy is one above what it guards."
+what will happen to it instead. LEVEL 0 is the plan proper, a policy is one above what it guards.
+SLICE is how many steps it may still take in the ROUND of that number."
   (name nil)
   (node nil :type node)
   (runner nil)
@@ -58,6 +59,8 @@ what will happen to it instead. LEVEL 0 is the plan proper, a policy is one abov
   (timer nil :type (or null timer))
   (cleaning '() :type list)
   (blocked 0 :type fixnum)
+  (round 0 :type fixnum)
+  (slice 0 :type fixnum)
   (result nil)
   (status-fluent nil :type (or null fluent))
   (parent nil :type (or null task))
@@ -111,6 +114,13 @@ over :succeeded, :failed or :evaporated.")
         for child = (task-newest-child task) then (task-older child)
         while child do (push child children)
         finally (return children)))
+
+(addition task-top)
+(defun task-top (task)
+  "Return the top-level task that TASK is part of, perhaps itself."
+  (loop while (task-parent task)
+        do (setf task (task-parent task)))
+  task)
 
 (defgeneric current-form (node frame)
   (:documentation "Return the source of the expression of NODE that FRAME is at.")
