@@ -216,7 +216,7 @@
                  (:file "manual-b-1") (:file "manual-c") (:file "manual-c-plans")
                  (:file "manual-d") (:file "manual-e")
                  (:file "hostile-numbers") (:file "ownership") (:file "users-hands")
-                 (:file "src-readme") (:file "tests-readme") (:file "architecture")
+                 (:file "src-readme") (:file "rpl-readme") (:file "tests-readme") (:file "architecture")
                  (:file "isolation") (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
