@@ -48,7 +48,8 @@
   (let ((text (base:read-file-into-string (rpl-readme)))
         (examples (format nil "~{~A~}" (lisp-blocks (rpl-readme)))))
     (dolist (name (rpl:all-constructs))
-      (is (shown-p "**`(" name text) "~(~A~) is not in rpl/README.md, as **`(~:*~(~A~) ...)`**" name)
+      (is (shown-p "**`(" name text)
+          "~(~A~) is not in rpl/README.md, as **`(~:*~(~A~) ...)`**" name)
       (is (shown-p "(" name examples) "~(~A~) has no example in rpl/README.md" name))))
 
 (test rpl-readme.has-lines-to-be-read
