@@ -182,6 +182,7 @@
                  (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-stress")
                  (:file "rpl-constructs")
                  (:file "rpl-fairness") (:file "rpl-care")
+                 (:file "rpl-kills")
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-robot-live")
                  (:file "plans")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
