@@ -29,7 +29,7 @@ DEFINE-CONSTRUCT adds to it.")
   ;; definitions
   (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan)
   ;; construct
-  (:export #:all-constructs #:define-construct #:in-plans-only #:form #:scope #:build #:hoisting)
+  (:export #:all-constructs #:define-construct #:in-plans-only #:form #:scope #:build)
   ;; expression
   (:export #:define-expression #:node #:task #:frame #:value #:child #:how #:result
            #:environment #:memory #:next #:at-once #:in-state-p))
