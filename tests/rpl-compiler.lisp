@@ -163,11 +163,13 @@
   (is (equal '(1 5 6) (plan-value (named-later 1 :b 5))))
   (is (equal '(2 (3)) (plan-value (typed-procedure 2 '(3)))))
   (is (string= "Return the arguments." (documentation 'add-later 'function)))
-  (is (typep (rpl:lisp-failure-condition (plan-failure-of (typed-procedure 1)))
+  (is (typep (rpl:lisp-failure-condition (plan-failure-of (rpl:call-plan 'typed-procedure 1)))
              'program-error)))
 
 (test def-interp-proc.in-any-order
   (is (= 3 (plan-value (calls-what-comes-later 3)))))
+
+(rpl:def-interp-proc changing () 0)
 
 (test def-interp-proc.takes-effect-in-running-plans
   (flet ((define (answer)

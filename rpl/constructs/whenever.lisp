@@ -88,6 +88,6 @@ argument as many runs follow. Ends only by RETURN, failure or evaporation (manua
         (block-code nil form scope
                     (lambda (scope)
                       `(make-reaction :form ',form
-                                      :condition ,(value-lambda fluent scope)
+                                      :condition ,(condition-lambda fluent scope)
                                       :missed ,(value-lambda missed scope)
                                       :body ,(body-code body (single-scope scope))))))))

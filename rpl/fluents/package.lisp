@@ -6,7 +6,7 @@ conditions read fluents by value, operators given a fluent return a network. Ins
 operators of Common Lisp mean these without further ado.")
   (:use)
   (:export #:if #:when #:unless #:cond #:loop
-           #:and #:or #:not #:< #:> #:<= #:>= #:= #:+ #:- #:* #:/ #:eq #:eql #:equal))
+           #:and #:or #:not #:null #:< #:> #:<= #:>= #:= #:+ #:- #:* #:/ #:eq #:eql #:equal))
 
 (defpackage :ars-magna.rpl.fluents
   (:documentation "Fluents, networks of fluents, and how a change reaches those who watch. Knows no plan.")
@@ -17,6 +17,9 @@ operators of Common Lisp mean these without further ado.")
            #:make-watcher #:state #:watcher #:watcher-client #:watcher-pending #:watcher-fluent #:watcher-p)
   ;; network
   (:export #:fl-apply #:fl-funcall #:fluent-text #:fluent-value #:unwatch #:watch)
+  ;; known
+  (:export #:declare-fluent-variable #:known-fluent-variable-p #:known-vector-variable-p
+           #:one-fluent #:truth-value)
   ;; propagation
   (:export #:*backlog* #:apply-settings #:backlog #:make-backlog #:pulse #:set-value)
   ;; operators

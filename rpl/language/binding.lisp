@@ -66,6 +66,12 @@
                                     collect (as-lisp value scope)))
                    (first scopes))))
 
+(defun binding-scope (scope variables bindings body)
+  "Return SCOPE with VARIABLES bound, as by BINDINGS around BODY."
+  (let ((inner (variable-scope scope variables)))
+    (inner-scope inner :fluents (append (bound-to-fluents bindings body scope)
+                                        (scope-fluents inner)))))
+
 (defun binding-code (form bindings body scope sequential)
   "Return code for FORM, a LET or, if SEQUENTIAL, a LET*."
   (let* ((bindings (untyped-bindings bindings (operator-text form)))
@@ -78,7 +84,8 @@
                                    single))))
     (cond ((null bindings) (binding-body-code body scope))
           ((binds-special-p variables body scope) (refuse-code form scope))
-          (t (let ((body-code (binding-body-code body (variable-scope scope variables))))
+          (t (let ((body-code (binding-body-code
+                               body (binding-scope scope variables bindings body))))
                (if (some #'suspends-p values scopes)
                    `(make-filling :form ',form
                                   :parts (vector ,@(mapcar #'plan-code values scopes))

@@ -5,8 +5,9 @@
 ;;; Calling. CALLER is compiled from the call's arguments: it takes the environment and a function,
 ;;; either the procedure's entry or a Lisp function, and calls that with them.
 
-(define-node call ((procedure procedure) (caller function))
-  "A call of a procedure, or of a Lisp function that was unknown when the plan was compiled."
+(define-node call ((procedure procedure) (count fixnum) (caller function))
+  "A call with COUNT arguments of a procedure, or of a Lisp function that was unknown when the plan
+was compiled."
   :step step-call)
 
 (defun step-call (node task frame value)
@@ -18,7 +19,7 @@
           ((defined-p procedure)
            (setf (frame-counter frame) 1)
            (enter (the node (procedure-body procedure))
-                  (funcall caller environment (procedure-entry procedure))
+                  (funcall caller environment (entry-for procedure (call-count node)))
                   frame))
           (t (values (frame-up frame)
                      (multiple-value-call #'bundle-up

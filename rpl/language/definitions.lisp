@@ -21,17 +21,24 @@
   (let* ((definition (title "def-interp-proc" name))
          (parameters (untyped-lambda-list parameters definition))
          (form (list* name parameters body)))
-    (declare-procedure name)
+    (declare-procedure name parameters)
     (with-own-text (form)
       (multiple-value-bind (body documentation) (split-documentation body)
         (multiple-value-bind (scope entry) (procedure-parts parameters environment)
           `(progn
              (eval-when (:compile-toplevel :load-toplevel :execute)
-               (declare-procedure ',name)
+               (declare-procedure ',name ',parameters)
                (declaim (ftype function ,name)))
              (install-procedure ',name ',parameters ,documentation
                                 ,entry ,(procedure-body-code name form body scope)
+                                ,(stub-lambda name)
                                 ',(source-here))))))))
+
+(defun stub-lambda (name)
+  "Return the lambda expression for what Lisp code gets that calls the plan procedure NAME."
+  `(lambda (&rest arguments)
+     (declare (ignore arguments))
+     (reject-lisp-call ',name)))
 
 (public def-interp-proc)
 (define-user-macro def-interp-proc (&whole form name parameters &body body &environment environment)

@@ -12,7 +12,7 @@
   ;; scope
   (:export #:inner-scope #:scope #:scope-retry #:single-scope #:variable-scope)
   ;; leaf
-  (:export #:value-lambda)
+  (:export #:condition-lambda #:value-lambda)
   ;; compiler
   (:export #:binding-body-code #:body-code #:define-plan-form #:hoisted-code #:plan-code
            #:suspends-p)

@@ -6,15 +6,16 @@
 ;;; them out. All of these can be left by RETURN.
 
 (define-node turns ((until function) (count function) (body node))
-  "BODY again and again: while UNTIL of the environment is false, at most COUNT times. COUNTER is 0
-before the first turn, 1 while the body runs and 2 between turns; DATA is how many are left."
+  "BODY again and again: while UNTIL of the environment is false, at most COUNT times, which is a
+number or NIL for as many as it takes. COUNTER is 0 before the first turn, 1 while the body runs and 2 between turns; DATA is how many are left."
   :step step-turns)
 
-(defun checked-count (count)
-  "Return COUNT, of turns: a number, or NIL for as many as it takes. Signals WRONG-ARGUMENT."
-  (check-argument n-times count (or (null count) (quantity-p count))
-                  "a number of turns, from -1e15 to 1e15")
-  count)
+(defun turn-count (count)
+  "Return COUNT, of turns, a number or a fluent that holds one. Signals WRONG-ARGUMENT."
+  (let ((count (fluent-value count)))
+    (check-argument n-times count (quantity-p count)
+                    "a number of turns, from -1e15 to 1e15, first of all: (n-times count form...)")
+    count))
 
 (defun step-turns (node task frame value)
   (declare #.*hot* (ignore value) (type turns node) (type task task) (type frame frame))
@@ -24,8 +25,7 @@ before the first turn, 1 while the body runs and 2 between turns; DATA is how ma
            (make-ready task)
            +parked+)
           (t (when (= 0 (frame-counter frame))
-               (setf (frame-data frame)
-                     (checked-count (funcall (turns-count node) environment))))
+               (setf (frame-data frame) (funcall (turns-count node) environment)))
              (setf (frame-counter frame) 1)
              (let ((left (frame-data frame)))
                (cond ((or (and left (<= (the real left) 0))
@@ -66,7 +66,7 @@ a test made before each turn. COUNT is a number up to 1e15. Return NIL."
   (if (suspends-p count scope)
       (with-gensyms (value)
         (plan-code (note-own-text `(let ((,value ,count)) (n-times ,value ,@forms))) scope))
-      (turns-code form (note-own-text `(fluent-value ,count)) forms scope)))
+      (turns-code form (note-own-text `(turn-count ,count)) forms scope)))
 
 ;;; Over the elements of a list, and numbers.
 

@@ -52,7 +52,9 @@
 
 (defun reject-suspension (form container)
   "Signal MISPLACED-SUSPENSION: FORM would make the task wait inside CONTAINER."
-  (error 'misplaced-suspension :form form :container container :advice (advice-for container)))
+  (call-at-place form (lambda ()
+                        (error 'misplaced-suspension :form form :container container
+                                                     :advice (advice-for container)))))
 
 (defun misplaced (name arguments)
   "Signal MISUSE: the construct called NAME was met in ordinary Lisp code."
@@ -83,7 +85,7 @@
   (operator-in-p form '("INTERP-LAMBDA" "DEF-INTERP-PROC")))
 
 (defparameter *lifted-operators*
-  '("NOT" "<" ">" "<=" ">=" "=" "+" "-" "*" "/" "EQ" "EQL" "EQUAL"))
+  '("NOT" "NULL" "<" ">" "<=" ">=" "=" "+" "-" "*" "/" "EQ" "EQL" "EQUAL"))
 
 (defun keyword-test (forms name)
   "True if FORMS start with the symbol NAME and a test, as after LOOP."
@@ -124,3 +126,10 @@ has the same names every time, so that traces can be compared."
          (*gensym-counter* 0))
      (note-own-text ,form)
      ,@body))
+
+(defun mentions-p (symbol code)
+  "True if SYMBOL occurs in CODE."
+  (loop for tail = code then (cdr tail)
+        while (consp tail)
+        thereis (mentions-p symbol (car tail))
+        finally (return (eq symbol tail))))

@@ -35,8 +35,10 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
   ;; ending
   (:export #:complete #:complete-when-alone #:decide #:evaporate #:fail-or-escape #:note-status
            #:receive #:release-held #:stop-waiting #:unwind #:withdraw)
+  ;; shape
+  (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
   ;; procedure
-  (:export #:ensure-procedure #:make-procedure #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p #:enter-plan
+  (:export #:entry-for #:declared-names #:declared-lambda-list #:reject-lisp-call #:ensure-procedure #:make-procedure #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p #:enter-plan
            #:find-procedure #:install-procedure #:procedure #:procedure-body #:procedure-entry
            #:procedure-lambda-list #:procedure-name #:procedure-name-p #:procedure-p)
   ;; blame
