@@ -69,7 +69,7 @@
 (defun binding-scope (scope variables bindings body)
   "Return SCOPE with VARIABLES bound, as by BINDINGS around BODY."
   (let ((inner (variable-scope scope variables)))
-    (inner-scope inner :fluents (append (bound-to-fluents bindings body scope)
+    (inner-scope inner :fluents (append (bound-to-fluents bindings body scope sequential)
                                         (scope-fluents inner)))))
 
 (defun binding-code (form bindings body scope sequential)
@@ -82,10 +82,12 @@
                        collect (if sequential
                                    (variable-scope single (subseq variables 0 i))
                                    single))))
+    (check-use variables (list* (and sequential values) body) form)
     (cond ((null bindings) (binding-body-code body scope))
           ((binds-special-p variables body scope) (refuse-code form scope))
           (t (let ((body-code (binding-body-code
-                               body (binding-scope scope variables bindings body))))
+                               body (binding-scope scope variables bindings body
+                                              sequential))))
                (if (some #'suspends-p values scopes)
                    `(make-filling :form ',form
                                   :parts (vector ,@(mapcar #'plan-code values scopes))
@@ -118,6 +120,7 @@
              (enter-last (value-binding-body node) inner frame)))))
 
 (define-plan-form "MULTIPLE-VALUE-BIND" nil (variables source &rest body) (form scope)
+  (check-use variables body form)
   (if (binds-special-p variables body scope)
       (refuse-code form scope)
       `(make-value-binding :form ',form

@@ -6,13 +6,6 @@
 ;;; when all has been read that is compiled or loaded together, as Lisp does with its functions.
 ;;; What Lisp code calls is for Lisp to see.
 
-(defun author ()
-  "Return what the text at hand is called in messages, and where it is if Lisp will not say that."
-  (if *definition*
-      (let ((form (defining-form *definition*)))
-        (title (first form) (second form)))
-      "plan"))
-
 (defun place-to-tell (form)
   (and (not *compile-file-truename*) (clause-place form)))
 
@@ -78,3 +71,18 @@ right."
     (and (consp (shape-keys shape))
          (proper-list-p form)
          (keyword-slip shape (nthcdr (shape-fixed shape) (rest form))))))
+
+;;; Variables.
+
+(defun check-use (variables where form)
+  "Warn of those of VARIABLES, bound by FORM of the author's text, that the forms WHERE do not
+mention: declarations count."
+  (when (in-source-p form)
+    (dolist (variable variables)
+      (when (and (symbol-package variable) (not (mentions-p variable where)))
+        (call-at-place form
+                       (lambda ()
+                         (warn-of-call #'doubt-definition form
+                                       "the variable ~(~A~) is never used. If that is meant, ~
+                                        say (declare (ignore ~:*~(~A~)))."
+                                       variable)))))))

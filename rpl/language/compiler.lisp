@@ -32,7 +32,7 @@ arguments bound by LAMBDA-LIST. SUSPENDS says whether it makes a task wait: see 
 
 (defun reject-shape (form lambda-list)
   (let ((*print-case* :downcase))
-    (reject-clause "plan" form
+    (reject-clause (author) form
                    (format nil "(~A~{ ~A~})~@[, not ~A~]" (operator-text form) lambda-list
                            (slip-in-construct form lambda-list)))))
 
@@ -53,7 +53,7 @@ account of these."
        (own-text-p form)
        (operator-in-p form '("LET" "LET*"))
        (proper-list-p (second form))
-       (bound-to-fluents (second form) (cddr form) scope)))
+       (bound-to-fluents (second form) (cddr form) scope (operator-in-p form '("LET*")))))
 
 ;;; An expression of which a part that Lisp is to use makes the task wait.
 

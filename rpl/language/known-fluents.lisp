@@ -41,7 +41,7 @@
   "Signal MALFORMED-DEFINITION if FORM, a condition, is a variable that holds a vector of fluents."
   (let ((kind (vector-variable form)))
     (when kind
-      (reject-clause "plan" form
+      (reject-clause (author) form
                      (format nil "one of the fluents in that vector: (vref ~(~A~) ~A)"
                              form kind)))))
 
@@ -115,11 +115,14 @@
                                 (mentions-p variable (rest form)))
                            (assigned-p variable form))))))
 
-(defun bound-to-fluents (bindings body scope)
-  "Return the variables that BINDINGS, around BODY, bind to known fluents for good."
-  (let ((*fluents-here* (scope-fluents scope)))
-    (loop for binding in bindings
-          when (and (consp binding)
-                    (known-fluent-p (second binding) (scope-environment scope))
-                    (not (assigned-p (first binding) body)))
-            collect (first binding))))
+(defun bound-to-fluents (bindings body scope sequential)
+  "Return the variables that BINDINGS, of a LET or if SEQUENTIAL a LET* around BODY, bind to known
+fluents for good."
+  (let ((*fluents-here* (scope-fluents scope)) (found '()))
+    (loop for (variable value) in (remove-if #'atom bindings)
+          do (cond ((and (known-fluent-p value (scope-environment scope))
+                         (not (assigned-p variable body)))
+                    (push variable found)
+                    (when sequential (push variable *fluents-here*)))
+                   (t (setf found (remove variable found)))))
+    found))

@@ -40,6 +40,8 @@
 (defun plan-meaning (form environment)
   "Return what FORM, a call in the plan's own text, means; FORM itself if just what it says."
   (let ((name (or (plan-operator-name form) "")))
+    (when (member name '("AND" "OR" "NOT" "NULL") :test #'string=)
+      (mapc #'check-condition (rest form)))
     (flet ((condition (form) (condition-form form environment))
            (is (&rest names) (member name names :test #'string=)))
       (cond ((is "IF") `(if ,(condition (second form)) ,@(cddr form)))

@@ -54,7 +54,7 @@ builds the plan, that hold their nodes."
                             (special-variable-p variable (scope-environment scope)))
                           variables)))
     (when special
-      (reject-clause "plan" special "the name of a lexical variable; this one is special"))
+      (reject-clause (author) special "the name of a lexical variable; this one is special"))
     (inner-scope (layered-scope scope (list :variables level variables) level
                                 :variable (remove-duplicates variables))
                  :fluents (set-difference (scope-fluents scope) variables))))

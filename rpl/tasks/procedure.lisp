@@ -151,12 +151,13 @@ this one."
   (error 'wrong-arguments
          :operator (or (procedure-name procedure) "interp-lambda") :name "argument list"
          :value arguments
-         :expected (format nil "what it takes, ~A, not ~A"
+         :expected (format nil "~A, not ~A"
                            (shape-text (procedure-lambda-list procedure)) trouble)))
 
 (defun check-arguments (procedure arguments)
   "Signal WRONG-ARGUMENTS unless PROCEDURE takes the list ARGUMENTS."
-  (let ((trouble (misfit (shape-of (procedure-lambda-list procedure)) arguments)))
+  (let ((trouble (misfit (shape-of (procedure-lambda-list procedure)) arguments
+                         :wrong-p (constantly t))))
     (when trouble (reject-arguments procedure arguments trouble))))
 
 (declaim (inline entry-for))

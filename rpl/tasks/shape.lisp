@@ -39,25 +39,25 @@ keywords; :NONE if there is no &KEY. OPEN is true if other keywords do as well."
   (let ((*print-case* :downcase) (*print-pretty* nil))
     (format nil "~:A" lambda-list)))
 
-(defun keyword-slip (shape rest)
+(defun keyword-slip (shape rest &key (wrong-p #'keywordp))
   "Return in words the keyword among REST, arguments or forms after the others, that is none of
-SHAPE's, or NIL."
+SHAPE's, or NIL. Those that WRONG-P is not true of may be keywords yet."
   (unless (or (shape-open shape)
               (loop for (key value) on rest by #'cddr
                     thereis (and (eq key :allow-other-keys) value)))
     (loop for (key) on rest by #'cddr
-          when (and (keywordp key)
+          when (and (funcall wrong-p key)
                     (not (member key (list* :allow-other-keys (shape-keys shape)))))
             return (format nil "~(~S~)~@[ (did you mean ~(~S~)?)~]"
-                           key (nearest-name key (shape-keys shape))))))
+                           key (and (keywordp key) (nearest-name key (shape-keys shape)))))))
 
-(defun misfit (shape arguments)
+(defun misfit (shape arguments &key (wrong-p #'keywordp))
   "Return in words what it is of ARGUMENTS, or the forms for them, that SHAPE does not take; NIL if
-they may fit."
+they may fit. WRONG-P is as for KEYWORD-SLIP."
   (let* ((count (length arguments))
          (rest (nthcdr (shape-fixed shape) arguments)))
     (cond ((not (<= (shape-least shape) count (shape-most shape)))
-           (format nil "~:[~D argument~:P~;no arguments~]" (zerop count) count))
+           (format nil "~D argument~:P" count))
           ((eq :none (shape-keys shape)) nil)
           ((oddp (length rest)) "a keyword without a value")
-          (t (keyword-slip shape rest)))))
+          (t (keyword-slip shape rest :wrong-p wrong-p)))))

@@ -39,6 +39,10 @@
   (let ((places (places)))
     (and places (consp form) (values (gethash form places)))))
 
+(defun in-source-p (form)
+  "True if FORM was read from what is being compiled, or stands in place of what was."
+  (and (place-of form) t))
+
 (defun keep-place (new old)
   "Let NEW, made of OLD, stand where OLD does if it has no place yet. Return NEW."
   (let ((place (and (consp new) (not (eq new old)) (place-of old))))

@@ -66,7 +66,7 @@
 
 (define-condition definition-doubt (definition-warning style-warning)
   ()
-  (:documentation "A definition needs something that there is not yet."))
+  (:documentation "A definition needs what there is not yet, or has what it does not need."))
 
 (defun text-for-author (control arguments)
   (let ((*print-case* :downcase))
@@ -77,7 +77,8 @@
   (warn 'definition-warning :text (text-for-author control arguments)))
 
 (defun doubt-definition (control &rest arguments)
-  "Do as WARN-OF-DEFINITION; but the warning is a STYLE-WARNING: what is missing may yet come."
+  "Do as WARN-OF-DEFINITION; but the warning is a STYLE-WARNING: the definition may be what its author
+meant."
   (warn 'definition-doubt :text (text-for-author control arguments)))
 
 (defun plain-name (name)

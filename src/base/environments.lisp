@@ -38,7 +38,8 @@ on, or NIL if it is none that is known."
 (defun function-arguments (name)
   "Return what the function NAME takes, types and lambda list keywords as in the type FUNCTION, and
 true; or NIL twice if the compiler does not know."
-  (let ((type (cdr (assoc 'ftype (nth-value 2 (sb-cltl2:function-information name))))))
+  (let ((type (and (member (sb-int:info :function :where-from name) '(:declared :defined))
+                   (sb-kernel:type-specifier (sb-int:info :function :type name)))))
     (if (typep type '(cons (eql function) (cons list)))
         (values (second type) t)
         (values nil nil))))
@@ -97,4 +98,6 @@ walk out of what is put there. What takes the place of an expression stands wher
 
 (defun bound-in-walk-p (variable environment)
   "True if VARIABLE is bound by an expression that the walk which visits ENVIRONMENT has entered."
-  (and (sb-walker:var-lexical-p variable environment) t))
+  ;; Variables of the environment that the walk began in are entries, others lists of these.
+  (let ((found (sb-walker:var-lexical-p variable environment)))
+    (and (consp found) (consp (first found)))))

@@ -43,7 +43,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:extended-environment #:evaluate-form #:form-behind-comma #:walk-form
            #:bound-in-walk-p)
   ;; compiling
-  (:export #:show-lambda-list #:nested-p #:keep-place #:call-at-place #:at-end-of-unit
+  (:export #:show-lambda-list #:nested-p #:keep-place #:in-source-p #:call-at-place #:at-end-of-unit
            #:call-as-unit)
   ;; abridging
   (:export #:abridged #:+more+)
