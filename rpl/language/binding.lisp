@@ -66,8 +66,8 @@
                                     collect (as-lisp value scope)))
                    (first scopes))))
 
-(defun binding-scope (scope variables bindings body)
-  "Return SCOPE with VARIABLES bound, as by BINDINGS around BODY."
+(defun binding-scope (scope variables bindings body sequential)
+  "Return SCOPE with VARIABLES bound, as by BINDINGS around BODY, one after the other if SEQUENTIAL."
   (let ((inner (variable-scope scope variables)))
     (inner-scope inner :fluents (append (bound-to-fluents bindings body scope sequential)
                                         (scope-fluents inner)))))
