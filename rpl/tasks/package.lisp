@@ -36,8 +36,11 @@ plans nor a simulator.")
   ;; ending
   (:export #:complete #:complete-when-alone #:decide #:evaporate #:fail-or-escape #:note-status
            #:receive #:release-held #:stop-waiting #:unwind #:withdraw)
+  ;; shape
+  (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
   ;; procedure
-  (:export #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p
+  (:export #:entry-for #:declared-names #:declared-lambda-list #:reject-lisp-call
+           #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p
            #:ensure-procedure #:enter-plan #:find-procedure #:install-procedure #:make-procedure
            #:procedure #:procedure-body #:procedure-entry #:procedure-lambda-list
            #:procedure-name #:procedure-name-p #:procedure-p)
