@@ -64,7 +64,7 @@
                  (:file "places") (:file "driving") (:file "following")
                  (:file "handling") (:file "hands") (:file "inserting") (:file "bins")
                  (:file "patterns") (:file "manipulations") (:file "manipulating")
-                 (:file "looking") (:file "searching") (:file "tracking")
+                 (:file "looking") (:file "searching") (:file "tracking") (:file "withdrawing")
                  (:file "turning-cameras") (:file "approaching")))
    (:module "src/run" :serial t
     :components ((:file "package") (:file "participant") (:file "journal") (:file "run")
@@ -101,8 +101,10 @@
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
-    :components ((:file "package") (:file "fluents") (:file "interface") (:file "accessors")
-                 (:file "outcomes") (:file "commands") (:file "runs")))
+    :components ((:file "package") (:file "fluents") (:file "interface") (:file "takeovers")
+                 (:file "under-way") (:file "reacting") (:file "watching") (:file "thread")
+                 (:file "starting") (:file "accessors") (:file "outcomes") (:file "commands")
+                 (:file "runs")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.

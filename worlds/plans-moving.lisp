@@ -34,6 +34,11 @@
   "Turn the robot of the reckoning ME to face POINT, a list (x y). Return an error code or NIL."
   (turn-by (angle-towards me point)))
 
+(def-interp-proc stand-still ()
+  "Let the robot stand at once, whatever it is doing."
+  (rpl-grab-robot)
+  (wait-time 1))
+
 ;;; Trouble.
 
 (def-interp-proc feel-ahead (me)
@@ -44,8 +49,7 @@ nothing is there any more."
   (if (wait-for robot-stopped* :timeout 12)
       (cond ((null (fluent-value robot-movement-error*)) (reckon me) (correct-by-wall me) :wall)
             (t (bar-ahead me) :thing))
- ;; Grabbing ends it with one pulse; a stop would end too, with another.
-      (seq (outcome (rpl-grab-robot) robot-stopped* robot-movement-error*)
+      (seq (stand-still)
            (reckon me)
            nil)))
 
@@ -85,7 +89,7 @@ given. Return an error code, or NIL when it is there."
   (or (begin-track camera designator)
       (seq (rpl-robot-goto-designator camera)
            (if (not (wait-for robot-stopped* :timeout patience))
-               (outcome (rpl-grab-robot) robot-stopped* robot-movement-error*))
+               (stand-still))
            (let ((error (fluent-value robot-movement-error*)))
              (stop-track camera)
              error))))

@@ -1,0 +1,58 @@
+;;;; takeovers.lisp -- plans that keep taking the robot from each other are told of, and slowed down.
+
+(in-package :ars-magna.rpl-robot)
+
+;;; A plan that hears that its command was interrupted may issue it again, and so interrupt who did
+;;; that, who then does the same. No time passes meanwhile. After *MOST-TAKEOVERS* in a tick
+;;; each further one ends the reaction.
+
+(defparameter *most-takeovers* 100
+  "How often plans may take one part of the robot from each other before time has to pass.")
+
+(defun takeover-count (interface resource)
+  "Return a cons of RESOURCE and how often it has been taken over in this tick."
+  (let ((tick (simulation-tick (interface-simulation interface))))
+    (unless (eql tick (interface-takeover-tick interface))
+      (setf (interface-takeover-tick interface) tick
+            (interface-takeovers interface) '()))
+    (or (assoc resource (interface-takeovers interface))
+        (first (push (cons resource 0) (interface-takeovers interface))))))
+
+(defun taker-text (task)
+  "Return in words which TASK it is."
+  (if task
+      (format nil "~{~A~^ > ~} (task ~D)" (task-path task) (task-serial task))
+      "somebody outside of plans"))
+
+(defun takeover-text (deed task)
+  "Return in words that the tasks of DEED and TASK, who may be the same, take over each other's
+commands."
+  (let ((resource (deed-resource deed)))
+    (if (eq task (deed-task deed))
+        (format nil "~A interrupts its own commands to ~A for ever: each time it hears that it was ~
+                     interrupted it issues the next"
+                (taker-text task) resource)
+        (format nil "~A and ~A take ~A from each other for ever: each time one hears that it was ~
+                     interrupted it issues its command again"
+                (taker-text (deed-task deed)) (taker-text task) resource))))
+
+(defun warn-of-takeovers (interface deed task)
+  "Queue a warning that names the tasks of DEED and TASK, once."
+  (let ((text (takeover-text deed task)))
+    (unless (member text (interface-warned interface) :test #'string=)
+      (push text (interface-warned interface))
+      (warning-set text ". They go on with the ticks. Let one of them own it: see WITH-VALVE."))))
+
+(defun count-takeover (interface deed)
+  "Note that the task at work has taken over the resource of DEED, and let time pass if that is too
+often."
+  (let ((count (takeover-count interface (deed-resource deed))))
+    (when (< *most-takeovers* (incf (cdr count)))
+      (warn-of-takeovers interface deed (task-at-work interface))
+      (exhaust-reaction (interface-runner interface)))))
+
+(defun waits-for-tick-p (interface)
+  "True if plans have taken a part from each other so often in this tick that another is to come."
+  (and (eql (simulation-tick (interface-simulation interface)) (interface-takeover-tick interface))
+       (loop for (nil . count) in (interface-takeovers interface)
+               thereis (< *most-takeovers* count))))
