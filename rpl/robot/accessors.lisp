@@ -104,7 +104,7 @@ pulse; the robot stands from the next tick on (manual C)."
                                                  so at once; see RPL-GRAB-ROBOT. Signals ~
                                                  WRONG-ARGUMENT. (Manual C.)" text)
                                    (grab (the-interface) (find-part ',kind index ',name))
-                                   (values)))))
+                                   (values))))))
   (define-grabs
     (rpl-grab-camera camera "the camera")
     (rpl-grab-hand hand "the hand")

@@ -24,31 +24,28 @@
       (format nil "~{~A~^ > ~} (task ~D)" (task-path task) (task-serial task))
       "somebody outside of plans"))
 
-(defun takeover-text (deed task)
-  "Return in words that the tasks of DEED and TASK, who may be the same, take over each other's
-commands."
-  (let ((resource (deed-resource deed)))
-    (if (eq task (deed-task deed))
-        (format nil "~A interrupts its own commands to ~A for ever: each time it hears that it was ~
-                     interrupted it issues the next"
-                (taker-text task) resource)
-        (format nil "~A and ~A take ~A from each other for ever: each time one hears that it was ~
-                     interrupted it issues its command again"
-                (taker-text (deed-task deed)) (taker-text task) resource))))
+(defun takeover-text (resource older newer)
+  "Return in words that the tasks OLDER and NEWER, perhaps the same, take RESOURCE over for ever."
+  (if (eq older newer)
+      (format nil "~A takes ~A from itself for ever: each time it hears that its command was ~
+                   interrupted it issues another"
+              (taker-text newer) resource)
+      (format nil "~A and ~A take ~A from each other for ever: each time one hears that its command ~
+                   was interrupted it issues another"
+              (taker-text older) (taker-text newer) resource)))
 
-(defun warn-of-takeovers (interface deed task)
-  "Queue a warning that names the tasks of DEED and TASK, once."
-  (let ((text (takeover-text deed task)))
-    (unless (member text (interface-warned interface) :test #'string=)
-      (push text (interface-warned interface))
-      (warning-set text ". They go on with the ticks. Let one of them own it: see WITH-VALVE."))))
+(defun warn-of-takeovers (interface text)
+  "Queue the warning TEXT, once."
+  (unless (member text (interface-warned interface) :test #'string=)
+    (push text (interface-warned interface))
+    (warning-set text ". They go on with the ticks. Let one at a time have it: see WITH-VALVE.")))
 
-(defun count-takeover (interface deed)
-  "Note that the task at work has taken over the resource of DEED, and let time pass if that is too
-often."
-  (let ((count (takeover-count interface (deed-resource deed))))
+(defun count-takeover (interface resource older newer)
+  "Note that the task NEWER has taken over RESOURCE from OLDER (NIL: no task), and let time pass if
+that was too often."
+  (let ((count (takeover-count interface resource)))
     (when (< *most-takeovers* (incf (cdr count)))
-      (warn-of-takeovers interface deed (task-at-work interface))
+      (warn-of-takeovers interface (takeover-text resource older newer))
       (exhaust-reaction (interface-runner interface)))))
 
 (defun waits-for-tick-p (interface)

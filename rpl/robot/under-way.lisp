@@ -68,8 +68,7 @@ makes settings of an answer."
 
 (defun add-answer (answer interface)
   (with-lock ((interface-deeds-lock interface))
-    (setf (interface-answers interface) (append (interface-answers interface) (list answer)))
-    (when (answer-last-p answer) (setf (deed-over-p (answer-deed answer)) t))))
+    (setf (interface-answers interface) (append (interface-answers interface) (list answer)))))
 
 (defun take-answer (answer interface)
   "Take ANSWER from those that are not yet heard, and with the last one its deed. True unless
@@ -96,7 +95,8 @@ somebody has done so before."
       (setf settings (apply (deed-outcome deed) (deed-resource deed) err results))
       (let ((answer (make-answer deed settings (ends-p (deed-command deed) err))))
         (add-answer answer interface)
-        (post-call (interface-runner interface) (lambda () (hear answer interface)))))))
+        (post-call (interface-runner interface) (lambda () (hear answer interface)))
+        (when (answer-last-p answer) (setf (deed-over-p deed) t))))))
 
 (defun answering (interface deed)
   "Return the continuation for the command of DEED."
@@ -112,11 +112,12 @@ somebody has done so before."
   (setf (deed-told-p deed) t)
   (apply-settings (plain-settings (funcall (deed-outcome deed) (deed-resource deed) :interrupt))))
 
-(defun hear-answers-on (resource interface)
-  "Let plans hear what has been answered on RESOURCE."
+(defun hear-answers-on (resource interface except)
+  "Let plans hear what has been answered on RESOURCE, but for answers to EXCEPT."
   (dolist (answer (interface-answers interface))
-    (when (eq resource (deed-resource (answer-deed answer)))
-      (hear answer interface))))
+    (let ((deed (answer-deed answer)))
+      (when (and (eq resource (deed-resource deed)) (not (eq deed except)))
+        (hear answer interface)))))
 
 (defun ends-by-command-p (deed)
   "True if a new command on its resource interrupts DEED when it is issued: unless it takes no time,
@@ -128,25 +129,25 @@ and is carried out first, or goes on in the background."
   "True where plans of INTERFACE react."
   (eq *runner* (interface-runner interface)))
 
+(defun task-at-work (interface)
+  "Return the task of INTERFACE that is at work here, or NIL."
+  (let ((task (and (reacting-p interface) (current-task))))
+    (and task (eq :running (task-state task)) task)))
+
 (defun take-over (interface resource &key except (test #'ends-by-command-p))
   "Let plans hear that what was under way on RESOURCE, but for EXCEPT, and for which TEST is true,
 has been ended by the plan that is at work, if one is."
   (when (reacting-p interface)
-    (hear-answers-on resource interface)
+    (hear-answers-on resource interface except)
     (dolist (deed (interface-deeds interface))
       (when (and (eq resource (deed-resource deed))
                  (not (eq deed except))
                  (deed-open-p deed)
                  (funcall test deed))
         (tell-interrupted deed)
-        (count-takeover interface deed)))))
+        (count-takeover interface resource (deed-task deed) (task-at-work interface))))))
 
 ;;; Issuing.
-
-(defun task-at-work (interface)
-  "Return the task of INTERFACE that is at work here, or NIL."
-  (let ((task (and (reacting-p interface) (current-task))))
-    (and task (eq :running (task-state task)) task)))
 
 (defun cleaning-up-p (task)
   "True if TASK, or a task that it is part of, is cleaning up."
