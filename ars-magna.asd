@@ -81,23 +81,25 @@
                  (:file "world-display") (:file "details") (:file "displays")
                  (:file "picture") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
-    :components ((:file "package") (:file "fluent") (:file "network") (:file "propagation")
+    :components ((:file "package") (:file "home") (:file "fluent") (:file "network") (:file "propagation")
                  (:file "operators")))
    (:module "rpl/tasks" :serial t
     :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
                  (:file "task") (:file "trace") (:file "runner") (:file "machine")
                  (:file "ending") (:file "stepping") (:file "blame") (:file "procedure")
-                 (:file "report") (:file "engine") (:file "alone")))
+                 (:file "report") (:file "care") (:file "engine") (:file "alone")))
    (:module "rpl/language" :serial t
     :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
-                 (:file "leaf") (:file "compiler") (:file "steps") (:file "binding")
-                 (:file "leaving") (:file "branching") (:file "repeating") (:file "tags")
-                 (:file "calling") (:file "local-functions") (:file "definitions")
-                 (:file "construct")))
+                 (:file "leaf") (:file "compiler") (:file "expression") (:file "construct")
+                 (:file "steps") (:file "binding") (:file "leaving") (:file "branching")
+                 (:file "repeating") (:file "tags") (:file "calling")
+                 (:file "local-functions") (:file "definitions")))
    (:module "rpl/constructs" :serial t
-    :components ((:file "package") (:file "waiting") (:file "whenever") (:file "failing")
-                 (:file "handling") (:file "trying") (:file "protecting") (:file "parallel")
-                 (:file "policy") (:file "blocking") (:file "ordering") (:file "valve")))
+    :components ((:file "package") (:file "time") (:file "waiting") (:file "whenever")
+                 (:file "failing") (:file "handling") (:file "retry-counters") (:file "trying")
+                 (:file "par") (:file "pursue") (:file "try-all") (:file "par-loop")
+                 (:file "protecting") (:file "policy") (:file "blocking") (:file "ordering")
+                 (:file "valve")))
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
@@ -180,6 +182,7 @@
                  (:file "rpl-fluents")
                  (:file "rpl-compiler") (:file "rpl-plans") (:file "rpl-policies")
                  (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-stress")
+                 (:file "rpl-fairness") (:file "rpl-care")
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-issue")
                  (:file "rpl-robot-live")
                  (:file "plans")
