@@ -25,7 +25,10 @@
       "somebody outside of plans"))
 
 (defun takeover-text (resource older newer)
-  "Return in words that the tasks OLDER and NEWER, perhaps the same, take RESOURCE over for ever."
+  "Return in words that the tasks OLDER and NEWER, perhaps the same, take RESOURCE over for ever: the
+same words whichever of them it is that takes it."
+  (when (and older newer (> (task-serial older) (task-serial newer)))
+    (rotatef older newer))
   (if (eq older newer)
       (format nil "~A takes ~A from itself for ever: each time it hears that its command was ~
                    interrupted it issues another"

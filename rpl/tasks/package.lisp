@@ -14,8 +14,8 @@ plans nor a simulator.")
            #:failure-tick #:lisp-failure #:lisp-failure-backtrace #:lisp-failure-condition
            #:make-failure #:plan-failure)
   ;; task
-  (:export #:current-form #:form-text #:frame #:frame-counter #:frame-data #:frame-environment #:frame-node
-           #:frame-state #:frame-up #:make-frame #:make-task #:node #:node-form #:task
+  (:export #:current-form #:form-text #:frame #:frame-counter #:frame-data
+           #:frame-environment #:frame-node #:frame-state #:frame-up #:make-frame #:make-task #:node #:node-form #:task
            #:task-awaiting #:task-blocked #:task-children #:task-cleaning #:task-form
            #:task-frame #:task-index #:task-label #:task-level #:task-name #:task-newest-child
            #:task-over-p #:task-p #:task-parent #:task-path #:task-result #:task-runner
@@ -44,7 +44,8 @@ plans nor a simulator.")
   ;; blame
   (:export #:failure-of)
   ;; report
-  (:export #:*plan-end-hooks* #:print-tasks #:report-deadlock #:report-end #:report-failure #:task-awaits)
+  (:export #:*plan-end-hooks* #:print-tasks #:report-deadlock #:report-end #:report-failure
+           #:task-awaits)
   ;; engine
   (:export #:advance-timers #:apply-next-batch #:close-runner #:digest-runner #:idle-p
            #:make-plan-runner #:next-wake-time #:plan-deadlocked-p #:post-batch #:post-call
