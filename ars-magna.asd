@@ -185,7 +185,7 @@
                  (:file "rpl-fairness") (:file "rpl-care")
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-issue")
                  (:file "rpl-robot-live")
-                 (:file "plans")
+                 (:file "plans") (:file "plans-killed")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "cli-files") (:file "kinds")

@@ -184,14 +184,16 @@ troubles, or at once if there is no way."
           (if stopped (get-free me stopped)))))
     (reckon me)))
 
-(def-interp-proc patrol-places (points &key (rounds 1) (start (here (rpl-robot))))
-  "Let the robot, which is at START, a list (x y heading), visit POINTS of its map in turn, ROUNDS
-times. What cannot be reached is left out. Return how many visits it made."
-  (let ((me (begin-reckoning start))
-        (visits 0))
-    (n-times rounds
-      (dolist (point points)
-        (handle-failure ((:cannot-get-there () (return nil)))
-          (travel-to me point)
-          (incf visits))))
-    visits))
+(def-interp-proc patrol-places (points &key (rounds 1) start)
+  "Let the robot visit POINTS of its map in turn, ROUNDS times. START is where it is, a list (x y
+heading); by default it finds that out. What cannot be reached is left out. Return how many visits
+it made."
+  (with-valve ((rpl-robot-valve))
+    (let ((me (begin-reckoning (or start (here (rpl-robot)))))
+          (visits 0))
+      (n-times rounds
+        (dolist (point points)
+          (handle-failure ((:cannot-get-there () (return nil)))
+            (travel-to me point)
+            (incf visits))))
+      visits)))

@@ -16,6 +16,7 @@
   (simulation nil :read-only t)
   (runner nil :type (or null plan-runner))
   (ender nil :type (or null function))
+  (valve (make-valve "robot") :type valve :read-only t)
   (lock (make-lock "plans") :read-only t)
   ;; The thread that holds the lock, so that plans may start and end others; how many want it.
   (holder nil)
@@ -126,6 +127,13 @@ again."
 (defun rpl-robot ()
   "Return the robot that plans drive. Signals MISUSE without one."
   (interface-robot (the-interface)))
+
+(addition rpl-robot-valve)
+(defun rpl-robot-valve ()
+  "Return the valve of the robot that plans drive. Nobody needs it to drive the robot; plans that may
+run beside others own it while they do: (with-valve ((rpl-robot-valve)) ...). The shipped errands
+do. Signals MISUSE without a robot."
+  (interface-valve (the-interface)))
 
 (addition rpl-runner)
 (defun rpl-runner ()

@@ -23,7 +23,8 @@
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:task-serial #:task-form #:task-cleaning #:form-text
                 #:plan-deadlocked-p #:report-deadlock #:report-end #:reseed-runner
-                #:digest-runner #:print-tasks #:find-procedure #:plan-trace #:write-trace)
+                #:digest-runner #:print-tasks #:find-procedure #:plan-trace #:write-trace #:valve
+                #:make-valve)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
            #:robot-place-input* #:robot-place*
@@ -33,7 +34,7 @@
            #:storage-bin-moved* #:storage-bin-error* #:storage-bin-jammer*)
   (:export #:define-fluents #:define-outcome)
   ;; interface, accessors
-  (:export #:rpl-init-robot #:rpl-robot #:rpl-robot-part #:*trace-plans*
+  (:export #:rpl-init-robot #:rpl-robot #:rpl-robot-valve #:rpl-robot-part #:*trace-plans*
            #:rpl-robot-speed #:rpl-robot-turn-angle #:rpl-robot-num-cameras
            #:rpl-robot-num-hands #:rpl-robot-num-bins #:rpl-camera-field-of-view
            #:rpl-camera-resolution #:rpl-camera-angle #:rpl-camera-last-view

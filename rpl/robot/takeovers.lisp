@@ -41,7 +41,7 @@ same words whichever of them it is that takes it."
   "Queue the warning TEXT, once."
   (unless (member text (interface-warned interface) :test #'string=)
     (push text (interface-warned interface))
-    (warning-set text ". They go on with the ticks. Let one at a time have it: see WITH-VALVE.")))
+    (warning-set text ". They go on with the ticks. Let one at a time have it: see RPL-ROBOT-VALVE.")))
 
 (defun count-takeover (interface resource older newer)
   "Note that the task NEWER has taken over RESOURCE from OLDER (NIL: no task), and let time pass if
