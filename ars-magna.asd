@@ -183,7 +183,7 @@
                  (:file "rpl-compiler") (:file "rpl-plans") (:file "rpl-policies")
                  (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-stress")
                  (:file "rpl-fairness") (:file "rpl-care")
-                 (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-issue")
+                 (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-issue") (:file "rpl-left")
                  (:file "rpl-robot-live")
                  (:file "plans") (:file "plans-killed")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")

@@ -130,9 +130,9 @@ again."
 
 (addition rpl-robot-valve)
 (defun rpl-robot-valve ()
-  "Return the valve of the robot that plans drive. Nobody needs it to drive the robot; plans that may
-run beside others own it while they do: (with-valve ((rpl-robot-valve)) ...). The shipped errands
-do. Signals MISUSE without a robot."
+  "Return the valve of the robot that plans drive. Nobody needs it to drive the robot; plans that
+may run beside others own it while they do: (with-valve ((rpl-robot-valve)) ...). The shipped
+errands do. Signals MISUSE without a robot."
   (interface-valve (the-interface)))
 
 (addition rpl-runner)

@@ -79,7 +79,8 @@ and PARAMETERS, lists (variable type text)."
     (:when (destructuring-bind (test . clauses) (rest clause)
              `(when ,test (append ,@(mapcar #'clause-form clauses)))))
     (t (reject-clause "define-outcome" clause
-                      "(:set fluent form), (:error fluent), (:pulse fluent), (:when form clause...)"))))
+                      (format nil "(:set fluent form), (:error fluent), (:pulse fluent) or ~
+                                   (:when form clause...)")))))
 
 (defun clause-fluents (clauses)
   (loop for clause in clauses

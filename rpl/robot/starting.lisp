@@ -3,8 +3,8 @@
 (in-package :ars-magna.rpl-robot)
 
 (defun close-interface (interface)
-  "Let INTERFACE hear no more of its simulation, and its plans end: now, or, if they react in another
-thread or around this call, when they get to it."
+  "Let INTERFACE hear no more of its simulation, and its plans end: now, or, if they react in
+another thread or around this call, when they get to it."
   (let ((simulation (interface-simulation interface)))
     (unless (interface-closing-p interface)
       (setf (interface-closing-p interface) t)

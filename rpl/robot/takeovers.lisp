@@ -1,4 +1,4 @@
-;;;; takeovers.lisp -- plans that keep taking the robot from each other are told of, and slowed down.
+;;;; takeovers.lisp -- plans that keep taking the robot from each other are named and slowed down.
 
 (in-package :ars-magna.rpl-robot)
 
@@ -25,23 +25,24 @@
       "somebody outside of plans"))
 
 (defun takeover-text (resource older newer)
-  "Return in words that the tasks OLDER and NEWER, perhaps the same, take RESOURCE over for ever: the
-same words whichever of them it is that takes it."
+  "Return in words that the tasks OLDER and NEWER, perhaps the same, take RESOURCE over for ever,
+the same words whichever of them it is that takes it."
   (when (and older newer (> (task-serial older) (task-serial newer)))
     (rotatef older newer))
   (if (eq older newer)
       (format nil "~A takes ~A from itself for ever: each time it hears that its command was ~
                    interrupted it issues another"
               (taker-text newer) resource)
-      (format nil "~A and ~A take ~A from each other for ever: each time one hears that its command ~
-                   was interrupted it issues another"
+      (format nil "~A and ~A take ~A from each other for ever: each time one hears that its ~
+                   command was interrupted it issues another"
               (taker-text older) (taker-text newer) resource)))
 
 (defun warn-of-takeovers (interface text)
   "Queue the warning TEXT, once."
   (unless (member text (interface-warned interface) :test #'string=)
     (push text (interface-warned interface))
-    (warning-set text ". They go on with the ticks. Let one at a time have it: see RPL-ROBOT-VALVE.")))
+    (warning-set text ". They go on with the ticks. Let one at a time have it: see "
+                 "RPL-ROBOT-VALVE.")))
 
 (defun count-takeover (interface resource older newer)
   "Note that the task NEWER has taken over RESOURCE from OLDER (NIL: no task), and let time pass if

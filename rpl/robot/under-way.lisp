@@ -178,7 +178,7 @@ has been ended by the plan that is at work, if one is."
 
 ;; What was issued to clean up is meant to last.
 (defun interrupt-deeds (interface task)
-  "Interrupt what the top-level TASK, which has not succeeded, had asked for and is still under way."
+  "Interrupt what the top-level TASK, which has not succeeded, has asked for and is under way."
   (dolist (deed (interface-deeds interface))
     (when (and (deed-open-p deed)
                (deed-task deed)

@@ -1,4 +1,4 @@
-;;;; watching.lisp -- plans that keep their thread are named while they do, and ended if they are to.
+;;;; watching.lisp -- plans that keep their thread are named while they do, and ended if need be.
 
 (in-package :ars-magna.rpl-robot)
 
@@ -41,8 +41,8 @@ TASK, or NIL if it was at none."
 
 (defun warn-of-plan (task)
   "Queue a warning that TASK is at Lisp code that does not return."
-  (warning-set (format nil "The plan ~A has kept the plans' thread for ~,1F s and goes on, at ~A in ~
-                            ~{~A~^ > ~}; (end-plan :all) or (stop-simulator) ends it"
+  (warning-set (format nil "The plan ~A has kept the plans' thread for ~,1F s and goes on, at ~A ~
+                            in ~{~A~^ > ~}; (end-plan :all) or (stop-simulator) ends it"
                        (task-label (task-top task)) (hog-seconds)
                        (form-text (task-form task)) (task-path task))))
 
@@ -61,8 +61,8 @@ TASK, or NIL if it was at none."
         (stop-plan (interface-runner interface) (task-top (look-task look))))))
 
 (defun watch-plans (interface thread calls ended)
-  "Name what the plans' THREAD, in the users' CALLS, does not get out of, and end it if it is to end,
-until the semaphore ENDED says that the thread has."
+  "Name what the plans' THREAD, in the users' CALLS, does not get out of, and end it if it is to
+end, until the semaphore ENDED says that the thread has."
   (loop with earlier = nil and stuck = 1 and busy = 1
         until (wait-on-semaphore ended (/ (hog-seconds) 2))
         do (let ((look (look-at interface thread)))
