@@ -160,7 +160,7 @@ after that."
                    (run-as-plan (rpl:wait-time 2)
                                 (rpl:handle-failure ((:oops () (rpl:fail :class :worse :why 7)))
                                   (rpl:fail :class :oops))))))))
-    (dolist (part '(":WORSE" ":WHY 7" "tick 2" "(fail :class :worse" "after" ":OOPS"))
+    (dolist (part '(":WORSE" ":WHY 7" "tick 2" "class :worse :why 7)" "after" ":OOPS"))
       (is (search part text) "~A in ~A" part text))))
 
 (test run-plan.reports-are-of-bounded-length
