@@ -16,15 +16,21 @@
         (rpl-init-robot (first robots))
         *interface*)))
 
+(defun begin-in (interface plan arguments note)
+  "Start PLAN with the list ARGUMENTS by INTERFACE, and return its task, with which NOTE, a function,
+has been called before anything else can happen."
+  (prog1 (with-plans (interface)
+           (let ((task (apply #'start-plan (interface-runner interface) plan arguments)))
+             (funcall note task)
+             task))
+    (ensure-thread interface)
+    (wake interface)))
+
 (addition begin-plan)
 (defun begin-plan (plan &rest arguments)
   "Start PLAN, a plan procedure or its name, with ARGUMENTS, and return its task at once. Headless
 it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
-  (let ((interface (ensure-interface)))
-    (prog1 (with-plans (interface)
-             (apply #'start-plan (interface-runner interface) plan arguments))
-      (ensure-thread interface)
-      (wake interface))))
+  (begin-in (ensure-interface) plan arguments #'identity))
 
 (defconstant +longest-report+ 4000
   "How many characters a report of plans has at most.")
@@ -112,10 +118,11 @@ is not over when RUN-PLAN returns or is left, as by an abort, ends. Signals UNKN
 MISUSE."
   (let ((interface (ensure-interface)))
     (check-outside interface)
-    (let ((task (apply #'begin-plan plan arguments)) (state nil))
+    (let ((task nil) (state nil))
       (in-any-case
-        (setf state (await-plan interface task))
-        (unless (task-over-p task) (end-in interface task)))
+        (progn (begin-in interface plan arguments (lambda (begun) (setf task begun)))
+               (setf state (await-plan interface task)))
+        (when (and task (not (task-over-p task))) (end-in interface task)))
       (values (task-result task) state))))
 
 (addition plans)

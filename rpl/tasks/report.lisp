@@ -99,4 +99,4 @@ failure is left to the first that returns true. In any thread that lets plans re
 wait for."
   (error-set "Deadlock at tick " (runner-tick runner)
              ": nothing can wake these tasks." t
-             (with-output-to-string (stream) (print-tasks runner stream))))
+             (cut (with-output-to-string (stream) (print-tasks runner stream)) 4000)))
