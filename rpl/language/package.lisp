@@ -15,8 +15,9 @@ DEFINE-CONSTRUCT adds to it.")
   ;; leaf
   (:export #:value-lambda)
   ;; compiler
-  (:export #:binding-body-code #:body-code #:define-plan-form #:hoisted-code #:plan-code
-           #:suspends-p)
+  (:export #:define-plan-form #:hoisted-code #:plan-code #:suspends-p)
+  ;; steps
+  (:export #:binding-body-code #:body-code)
   ;; leaving
   (:export #:block-code #:make-leave)
   ;; repeating
@@ -28,7 +29,7 @@ DEFINE-CONSTRUCT adds to it.")
   ;; definitions
   (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan)
   ;; construct
-  (:export #:all-constructs #:define-construct #:in-plans-only #:form #:scope #:build #:hoisting)
+  (:export #:all-constructs #:define-construct #:in-plans-only #:form #:scope #:build)
   ;; expression
   (:export #:define-expression #:node #:task #:frame #:value #:child #:how #:result
            #:environment #:memory #:next #:at-once #:in-state-p))
