@@ -47,7 +47,8 @@ plans nor a simulator.")
   ;; blame
   (:export #:failure-of)
   ;; report
-  (:export #:*plan-end-hooks* #:print-tasks #:report-deadlock #:report-failure #:task-awaits)
+  (:export #:*plan-end-hooks* #:print-tasks #:report-deadlock #:report-end #:report-failure
+           #:task-awaits)
   ;; engine
   (:export #:advance-timers #:apply-next-batch #:close-runner #:digest-runner #:idle-p
            #:make-plan-runner #:next-wake-time #:plan-deadlocked-p #:post-batch #:post-call
