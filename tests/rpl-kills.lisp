@@ -1,4 +1,4 @@
-;;;; rpl-kills.lisp -- random plans killed at random moments in random ways: all end, nothing is left.
+;;;; rpl-kills.lisp -- random plans killed at random moments in random ways: nothing is left.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)

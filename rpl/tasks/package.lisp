@@ -14,9 +14,9 @@ plans nor a simulator.")
            #:failure-tick #:lisp-failure #:lisp-failure-backtrace #:lisp-failure-condition
            #:make-failure #:plan-failure)
   ;; task
-  (:export #:current-form #:form-text #:frame #:frame-counter #:frame-data #:frame-environment #:frame-node
-           #:frame-state #:frame-up #:make-frame #:make-task #:node #:node-form #:task
-           #:task-awaiting #:task-blocked #:task-children #:task-cleaning #:task-form
+  (:export #:current-form #:form-text #:frame #:frame-counter #:frame-data #:frame-environment
+           #:frame-node #:frame-state #:frame-up #:make-frame #:make-task #:node #:node-form
+           #:task #:task-awaiting #:task-blocked #:task-children #:task-cleaning #:task-form
            #:task-frame #:task-index #:task-label #:task-level #:task-name #:task-newest-child
            #:task-over-p #:task-p #:task-parent #:task-path #:task-result #:task-runner
            #:task-serial #:task-signal #:task-state #:task-status-fluent #:task-timer #:task-top)
@@ -36,8 +36,11 @@ plans nor a simulator.")
   ;; ending
   (:export #:complete #:complete-when-alone #:decide #:evaporate #:fail-or-escape #:note-status
            #:receive #:release-held #:stop-waiting #:unwind #:withdraw)
+  ;; shape
+  (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
   ;; procedure
-  (:export #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p
+  (:export #:entry-for #:declared-names #:declared-lambda-list #:reject-lisp-call
+           #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p
            #:ensure-procedure #:enter-plan #:find-procedure #:install-procedure #:make-procedure
            #:procedure #:procedure-body #:procedure-entry #:procedure-lambda-list
            #:procedure-name #:procedure-name-p #:procedure-p)

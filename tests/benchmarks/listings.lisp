@@ -21,8 +21,7 @@
      (dolist (clean '(t nil))
        (say-rate ,name clean (lambda () ,@run)))))
 
-(let ((fiveam:*run-test-when-defined* nil)
-      (driver:*plan-limit* 5000))
+(let ((driver:*plan-limit* 5000))
   (rates "D.2 finds what is red behind it" ("d2-rpl-scan-for-object")
     (let ((ball (put-ball 2.5 8.5)))
       (eq ball (robot:designator-denotation (scan-by-plan '((:color red)))))))
