@@ -3,8 +3,8 @@
 (in-package :ars-magna.tests)
 (in-suite rpl)
 
-;;; Files. What is said of one is a list of pairs: the form that the compiler points at, as text, and
-;;; what it says.
+;;; Files. What is said of one is a list of pairs: the form that the compiler points at, as text,
+;;; and what it says.
 
 (defun call-in-own-package (function)
   "Call FUNCTION while there is an empty package for texts, which is current."
@@ -119,6 +119,15 @@
         do (is (same-text-p slip (car (first said))) "~S" said)
            (is (search expected (cdr (first said))) "~S" said)))
 
+(test text.what-only-lisp-runs-cannot-wait
+  (loop for (slip place expected)
+          in '(("(mapcar (lambda (x) (later x)) (list 1))" "(later x)" "later is a plan procedure")
+               ("(mapcar (lambda (x) (wait-for x)) (list 1))" "(wait-for x)"
+                "A plan cannot wait inside lambda"))
+        for (form . text) = (find expected (said-compiling (text-with slip))
+                                  :key #'cdr :test #'search)
+        do (is (and form (same-text-p place form)) "~S: ~S ~S" slip form text)))
+
 (test text.what-is-right-is-silent
   (let ((right "(def-interp-proc first-of-two (x &rest more) (second-of-two x) (list more)
                   (flet ((wait (n) (wait-time n) n)) (helping (wait 1) :b 2))
@@ -193,9 +202,10 @@
 
 (defun arglist (name)
   "Return the lambda list of NAME as editors show it."
-  (string-downcase (let ((*package* (find-package :ars-magna.tests)))
-                     (format nil "~:A" (mapcar (lambda (part) (if (symbolp part) (symbol-name part) part))
-                                               (introspect '#:function-lambda-list name))))))
+  (let ((*package* (find-package :ars-magna.tests)))
+    (string-downcase
+     (format nil "~:A" (loop for part in (introspect '#:function-lambda-list name)
+                             collect (if (symbolp part) (symbol-name part) part))))))
 
 (test arglists.are-those-of-the-author
   (loop for (name expected) in '((asked-for "(a &key b)")
@@ -341,6 +351,7 @@
 (test def-interp-macro.patterns-have-an-end
   (loop for pattern in (list '#1=(m x . #1#) '(m . #2=(x #2#))
                              `(m ,@(loop repeat 100000 collect 'x))
-                             `(m ,(let ((deep 'x)) (dotimes (i 100000 deep) (setf deep (list deep))))))
+                             `(m ,(let ((deep 'x))
+                                    (dotimes (i 100000 deep) (setf deep (list deep))))))
         do (signals base:malformed-definition
              (macroexpand-1 `(rpl:def-interp-macro ,pattern 1)))))

@@ -1,8 +1,8 @@
-;;;; known.lisp -- fluents where a truth value is wanted, and variables that are known to hold fluents.
+;;;; known.lisp -- conditions, and variables that are known to hold fluents.
 
 (in-package :ars-magna.rpl.fluents)
 
-;;; Of a part of which the robot has several, such as a camera, a variable holds a vector of fluents.
+;;; Of parts of which the robot has several, such as cameras, a variable holds a vector of fluents.
 ;;; That vector is true, always, and so never what a condition means.
 
 (defvar *known-variables* (make-hash-table :test 'eq :synchronized t)
@@ -18,7 +18,8 @@ for each part, or T if a fluent.")
   (eq t (gethash name *known-variables*)))
 
 (defun known-vector-variable-p (name)
-  "Return the name of the kind of part for which the variable NAME is known to hold fluents, or NIL."
+  "Return the name of the kind of part for which the variable NAME is known to hold a vector of
+fluents, or NIL."
   (let ((kind (gethash name *known-variables*)))
     (and (stringp kind) kind)))
 

@@ -9,12 +9,14 @@ operators of Common Lisp mean these without further ado.")
            #:and #:or #:not #:null #:< #:> #:<= #:>= #:= #:+ #:- #:* #:/ #:eq #:eql #:equal))
 
 (defpackage :ars-magna.rpl.fluents
-  (:documentation "Fluents, networks of fluents, and how a change reaches those who watch. Knows no plan.")
+  (:documentation "Fluents, networks of fluents, and how a change reaches those who watch. Knows no
+plan.")
   (:use :cl :ars-magna.base)
   (:local-nicknames (:lifted :ars-magna.rpl.lifted))
   ;; fluent
   (:export #:create-fluent #:create-fluent-vector #:fluent #:fluent-name #:fluent-p
-           #:make-watcher #:state #:watcher #:watcher-client #:watcher-pending #:watcher-fluent #:watcher-p)
+           #:make-watcher #:state #:watcher #:watcher-client #:watcher-pending #:watcher-fluent
+           #:watcher-p)
   ;; network
   (:export #:fl-apply #:fl-funcall #:fluent-text #:fluent-value #:unwatch #:watch)
   ;; known

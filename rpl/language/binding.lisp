@@ -67,7 +67,7 @@
                    (first scopes))))
 
 (defun binding-scope (scope variables bindings body sequential)
-  "Return SCOPE with VARIABLES bound, as by BINDINGS around BODY, one after the other if SEQUENTIAL."
+  "Return SCOPE with VARIABLES bound, as by BINDINGS around BODY, in turn if SEQUENTIAL."
   (let ((inner (variable-scope scope variables)))
     (inner-scope inner :fluents (append (bound-to-fluents bindings body scope sequential)
                                         (scope-fluents inner)))))

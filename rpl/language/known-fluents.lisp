@@ -13,7 +13,7 @@
   "Functions that always return a fluent.")
 
 (defun vector-variable (form)
-  "Return the name of the kind of part if FORM is a variable that holds a vector of fluents, or NIL."
+  "Return the name of a kind of part if FORM is a variable that holds a vector of fluents for that."
   (and (symbolp form) (known-vector-variable-p form)))
 
 (defun element-of-vector-p (form)
@@ -83,10 +83,11 @@
                (not (operator-in-p form *lifted-operators*))
                (not (local-function-p name environment))
                (not (macro-function name))
-               (not (special-operator-p name))
-               (fboundp name))
-      (let ((fluent (misplaced-fluent form environment)))
-        (when fluent (warn-of-fluent form fluent))))
+               (not (special-operator-p name)))
+      (if (fboundp name)
+          (let ((fluent (misplaced-fluent form environment)))
+            (when fluent (warn-of-fluent form fluent)))
+          (look-later #'look-at-lisp-call form)))
     nil))
 
 (defun warn-of-fluent (form fluent)

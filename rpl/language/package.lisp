@@ -1,7 +1,8 @@
 ;;;; package.lisp -- from a plan's text to nodes, and what of Lisp plans understand.
 
 (defpackage :ars-magna.rpl.language
-  (:documentation "Reads the text of plans: Lisp's own operators, procedures, macros; DEFINE-CONSTRUCT adds to it.")
+  (:documentation "Reads the text of plans: Lisp's own operators, procedures, macros;
+DEFINE-CONSTRUCT adds to it.")
   (:use :cl :ars-magna.base :ars-magna.rpl.fluents :ars-magna.rpl.tasks)
   (:import-from :ars-magna.nisp
                 #:untyped-bindings #:untyped-lambda-list #:lambda-list-variables

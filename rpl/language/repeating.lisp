@@ -7,7 +7,8 @@
 
 (define-node turns ((until function) (count function) (body node))
   "BODY again and again: while UNTIL of the environment is false, at most COUNT times, which is a
-number or NIL for as many as it takes. COUNTER is 0 before the first turn, 1 while the body runs and 2 between turns; DATA is how many are left."
+number or NIL for as many as it takes. COUNTER is 0 before the first turn, 1 while the body runs and
+2 between turns; DATA is how many are left."
   :step step-turns)
 
 (defun turn-count (count)

@@ -1,8 +1,9 @@
 ;;;; package.lisp -- what runs plans: tasks, how they go on, wait and end, and who runs next.
 
 (defpackage :ars-magna.rpl.tasks
-  (:documentation "Plans are cooperative tasks of one thread. A task runs nodes, a plan's expressions, as a chain of
-frames on the heap; a runner lets tasks react. Knows neither the text of plans nor a simulator.")
+  (:documentation "Plans are cooperative tasks of one thread. A task runs nodes, a plan's
+expressions, as a chain of frames on the heap; a runner lets tasks react. Knows neither the text of
+plans nor a simulator.")
   (:use :cl :ars-magna.base :ars-magna.rpl.fluents)
   ;; timer
   (:export #:cancel-timer #:set-timer #:timer #:timer-client)
@@ -29,7 +30,8 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
            #:runner-timers)
   ;; machine
   (:export #:+nothing+ #:+parked+ #:awaited-text #:bundle-p #:bundle-values #:completion-p
-           #:define-node #:required-slot #:enter #:escape-p #:escape-target #:escape-value #:leaf-function
+           #:define-node #:required-slot #:enter #:escape-p #:escape-target #:escape-value
+           #:leaf-function
            #:leaf-p #:make-bundle #:make-completion #:make-escape #:make-leaf #:park
            #:single-value #:wake)
   ;; ending
@@ -38,7 +40,9 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
   ;; shape
   (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
   ;; procedure
-  (:export #:entry-for #:declared-names #:declared-lambda-list #:reject-lisp-call #:ensure-procedure #:make-procedure #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p #:enter-plan
+  (:export #:entry-for #:declared-names #:declared-lambda-list #:reject-lisp-call
+           #:ensure-procedure #:make-procedure #:all-procedures #:anonymous-procedure
+           #:declare-procedure #:defined-p #:enter-plan #:set-lambda-list
            #:find-procedure #:install-procedure #:procedure #:procedure-body #:procedure-entry
            #:procedure-lambda-list #:procedure-name #:procedure-name-p #:procedure-p)
   ;; blame

@@ -11,6 +11,10 @@ keywords; :NONE if there is no &KEY. OPEN is true if other keywords do as well."
   (keys :none :type (or list (eql :none)) :read-only t)
   (open nil :read-only t))
 
+(document-functions
+  shape-fixed "Return how many arguments come before keywords."
+  shape-keys "Return the keywords that are taken, or :NONE.")
+
 (defun keyword-of (parameter)
   "Return the keyword that PARAMETER, after &KEY in a lambda list or a function type, goes by."
   (let ((name (if (consp parameter) (first parameter) parameter)))

@@ -77,8 +77,8 @@
   (warn 'definition-warning :text (text-for-author control arguments)))
 
 (defun doubt-definition (control &rest arguments)
-  "Do as WARN-OF-DEFINITION; but the warning is a STYLE-WARNING: the definition may be what its author
-meant."
+  "Do as WARN-OF-DEFINITION; but the warning is a STYLE-WARNING: the definition may be what its
+author meant."
   (warn 'definition-doubt :text (text-for-author control arguments)))
 
 (defun plain-name (name)
