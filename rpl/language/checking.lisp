@@ -58,9 +58,10 @@
         (loaded *load-truename*))
     (at-end-of-unit form
                     (lambda ()
-                      (let ((*definition* definition) (*package* package)
-                            (*compile-file-truename* file) (*load-truename* loaded))
-                        (funcall look form))))))
+                      (when (package-name package) ; which may have been deleted
+                        (let ((*definition* definition) (*package* package)
+                              (*compile-file-truename* file) (*load-truename* loaded))
+                          (funcall look form)))))))
 
 (defun check-call (form scope)
   "Warn, now or when all has been read, if FORM, a call of a plan or of what is not known, is not
