@@ -82,7 +82,7 @@
                  (:file "picture") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
     :components ((:file "package") (:file "fluent") (:file "network") (:file "propagation")
-                 (:file "operators")))
+                 (:file "views") (:file "operators")))
    (:module "rpl/tasks" :serial t
     :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
                  (:file "task") (:file "trace") (:file "runner") (:file "machine")
@@ -97,7 +97,10 @@
    (:module "rpl/constructs" :serial t
     :components ((:file "package") (:file "waiting") (:file "whenever") (:file "failing")
                  (:file "handling") (:file "trying") (:file "protecting") (:file "parallel")
-                 (:file "policy") (:file "blocking") (:file "ordering") (:file "valve")))
+                 (:file "policy") (:file "blocking") (:file "ordering") (:file "valve")
+                 (:file "counting") (:file "applying") (:file "polling")
+                 (:file "named-policies") (:file "patterns") (:file "goals")
+                 (:file "achieving") (:file "at-location")))
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
@@ -178,6 +181,8 @@
                  (:file "rpl-fluents")
                  (:file "rpl-compiler") (:file "rpl-plans") (:file "rpl-policies")
                  (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-stress")
+                 (:file "rpl-views") (:file "rpl-named-policies") (:file "rpl-goals")
+                 (:file "rpl-at-location")
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-robot-live")
                  (:file "plans")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")

@@ -90,17 +90,3 @@ at the handler's end the failure goes on."
   (if (scope-retry scope)
       `(make-leave :form ',form :target ,(scope-retry scope) :result +nothing+)
       (reject-clause "plan" form "retry only in a handler of handle-failure")))
-
-;;; Counted retries.
-
-(addition with-retry-counters)
-(defmacro with-retry-counters (counters &body body)
-  "Run BODY in a plan with COUNTERS, each (name number), for DO-RETRY."
-  `(let ,counters ,@body))
-
-(addition do-retry)
-(defmacro do-retry (counter &body body)
-  "In a handler: run BODY, most likely (retry), if COUNTER is positive, and count it down."
-  `(when (plusp ,counter)
-     (decf ,counter)
-     ,@body))

@@ -7,7 +7,19 @@
   ;; whenever
   (:export #:whenever)
   ;; handling
-  (:export #:do-retry #:handle-failure #:retry #:with-failure-handling #:with-retry-counters)
+  (:export #:handle-failure #:retry #:with-failure-handling)
+  ;; counting
+  (:export #:do-retry #:get-counter #:reset-counter #:with-retry-counters)
+  ;; named-policies
+  (:export #:all-policies #:define-policy #:failed-policy #:find-policy #:make-policy
+           #:policy-check-condition-met #:policy-failure #:policy-get #:policy-init-failed #:policy-lambda-list #:policy-name
+           #:policy-p #:policy-setf)
+  ;; goals, achieving
+  (:export #:all-goals #:def-goal #:failed-goal #:failed-goal-operator #:find-goal #:goal-failure
+           #:goal-not-achieved #:goal-operator #:goal-p #:goal-pattern #:goals-under-way
+           #:unknown-goal #:unknown-goal-known)
+  ;; at-location
+  (:export #:location-lost #:lost-attempts #:lost-place)
   ;; trying
   (:export #:try-each-in-order #:try-in-order #:try-one)
   ;; protecting

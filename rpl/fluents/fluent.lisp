@@ -15,6 +15,9 @@
   (name nil :read-only t)
   (now nil)
   (height 0 :type fixnum)
+  ;; How often it was set to another value, and pulsed: see views.lisp.
+  (sets 0 :type fixnum)
+  (pulses 0 :type fixnum)
   (first-watcher nil :type (or null watcher))
   (last-watcher nil :type (or null watcher))
   (first-link nil :type (or null link))

@@ -19,5 +19,7 @@ operators of Common Lisp mean these without further ado.")
   (:export #:fl-apply #:fl-funcall #:fluent-text #:fluent-value #:unwatch #:watch)
   ;; propagation
   (:export #:*backlog* #:apply-settings #:backlog #:make-backlog #:pulse #:set-value)
+  ;; views
+  (:export #:fl-pulsed #:fl-value-changed)
   ;; operators
   (:export #:lifting #:lifting-and #:lifting-or))

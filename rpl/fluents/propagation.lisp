@@ -19,6 +19,9 @@
 (defvar *spreading* nil
   "True while a change is being spread: networks must not set fluents.")
 
+(defvar *instants* '()
+  "The views that are true for the instant at which the change that is being spread happened.")
+
 (defun grow-backlog (backlog height)
   (flet ((grown (vector)
            (replace (make-array (* 2 (1+ height)) :initial-element nil) vector)))
@@ -74,10 +77,26 @@
                       (enqueue-dependents derived backlog))))
   (setf (backlog-highest backlog) 0))
 
+;;; Views, see views.lisp.
+
+(defun note-instant (view)
+  "Note that VIEW is true, which it is no longer when the change under way, if any, is spread."
+  (when *spreading* (push view *instants*)))
+
+(defun end-instants ()
+  "Let the views that were true for this instant be false again."
+  (when *instants*
+    (let ((backlog (or *backlog* (make-backlog))))
+      (dolist (view (nreverse (shiftf *instants* '())))
+        (setf (fluent-now view) nil)
+        (enqueue-dependents view backlog))
+      (spread-by-height backlog))))
+
 (defun spread-to-dependents (fluent)
   "Compute what depends on FLUENT. As long as only one fluent does, no backlog is needed."
   (declare #.*hot*)
-  (let ((*spreading* t))
+  (let ((*spreading* t)
+        (*instants* '()))
     (loop
       (let ((link (fluent-first-link fluent)))
         (cond ((null link) (return))
@@ -88,7 +107,8 @@
               (t (setf fluent (link-dependent link))
                  (if (recompute fluent)
                      (announce fluent)
-                     (return))))))))
+                     (return))))))
+    (end-instants)))
 
 (defun spread (fluent)
   "Let everybody concerned know that the base fluent FLUENT has changed."
@@ -101,10 +121,12 @@
   (if (and fluents (null (rest fluents)))
       (spread (first fluents))
       (let ((backlog (or *backlog* (make-backlog)))
-            (*spreading* t))
+            (*spreading* t)
+            (*instants* '()))
         (mapc #'announce fluents)
         (dolist (fluent fluents) (enqueue-dependents fluent backlog))
-        (spread-by-height backlog))))
+        (spread-by-height backlog)
+        (end-instants))))
 
 (defun check-settable (operator fluent)
   (unless (and (fluent-p fluent) (not (derived-p fluent)))
@@ -122,6 +144,7 @@ network (manual D.2)."
   (check-settable 'set-value fluent)
   (unless (eql value (fluent-now fluent))
     (setf (fluent-now fluent) value)
+    (incf (fluent-sets fluent))
     (spread fluent))
   value)
 
@@ -144,6 +167,7 @@ network (manual D.2)."
 network that is true at that instant, will wake. Return VALUE (manual C)."
   (check-settable 'pulse fluent)
   (setf (fluent-now fluent) value)
+  (incf (fluent-pulses fluent))
   (spread fluent)
   (setf (fluent-now fluent) nil)
   (spread fluent)
@@ -158,8 +182,10 @@ all together. So whoever sees the pulses sees the values that came with them (re
              (ecase kind
                (:set (unless (eql (first more) (fluent-now fluent))
                        (setf (fluent-now fluent) (first more))
+                       (incf (fluent-sets fluent))
                        (pushnew fluent changed)))
-               (:pulse (push fluent pulsed)
+               (:pulse (incf (fluent-pulses fluent))
+                (push fluent pulsed)
                 (push (if more (first more) t) values))))
     (when changed (spread-all (nreverse changed)))
     (when pulsed (pulse-all (nreverse pulsed) (nreverse values)))))

@@ -10,7 +10,7 @@
   (:export #:misplaced #:misplaced-advice #:misplaced-container #:misplaced-form
            #:misplaced-suspension #:note-own-text)
   ;; scope
-  (:export #:inner-scope #:scope #:scope-retry #:single-scope #:variable-scope)
+  (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope)
   ;; leaf
   (:export #:value-lambda)
   ;; compiler
@@ -29,7 +29,8 @@
   ;; calling
   (:export #:call-plan)
   ;; definitions
-  (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan)
+  (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan #:split-documentation
+           #:variable-of)
   ;; construct
   (:export #:define-construct #:in-plans-only #:form #:build #:node #:frame #:value #:child #:how
            #:result #:environment #:memory #:next))

@@ -11,7 +11,7 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
            #:failure-data #:failure-form #:failure-matches-p #:failure-plan-backtrace
            #:failure-subject #:failure-suppressed #:failure-task-path #:failure-text
            #:failure-tick #:lisp-failure #:lisp-failure-backtrace #:lisp-failure-condition
-           #:make-failure #:plan-failure)
+           #:make-failure #:plan-failure #:write-failure)
   ;; task
   (:export #:current-form #:frame #:frame-counter #:frame-data #:frame-environment #:frame-up
            #:make-frame #:make-task #:node #:node-form #:task #:task-awaiting #:task-blocked
