@@ -188,3 +188,13 @@
                   (rpl:def-goal achieve t)))
     (signals base:malformed-definition (macroexpand-1 form)))
   (signals base:malformed-definition (rpl:make-plan '(rpl:succeed 1))))
+
+(test achieve.without-end-fails-as-deep-calls-do
+  (base:with-own-definitions ()
+    (define-quietly '(rpl:def-goal (achieve (deeper ?n)) (rpl:achieve `(deeper ,(1+ n)))))
+    (is (eq :too-deep (rpl:failure-class (plan-failure-of (rpl:achieve '(deeper 1))))))))
+
+(rpl:def-interp-proc apply-myself () (rpl:apply-plan 'apply-myself '()))
+
+(test apply-plan.without-end-fails-as-deep-calls-do
+  (is (eq :too-deep (rpl:failure-class (plan-failure-of (rpl:apply-plan 'apply-myself '()))))))

@@ -56,8 +56,7 @@
 
 (defun enter-goal (goal values frame)
   "Begin the plan of GOAL with VALUES for FRAME. Return what a step returns."
-  (multiple-value-bind (body environment) (apply #'enter-plan (goal-procedure goal) values)
-    (enter (the node body) environment frame)))
+  (enter-application (goal-procedure goal) values frame))
 
 (defun pursue-goal (task frame)
   "Begin the plan for the pursuit of FRAME. Return what a step returns."

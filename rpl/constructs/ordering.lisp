@@ -2,40 +2,17 @@
 
 (in-package :ars-magna.rpl.constructs)
 
-;;; BEFORE holds for each branch the indices of those that must be over before it starts.
-;;; DATA is a vector of :idle, :begun and :over.
-
-(define-node ordered ((branches simple-vector) (before simple-vector))
-  "All of BRANCHES, none before those are over that BEFORE names for it."
-  :step step-ordered :child-ended ordered-part-over)
-
 (defun startable-p (index before states)
+  "True if branch INDEX is still :idle in STATES, and those that BEFORE names for it are :over."
   (and (eq :idle (svref states index))
        (every (lambda (other) (eq :over (svref states other))) (svref before index))))
 
-(defun start-possible (node task frame)
-  "Start all branches of NODE that may start now."
-  (let ((states (frame-data frame)))
-    (dotimes (index (length states))
-      (when (startable-p index (ordered-before node) states)
-        (setf (svref states index) :begun)
-        (start-branch (svref (ordered-branches node) index) task (frame-environment frame)
-                      index (task-level task))))))
-
-(defun step-ordered (node task frame value)
-  (let ((count (length (ordered-branches node))))
-    (cond ((or (zerop count) (plusp (frame-counter frame))) (values (frame-up frame) value))
-          (t (setf (frame-counter frame) 1
-                   (frame-data frame) (make-array count :initial-element :idle))
-             (start-possible node task frame)
-             (park task nil)
-             +parked+))))
-
-(defun ordered-part-over (node task frame child how result)
-  (unless (fail-or-escape task how result)
-    (setf (svref (frame-data frame) (task-index child)) :over)
-    (start-possible node task frame)
-    (complete-when-alone task nil)))
+(defun start-possible (branches before states task environment)
+  "Start as parts of TASK those of BRANCHES that may start now."
+  (dotimes (index (length branches))
+    (when (startable-p index before states)
+      (setf (svref states index) :begun)
+      (start-branch (svref branches index) task environment index (task-level task)))))
 
 ;;; Reading the constraints.
 
@@ -75,28 +52,34 @@
                   (reject-clause "plan" form
                                  "constraints without a circle: some steps could never start"))))
 
-(defun ordered-code (form steps constraints scope)
+(defun checked-predecessors (steps constraints form)
+  "Do as PREDECESSORS. Signal MALFORMED-DEFINITION if they can never be satisfied."
   (let ((before (predecessors steps (constraint-list constraints) form)))
     (check-orderable before form)
-    (with-tags-code form (tags-in steps) scope
-                    (lambda (scope)
-                      `(make-ordered :form ',form
-                                     :branches ,(branches-code steps scope)
-                                     :before ,before)))))
+    before))
 
-(addition partial-order)
-(defmacro partial-order (steps &body constraints)
+(define-construct partial-order (steps &body constraints)
   "Run STEPS in a plan side by side, as PAR, under CONSTRAINTS: by (:order a b) the step tagged b
 does not start before the one tagged a is over. Steps are tagged by (:tag name form)."
-  (misplaced 'partial-order (list* steps constraints)))
+  (:parts (branches simple-vector (branches-code steps scope))
+          ;; For each branch, the indices of those that must be over before it starts.
+          (before simple-vector (checked-predecessors steps constraints form)))
+  (:code (with-tags-code form (tags-in steps) scope #'build))
+  (:steps
+   (begin
+    (next inside)
+    (setf memory (make-array (length branches) :initial-element :idle))
+    (start-possible branches before memory task environment)
+    (if (plusp (length branches))
+        (await-parts task)
+        (values (frame-up frame) nil)))
+   (inside (values (frame-up frame) value)))
+  (:child-ended
+   (unless (fail-or-escape task how result)
+     (setf (svref memory (task-index child)) :over)
+     (start-possible branches before memory task environment)
+     (complete-when-alone task nil))))
 
-(addition plan)
-(defmacro plan (steps &rest constraints)
+(define-construct plan (steps &body constraints)
   "Do as PARTIAL-ORDER; CONSTRAINTS may also be one list of them, and give reasons after the names."
-  (misplaced 'plan (list* steps constraints)))
-
-(define-plan-form "PARTIAL-ORDER" :must (steps &rest constraints) (form scope)
-  (ordered-code form steps constraints scope))
-
-(define-plan-form "PLAN" :must (steps &rest constraints) (form scope)
-  (ordered-code form steps constraints scope))
+  (:like partial-order))

@@ -9,16 +9,21 @@ operators of Common Lisp mean these without further ado.")
            #:and #:or #:not #:< #:> #:<= #:>= #:= #:+ #:- #:* #:/ #:eq #:eql #:equal))
 
 (defpackage :ars-magna.rpl.fluents
-  (:documentation "Fluents, networks of fluents, and how a change reaches those who watch. Knows no plan.")
+  (:documentation "Fluents, networks of fluents, and how a change reaches those who watch. Knows
+no plan.")
   (:use :cl :ars-magna.base)
   (:local-nicknames (:lifted :ars-magna.rpl.lifted))
   ;; fluent
   (:export #:create-fluent #:create-fluent-vector #:fluent #:fluent-name #:fluent-p
-           #:make-watcher #:state #:watcher #:watcher-client #:watcher-pending #:watcher-fluent #:watcher-p)
+           #:make-watcher #:state #:watcher #:watcher-client #:watcher-pending
+           #:watcher-fluent #:watcher-p)
   ;; network
   (:export #:fl-apply #:fl-funcall #:fluent-text #:fluent-value #:unwatch #:watch)
+  ;; home
+  (:export #:*runner* #:home #:home-on-post #:home-backlog #:at-home #:call-at-home #:post
+           #:next-entry #:posted-p)
   ;; propagation
-  (:export #:*backlog* #:apply-settings #:backlog #:make-backlog #:pulse #:set-value)
+  (:export #:apply-settings #:clear-backlog #:pulse #:set-value)
   ;; views
   (:export #:fl-pulsed #:fl-value-changed)
   ;; operators

@@ -13,13 +13,14 @@
         (t (append (element-names (car lambda-list)) (element-names (cdr lambda-list))))))
 
 (defmacro define-plan-form (name suspends lambda-list (form scope) &body body)
-  "Let plans understand the operator called NAME: BODY returns the code for FORM in SCOPE, its
-arguments bound by LAMBDA-LIST. SUSPENDS says whether it makes a task wait: see SUSPENSION."
+  "Let plans understand the operator called NAME, a string, or a symbol: BODY returns the code for
+FORM in SCOPE, its arguments bound by LAMBDA-LIST. SUSPENDS says whether it makes a task wait: see
+SUSPENSION."
   (let ((names (element-names lambda-list)))
     (with-gensyms (fits values)
-      `(setf (gethash ,name *plan-forms*)
+      `(setf (gethash (operator-key ',name) *plan-forms*)
              (make-plan-form
-              ,name ,suspends
+              ,(string name) ,suspends
               (lambda (,form ,scope)
                 (declare (ignorable ,scope))
                 (multiple-value-bind (,fits ,values)
@@ -42,6 +43,7 @@ arguments bound by LAMBDA-LIST. SUSPENDS says whether it makes a task wait: see 
         (leaf-code form scope))))
 
 (defun suspends-p (form scope)
+  "True if FORM in SCOPE makes its task wait, or may do so."
   (and (consp form) (suspension form scope)))
 
 ;;; An expression of which a part that Lisp is to use makes the task wait.

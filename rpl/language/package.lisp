@@ -1,7 +1,8 @@
 ;;;; package.lisp -- from a plan's text to nodes, and what of Lisp plans understand.
 
 (defpackage :ars-magna.rpl.language
-  (:documentation "Reads the text of plans: Lisp's own operators, procedures, macros; DEFINE-CONSTRUCT adds to it.")
+  (:documentation "Reads the text of plans: Lisp's own operators, procedures, macros;
+DEFINE-CONSTRUCT adds to it.")
   (:use :cl :ars-magna.base :ars-magna.rpl.fluents :ars-magna.rpl.tasks)
   (:import-from :ars-magna.nisp
                 #:untyped-bindings #:untyped-lambda-list #:lambda-list-variables
@@ -16,21 +17,21 @@
   ;; compiler
   (:export #:binding-body-code #:body-code #:define-plan-form #:hoisted-code #:plan-code
            #:suspends-p)
-  ;; steps
-  (:export #:seq)
   ;; leaving
   (:export #:block-code #:make-leave)
-  ;; branching
-  (:export #:branch)
   ;; repeating
-  (:export #:each-code #:n-times)
+  (:export #:each-body-code #:give-way)
   ;; tags
-  (:export #:start-branch #:tags-in #:task-status #:with-tags #:with-tags-code)
+  (:export #:start-branch #:tags-in #:task-status #:with-tags-code)
   ;; calling
-  (:export #:call-plan)
+  (:export #:*plan-depth-limit*)
+  ;; applying
+  (:export #:enter-application)
   ;; definitions
   (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan #:split-documentation
            #:variable-of)
   ;; construct
-  (:export #:define-construct #:in-plans-only #:form #:build #:node #:frame #:value #:child #:how
-           #:result #:environment #:memory #:next))
+  (:export #:all-constructs #:define-construct #:in-plans-only #:form #:scope #:build #:hoisting)
+  ;; expression
+  (:export #:define-expression #:node #:task #:frame #:value #:child #:how #:result
+           #:environment #:memory #:next #:at-once #:in-state-p))

@@ -22,6 +22,10 @@ builds the plan, that hold their nodes."
   (task-tags '() :type list)
   (several nil :type boolean))
 
+(document-functions
+ scope-blocks "Return a list of the names of the blocks around and the variables that hold their nodes."
+ scope-retry "Return the variable that holds the node to begin anew at (retry), NIL outside.")
+
 (defmacro inner-scope (scope &rest changes)
   "Return a copy of SCOPE in which the slots named in CHANGES, a property list, have new values."
   (with-gensyms (inner)

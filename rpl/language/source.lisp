@@ -74,6 +74,10 @@
         ((our-symbol-p (first form)) (symbol-name (first form)))
         ((eq (first form) :tag) ":TAG")))
 
+(defun operator-key (name)
+  "Return by what plans know the operator NAME: its name, or the very symbol if it is a user's."
+  (if (and (symbolp name) (our-symbol-p name)) (symbol-name name) name))
+
 (defun operator-in-p (form names)
   (let ((name (plan-operator-name form)))
     (and name (member name names :test #'string=))))

@@ -15,6 +15,11 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
   (entry nil :type (or null function))
   (body nil :type (or null node))
   (stub nil :type (or null function)))
+(document-functions
+ make-procedure "Return a procedure by name that is yet to be defined."
+ procedure-entry "Return the function of the arguments that returns an environment, or NIL."
+ procedure-body "Return the node that the procedure runs, or NIL.")
+
 (addition procedure-p procedure-name procedure-lambda-list)
 (setf (documentation 'procedure-p 'function) "True of plan procedures."
       (documentation 'procedure-name 'function)
@@ -73,6 +78,7 @@ or return NIL if ERRORP is NIL."
   "Names that a DEF-INTERP-PROC has been compiled or loaded for.")
 
 (defun declare-procedure (name)
+  "Let the plans that are compiled from now on take NAME for that of a plan procedure."
   (setf (gethash name *declared-procedures*) t))
 
 (defun procedure-name-p (name)
@@ -112,6 +118,7 @@ this one."
   (setf (procedure-entry procedure) nil))
 
 (defun anonymous-procedure (lambda-list entry body)
+  "Return a procedure without a name, of LAMBDA-LIST, ENTRY and BODY."
   (let ((procedure (make-procedure nil)))
     (setf (procedure-lambda-list procedure) lambda-list
           (procedure-entry procedure) entry

@@ -94,6 +94,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:*asker* #:asker-note #:note-of-asker #:note-text)
   ;; user code
   (:export #:call-user-code #:*break-on-user-error* #:in-any-case #:call-each
+           #:note-waiting #:report-break #:continue-inside
            #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*
            #:user-calls-waiting-p
            #:as-users-code #:abort-user-code #:brief-text #:text-of-origin)
