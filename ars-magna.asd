@@ -93,7 +93,7 @@
                  (:file "leaf") (:file "compiler") (:file "expression") (:file "construct")
                  (:file "steps") (:file "binding") (:file "leaving") (:file "branching")
                  (:file "repeating") (:file "tags") (:file "calling") (:file "applying")
-                 (:file "local-functions") (:file "definitions")))
+                 (:file "local-functions") (:file "definitions") (:file "replacing")))
    (:module "rpl/constructs" :serial t
     :components ((:file "package") (:file "time") (:file "waiting") (:file "whenever")
                  (:file "failing") (:file "handling") (:file "retry-counters") (:file "trying")
@@ -183,7 +183,7 @@
                  (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-stress")
                  (:file "rpl-fairness") (:file "rpl-care")
                  (:file "rpl-views") (:file "rpl-named-policies") (:file "rpl-goals")
-                 (:file "rpl-at-location")
+                 (:file "rpl-at-location") (:file "rpl-replacing")
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-robot-live")
                  (:file "plans")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")

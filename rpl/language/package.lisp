@@ -30,6 +30,8 @@ DEFINE-CONSTRUCT adds to it.")
   ;; definitions
   (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan #:split-documentation
            #:variable-of)
+  ;; replacing
+  (:export #:replace-task-code #:restore-task-code #:task-code)
   ;; construct
   (:export #:all-constructs #:define-construct #:in-plans-only #:form #:scope #:build #:hoisting)
   ;; expression
