@@ -48,7 +48,7 @@
                                (rpl:wait-time 1)
                                (setf sum (+ sum more)))
                              :compile compile)
-      (is (= 36 (plan-value (stepwise 3)))))))
+      (is (= 54 (plan-value (stepwise 3)))))))
 
 (test replace-task-code.the-new-code-is-plan-text
   (with-stepwise
