@@ -27,7 +27,10 @@
 (rpl:def-interp-proc be-robbed ()
   (if (plusp *thefts*)
       (rpl:seq (decf *thefts*)
-               (let-go-of))))
+               (let-go-of)
+               ;; It looks anew.
+               (driver:rpl-grab-camera 0)
+               (rpl:wait-time 1))))
 
 (rpl:def-goal (achieve (loc ?color bin))
   (rpl:with-retry-counters ((losses 2))
