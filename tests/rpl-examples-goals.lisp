@@ -142,7 +142,8 @@ where the ball is."
       (robot:place-robot postman (- x 2) y 0))))
 
 (defun work-pushed (times)
-  "Return how POSTMAN's work at a place ended that it was pushed from TIMES times, and what was told."
+  "Return how POSTMAN's work at a place ended that it was pushed from TIMES times, and how often it
+was begun and done."
   (let* ((state nil)
          (base:*message-queue* (base:make-message-queue))
          (told (told (run:with-simulation (postman :clean t)

@@ -85,8 +85,8 @@
       (is (= (second (first charging)) (second (first charged))) "It stands while it charges.")
       (is (eq :delivered (first (fourth told)))))))
 
-;;; Navigation that is suspended by an obstacle (Rittweiler's thesis): what is it, and past it on the
-;;; right or on the left.
+;;; Navigation that is suspended by an obstacle (Rittweiler's thesis): what is it, and past it on
+;;; the right or on the left.
 
 (rpl:def-interp-proc what-is-ahead ()
   (rpl:try-all

@@ -3,8 +3,8 @@
 (in-package :ars-magna.tests)
 (in-suite rpl)
 
-;;; Stacking: "C on the table, A on B, B on C" (Beetz, Mösenlechner, Tenorth 2010), ordered S1 < S3 <
-;;; S2, in a world of blocks: a list of (block on).
+;;; Stacking: "C on the table, A on B, B on C" (Beetz, Moesenlechner, Tenorth 2010), ordered
+;;; S1 < S3 < S2, in a world of blocks: a list of (block on).
 
 (defvar *blocks* '() "What each block is on.")
 

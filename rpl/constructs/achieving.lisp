@@ -69,16 +69,16 @@
                      :known (mapcar #'goal-pattern (goals-of (pursuit-operator pursuit))))))))
 
 (defun ask-belief (frame otherwise)
-  "Begin the plan that says whether the goal of FRAME is believed; without one, let OTHERWISE be what
-it says. Return what a step returns."
+  "Begin the plan that says whether the goal of FRAME is believed; without one, let OTHERWISE be
+what it says. Return what a step returns."
   (multiple-value-bind (goal values) (choose-goal 'belief (pursuit-goal (frame-data frame)))
     (if goal
         (enter-goal goal values frame)
         (values frame otherwise))))
 
 (define-construct achieve (goal)
-  "Do in a plan what makes the robot believe GOAL, a list such as `(on ,a ,b), which is evaluated. If
-it is believed already, by the DEF-GOAL of BELIEF that matches, nothing is done, and the value is
+  "Do in a plan what makes the robot believe GOAL, a list such as `(on ,a ,b), which is evaluated.
+If it is believed already, by the DEF-GOAL of BELIEF that matches, nothing is done, and the value is
 that of the belief. Otherwise what the DEF-GOAL of ACHIEVE says is done; its value is returned. If
 there is none, fails with UNKNOWN-GOAL; if GOAL is not believed afterwards, with GOAL-NOT-ACHIEVED.
 Where no BELIEF matches, the end of the plan is success. (CRAM's and XFRM's.)"

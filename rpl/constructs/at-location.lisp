@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.rpl.constructs)
 
-;;; WHEREABOUTS is where a robot is for whom: who wants to go or to stay somewhere passes its valve;
-;;; whoever goes away waits, in the valve, until nobody stays. So those whose place fits do not drive,
-;;; and a stay ends a journey's waiting in order of arrival.
+;;; WHEREABOUTS keep a robot where it is for those who stay there. Who comes to stay passes a valve;
+;;; who has to drive first waits, with the valve, until nobody stays. So those whose place fits do
+;;; not drive, and nobody waits for ever because others come and stay after him.
 
 (defstruct (whereabouts (:constructor make-whereabouts ()) (:copier nil))
   "What keeps the plans of one runner from driving its robot away from each other's places. STAYS is

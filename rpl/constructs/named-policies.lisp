@@ -1,4 +1,4 @@
-;;;; named-policies.lisp -- policies as objects, by name: what to do first, to watch, and afterwards.
+;;;; named-policies.lisp -- policies by name: what to do first, what to watch, what to do then.
 
 (in-package :ars-magna.rpl.constructs)
 
@@ -100,7 +100,7 @@ as the policy is in force. Return VALUE (CRAM's)."
   (loop for (clause . more) on clauses
         unless (and (consp clause) (member (first clause) '(:init :check :recover :clean-up)))
           do (reject-clause definition clause
-                            "(:init form...), (:check form...), (:recover form...) or (:clean-up form...)")
+                            "a list that starts with :init, :check, :recover or :clean-up")
         when (assoc (first clause) more)
           do (reject-clause definition clause "each kind of clause once")))
 

@@ -26,7 +26,8 @@
         (values shape (mapcar #'hole-variable (reverse holes)))))))
 
 (defun fits-p (shape object values)
-  "True if SHAPE matches OBJECT. VALUES, at first all equal to it, gets to hold what is in the holes."
+  "True if SHAPE matches OBJECT. VALUES, a vector whose elements are at first itself, gets to hold
+what is in the holes."
   (cond ((hole-p shape)
          (let ((value (svref values (hole-index shape))))
            (cond ((eq value values) (setf (svref values (hole-index shape)) object) t)
@@ -40,7 +41,7 @@
 (defun match-shape (shape count object)
   "Return true if SHAPE, with COUNT holes, matches OBJECT, and a list of what is in the holes."
   (let ((values (make-array count)))
-    (fill values values)
+    (fill values values)                ; an object that is in no pattern and no goal
     (and (fits-p shape object values)
          (values t (coerce values 'list)))))
 

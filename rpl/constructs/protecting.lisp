@@ -28,16 +28,22 @@
       (push failure (failure-suppressed first))
       (warning-set "A cleanup failed in " (task-label task) ": " (failure-text failure))))
 
+(defun report-given-up (cleanup)
+  (warning-set "The cleanup " (form-text cleanup) " in " (task-label (current-task))
+               " was given up at tick " (plan-time) ": it took longer than its limit."))
+
 (defun cleanup-form (cleanup limit)
   "Return the form for CLEANUP that takes at most as many ticks as LIMIT, a form or NIL, says."
   (if limit
-      (note-own-text `(pursue ,cleanup (wait-time ,limit)))
+      (note-own-text `(pursue ,cleanup
+                              (seq (wait-time ,limit) (report-given-up ',cleanup))))
       cleanup))
 
 (define-construct evap-protect (protected cleanup &key limit)
   "Run PROTECTED, a form, in a plan, and CLEANUP however that ends: well, by failure, by evaporation
-or by being left. CLEANUP may wait, for LIMIT ticks at most if given. A failure of CLEANUP counts
-only if PROTECTED ended well. Return the value of PROTECTED."
+or by being left. CLEANUP may wait; if LIMIT, a number of ticks, is given and over first, it is
+given up, with a warning. A failure of CLEANUP counts only if PROTECTED ended well. Return the value
+of PROTECTED."
   (:parts (protected node (plan-code protected scope))
           (cleanup node (plan-code (cleanup-form cleanup limit) (single-scope scope))))
   (:steps

@@ -27,7 +27,8 @@ RESET-COUNTER. A counter is a variable, too. (CRAM's, where it is none.)"
                    ,@body)))))
 
 (define-construct do-retry (counter &body body)
-  "In a handler: run BODY, most likely (retry), if COUNTER is positive, and count it down. (CRAM's.)"
+  "In a handler: run BODY, most likely (retry), if COUNTER is positive, and count it
+down. (CRAM's.)"
   (:in-lisp `(when (plusp ,counter)
                (decf ,counter)
                ,@body)))

@@ -5,8 +5,8 @@
 ;;; A view is a network that remembers. To read it, be it by FLUENT-VALUE or by being woken by it,
 ;;; uses up what it says; so each reader needs a view of its own. While somebody waits for it, it is
 ;;; true for the instant of what happens; its value then is a number that it never had before, so
-;;; that each event is heard. Nothing is missed while nobody waits: fluents count how often they were
-;;; set and pulsed, so that a view costs nothing until it is read.
+;;; that each event is heard. Nothing is missed while nobody waits: fluents count how often they
+;;; were set and pulsed, so that a view costs nothing until it is read.
 
 (defun base-fluents (fluent)
   "Return the fluents that can be set that FLUENT is, or is computed from."

@@ -22,10 +22,6 @@
                                 (lisp-function (procedure-name procedure))))))))
    (inside (values (frame-up frame) value))))
 
-(defun bundle-up (&optional value &rest more)
-  "Return the values it is called with as one object."
-  (if more (make-bundle (cons value more)) value))
-
 (define-construct call-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or the name of one, with ARGUMENTS as part of a plan; return its
 value."

@@ -114,29 +114,3 @@ it, and those to the left of them too, to keep the order."
   (let ((expansion (macroexpand-1 form (scope-environment scope))))
     (unless (lisps-own-p (first form)) (note-own-text expansion))
     (plan-code expansion scope)))
-
-;;; Bodies.
-
-(defun body-code (forms scope)
-  "Return code for FORMS as the steps of a body, of which the last one gives the values."
-  (cond
-    ((null forms) '+nothing+)
-    ((null (rest forms)) (plan-code (first forms) scope))
-    (t (let ((single (single-scope scope)))
-        `(make-steps :form '(seq ,@forms)
-                     :parts (vector ,@(loop for (form . more) on forms
-                                            collect (plan-code form (if more single scope)))))))))
-
-(defun binding-body-code (forms scope)
-  "Return code for FORMS, a body that may start with declarations; these are for the reader only."
-  (body-code (remove-if #'declaration-p forms) scope))
-
-(defun declaration-p (form)
-  (and (consp form) (eq (first form) 'declare)))
-
-(defun declared-special (variables forms)
-  "Return those of VARIABLES that the declarations in FORMS call special."
-  (loop for form in forms
-        when (declaration-p form)
-          append (loop for (kind . names) in (rest form)
-                       when (eq kind 'special) append (intersection names variables))))

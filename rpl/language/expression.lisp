@@ -92,6 +92,7 @@ frame is in that. (:child-ended form...): what is done when CHILD has ended as H
                  '(:parts :steps :step :unwind :child-ended :hot))
   (let ((functions (node-functions name clauses)))
     `(progn
+       (declaim (ftype function ,@(mapcar #'second functions)))
        (defstruct (,name (:include node
                           (states ,(map 'vector (lambda (state) (make-keyword (first state)))
                                         (clause :steps clauses)))

@@ -87,6 +87,10 @@
   "Return the lambda expression, of the environment, for the one value of FORM."
   (leaf-lambda (as-lisp form scope) scope))
 
+(defun bundle-up (&optional value &rest more)
+  "Return the values it is called with as one object."
+  (if more (make-bundle (cons value more)) value))
+
 (defun leaf-code (form scope)
   "Return code that builds the leaf for FORM."
   (let ((meaning (as-lisp form scope)))

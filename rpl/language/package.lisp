@@ -15,8 +15,9 @@ DEFINE-CONSTRUCT adds to it.")
   ;; leaf
   (:export #:value-lambda)
   ;; compiler
-  (:export #:binding-body-code #:body-code #:define-plan-form #:hoisted-code #:plan-code
-           #:suspends-p)
+  (:export #:define-plan-form #:hoisted-code #:plan-code #:suspends-p)
+  ;; steps
+  (:export #:binding-body-code #:body-code)
   ;; leaving
   (:export #:block-code #:make-leave)
   ;; repeating
@@ -33,7 +34,7 @@ DEFINE-CONSTRUCT adds to it.")
   ;; replacing
   (:export #:replace-task-code #:restore-task-code #:task-code)
   ;; construct
-  (:export #:all-constructs #:define-construct #:in-plans-only #:form #:scope #:build #:hoisting)
+  (:export #:all-constructs #:define-construct #:in-plans-only #:form #:scope #:build)
   ;; expression
   (:export #:define-expression #:node #:task #:frame #:value #:child #:how #:result
            #:environment #:memory #:next #:at-once #:in-state-p))

@@ -99,7 +99,7 @@ not just one such place. (Ours.)"
 (defun replace-task-code (path form &key compile)
   "Let the tasks at PATH, see TASK-CODE, run FORM, plan text, from their next start on; those under
 way go on as they are. FORM sees the variables that are visible at the tag, but not the blocks, tags
-and local plans there. Its Lisp code is interpreted, or compiled if COMPILE is true, as by MAKE-PLAN.
+and local plans there. Its Lisp code is interpreted, as by MAKE-PLAN; compiled if COMPILE is true.
 A definition of the plan anew forgets FORM. Return FORM. Signals as TASK-CODE does. (CRAM's, which
 takes a function.)"
   (let* ((node (find-tagged 'replace-task-code path))

@@ -79,12 +79,16 @@ returns true if it brought something new. Return :idle or :budget."
       (warning-set "A plan took " *runaway-limit* " steps without waiting, at " (form-text form)
                    " in " (task-label task) "; time passes all the same."))))
 
+(defun give-budget (runner budget)
+  "Let the reaction that begins take BUDGET steps."
+  (setf (runner-exhausted runner) nil
+        (runner-limit runner) (+ (runner-steps runner) budget)
+        (runner-slice runner) (max 1 (min +slice+ (floor budget 10)))))
+
 (defun react-hearing (runner hear)
   "Let RUNNER react, as RUN-ROUNDS does."
   (at-home (runner)
-    (setf (runner-exhausted runner) nil
-          (runner-limit runner)
-          (+ (runner-steps runner) (or (runner-budget runner) *runaway-limit*)))
+    (give-budget runner (or (runner-budget runner) *runaway-limit*))
     (let ((outcome (let ((*leaves-offer-restarts* *break-on-user-error*))
                      (run-rounds runner hear))))
       (when (and (eq outcome :budget)

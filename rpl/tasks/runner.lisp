@@ -10,7 +10,8 @@
 (defconstant +interrupt+ (ash 1 +levels+))
 
 (defconstant +slice+ 10000
-  "How many steps a task may take before what was posted meanwhile is heard.")
+  "How many steps a task may take before others, and what was posted meanwhile, get their turn; a
+tenth of the steps of a reaction if that is less.")
 
 (defparameter *runaway-limit* 1000000
   "How many steps a reaction without a budget takes before time passes all the same.")
@@ -33,6 +34,7 @@ end. SPENT are the ready tasks that have used their slice in this ROUND, the las
   (steps 0 :type (unsigned-byte 62))
   (pause 0 :type (unsigned-byte 62))
   (limit 0 :type (unsigned-byte 62))
+  (slice +slice+ :type fixnum)
   (round 0 :type fixnum)
   (spent '() :type list)
   (exhausted nil :type boolean)

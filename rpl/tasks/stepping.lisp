@@ -77,7 +77,7 @@ VALUE are what the last step returned; return what it should have."
   (declare #.*hot* (type task task) (type plan-runner runner))
   (unless (= (task-round task) (runner-round runner))
     (setf (task-round task) (runner-round runner)
-          (task-slice task) +slice+))
+          (task-slice task) (runner-slice runner)))
   (setf (runner-pause runner)
         (min (runner-limit runner) (+ (runner-steps runner) (max 0 (task-slice task))))))
 
