@@ -83,7 +83,7 @@
    (:module "rpl/fluents" :serial t
     :components ((:file "package") (:file "home") (:file "fluent") (:file "network")
                  (:file "known") (:file "propagation")
-                 (:file "operators")))
+                 (:file "views") (:file "operators")))
    (:module "rpl/tasks" :serial t
     :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
                  (:file "task") (:file "trace") (:file "runner") (:file "machine")
@@ -92,16 +92,18 @@
                  (:file "report") (:file "care") (:file "engine") (:file "alone")))
    (:module "rpl/language" :serial t
     :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
-                 (:file "checking") (:file "known-fluents") (:file "leaf") (:file "compiler") (:file "expression") (:file "construct")
+                 (:file "checking") (:file "known-fluents") (:file "leaf")
+                 (:file "compiler") (:file "expression") (:file "construct")
                  (:file "steps") (:file "binding") (:file "leaving") (:file "branching")
-                 (:file "repeating") (:file "tags") (:file "calling")
-                 (:file "local-functions") (:file "definitions")))
+                 (:file "repeating") (:file "tags") (:file "calling") (:file "applying")
+                 (:file "local-functions") (:file "definitions") (:file "replacing")))
    (:module "rpl/constructs" :serial t
     :components ((:file "package") (:file "time") (:file "waiting") (:file "whenever")
                  (:file "failing") (:file "handling") (:file "retry-counters") (:file "trying")
                  (:file "par") (:file "pursue") (:file "try-all") (:file "par-loop")
                  (:file "protecting") (:file "policy") (:file "blocking") (:file "ordering")
-                 (:file "valve")))
+                 (:file "valve") (:file "polling") (:file "named-policies")
+                 (:file "patterns") (:file "goals") (:file "achieving") (:file "at-location")))
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
@@ -187,9 +189,12 @@
                  (:file "rpl-constructs")
                  (:file "rpl-fairness") (:file "rpl-care")
                  (:file "rpl-kills")
+                 (:file "rpl-views") (:file "rpl-named-policies") (:file "rpl-goals")
+                 (:file "rpl-at-location") (:file "rpl-replacing") (:file "rpl-examples")
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-issue")
                  (:file "rpl-left") (:file "rpl-robot-live")
                  (:file "rpl-text")
+                 (:file "rpl-examples-robot") (:file "rpl-examples-goals")
                  (:file "plans") (:file "plans-killed")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")

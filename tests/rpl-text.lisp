@@ -13,7 +13,7 @@
   (unwind-protect (let ((*package* (find-package :ars-test-texts))) (funcall function))
     (delete-package :ars-test-texts)))
 
-(defun told (warning)
+(defun what-is-said (warning)
   "Return what the compiler points at, as text, and what WARNING says."
   (let ((context (sb-c::find-error-context nil)))
     (cons (and context (prin1-to-string (sb-c::compiler-error-context-original-form context)))
@@ -23,7 +23,7 @@
   "Call FUNCTION, which compiles or loads. Return what it warns of, in order."
   (let ((said '()) (*error-output* (make-broadcast-stream)))
     (handler-bind ((warning (lambda (warning)
-                              (push (told warning) said)
+                              (push (what-is-said warning) said)
                               (muffle-warning warning))))
       (base:with-own-definitions () (funcall function)))
     (nreverse said)))

@@ -27,5 +27,7 @@ no plan.")
            #:one-fluent #:truth-value)
   ;; propagation
   (:export #:apply-settings #:clear-backlog #:pulse #:set-value)
+  ;; views
+  (:export #:fl-pulsed #:fl-value-changed)
   ;; operators
   (:export #:lifting #:lifting-and #:lifting-or))

@@ -11,7 +11,7 @@ DEFINE-CONSTRUCT adds to it.")
   (:export #:misplaced #:misplaced-advice #:misplaced-container #:misplaced-form
            #:misplaced-suspension #:note-own-text)
   ;; scope
-  (:export #:inner-scope #:scope #:scope-retry #:single-scope #:variable-scope)
+  (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope)
   ;; leaf
   (:export #:condition-lambda #:value-lambda)
   ;; compiler
@@ -26,8 +26,13 @@ DEFINE-CONSTRUCT adds to it.")
   (:export #:start-branch #:tags-in #:task-status #:with-tags-code)
   ;; calling
   (:export #:*plan-depth-limit*)
+  ;; applying
+  (:export #:enter-application)
   ;; definitions
-  (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan)
+  (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan #:split-documentation
+           #:variable-of)
+  ;; replacing
+  (:export #:replace-task-code #:restore-task-code #:task-code)
   ;; construct
   (:export #:all-constructs #:define-construct #:in-plans-only #:form #:scope #:build)
   ;; expression

@@ -25,6 +25,7 @@ builds the plan, that hold their nodes."
   (several nil :type boolean))
 
 (document-functions
+ scope-blocks "Return an alist from the names of the blocks around to the variables of their nodes."
  scope-retry "Return the variable that holds the node to begin anew at (retry), NIL outside.")
 
 (defmacro inner-scope (scope &rest changes)

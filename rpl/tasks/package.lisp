@@ -12,7 +12,7 @@ plans nor a simulator.")
            #:failure-data #:failure-form #:failure-matches-p #:failure-plan-backtrace
            #:failure-subject #:failure-suppressed #:failure-task-path #:failure-text
            #:failure-tick #:lisp-failure #:lisp-failure-backtrace #:lisp-failure-condition
-           #:make-failure #:plan-failure)
+           #:make-failure #:plan-failure #:write-failure)
   ;; task
   (:export #:current-form #:form-text #:frame #:frame-counter #:frame-data #:frame-environment
            #:frame-node #:frame-state #:frame-up #:make-frame #:make-task #:node #:node-form
