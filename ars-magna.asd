@@ -92,7 +92,7 @@
     :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
                  (:file "leaf") (:file "compiler") (:file "expression") (:file "construct")
                  (:file "steps") (:file "binding") (:file "leaving") (:file "branching")
-                 (:file "repeating") (:file "tags") (:file "calling")
+                 (:file "repeating") (:file "tags") (:file "calling") (:file "callers")
                  (:file "local-functions") (:file "definitions")))
    (:module "rpl/constructs" :serial t
     :components ((:file "package") (:file "time") (:file "waiting") (:file "whenever")

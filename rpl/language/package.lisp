@@ -26,6 +26,8 @@ DEFINE-CONSTRUCT adds to it.")
   (:export #:start-branch #:tags-in #:task-status #:with-tags-code)
   ;; calling
   (:export #:*plan-depth-limit*)
+  ;; callers
+  (:export #:called-procedures)
   ;; definitions
   (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan)
   ;; construct
