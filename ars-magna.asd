@@ -95,7 +95,8 @@
                  (:file "checking") (:file "known-fluents") (:file "leaf")
                  (:file "compiler") (:file "expression") (:file "construct")
                  (:file "steps") (:file "binding") (:file "leaving") (:file "branching")
-                 (:file "repeating") (:file "tags") (:file "calling") (:file "applying")
+                 (:file "repeating") (:file "tags") (:file "calling") (:file "callers")
+                 (:file "applying")
                  (:file "local-functions") (:file "definitions") (:file "replacing")))
    (:module "rpl/constructs" :serial t
     :components ((:file "package") (:file "time") (:file "waiting") (:file "whenever")

@@ -18,7 +18,8 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:task-children #:task-awaits #:plan-failure #:failure-class #:failure-data
                 #:report-failure #:*plan-end-hooks* #:plan-deadlocked-p #:post-call
                 #:stop-plan
-                #:find-procedure #:all-procedures #:procedure-name #:procedure-lambda-list)
+                #:find-procedure #:all-procedures #:called-procedures #:procedure-name
+                #:procedure-lambda-list)
   (:import-from :ars-magna.rpl-robot
                 #:rpl-init-robot #:rpl-robot #:rpl-runner
                 #:begin-plan #:end-plan #:plans #:print-plans)

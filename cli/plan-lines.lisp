@@ -65,13 +65,31 @@ package; NIL if there is none."
 (defun plan-documentation (plan)
   (or (documentation (procedure-name plan) 'function) "Not documented."))
 
+;; A plan that another one of its author calls is a part, and not what one would start.
+(defun parts-of-plans ()
+  "Return the plans that others of the same package call."
+  (loop for plan in (all-procedures)
+        append (loop for part in (called-procedures plan)
+                     unless (or (eq part plan)
+                                (not (eq (symbol-package (procedure-name part))
+                                         (symbol-package (procedure-name plan)))))
+                       collect part)))
+
+(defun whole-sentence (text)
+  "Return TEXT up to its first full stop."
+  (let* ((text (one-line text)) (end (search ". " text)))
+    (if end (subseq text 0 (1+ end)) text)))
+
 (defun write-plan-menu ()
-  "List all plans, and what each does, on a line each."
-  (dolist (name (plan-names))
-    (put-line "~A" (cut (format nil "  ~24A ~A" name
-                                (first-sentence (plan-documentation (plan-called (string name)))))
-                        79)))
-  (format t "HELP name tells what a plan takes.~%"))
+  "List the plans that one would start, and what each does."
+  (let ((parts (parts-of-plans)))
+    (dolist (name (plan-names))
+      (let ((plan (plan-called (string name))))
+        (unless (member plan parts)
+          (write-filled (whole-sentence (plan-documentation plan)) 27
+                        (format nil "  ~A" name))))))
+  (format t "HELP name tells what a plan takes. Those that plans listed here are made of~%~
+             can be started as well.~%"))
 
 (defun write-plan-help (plan)
   (format t "PLAN ~A~%" (plan-usage plan))

@@ -83,10 +83,19 @@
   (is (string= "STOP" (cli:line-name (cli:find-line "sto"))))
   (is (string= "STOP-PLAN" (cli:line-name (cli:find-line "stop-")))))
 
-(test plan.alone-lists-them-all
+(test plan.alone-lists-what-one-would-start
+  "Whole sentences, and no plan that is only a part of others of its package."
   (let ((lines (type-batch "plan")))
-    (is (find "  DAWDLE                   Wait for TICKS" lines :test #'string=))
-    (is (find "  FETCH-THING" lines :test (lambda (name line) (eql 0 (search name line)))))
+    (is (find "  DAWDLE                   Wait for TICKS." lines
+              :test #'string=))
+    (flet ((listed-p (name)
+             (find (format nil "  ~A " name) lines
+                   :test (lambda (name line) (eql 0 (search name line))))))
+      (is-true (listed-p "FETCH-THING"))
+      (is-true (listed-p "PATROL-PLACES"))
+      (is-true (listed-p "TIDY-ROOM"))
+      (is-false (listed-p "TURN-BY"))
+      (is-false (listed-p "FIND-AND-TAKE")))
     (is (notany (lambda (line) (> (length line) 79)) lines)))
   (is-true (has-words-p (joined (type-batch "help stumble")) "PLAN STUMBLE reason [:ticks]"
                         "then fail"))

@@ -28,6 +28,8 @@ DEFINE-CONSTRUCT adds to it.")
   (:export #:*plan-depth-limit*)
   ;; applying
   (:export #:enter-application)
+  ;; callers
+  (:export #:called-procedures)
   ;; definitions
   (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan #:split-documentation
            #:variable-of)
