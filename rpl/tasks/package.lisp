@@ -39,7 +39,7 @@ plans nor a simulator.")
   ;; shape
   (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
   ;; procedure
-  (:export #:entry-for #:declared-names #:declared-lambda-list #:reject-lisp-call
+  (:export #:entry-for #:set-lambda-list #:declared-names #:declared-lambda-list #:reject-lisp-call
            #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p
            #:ensure-procedure #:enter-plan #:find-procedure #:install-procedure #:make-procedure
            #:procedure #:procedure-body #:procedure-entry #:procedure-lambda-list
