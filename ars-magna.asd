@@ -87,7 +87,8 @@
     :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
                  (:file "task") (:file "trace") (:file "runner") (:file "machine")
                  (:file "ending") (:file "stepping") (:file "blame") (:file "procedure")
-                 (:file "report") (:file "engine") (:file "alone")))
+                 (:file "report") (:file "engine") (:file "gate") (:file "blocking")
+                 (:file "variables") (:file "places") (:file "alone")))
    (:module "rpl/language" :serial t
     :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
                  (:file "leaf") (:file "compiler") (:file "steps") (:file "binding")
@@ -97,7 +98,9 @@
    (:module "rpl/constructs" :serial t
     :components ((:file "package") (:file "waiting") (:file "whenever") (:file "failing")
                  (:file "handling") (:file "trying") (:file "protecting") (:file "parallel")
-                 (:file "policy") (:file "blocking") (:file "ordering") (:file "valve")))
+                 (:file "policy") (:file "blocking") (:file "suspension") (:file "joining")
+                 (:file "task-variables") (:file "deadline") (:file "par-at-least")
+                 (:file "circles") (:file "ordering") (:file "valve")))
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t

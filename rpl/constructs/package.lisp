@@ -16,9 +16,12 @@
   (:export #:par #:par-loop #:pursue #:try-all)
   ;; policy
   (:export #:with-policy)
-  ;; blocking
-  (:export #:with-task-blocked)
-  ;; ordering
-  (:export #:partial-order #:plan)
+  ;; suspension
+  (:export #:without-scheduling)
+  ;; task-variables
+  (:export #:define-task-variable)
+  ;; deadline
+  (:export #:deadline-missed #:deadline-missed-ticks)
   ;; valve
-  (:export #:make-valve #:valve #:valve-name #:valve-owner #:valve-p))
+  (:export #:claim-p #:claim-valves #:make-valve #:valve #:valve-losers #:valve-name #:valve-owner
+           #:valve-p #:valve-requests))

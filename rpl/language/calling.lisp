@@ -42,6 +42,7 @@ environment for that."
                (funcall (plan-call-enter node) (frame-environment frame))
              (enter (the node body) environment frame)))))
 
+(addition call-plan)
 (defmacro call-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or the name of one, with ARGUMENTS as part of a plan; return its
 value."

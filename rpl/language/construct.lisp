@@ -137,7 +137,7 @@ when CHILD has ended as HOW with RESULT. (:like construct): these are that one's
                       ,@(loop for (part nil code) in parts
                               append (list (make-keyword part) code)))))
     (if code
-        `(flet ((build () ,build))
+        `(flet ((build (&optional (scope scope)) (declare (ignorable scope)) ,build))
            (declare (ignorable #'build))
            ,@code)
         build)))

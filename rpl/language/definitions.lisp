@@ -31,7 +31,7 @@
                (declaim (ftype function ,name)))
              (install-procedure ',name ',parameters ,documentation
                                 ,entry ,(procedure-body-code name form body scope)
-                                ',(source-here))))))))
+                                ',(source-here) '(def-interp-proc ,@form))))))))
 
 (public def-interp-proc)
 (define-user-macro def-interp-proc (&whole form name parameters &body body &environment environment)
@@ -51,8 +51,10 @@ the variables around it, but not blocks, tags and local plans. Run it by CALL-PL
     (with-own-text (form)
       (multiple-value-bind (scope entry) (procedure-parts parameters environment)
         `(anonymous-procedure ',parameters ,entry
-                              ,(procedure-body-code nil form body scope))))))
+                              ,(procedure-body-code nil form body scope)
+                              ',form)))))
 
+(addition make-plan)
 (defun make-plan (form &key compile)
   "Return a plan procedure without parameters that does FORM, plan text made by a program. Its Lisp
 code is interpreted, which costs little now and more when it runs, or compiled if COMPILE is true."

@@ -10,12 +10,13 @@
   (:export #:misplaced #:misplaced-advice #:misplaced-container #:misplaced-form
            #:misplaced-suspension #:note-own-text)
   ;; scope
-  (:export #:inner-scope #:scope #:scope-retry #:single-scope #:variable-scope)
+  (:export #:inner-scope #:scope #:scope-environment #:scope-retry #:scope-variables #:single-scope
+           #:variable-scope)
   ;; leaf
   (:export #:value-lambda)
   ;; compiler
   (:export #:binding-body-code #:body-code #:define-plan-form #:hoisted-code #:plan-code
-           #:suspends-p)
+           #:refuse-code #:suspends-p)
   ;; steps
   (:export #:seq)
   ;; leaving

@@ -5,14 +5,23 @@
 ;;; What ends tells the construct that it is part of, which may then end too, and so on up. A task
 ;;; that is to evaporate does so at once, unless something in it has to be cleaned up first.
 
+(defun status-word (task state)
+  "Return what the status fluent of TASK, in STATE, is to say."
+  (cond ((member state '(:created :succeeded :failed :evaporated)) state)
+        ((task-gate task) :created)
+        ((plusp (task-suspensions task)) :suspended)
+        ((plusp (task-blocked task)) :blocked)
+        (t :running)))
+
 (defun note-status (task state)
   (when (task-status-fluent task)
-    (set-value (task-status-fluent task) state)))
+    (set-value (task-status-fluent task) (status-word task state))))
 
 (defun finish (task state result &optional (how state))
   "End TASK in STATE with RESULT. HOW says it to the construct that TASK is part of."
   (note-event task (ecase state (:succeeded :succeed) (:failed :fail) (:evaporated :evaporate))
               (and (eq state :failed) (failure-text result)))
+  (decf (runner-blocks (task-runner task)) (task-blocked task))
   (setf (task-state task) state
         (task-result task) result
         (task-frame task) nil

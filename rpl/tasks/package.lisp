@@ -10,7 +10,7 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
   (:export #:composite-failure #:composite-failures #:fail #:failure-cause #:failure-class
            #:failure-data #:failure-form #:failure-matches-p #:failure-plan-backtrace
            #:failure-subject #:failure-suppressed #:failure-task-path #:failure-text
-           #:failure-tick #:lisp-failure #:lisp-failure-backtrace #:lisp-failure-condition
+           #:failure-tick #:write-failure #:lisp-failure #:lisp-failure-backtrace #:lisp-failure-condition
            #:make-failure #:plan-failure)
   ;; task
   (:export #:current-form #:frame #:frame-counter #:frame-data #:frame-environment #:frame-up
@@ -18,7 +18,8 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
            #:task-children #:task-cleaning #:task-form #:task-frame #:task-index #:task-label
            #:task-level #:task-name #:task-newest-child #:task-over-p #:task-p #:task-parent
            #:task-path #:task-result #:task-runner #:task-serial #:task-signal #:task-state
-           #:task-status-fluent #:task-timer)
+           #:task-status-fluent #:task-timer #:part-of-p #:task-source #:task-top #:under-way-p
+           #:task-doomed)
   ;; trace
   (:export #:trace-entry #:trace-entry-detail #:trace-entry-event #:trace-entry-form
            #:trace-entry-task #:trace-entry-tick #:write-trace)
@@ -34,11 +35,11 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
            #:single-value #:wake)
   ;; ending
   (:export #:complete #:complete-when-alone #:decide #:evaporate #:fail-or-escape #:note-status
-           #:receive #:release-held #:stop-waiting #:unwind #:withdraw)
+           #:receive #:release-held #:status-word #:stop-waiting #:unwind #:withdraw)
   ;; procedure
   (:export #:ensure-procedure #:make-procedure #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p #:enter-plan
            #:find-procedure #:install-procedure #:procedure #:procedure-body #:procedure-entry
-           #:procedure-lambda-list #:procedure-name #:procedure-name-p #:procedure-p)
+           #:procedure-lambda-list #:procedure-name #:procedure-name-p #:procedure-p #:procedure-source)
   ;; blame
   (:export #:failure-of)
   ;; report
@@ -47,6 +48,15 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
   (:export #:advance-timers #:apply-next-batch #:digest-runner #:idle-p #:make-plan-runner
            #:next-wake-time #:plan-deadlocked-p #:post-batch #:post-call #:react #:reseed-runner
            #:start-plan #:stop-plan)
+  ;; blocking
+  (:export #:block-task #:make-heed #:suspend #:unblock-task #:wake-up)
+  ;; gate
+  (:export #:gate #:gate-holds #:hold-back #:release-hold #:spawn-gated)
+  ;; variables
+  (:export #:*speaking-task* #:install-task-variable #:make-task-bindings #:task-variable
+           #:task-variable-p)
+  ;; places
+  (:export #:find-task #:task-place)
   ;; alone
   (:export #:run-plan-alone)
   ;; stepping

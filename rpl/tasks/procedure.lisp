@@ -13,12 +13,16 @@ it is NIL as long as there is only the name. STUB is what Lisp code gets that ca
   (name nil :type symbol :read-only t)
   (lambda-list '() :type list)
   (entry nil :type (or null function))
+  (source nil :type list)
   (body nil :type (or null node))
   (stub nil :type (or null function)))
-(addition procedure-p procedure-name procedure-lambda-list)
+(addition procedure-p procedure-name procedure-lambda-list procedure-source)
 (setf (documentation 'procedure-p 'function) "True of plan procedures."
       (documentation 'procedure-name 'function)
       "Return the name of a plan procedure, NIL for one made by INTERP-LAMBDA."
+      (documentation 'procedure-source 'function)
+      "Return the text of a plan procedure as data: (def-interp-proc name parameters form...), or
+(interp-lambda parameters form...)."
       (documentation 'procedure-lambda-list 'function)
       "Return the lambda list of a plan procedure.")
 
@@ -88,14 +92,15 @@ or return NIL if ERRORP is NIL."
     (reject-use "~S is a plan procedure and was called by Lisp code. Call it from a plan, outside ~
                  of any lambda; at top level run it: (run-plan-alone '~S ...)." name name)))
 
-(defun install-procedure (name lambda-list documentation entry body &optional source)
-  "Make NAME a plan procedure, as SOURCE defines it. Calls from now on, also in running plans, mean
+(defun install-procedure (name lambda-list documentation entry body &optional source text)
+  "Make NAME a plan procedure, as SOURCE, a place, defines it by TEXT. Calls from now on, also in running plans, mean
 this one."
   (let ((procedure (ensure-procedure name)))
     (declare-procedure name)
     (setf (procedure-lambda-list procedure) lambda-list
           (procedure-entry procedure) entry
           (procedure-body procedure) body
+          (procedure-source procedure) text
           (procedure-stub procedure) (procedure-stub-for name)
           (documentation name 'function) documentation)
     (reinstate procedure)
@@ -111,11 +116,12 @@ this one."
   (when (defined-p procedure) (fmakunbound (procedure-name procedure)))
   (setf (procedure-entry procedure) nil))
 
-(defun anonymous-procedure (lambda-list entry body)
+(defun anonymous-procedure (lambda-list entry body text)
   (let ((procedure (make-procedure nil)))
     (setf (procedure-lambda-list procedure) lambda-list
           (procedure-entry procedure) entry
-          (procedure-body procedure) body)
+          (procedure-body procedure) body
+          (procedure-source procedure) text)
     procedure))
 
 (defun enter-plan (plan &rest arguments)

@@ -109,11 +109,11 @@
     (mark-level runner level)))
 
 (defun blocked-p (task)
-  "True if TASK or a task that it is part of is blocked. Tasks that clean up are not."
-  (unless (task-doomed task)
-    (loop for each = task then (task-parent each)
-          while each
-          thereis (plusp (task-blocked each)))))
+  "True if TASK or a task that it is part of is blocked. A task that evaporates is not, and what it
+does to clean up only by what blocks that."
+  (loop for each = task then (task-parent each)
+        until (or (null each) (task-doomed each))
+        thereis (plusp (task-blocked each))))
 
 (defun take-ready (runner)
   "Return the task of RUNNER that is next to run, or NIL. Blocked ones are put aside."

@@ -32,7 +32,9 @@ frame, child, the child's state and its result."
 (addition task)
 (defstruct (task (:constructor make-task (name node)) (:copier nil))
   "One incarnation of a plan's expression. FRAME and VALUE say how it will go on; SIGNAL, if any,
-what will happen to it instead. LEVEL 0 is the plan proper, a policy is one above what it guards."
+what will happen to it instead. LEVEL 0 is the plan proper, a policy is one above what it guards.
+BLOCKED is how many keep it from running, SUSPENSIONS how many of these are so called, SUSPENDED
+whether SUSPEND is one. GATE is what it waits for before it starts, VARIABLES what it has set."
   (name nil)
   (node nil :type node)
   (runner nil)
@@ -51,6 +53,10 @@ what will happen to it instead. LEVEL 0 is the plan proper, a policy is one abov
   (result nil)
   (status-fluent nil :type (or null fluent))
   (parent nil :type (or null task))
+  (suspensions 0 :type fixnum)
+  (suspended nil :type boolean)
+  (gate nil)
+  (variables '() :type list)
   (newest-child nil :type (or null task))
   (older nil :type (or null task))
   (newer nil :type (or null task)))
@@ -81,11 +87,32 @@ over :succeeded, :failed or :evaporated.")
         while child do (push child children)
         finally (return children)))
 
+(addition task-top)
+(defun task-top (task)
+  "Return the top-level task that TASK is part of, perhaps itself."
+  (loop while (task-parent task)
+        do (setf task (task-parent task)))
+  task)
+
+(defun part-of-p (task whole)
+  "True if TASK is WHOLE or a part of it."
+  (loop for each = task then (task-parent each)
+        while each thereis (eq each whole)))
+
+(defun under-way-p (task)
+  "True if TASK has been started and is not over."
+  (not (or (task-over-p task) (eq (task-state task) :created))))
+
 (defgeneric current-form (node frame)
   (:documentation "Return the source of the expression of NODE that FRAME is at.")
   (:method (node frame)
     (declare (ignore frame))
     (node-form node)))
+
+(addition task-source)
+(defun task-source (task)
+  "Return the source of all that TASK runs, as data: the form of a branch, the body of a plan."
+  (node-form (task-node task)))
 
 (addition task-form)
 (defun task-form (task)
