@@ -87,7 +87,7 @@
     :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
                  (:file "task") (:file "trace") (:file "runner") (:file "machine")
                  (:file "ending") (:file "stepping") (:file "blame") (:file "procedure")
-                 (:file "report") (:file "engine") (:file "gate") (:file "blocking")
+                 (:file "report") (:file "engine") (:file "circles") (:file "gate") (:file "blocking")
                  (:file "variables") (:file "places") (:file "alone")))
    (:module "rpl/language" :serial t
     :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
@@ -100,7 +100,7 @@
                  (:file "handling") (:file "trying") (:file "protecting") (:file "parallel")
                  (:file "policy") (:file "blocking") (:file "suspension") (:file "joining")
                  (:file "task-variables") (:file "deadline") (:file "par-at-least")
-                 (:file "circles") (:file "ordering") (:file "valve")))
+                 (:file "ordering") (:file "valve") (:file "with-valve")))
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
@@ -180,7 +180,8 @@
                  (:file "shipped-manipulations") (:file "statistics")
                  (:file "rpl-fluents")
                  (:file "rpl-compiler") (:file "rpl-plans") (:file "rpl-policies")
-                 (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-stress")
+                 (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-control")
+                 (:file "rpl-orders") (:file "rpl-valves") (:file "rpl-stress")
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-robot-live")
                  (:file "plans")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")

@@ -200,7 +200,7 @@ last one run with its start."
                   (remove nil (mapcar #'fluents::fluent-first-watcher fluents))
                   (remove nil (mapcar #'fluents::fluent-first-link fluents))
                   (remove nil (mapcar #'rpl:valve-owner valves))
-                  (mapcan #'copy-list (mapcar #'constructs::valve-requests valves))))))
+                  (mapcan #'copy-list (mapcar #'rpl:valve-requests valves))))))
 
 (test stress.stopped-plans-leave-nothing-behind-and-repeat-exactly
   (let ((dice (base:make-dice 1992 "stopped plans")) (wrong '()))

@@ -122,13 +122,10 @@ of that."
            (setf precedences open)))
 
 (defun check-orders (orders steps form)
-  "Signal MALFORMED-DEFINITION if ORDERS, of tags in STEPS, can never be kept."
-  (let ((tags (tags-in steps)))
-    (when (circular-p (precedences
-                       (remove-if-not (lambda (order) (subsetp order tags)) orders)
-                       (nested-tags steps)))
-      (reject-clause "plan" form
-                     "constraints without a circle: some steps could never start"))))
+  "Signal MALFORMED-DEFINITION if ORDERS of STEPS, where they are of names, can never be kept."
+  (when (circular-p (precedences (remove-if-not (lambda (order) (every #'symbolp order)) orders)
+                                 (nested-tags steps)))
+    (reject-clause "plan" form "constraints without a circle: some steps could never start")))
 
 (defun orders-lambda (steps constraints form scope)
   "Return the lambda expression that returns the pairs that CONSTRAINTS of FORM put in order."
@@ -146,10 +143,10 @@ of that."
 (define-construct partial-order (steps &body constraints)
   "Run STEPS in a plan side by side, as PAR, under CONSTRAINTS: by (:order a b) the task b does not
 start before a is over, however that ends. Both are tags, (:tag name form), of STEPS or in them or
-around, or forms whose values are tasks; a may also be a fluent: b starts when it is true or has been
-pulsed since. Orders hold until the whole ends. What has started already cannot be b. Circles of
-orders of the tags in STEPS are errors when the plan is defined; what comes to wait in other circles
-is told as a deadlock (CRAM's; values as PAR's are ours)."
+around, or forms whose values are tasks; a may also be a fluent: b starts when it is true or has
+been pulsed since. Orders hold until the whole ends. What has started already cannot be b. Circles
+of orders of the tags in STEPS are errors when the plan is defined; what comes to wait in other
+circles is told as a deadlock. Return the value of the last step (CRAM's; the value is ours)."
   (:parts (branches simple-vector (branches-code steps scope))
           (pairs function (orders-lambda steps constraints form scope)))
   (:code (with-tags-code form (tags-in steps) scope #'build))

@@ -3,8 +3,8 @@
 (in-package :ars-magna.rpl.constructs)
 
 (defstruct (tally (:constructor make-tally (missing left)) (:copier nil))
-  "How many successes are MISSING, how many branches are LEFT that may bring them, and the VALUES and
-FAILURES so far, last first."
+  "How many successes are MISSING, how many branches are LEFT that may bring them, and the VALUES
+and FAILURES so far, last first."
   (missing 0 :type fixnum)
   (left 0 :type fixnum)
   (values '() :type list)
@@ -35,10 +35,10 @@ FAILURES so far, last first."
                                   task frame)))))
 
 (define-construct par-at-least (count &body branches)
-  "Run BRANCHES in a plan side by side. Succeed as soon as COUNT of them have, with the list of their
-values, the first first; fail as soon as too many have not, with a composite failure. Evaporate the
-others. COUNT is an integer from 0, which needs none, to the number of branches (ours; CRAM's
-statecharts of 2026 have a PAR with minimum_success)."
+  "Run BRANCHES in a plan side by side. Succeed as soon as COUNT of them have, with the list of
+their values, the first first; fail as soon as too many have not, with a composite failure.
+Evaporate the others. COUNT is an integer from 0, which needs none, to the number of branches (ours;
+CRAM's statecharts of 2026 have a PAR with minimum_success)."
   (:arguments count)
   (:parts (needed function (value-lambda count scope))
           (branches simple-vector (branches-code branches scope)))

@@ -60,8 +60,8 @@ cleanups, and when it is so no longer it is run anew, from the start. Return its
 (defmacro without-scheduling (&body body)
   "Run BODY in a plan as one step: nobody can suspend the task, end it, or run before it in between;
 what others want of it is heard at the end. BODY cannot wait, call plans or leave: that is an error
-when the plan is defined. Return its value. In ordinary Lisp, PROGN (CRAM's; that BODY cannot wait is
-ours, as nothing else could run meanwhile)."
+when the plan is defined. Return its value. In ordinary Lisp, PROGN (CRAM's; that BODY cannot wait
+is ours, as nothing else could run meanwhile)."
   `(progn ,@body))
 
 (define-plan-form "WITHOUT-SCHEDULING" :may (&rest body) (form scope)

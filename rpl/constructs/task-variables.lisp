@@ -8,16 +8,16 @@
               (and (symbolp name) (variable-name-p name)
                    (not (eq :special (variable-kind name)))))
     (reject-clause (title "define-task-variable" name) name
-                   "a symbol that is no variable or constant yet, and belongs to no locked package")))
+                   "a symbol that is no variable yet and belongs to no locked package")))
 
 (addition define-task-variable)
 (define-user-macro define-task-variable (name value &optional documentation)
   "Define NAME as a variable with a value for each task: what a task sets is seen by it and by what
 it starts, and by nobody else; WITH-TASK-VARIABLES binds it. Where no task says otherwise its value
-is VALUE, or what was set outside of plans. Special variables belong to the whole thread instead, and
-LET cannot bind them around what waits. Functions that plans call see it too, if they are compiled
-after it. Defining it anew sets that value, as DEFPARAMETER does (CRAM's; that it can be set is
-ours)."
+is VALUE, or what was set outside of plans. Special variables belong to the whole thread instead,
+and LET cannot bind them around what waits. Functions that plans call see it too, if they are
+compiled after it. Defining it anew sets that value, as DEFPARAMETER does (CRAM's; what becomes of
+it when a task sets it is ours)."
   (check-task-variable name)
   `(progn
      (eval-when (:compile-toplevel :load-toplevel :execute)

@@ -11,6 +11,9 @@
   (function #'list :type function :read-only t))
 (declaim-final heed)
 
+(document-functions
+  make-heed "Return what lets a function of task and frame be called when the task is blocked.")
+
 (defun tell-blocked (task)
   "Let the parts of TASK, newest first, and then its own expressions, innermost first, know that
 they do not run; but not those that did not run before."
@@ -54,8 +57,8 @@ they do not run; but not those that did not run before."
 ;;; By a word, instead of as long as something lasts.
 
 (defun call-in-plans (task function)
-  "Call FUNCTION when the plan that TASK is part of can hear of it: now, if a plan of the same runner
-asks, or TASK is in none; else posted to its runner, before that reacts again."
+  "Call FUNCTION when the plan that TASK is part of can hear of it: now, if a plan of the same
+runner asks, or TASK is in none; else, posted to its runner, before that reacts again."
   (let ((runner (task-runner task)))
     (if (or (null runner) (eq runner *runner*))
         (funcall function)

@@ -10,6 +10,9 @@
   (task nil :type task :read-only t)
   (holds '() :type list))
 
+(document-functions
+  gate-holds "Return what keeps the gate closed.")
+
 (defstruct (gate-node (:include node (step #'step-gate)) (:copier nil))
   "The place of a task before its first expression.")
 
@@ -18,6 +21,7 @@
   (let ((gate (task-gate task)))
     (cond ((and gate (gate-holds gate))
            (park task gate)
+           (report-circle task)
            +parked+)
           (t (setf (task-gate task) nil)
              (note-status task :running)

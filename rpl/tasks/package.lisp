@@ -10,7 +10,8 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
   (:export #:composite-failure #:composite-failures #:fail #:failure-cause #:failure-class
            #:failure-data #:failure-form #:failure-matches-p #:failure-plan-backtrace
            #:failure-subject #:failure-suppressed #:failure-task-path #:failure-text
-           #:failure-tick #:write-failure #:lisp-failure #:lisp-failure-backtrace #:lisp-failure-condition
+           #:failure-tick #:write-failure #:lisp-failure #:lisp-failure-backtrace
+           #:lisp-failure-condition
            #:make-failure #:plan-failure)
   ;; task
   (:export #:current-form #:frame #:frame-counter #:frame-data #:frame-environment #:frame-up
@@ -39,7 +40,8 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
   ;; procedure
   (:export #:ensure-procedure #:make-procedure #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p #:enter-plan
            #:find-procedure #:install-procedure #:procedure #:procedure-body #:procedure-entry
-           #:procedure-lambda-list #:procedure-name #:procedure-name-p #:procedure-p #:procedure-source)
+           #:procedure-lambda-list #:procedure-name #:procedure-name-p #:procedure-p
+           #:procedure-source)
   ;; blame
   (:export #:failure-of)
   ;; report
@@ -50,6 +52,8 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
            #:start-plan #:stop-plan)
   ;; blocking
   (:export #:block-task #:make-heed #:suspend #:unblock-task #:wake-up)
+  ;; circles
+  (:export #:hinderers #:hindrance-text #:report-circle #:taken-from)
   ;; gate
   (:export #:gate #:gate-holds #:hold-back #:release-hold #:spawn-gated)
   ;; variables

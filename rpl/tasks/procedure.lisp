@@ -93,8 +93,8 @@ or return NIL if ERRORP is NIL."
                  of any lambda; at top level run it: (run-plan-alone '~S ...)." name name)))
 
 (defun install-procedure (name lambda-list documentation entry body &optional source text)
-  "Make NAME a plan procedure, as SOURCE, a place, defines it by TEXT. Calls from now on, also in running plans, mean
-this one."
+  "Make NAME a plan procedure, as TEXT, from SOURCE, defines it. Calls from now on, also in running
+plans, mean this one."
   (let ((procedure (ensure-procedure name)))
     (declare-procedure name)
     (setf (procedure-lambda-list procedure) lambda-list

@@ -12,6 +12,9 @@
   (cells '() :type list :read-only t))
 (declaim-final task-bindings)
 
+(document-functions
+  make-task-bindings "Return what a frame that binds the task variables of CELLS has as its data.")
+
 (defvar *defaults* (make-hash-table :test 'eq :synchronized t)
   "The values of task variables where no task says otherwise.")
 

@@ -1,13 +1,13 @@
 ;;;; circles.lisp -- tasks that wait for each other, so that none can go on.
 
-(in-package :ars-magna.rpl.constructs)
+(in-package :ars-magna.rpl.tasks)
 
 ;;; A task is stuck if what it waits for can only come from tasks that are stuck. A task with parts
 ;;; is stuck if all of them are, policies, which only watch, not counted. Where it is not known who
 ;;; could help, somebody may: that is left to the report of deadlocks when nothing goes on any more.
 
 (defgeneric hinderers (awaited)
-  (:documentation "Return the tasks without which AWAITED cannot come, or NIL if that is not known.")
+  (:documentation "Return the tasks without which AWAITED cannot come; NIL if that is unknown.")
   (:method (awaited)
     (declare (ignore awaited))
     '()))
@@ -48,14 +48,17 @@ frames, is about.")
                    (push part open)))))
     (reverse stuck)))
 
+(defgeneric hindrance-text (awaited)
+  (:documentation "Return in words what a task that is stuck waits for.")
+  (:method (awaited) (awaited-text awaited)))
+
 (defun stuck-text (task)
   "Return in words what TASK, which is stuck, waits for."
-  (let* ((awaiting (task-awaiting task))
-         (others (and awaiting (hinderers awaiting))))
-    (format nil "~A waits for ~:[what ~{~A~^ and ~} took from it~;~:*~A~@[ that ~{~A~^ and ~} has~]~]"
-            (task-label task)
-            (and others (awaited-text awaiting))
-            (mapcar #'task-label (or others (those-who-took-from task))))))
+  (let ((awaiting (task-awaiting task)))
+    (if (and awaiting (hinderers awaiting))
+        (format nil "~A waits for ~A" (task-label task) (hindrance-text awaiting))
+        (format nil "~A waits until ~{~A~^ and ~} gives back what it took"
+                (task-label task) (mapcar #'task-label (those-who-took-from task))))))
 
 (defun report-circle (task)
   "Queue an error message if TASK, which has come to wait, waits in a circle."
