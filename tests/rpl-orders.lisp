@@ -128,7 +128,8 @@
            (let ((base:*message-queue* (base:make-message-queue)))
              (rpl:run-plan-alone plan)
              (mapcar #'base:message-text (base:take-messages)))))
-    (is (equal '("Deadlock at tick 1: p waits for the end of q; q waits for the end of p. None can go on.")
+    (is (equal (list (format nil "Deadlock at tick 1: p waits for the end of q; q waits for the ~
+                                  end of p. None can go on."))
                (texts-of (rpl:interp-lambda ()
                            (rpl:pursue
                             (rpl:partial-order ((:tag p (rpl:wait-time 1) (rpl:join-task q))

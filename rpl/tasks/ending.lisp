@@ -17,16 +17,21 @@
   (when (task-status-fluent task)
     (set-value (task-status-fluent task) (status-word task state))))
 
+(defun forget-blocks (task)
+  "TASK, which was blocked, is over."
+  (decf (runner-blocks (task-runner task)) (task-blocked task))
+  (release-held (task-runner task)))
+
 (defun finish (task state result &optional (how state))
   "End TASK in STATE with RESULT. HOW says it to the construct that TASK is part of."
   (note-event task (ecase state (:succeeded :succeed) (:failed :fail) (:evaporated :evaporate))
               (and (eq state :failed) (failure-text result)))
-  (decf (runner-blocks (task-runner task)) (task-blocked task))
   (setf (task-state task) state
         (task-result task) result
         (task-frame task) nil
         (task-value task) nil
         (task-signal task) nil)
+  (when (plusp (task-blocked task)) (forget-blocks task))
   (note-status task state)
   (let ((parent (task-parent task)))
     (cond (parent
@@ -152,4 +157,6 @@ or evaporates already is left alone. Call it only from plans; from elsewhere pos
                     (cond ((task-newest-child task)
                            (setf (task-signal task) :evaporate)
                            (evaporate-children task))
-                          (t (evaporate-now task))))))))
+                          (t (evaporate-now task)))))
+           ;; What was kept from running, and cleans up, is so no longer.
+           (when (runner-held (task-runner task)) (release-held (task-runner task))))))
