@@ -3,6 +3,10 @@
 (in-package :ars-magna.tests)
 (in-suite rpl)
 
+(defmacro signals-failure (condition &body body)
+  "Check that BODY, as a plan, fails of a Lisp error of type CONDITION."
+  `(is (typep (rpl:lisp-failure-condition (plan-failure-of ,@body)) ',condition)))
+
 ;;; Suspend and wake up.
 
 (test suspend.waits-still-count
@@ -37,8 +41,9 @@
              (with-log (note)
                (plan-value
                  (rpl:handle-failure ((:lost () (note :lost) (return)))
-                   (rpl:par (:tag worker (rpl:par (rpl:seq (rpl:wait-time 1) (rpl:fail :class :lost))
-                                                  (rpl:wait-time 9)))
+                   (rpl:par (:tag worker
+                              (rpl:par (rpl:seq (rpl:wait-time 1) (rpl:fail :class :lost))
+                                       (rpl:wait-time 9)))
                             (rpl:seq (rpl:wait-time 1/2)
                                      (rpl:suspend worker)
                                      (rpl:wait-time 7/2)
@@ -145,6 +150,17 @@
   (signals base:wrong-argument (rpl:suspend 3))
   (signals base:wrong-argument (rpl:wake-up 'worker)))
 
+(test suspend.plans-of-another-runner
+  "They can be suspended, not blocked while something lasts: nobody would know for how long."
+  (with-runner (runner)
+    (let ((other (rpl:start-plan runner (rpl:interp-lambda () (rpl:wait-time 9)))))
+      (signals-failure base:misuse (rpl:with-task-blocked other (rpl:wait-time 1)))
+      (signals-failure base:misuse (rpl:join-task other))
+      (signals-failure base:misuse (rpl:partial-order ((:tag a 1)) (:order other a)))
+      (is (eq other (plan-value (rpl:suspend other))))
+      (rpl:apply-next-batch runner)
+      (is (eq :suspended (rpl:fluent-value (rpl:task-status other)))))))
+
 ;;; What a task does about it.
 
 (test on-suspension.reacts-each-time
@@ -167,8 +183,9 @@
   (let ((base:*message-queue* (base:make-message-queue)))
     (is (eq :done (rpl:run-plan-alone
                    (rpl:interp-lambda ()
-                     (rpl:pursue (:tag worker (rpl:on-suspension (rpl:fail :class :stuck)
-                                                (rpl:on-suspension (error "oops") (rpl:wait-time 2)))
+                     (rpl:pursue (:tag worker
+                                   (rpl:on-suspension (rpl:fail :class :stuck)
+                                     (rpl:on-suspension (error "oops") (rpl:wait-time 2)))
                                    :done)
                                  (rpl:seq (rpl:with-task-blocked worker) (rpl:wait-time 9)))))))
     (let ((texts (mapcar #'base:message-text (base:take-messages))))

@@ -3,10 +3,6 @@
 (in-package :ars-magna.tests)
 (in-suite rpl)
 
-(defmacro signals-failure (condition &body body)
-  "Check that BODY, as a plan, fails of a Lisp error of type CONDITION."
-  `(is (typep (rpl:lisp-failure-condition (plan-failure-of ,@body)) ',condition)))
-
 ;;; Orders.
 
 (test partial-order.its-value-is-that-of-the-last-step
@@ -225,7 +221,9 @@
                                     (push (pace) seen)))
                          (reverse (sort seen #'>))))
                      (rpl:handle-failure ((t () (return (1+ *pace*))))
-                       (rpl:with-task-variables ((*pace* 7)) (rpl:wait-time 1) (rpl:fail)))
+                       (rpl:with-task-variables ((*mood* 1) (*pace* (rpl:seq (rpl:wait-time 1) 7)))
+                         (rpl:wait-time *pace*)
+                         (rpl:fail)))
                      *pace*))))
   (is (= 1 *pace*)))
 
@@ -300,6 +298,21 @@
         (rpl:advance-timers runner 1)
         (rpl:react runner)
         (is (equal '(errand (:tag approach) (:tag look 0)) (rpl:task-place (first tasks))))))))
+
+(test task-source.of-a-plan-is-its-text
+  (with-runner (runner)
+    (is (equal '(rpl:def-interp-proc errand (task-of))
+               (subseq (rpl:task-source (rpl:start-plan runner 'errand #'list)) 0 3)))
+    (is (equal '(rpl:wait-time 1)
+               (rpl:task-source (rpl:start-plan runner (rpl:make-plan '(rpl:wait-time 1))))))))
+
+(test plans-as-data.are-for-users
+  (dolist (name '("MAKE-PLAN" "CALL-PLAN" "TASK-CHILDREN" "TASK-PARENT" "TASK-FORM" "FIND-PROCEDURE"
+                  "FIND-TASK" "TASK-PLACE" "TASK-TOP" "TASK-SOURCE" "PROCEDURE-SOURCE" "SUSPEND"
+                  "WAKE-UP" "JOIN-TASK" "VALVE-OWNER" "VALVE-REQUESTS" "VALVE-LOSERS"))
+    (let ((symbol (find-symbol name :ars-user)))
+      (is (fboundp symbol) "~A" name)
+      (is (search "An addition to the manual." (documentation symbol 'function)) "~A" name))))
 
 (test procedure-source.is-the-text
   (is (equal '(rpl:def-interp-proc errand (task-of))

@@ -5,6 +5,7 @@
 (defun checked-target (target task)
   "Return TARGET, which TASK wants to block. Signals WRONG-ARGUMENT and MISUSE."
   (check-argument with-task-blocked target (task-p target) "a task, such as the name of a :tag")
+  (check-together task target)
   (when (part-of-p task target)
     (reject-use "~A would block itself: it is part of ~A." (task-label task) (task-label target)))
   target)

@@ -9,6 +9,7 @@
 (defun checked-other (target task)
   "Return TARGET, which TASK wants to wait for. Signals WRONG-ARGUMENT and MISUSE."
   (check-argument join-task target (task-p target) "a task, such as the name of a :tag")
+  (check-together task target)
   (when (part-of-p task target)
     (reject-use "~A would wait for itself: it is part of ~A." (task-label task)
                 (task-label target)))

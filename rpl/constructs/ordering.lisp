@@ -51,13 +51,16 @@ of that."
       (setf (order-watcher order) (make-watcher fluent #'hear-earlier (cons order task)))
       (watch (order-watcher order)))))
 
-(defun checked-orders (pairs)
-  "Return the orders of PAIRS, conses (earlier . later). Signals WRONG-ARGUMENT."
+(defun checked-orders (pairs task)
+  "Return the orders that TASK wants of PAIRS, conses (earlier . later). Signals WRONG-ARGUMENT and
+MISUSE."
   (loop for (earlier . later) in pairs
         do (check-argument partial-order earlier (or (task-p earlier) (fluent-p earlier))
                            "a task, such as the name of a :tag, or a fluent")
            (check-argument partial-order later (task-p later)
                            "a task, such as the name of a :tag")
+           (when (task-p earlier) (check-together task earlier))
+           (check-together task later)
         collect (make-order earlier later)))
 
 ;;; Reading the constraints.
@@ -153,7 +156,7 @@ circles is told as a deadlock. Return the value of the last step (CRAM's; the va
   (:steps
    (begin
     (next over)
-    (let ((orders (checked-orders (funcall pairs environment))))
+    (let ((orders (checked-orders (funcall pairs environment) task)))
       (setf memory (cons nil orders))
       (dolist (order orders) (keep-order order task))
       (loop for branch across branches

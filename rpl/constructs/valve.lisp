@@ -66,10 +66,6 @@ that have been taken from it."
   (let ((owner (valve-owner valve)))
     (and owner (part-of-p task owner))))
 
-(defun evaporating-p (task)
-  (loop for each = task then (task-parent each)
-        while each thereis (task-doomed each)))
-
 (defun available-p (valve claim)
   "True if CLAIM may take VALVE, from its owner if need be: one that evaporates keeps it."
   (let ((owner (first (valve-claims valve))))

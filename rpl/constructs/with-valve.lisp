@@ -55,14 +55,6 @@ an error message says so (manual D; priorities ours)."
   (let ((rest (member :priority valves)))
     (values (ldiff valves rest) (second rest))))
 
-(defun bound-first (valves form scope)
-  "Return FORM, a WITH-VALVES, with its VALVES bound before, if one makes the task wait; or NIL."
-  (when (some (lambda (valve) (suspends-p valve scope)) valves)
-    (let ((names (loop for nil in valves collect (gensym "VALVE"))))
-      (note-own-text
-       `(let ,(mapcar #'list names valves)
-          (with-valves (,@names ,@(nthcdr (length valves) (second form))) ,@(cddr form)))))))
-
 (define-construct with-valves ((&rest valves) &body body)
   "Run BODY in a plan while the task owns all of VALVES, which may end in :priority and a number.
 They are taken all at once when none is another's, and none before: so the order in which tasks want
@@ -70,8 +62,7 @@ them does not matter. Else do as WITH-VALVE (ours)."
   (:parts (request function (multiple-value-bind (valves priority) (split-valves valves)
                               (claim-form priority valves scope)))
           (body node (body-code body scope)))
-  (:code (let ((bound (bound-first (split-valves valves) form scope)))
-           (if bound (plan-code bound scope) (build))))
+  (:code (call-hoisting valves form scope #'build))
   (:steps
    (begin
     (next granted)

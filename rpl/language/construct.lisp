@@ -61,6 +61,8 @@ values are parts of FORM, make its task wait, bind it before FORM."
       `(call-hoisting (list ,@arguments) ,form ,scope (lambda () ,@body))))
 
 (defun call-hoisting (arguments form scope coder)
+  "Return the code for FORM in SCOPE, which CODER returns if none of ARGUMENTS, parts of FORM, makes
+its task wait; otherwise they are bound before."
   (let ((first (find-if (lambda (argument) (suspends-p argument scope)) arguments)))
     (if first
         (with-gensyms (value)

@@ -32,5 +32,6 @@
   ;; definitions
   (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan)
   ;; construct
-  (:export #:define-construct #:in-plans-only #:form #:build #:node #:frame #:value #:child #:how
+  (:export #:call-hoisting
+           #:define-construct #:in-plans-only #:form #:build #:node #:frame #:value #:child #:how
            #:result #:environment #:memory #:next))

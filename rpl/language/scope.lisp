@@ -22,6 +22,9 @@ builds the plan, that hold their nodes."
   (task-tags '() :type list)
   (several nil :type boolean))
 
+(document-functions
+  scope-environment "Return the Lisp environment at the place.")
+
 (defmacro inner-scope (scope &rest changes)
   "Return a copy of SCOPE in which the slots named in CHANGES, a property list, have new values."
   (with-gensyms (inner)

@@ -54,6 +54,13 @@ they do not run; but not those that did not run before."
     (note-status task :running)
     (release-held (task-runner task))))
 
+(defun check-together (task other)
+  "Signal MISUSE if TASK, which runs, and OTHER belong to different plan runners."
+  (when (and (task-runner other) (not (eq (task-runner task) (task-runner other))))
+    (reject-use "~A is part of plans of another robot, which go on by themselves. From here it can ~
+                 only be asked to SUSPEND and WAKE-UP."
+                (task-label other))))
+
 ;;; By a word, instead of as long as something lasts.
 
 (defun call-in-plans (task function)

@@ -14,6 +14,7 @@
         (t :running)))
 
 (defun note-status (task state)
+  "Let the status fluent of TASK, which is in STATE, say so."
   (when (task-status-fluent task)
     (set-value (task-status-fluent task) (status-word task state))))
 

@@ -19,8 +19,8 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
            #:task-children #:task-cleaning #:task-form #:task-frame #:task-index #:task-label
            #:task-level #:task-name #:task-newest-child #:task-over-p #:task-p #:task-parent
            #:task-path #:task-result #:task-runner #:task-serial #:task-signal #:task-state
-           #:task-status-fluent #:task-timer #:part-of-p #:task-source #:task-top #:under-way-p
-           #:task-doomed)
+           #:task-status-fluent #:task-timer #:part-of-p #:task-top #:under-way-p
+           #:evaporating-p)
   ;; trace
   (:export #:trace-entry #:trace-entry-detail #:trace-entry-event #:trace-entry-form
            #:trace-entry-task #:trace-entry-tick #:write-trace)
@@ -51,7 +51,7 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
            #:next-wake-time #:plan-deadlocked-p #:post-batch #:post-call #:react #:reseed-runner
            #:start-plan #:stop-plan)
   ;; blocking
-  (:export #:block-task #:make-heed #:suspend #:unblock-task #:wake-up)
+  (:export #:block-task #:check-together #:make-heed #:suspend #:unblock-task #:wake-up)
   ;; circles
   (:export #:hinderers #:hindrance-text #:report-circle #:taken-from)
   ;; gate
@@ -60,7 +60,7 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
   (:export #:*speaking-task* #:install-task-variable #:make-task-bindings #:task-variable
            #:task-variable-p)
   ;; places
-  (:export #:find-task #:task-place)
+  (:export #:find-task #:task-place #:task-source)
   ;; alone
   (:export #:run-plan-alone)
   ;; stepping

@@ -52,7 +52,7 @@ nowhere: NIL (CRAM's paths go from the inside out, and have the operators' names
   "Return the task under way at PLACE, as TASK-PLACE returns, or whose number PLACE is; NIL if there
 is none. WITHIN is a plan runner, or a task, whose parts PLACE then starts with."
   (check-argument find-task within (or (task-p within) (plan-runner-p within))
-                  "a plan runner or a task")
+                  "a plan runner, such as (rpl-runner), or a task")
   (if (integerp place)
       (find-numbered place within)
       (loop with tasks = (parts-of within)
@@ -69,3 +69,14 @@ is none. WITHIN is a plan runner, or a task, whose parts PLACE then starts with.
   (dolist (part (parts-of within))
     (let ((found (if (= number (task-serial part)) part (find-numbered number part))))
       (when found (return found)))))
+
+(addition task-source)
+(defun task-source (task)
+  "Return the source of all that TASK runs, as data: the form of a branch; of a top-level task the
+text of its plan, as PROCEDURE-SOURCE does, or, if it has no name or has been defined anew since, of
+that plan's body."
+  (let ((procedure (and (null (task-parent task))
+                        (find (task-node task) (all-procedures) :key #'procedure-body))))
+    (if procedure
+        (procedure-source procedure)
+        (node-form (task-node task)))))

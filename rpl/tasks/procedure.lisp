@@ -117,6 +117,7 @@ plans, mean this one."
   (setf (procedure-entry procedure) nil))
 
 (defun anonymous-procedure (lambda-list entry body text)
+  "Return a plan procedure without a name, which TEXT defines."
   (let ((procedure (make-procedure nil)))
     (setf (procedure-lambda-list procedure) lambda-list
           (procedure-entry procedure) entry

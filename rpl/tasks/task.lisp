@@ -99,6 +99,11 @@ over :succeeded, :failed or :evaporated.")
   (loop for each = task then (task-parent each)
         while each thereis (eq each whole)))
 
+(defun evaporating-p (task)
+  "True if TASK, or what it is part of, is evaporating."
+  (loop for each = task then (task-parent each)
+        while each thereis (task-doomed each)))
+
 (defun under-way-p (task)
   "True if TASK has been started and is not over."
   (not (or (task-over-p task) (eq (task-state task) :created))))
@@ -108,11 +113,6 @@ over :succeeded, :failed or :evaporated.")
   (:method (node frame)
     (declare (ignore frame))
     (node-form node)))
-
-(addition task-source)
-(defun task-source (task)
-  "Return the source of all that TASK runs, as data: the form of a branch, the body of a plan."
-  (node-form (task-node task)))
 
 (addition task-form)
 (defun task-form (task)
