@@ -194,7 +194,7 @@ what stands there."
 
 (test manual-c-plans.waiting-is-for-plans-only
   "Our RPL: a form that waits has no meaning in Lisp code, nor inside Lisp forms that cannot wait."
-  (signals ars-magna-error (macroexpand-1 '(wait-for robot-stopped*)))
+  (signals ars-magna-error (macroexpand '(wait-for robot-stopped*)))
   (signals ars-magna-error
     (macroexpand-1 '(interp-lambda () (mapcar (lambda (f) (wait-for f)) fluents)))))
 

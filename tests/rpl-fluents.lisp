@@ -193,10 +193,25 @@
 
 (test pulse.is-heard-by-networks-of-it
   (let ((f (fluent)) (g (fluent 3)))
-    (is (eq t (plan-value (rpl:par (rpl:pulse g) (rpl:pulse f)
+    (is (eq t (plan-value (rpl:par (rpl:seq (rpl:wait-time 1) (rpl:pulse g nil))
                                    (rpl:wait-for (not g))))))
     (is (= 7 (plan-value (rpl:par (rpl:seq (rpl:wait-time 1) (rpl:pulse f 7))
-                                  (rpl:wait-for (or g f))))))))
+                                  (rpl:wait-for (or (= g 4) f))))))))
+
+(test pulse.is-over-after-an-instant
+  "Then the fluent, and what depends on it, is as it was before."
+  (let ((f (fluent)) (g (fluent 3)))
+    (is (equal '(nil 3 (7 t) 3)
+               (plan-value (let ((network (> g 5)))
+                             (rpl:pulse f)
+                             (rpl:pulse g)
+                             (list (rpl:fluent-value f) (rpl:fluent-value g)
+                                   (let ((heard nil))
+                                     (rpl:par (rpl:seq (rpl:wait-for network)
+                                                       (setf heard t))
+                                              (rpl:pulse g 7))
+                                     (list 7 heard))
+                                   (rpl:fluent-value g))))))))
 
 (test pulse.none-is-missed-by-a-task-that-waits-in-time
   (let ((ping (fluent)) (pong (fluent)) (heard 0))

@@ -7,7 +7,7 @@
 
 (test whenever.runs-at-once-if-true-and-then-once-for-each-event
   (let ((f (fluent :initially)))
-    (is (equal '((:initially 0) (:change 1) (nil 2) (:again 4))
+    (is (equal '((:initially 0) (:change 1) (:change 2) (:again 4))
                (with-log (note)
                  (plan-value
                    (rpl:pursue (rpl:whenever f (note (rpl:fluent-value f)))

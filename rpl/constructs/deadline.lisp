@@ -43,8 +43,7 @@ up to 1e15; with 0 or less there is time for what takes none (ours; CRAM's is a 
     (next over)
     (setf memory (start-deadline task (max 0 (funcall span environment))))
     (start-branch body task environment 0 (task-level task))
-    (park task nil)
-    +parked+)
+    (await-parts task))
    (over (values (frame-up frame) value)))
   (:unwind
    (end-deadline task (shiftf memory nil))

@@ -1,59 +1,19 @@
-;;;; handling.lisp -- handle-failure and retry.
+;;;; handling.lisp -- with-failure-handling and retry.
 
 (in-package :ars-magna.rpl.constructs)
 
-;;; Handling. A handler runs in an environment of the failure. While it does, DATA is the failure
-;;; and COUNTER is 2.
+;;; A handler runs in an environment of the failure, which is remembered meanwhile. To retry is to
+;;; leave for the body.
 
-(define-node handling ((body node) (types list) (handlers simple-vector))
-  "BODY; a failure of one of TYPES is taken care of by the handler of the same index, and goes on
-when that comes to its end."
-  :step step-handling :unwind unwind-handling)
+(defun handler-index (failure types)
+  "Return which of TYPES is the first that FAILURE matches, or NIL."
+  (position-if (lambda (type) (failure-matches-p failure type)) types))
 
-(defun step-handling (node task frame value)
-  (ecase (frame-counter frame)
-    (0 (setf (frame-counter frame) 1)
-     (enter (handling-body node) (frame-environment frame) frame))
-    (1 (values (frame-up frame) value))
-    (2 (unwind task (frame-up frame) (frame-data frame)))))
-
-(defun unwind-handling (node task frame signal)
-  (declare (ignore task))
-  (cond ((and (escape-p signal) (eq node (escape-target signal)))
-         (setf (frame-counter frame) 0
-               (frame-data frame) nil)
-         (values t frame nil))
-        ((and (= 1 (frame-counter frame)) (typep signal 'plan-failure))
-         (let ((index (position-if (lambda (type) (failure-matches-p signal type))
-                                   (handling-types node))))
-           (when index
-             (setf (frame-counter frame) 2
-                   (frame-data frame) signal)
-             (values t
-                     (make-frame (svref (handling-handlers node) index)
-                                 (vector (frame-environment frame)
-                                         (failure-subject signal
-                                                          (nth index (handling-types node))))
-                                 frame)
-                     nil))))))
-
-(addition with-failure-handling)
-(defmacro with-failure-handling (clauses &body body)
-  "Run BODY in a plan; a failure is handled by the first of CLAUSES, (type (variable) form...),
-whose type it matches: T, a class given to FAIL, a condition type of failures or of Lisp's, or
-(or ...). The handler may wait. (return value) ends the whole with VALUE and (retry) runs BODY anew;
-at the handler's end the failure goes on."
-  (misplaced 'with-failure-handling (list* clauses body)))
-
-(addition handle-failure)
-(defmacro handle-failure (clauses &body body)
-  "Do as WITH-FAILURE-HANDLING."
-  (misplaced 'handle-failure (list* clauses body)))
-
-(addition retry)
-(defmacro retry ()
-  "In a handler of WITH-FAILURE-HANDLING: run its body anew."
-  (misplaced 'retry '()))
+(defun enter-handler (handler type failure frame)
+  "Return the frame that runs HANDLER, of a clause for TYPE, for FAILURE."
+  (make-frame handler
+              (vector (frame-environment frame) (failure-subject failure type))
+              frame))
 
 (defun handler-code (clause scope)
   "Return code for the handler of CLAUSE, (type ([variable]) form...)."
@@ -65,42 +25,50 @@ at the handler's end the failure goes on."
   (unless (typep clause '(cons t (cons list t)))
     (reject-clause "plan" form "clauses such as (type (variable) form...)")))
 
-(defun handling-code (form clauses body scope)
-  (dolist (clause clauses) (check-clause clause form))
-  (block-code nil form scope
-    (lambda (scope)
-      (with-gensyms (node)
-        `(let ((,node (make-handling :form ',form
-                                     :body ,(body-code body scope)
-                                     :types ',(mapcar #'first clauses)
-                                     :handlers (vector))))
-           (setf (handling-handlers ,node)
-                 (vector ,@(loop with inner = (inner-scope scope :retry node)
-                                 for clause in clauses
-                                 collect (handler-code clause inner))))
-           ,node)))))
+(define-construct with-failure-handling (clauses &body body)
+  "Run BODY in a plan; a failure is handled by the first of CLAUSES, (type (variable) form...),
+whose type it matches: T, a class given to FAIL, a condition type of failures or of Lisp's, or
+(or ...). The handler may wait. (return value) ends the whole with VALUE and (retry) runs BODY anew;
+at the handler's end the failure goes on."
+  (:parts (body node (scope-retry scope))
+          (types list `',(mapcar #'first clauses))
+          (handlers simple-vector `(vector ,@(loop for clause in clauses
+                                                   collect (handler-code clause scope)))))
+  (:code
+   (progn
+     (dolist (clause clauses) (check-clause clause form))
+     (block-code nil form scope
+                 (lambda (scope)
+                   (with-gensyms (start)
+                     `(let ((,start ,(body-code body scope)))
+                        ,(build (inner-scope scope :retry start))))))))
+  (:steps
+   (begin
+    (next inside)
+    (enter body environment frame))
+   (inside (values (frame-up frame) value))
+   (handling (unwind task (frame-up frame) memory)))
+  (:unwind
+   (cond ((and (escape-p signal) (eq body (escape-target signal)))
+          (next begin)
+          (setf memory nil)
+          (values t frame nil))
+         ((and (in-state-p inside) (typep signal 'plan-failure))
+          (let ((index (handler-index signal types)))
+            (when index
+              (next handling)
+              (setf memory signal)
+              (values t
+                      (enter-handler (svref handlers index) (nth index types) signal frame)
+                      nil)))))))
 
-(define-plan-form "WITH-FAILURE-HANDLING" :must (clauses &rest body) (form scope)
-  (handling-code form clauses body scope))
+(define-construct handle-failure (clauses &body body)
+  "Do as WITH-FAILURE-HANDLING."
+  (:like with-failure-handling))
 
-(define-plan-form "HANDLE-FAILURE" :must (clauses &rest body) (form scope)
-  (handling-code form clauses body scope))
-
-(define-plan-form "RETRY" :must () (form scope)
-  (if (scope-retry scope)
-      `(make-leave :form ',form :target ,(scope-retry scope) :result +nothing+)
-      (reject-clause "plan" form "retry only in a handler of handle-failure")))
-
-;;; Counted retries.
-
-(addition with-retry-counters)
-(defmacro with-retry-counters (counters &body body)
-  "Run BODY in a plan with COUNTERS, each (name number), for DO-RETRY."
-  `(let ,counters ,@body))
-
-(addition do-retry)
-(defmacro do-retry (counter &body body)
-  "In a handler: run BODY, most likely (retry), if COUNTER is positive, and count it down."
-  `(when (plusp ,counter)
-     (decf ,counter)
-     ,@body))
+(define-construct retry ()
+  "In a handler of WITH-FAILURE-HANDLING: run its body anew."
+  (:code
+   (if (scope-retry scope)
+       `(make-leave :form ',form :target ,(scope-retry scope) :result +nothing+)
+       (reject-clause "plan" form "retry only in a handler of handle-failure"))))

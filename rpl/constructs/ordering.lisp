@@ -159,10 +159,7 @@ circles is told as a deadlock. Return the value of the last step (CRAM's; the va
     (let ((orders (checked-orders (funcall pairs environment) task)))
       (setf memory (cons nil orders))
       (dolist (order orders) (keep-order order task))
-      (loop for branch across branches
-            for index from 0
-            do (start-branch branch task environment index (task-level task)))
-      (cond ((plusp (length branches)) (park task nil) +parked+)
+      (cond ((plusp (length branches)) (start-branches branches task environment))
             (t (end-orders memory)
                (values (frame-up frame) nil)))))
    (over
@@ -180,4 +177,4 @@ circles is told as a deadlock. Return the value of the last step (CRAM's; the va
 (define-construct plan (steps &body constraints)
   "Do as PARTIAL-ORDER; CONSTRAINTS may also be one list of them, and give reasons after the names
 (BMT's)."
-  (:code (plan-code (note-own-text `(partial-order ,steps ,@constraints)) scope)))
+  (:like partial-order))

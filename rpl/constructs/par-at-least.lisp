@@ -47,13 +47,9 @@ CRAM's statecharts of 2026 have a PAR with minimum_success)."
     (let ((needed (checked-number (funcall needed environment) (length branches))))
       (next over)
       (setf memory (make-tally needed (length branches)))
-      (cond ((plusp needed)
-             (loop for branch across branches
-                   for index from 0
-                   do (start-branch branch task environment index (task-level task)))
-             (park task nil)
-             +parked+)
-            (t (values (frame-up frame) '())))))
+      (if (plusp needed)
+          (start-branches branches task environment)
+          (values (frame-up frame) '()))))
    (over (values (frame-up frame) value)))
   (:child-ended
    (cond ((eq how :escaped) (decide task result))

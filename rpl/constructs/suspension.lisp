@@ -46,8 +46,7 @@ cleanups, and when it is so no longer it is run anew, from the start. Return its
     (next inside)
     (setf memory (make-heed #'unwind-body))
     (start-branch body task environment 0 (task-level task))
-    (park task nil)
-    +parked+)
+    (await-parts task))
    (inside (values (frame-up frame) value)))
   (:child-ended
    (cond ((fail-or-escape task how result))
@@ -56,13 +55,11 @@ cleanups, and when it is so no longer it is run anew, from the start. Return its
           (wake task nil))
          (t (complete task result)))))
 
-(addition without-scheduling)
-(defmacro without-scheduling (&body body)
+(define-construct without-scheduling (&body body)
   "Run BODY in a plan as one step: nobody can suspend the task, end it, or run before it in between;
 what others want of it is heard at the end. BODY cannot wait, call plans or leave: that is an error
 when the plan is defined. Return its value. In ordinary Lisp, PROGN (CRAM's; that BODY cannot wait
 is ours, as nothing else could run meanwhile)."
-  `(progn ,@body))
-
-(define-plan-form "WITHOUT-SCHEDULING" :may (&rest body) (form scope)
-  (refuse-code (note-own-text `(progn ,@body)) scope form))
+  (:waits :may)
+  (:in-lisp `(progn ,@body))
+  (:code (refuse-code (note-own-text `(progn ,@body)) scope form)))

@@ -36,11 +36,10 @@ it when a task sets it is ours)."
   "Run BODY in a plan with BINDINGS, each (name value), of task variables: they hold for the task
 that runs BODY and for what that starts, until BODY ends, however it ends. The values are had before
 any is bound. Return the value of BODY (ours, after CRAM's variables of tasks)."
+  (:arguments &rest (mapcar #'second (checked-bindings bindings form scope)))
   (:parts (names list `',(mapcar #'first bindings))
           (values-of function (value-lambda `(list ,@(mapcar #'second bindings)) scope))
           (body node (body-code body scope)))
-  (:code (call-hoisting (mapcar #'second (checked-bindings bindings form scope))
-                        form scope #'build))
   (:steps
    (begin
     (let ((cells (mapcar #'cons names (funcall values-of environment))))

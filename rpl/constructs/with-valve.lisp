@@ -59,10 +59,10 @@ an error message says so (manual D; priorities ours)."
   "Run BODY in a plan while the task owns all of VALVES, which may end in :priority and a number.
 They are taken all at once when none is another's, and none before: so the order in which tasks want
 them does not matter. Else do as WITH-VALVE (ours)."
+  (:arguments &rest valves)
   (:parts (request function (multiple-value-bind (valves priority) (split-valves valves)
                               (claim-form priority valves scope)))
           (body node (body-code body scope)))
-  (:code (call-hoisting valves form scope #'build))
   (:steps
    (begin
     (next granted)

@@ -2,8 +2,6 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-;;; A fluent belongs to the thread that runs the plans; other threads only post settings.
-;;;
 ;;; A base fluent is set. A derived fluent is computed from others, its sources. While nobody
 ;;; uses it, it is computed on demand and its sources do not know of it; its first user (a watcher,
 ;;; or a derived fluent that is itself used) makes it a dependent of its sources and the last one
@@ -14,6 +12,7 @@
   "A quantity that varies in time. Plans wait for fluents to become true (manual C)."
   (name nil :read-only t)
   (now nil)
+  (home nil :type (or null home))
   (height 0 :type fixnum)
   (first-watcher nil :type (or null watcher))
   (last-watcher nil :type (or null watcher))
@@ -50,6 +49,13 @@ watcher, the value, and NIL or the error met in computing it. PENDING counts eve
   (next nil :type (or null link)))
 
 (declaim-final derived watcher link fluent)
+
+(document-functions
+ make-watcher "Return somebody who is to be told of a fluent by a function, on behalf of a client."
+ watcher-p "True of watchers."
+ watcher-fluent "Return the fluent that the watcher watches."
+ watcher-client "Return on whose behalf the watcher watches, such as a task."
+ watcher-pending "Return how many events the watcher has been told of that nobody has answered.")
 
 (addition fluent-p fluent-name)
 (setf (documentation 'fluent-name 'function)

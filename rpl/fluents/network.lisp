@@ -62,10 +62,23 @@
     (setf (fluent-now fluent) nil
           (derived-trouble fluent) nil)))
 
+(defun settle (fluent)
+  "Let the plan runner at work be the home of FLUENT, and of its sources."
+  (unless (eq *runner* (fluent-home fluent))
+    (setf (fluent-home fluent) *runner*)
+    (when (derived-p fluent)
+      (dolist (source (derived-sources fluent))
+        (when (fluent-p source) (settle source))))))
+
 (defun watch (watcher)
-  "Let WATCHER hear of its fluent from now on, after those who watch it already."
-  (acquire (watcher-fluent watcher))
-  (join-watchers watcher))
+  "Let WATCHER hear of its fluent from now on, after those who watch it already. Another thread may
+have set the fluent just before; so who waits for it to be true looks at it after this once more."
+  (let ((fluent (watcher-fluent watcher)))
+    (unless (eq *runner* (fluent-home fluent))
+      (settle fluent)
+      (memory-barrier))
+    (acquire fluent)
+    (join-watchers watcher)))
 
 (defun unwatch (watcher)
   "Let WATCHER hear nothing more."

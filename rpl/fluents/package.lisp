@@ -6,18 +6,26 @@ conditions read fluents by value, operators given a fluent return a network. Ins
 operators of Common Lisp mean these without further ado.")
   (:use)
   (:export #:if #:when #:unless #:cond #:loop
-           #:and #:or #:not #:< #:> #:<= #:>= #:= #:+ #:- #:* #:/ #:eq #:eql #:equal))
+           #:and #:or #:not #:null #:< #:> #:<= #:>= #:= #:+ #:- #:* #:/ #:eq #:eql #:equal))
 
 (defpackage :ars-magna.rpl.fluents
-  (:documentation "Fluents, networks of fluents, and how a change reaches those who watch. Knows no plan.")
+  (:documentation "Fluents, networks of fluents, and how a change reaches those who watch. Knows
+no plan.")
   (:use :cl :ars-magna.base)
   (:local-nicknames (:lifted :ars-magna.rpl.lifted))
   ;; fluent
   (:export #:create-fluent #:create-fluent-vector #:fluent #:fluent-name #:fluent-p
-           #:make-watcher #:state #:watcher #:watcher-client #:watcher-pending #:watcher-fluent #:watcher-p)
+           #:make-watcher #:state #:watcher #:watcher-client #:watcher-pending
+           #:watcher-fluent #:watcher-p)
   ;; network
   (:export #:fl-apply #:fl-funcall #:fluent-text #:fluent-value #:unwatch #:watch)
+  ;; home
+  (:export #:*runner* #:home #:home-on-post #:home-backlog #:at-home #:call-at-home #:post
+           #:next-entry #:posted-p)
+  ;; known
+  (:export #:declare-fluent-variable #:known-fluent-variable-p #:known-vector-variable-p
+           #:one-fluent #:truth-value)
   ;; propagation
-  (:export #:*backlog* #:apply-settings #:backlog #:make-backlog #:pulse #:set-value)
+  (:export #:apply-settings #:clear-backlog #:pulse #:set-value)
   ;; operators
   (:export #:lifting #:lifting-and #:lifting-or))

@@ -7,17 +7,12 @@
 ;;; values and each at most once. Watchers hear only of true values (and of errors). Whoever was
 ;;; heard to be true is committed to waking: what happens to the fluent afterwards is no matter.
 
-(defstruct (backlog (:constructor make-backlog ()) (:copier nil))
-  "Derived fluents to be computed, by height: those of each height in order of arrival."
-  (heads (make-array 8 :initial-element nil) :type simple-vector)
-  (tails (make-array 8 :initial-element nil) :type simple-vector)
-  (highest 0 :type fixnum))
-
-(defvar *backlog* nil
-  "The backlog of the plan runner at work, so that a change need not make one.")
-
 (defvar *spreading* nil
   "True while a change is being spread: networks must not set fluents.")
+
+(defun backlog-now ()
+  "Return the backlog of the plan runner at work, or one for this change alone."
+  (if *runner* (home-backlog *runner*) (make-backlog)))
 
 (defun grow-backlog (backlog height)
   (flet ((grown (vector)
@@ -47,6 +42,16 @@
               (derived-queued derived) nil)
         (unless successor (setf (svref (backlog-tails backlog) height) nil))
         derived))))
+
+(defun clear-backlog (home)
+  "Compute what a change that was left halfway has left in the backlog of HOME, and tell nobody."
+  (loop with backlog = (home-backlog home)
+        for height from 1 to (backlog-highest backlog)
+        do (loop for derived = (dequeue height backlog)
+                 while derived
+                 do (when (plusp (derived-users derived)) (recompute derived))
+                    (enqueue-dependents derived backlog))
+        finally (setf (backlog-highest backlog) 0)))
 
 (defun announce (fluent)
   "Tell the watchers of FLUENT, whose value has changed, if it is true now."
@@ -82,7 +87,7 @@
       (let ((link (fluent-first-link fluent)))
         (cond ((null link) (return))
               ((link-next link)
-               (let ((backlog (or *backlog* (make-backlog))))
+               (let ((backlog (backlog-now)))
                  (enqueue-dependents fluent backlog)
                  (return (spread-by-height backlog))))
               (t (setf fluent (link-dependent link))
@@ -100,7 +105,7 @@
   "Let everybody concerned know that the base FLUENTS have changed, all at one instant."
   (if (and fluents (null (rest fluents)))
       (spread (first fluents))
-      (let ((backlog (or *backlog* (make-backlog)))
+      (let ((backlog (backlog-now))
             (*spreading* t))
         (mapc #'announce fluents)
         (dolist (fluent fluents) (enqueue-dependents fluent backlog))
@@ -114,39 +119,74 @@
     (reject-use "A function lifted over fluents set ~A. Networks only compute: set it in a plan."
                 fluent)))
 
+;;; What is not the business of the runner at work is posted to the runner that it is of, or done at
+;;; once while nobody has that.
+
+(defun elsewhere-p (fluent)
+  "True if changes of FLUENT are to be heard in another place than this thread is in."
+  (let ((home (fluent-home fluent)))
+    (and home (not (eq home *runner*)))))
+
+(defun send (home settings)
+  "Let SETTINGS be applied in HOME: now if no other thread has it, otherwise when that gets to it."
+  (cond ((and (not (posted-p home)) (take-home home))
+         (unwind-protect (let ((*runner* home)) (apply-settings settings))
+           (leave-home home))
+         (funcall (home-on-post home)))
+        (t (post home settings))))
+
+(defun set-now (fluent value)
+  (unless (eql value (fluent-now fluent))
+    (setf (fluent-now fluent) value)
+    (spread fluent)))
+
 (public set-value)
 (defun set-value (fluent value)
   "Give FLUENT the value VALUE and return it. Those who wait for FLUENT, or for a network that it
 is in, hear of it if that changed something (EQL) and the outcome is true. FLUENT must not be a
-network (manual D.2)."
+network. From outside of plans, in any thread, it is heard as soon as the plans at work have come to
+a pause (manual D.2)."
   (check-settable 'set-value fluent)
-  (unless (eql value (fluent-now fluent))
-    (setf (fluent-now fluent) value)
-    (spread fluent))
+  (unless (elsewhere-p fluent) (set-now fluent value))
+  ;; Perhaps somebody has just begun to wait for it, in another thread.
+  (when (elsewhere-p fluent)
+    (send (fluent-home fluent) `((:set ,fluent ,value))))
   value)
 
 (defun (setf fluent-value) (value fluent)
   (set-value fluent value))
 
-;;; A pulse is one instant at which the fluents are true, and then they are false.
+;;; A pulse is one instant at which the fluents have other values, and then they have those of
+;;; before again.
 
 (defun pulse-all (fluents values)
-  (loop for fluent in fluents
-        for value in values
-        do (setf (fluent-now fluent) value))
-  (spread-all fluents)
-  (dolist (fluent fluents) (setf (fluent-now fluent) nil))
-  (spread-all fluents))
+  (let ((before (mapcar #'fluent-now fluents)))
+    (loop for fluent in fluents
+          for value in values
+          do (setf (fluent-now fluent) value))
+    (spread-all fluents)
+    (loop for fluent in fluents
+          for value in before
+          do (setf (fluent-now fluent) value))
+    (spread-back fluents)))
+
+(defun spread-back (fluents)
+  "Compute anew what depends on FLUENTS, which have their values of before a pulse again."
+  (when (some #'fluent-first-link fluents)
+    (let ((backlog (backlog-now))
+          (*spreading* t))
+      (dolist (fluent fluents) (enqueue-dependents fluent backlog))
+      (spread-by-height backlog))))
 
 (public pulse)
 (defun pulse (fluent &optional (value t))
-  "Let FLUENT have VALUE for an instant and be false afterwards. All who wait for it, or for a
-network that is true at that instant, will wake. Return VALUE (manual C)."
+  "Let FLUENT have VALUE for an instant, and then the value of before again. All who wait for it, or
+for a network that is true at that instant, will wake. Return VALUE. From outside of plans, in any
+thread, it is heard as soon as the plans at work have come to a pause (manual C)."
   (check-settable 'pulse fluent)
-  (setf (fluent-now fluent) value)
-  (spread fluent)
-  (setf (fluent-now fluent) nil)
-  (spread fluent)
+  (if (elsewhere-p fluent)
+      (send (fluent-home fluent) `((:pulse ,fluent ,value)))
+      (pulse-all (list fluent) (list value)))
   value)
 
 (defun apply-settings (settings)

@@ -6,37 +6,26 @@
 ;;; it and the variables. So what is true of Lisp's bindings is true here: closures made by leaves
 ;;; keep theirs, and the branches of a PAR-LOOP have each their own.
 
-(define-node binding ((fill function) (body node))
+(define-expression binding
   "BODY run in the environment that FILL returns."
-  :step step-binding)
+  (:hot)
+  (:parts (fill function) (body node))
+  (:step (enter-last body (the simple-vector (funcall fill environment)) frame)))
 
-(defun step-binding (node task frame value)
-  (declare #.*hot* (ignore task value) (type binding node) (type frame frame))
-  (enter-last (binding-body node)
-              (the simple-vector (funcall (binding-fill node) (frame-environment frame)))
-              frame))
-
-(define-node filling ((parts simple-vector) (sequential t) (body node))
-  "BODY run in an environment of the values of PARTS, some of which may wait."
-  :step step-filling)
-
-(defun step-filling (node task frame value)
-  (declare (ignore task))
-  (let* ((parts (filling-parts node))
-         (i (frame-counter frame))
-         (inner (or (frame-data frame)
-                    (setf (frame-data frame)
-                          (make-array (1+ (length parts)) :initial-element nil)))))
-    (declare (type simple-vector inner))
-    (if (zerop i)
-        (setf (svref inner 0) (frame-environment frame))
-        (setf (svref inner i) (single-value value)))
-    (setf (frame-counter frame) (1+ i))
-    (if (< i (length parts))
-        (enter (the node (svref parts i))
-               (if (filling-sequential node) inner (frame-environment frame))
-               frame)
-        (enter-last (filling-body node) inner frame))))
+(define-expression filling
+  "BODY run in an environment of the values of PARTS, some of which may wait. A frame counts the
+parts begun; its memory is the environment to be."
+  (:parts (parts simple-vector) (sequential t) (body node))
+  (:step
+   (let ((i (frame-counter frame))
+         (inner (or memory
+                    (setf memory (make-array (1+ (length parts)) :initial-element nil)))))
+     (declare (type simple-vector inner))
+     (setf (svref inner i) (if (zerop i) environment (single-value value))
+           (frame-counter frame) (1+ i))
+     (if (< i (length parts))
+         (enter (the node (svref parts i)) (if sequential inner environment) frame)
+         (enter-last body inner frame)))))
 
 (defun binding-variable (binding) (if (consp binding) (first binding) binding))
 (defun binding-value (binding) (if (consp binding) (second binding) nil))
@@ -66,6 +55,12 @@
                                     collect (as-lisp value scope)))
                    (first scopes))))
 
+(defun binding-scope (scope variables bindings body sequential)
+  "Return SCOPE with VARIABLES bound as by BINDINGS around BODY, one after the other if SEQUENTIAL."
+  (let ((inner (variable-scope scope variables)))
+    (inner-scope inner :fluents (append (bound-to-fluents bindings body scope sequential)
+                                        (scope-fluents inner)))))
+
 (defun binding-code (form bindings body scope sequential)
   "Return code for FORM, a LET or, if SEQUENTIAL, a LET*."
   (let* ((bindings (untyped-bindings bindings (operator-text form)))
@@ -76,9 +71,12 @@
                        collect (if sequential
                                    (variable-scope single (subseq variables 0 i))
                                    single))))
+    (check-use variables (list* (and sequential values) body) form)
     (cond ((null bindings) (binding-body-code body scope))
           ((binds-special-p variables body scope) (refuse-code form scope))
-          (t (let ((body-code (binding-body-code body (variable-scope scope variables))))
+          (t (let ((body-code (binding-body-code
+                               body (binding-scope scope variables bindings body
+                                              sequential))))
                (if (some #'suspends-p values scopes)
                    `(make-filling :form ',form
                                   :parts (vector ,@(mapcar #'plan-code values scopes))
@@ -96,21 +94,21 @@
 
 ;;; Several values.
 
-(define-node value-binding ((count fixnum) (source node) (body node))
+(define-expression value-binding
   "BODY run in an environment of the first COUNT values of SOURCE."
-  :step step-value-binding)
-
-(defun step-value-binding (node task frame value)
-  (declare (ignore task))
-  (cond ((zerop (frame-counter frame))
-         (setf (frame-counter frame) 1)
-         (enter (value-binding-source node) (frame-environment frame) frame))
-        (t (let ((inner (make-array (1+ (value-binding-count node)) :initial-element nil)))
-             (setf (svref inner 0) (frame-environment frame))
-             (replace inner (if (bundle-p value) (bundle-values value) (list value)) :start1 1)
-             (enter-last (value-binding-body node) inner frame)))))
+  (:parts (count fixnum) (source node) (body node))
+  (:steps
+   (begin
+    (next getting-values)
+    (enter source environment frame))
+   (getting-values
+    (let ((inner (make-array (1+ count) :initial-element nil)))
+      (setf (svref inner 0) environment)
+      (replace inner (if (bundle-p value) (bundle-values value) (list value)) :start1 1)
+      (enter-last body inner frame)))))
 
 (define-plan-form "MULTIPLE-VALUE-BIND" nil (variables source &rest body) (form scope)
+  (check-use variables body form)
   (if (binds-special-p variables body scope)
       (refuse-code form scope)
       `(make-value-binding :form ',form

@@ -2,17 +2,14 @@
 
 (in-package :ars-magna.rpl.language)
 
-(define-node branch ((chooser function) (branches simple-vector))
+(define-expression branch
   "The one of BRANCHES whose index CHOOSER returns; nothing if it returns NIL."
-  :step step-branch)
-
-(defun step-branch (node task frame value)
-  (declare (ignore task value))
-  (let* ((environment (frame-environment frame))
-         (index (funcall (branch-chooser node) environment)))
-    (if index
-        (enter-last (the node (svref (branch-branches node) index)) environment frame)
-        (values (frame-up frame) nil))))
+  (:parts (chooser function) (branches simple-vector))
+  (:step
+   (let ((index (funcall chooser environment)))
+     (if index
+         (enter-last (the node (svref branches index)) environment frame)
+         (values (frame-up frame) nil)))))
 
 (defun choice-code (form test then else scope)
   "Return code for a choice by TEST, whose source is FORM. THEN and ELSE are lists of forms."
@@ -46,18 +43,26 @@
               (choice-code form test body (list more) scope)
               (plan-code (note-own-text `(or ,test ,more)) scope))))))
 
+(defun case-code (form operator key clauses scope)
+  "Return code for FORM, by OPERATOR, such as CASE, of the value of KEY."
+  (hoisting (key) form scope
+    `(make-branch :form ',form
+                  :chooser ,(value-lambda `(,operator (fluent-value ,key)
+                                                      ,@(loop for (keys) in clauses
+                                                              for index from 0
+                                                              collect (list keys index)))
+                                          scope)
+                  :branches (vector ,@(loop for (nil . body) in clauses
+                                            collect (body-code body scope))))))
+
 (define-plan-form "CASE" nil (key &rest clauses) (form scope)
-  (if (suspends-p key scope)
-      (with-gensyms (value)
-        (plan-code (note-own-text `(let ((,value ,key)) (case ,value ,@clauses))) scope))
-      `(make-branch :form ',form
-                    :chooser ,(value-lambda `(case (fluent-value ,key)
-                                               ,@(loop for (keys) in clauses
-                                                       for index from 0
-                                                       collect (list keys index)))
-                                            scope)
-                    :branches (vector ,@(loop for (nil . body) in clauses
-                                              collect (body-code body scope))))))
+  (case-code form 'case key clauses scope))
+
+(define-plan-form "ECASE" nil (key &rest clauses) (form scope)
+  (case-code form 'ecase key clauses scope))
+
+(define-plan-form "CCASE" nil (key &rest clauses) (form scope)
+  (case-code form 'ecase key clauses scope))
 
 (define-plan-form "AND" nil (&rest forms) (form scope)
   (if (rest forms)

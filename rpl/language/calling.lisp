@@ -5,48 +5,63 @@
 ;;; Calling. CALLER is compiled from the call's arguments: it takes the environment and a function,
 ;;; either the procedure's entry or a Lisp function, and calls that with them.
 
-(define-node call ((procedure procedure) (caller function))
-  "A call of a procedure, or of a Lisp function that was unknown when the plan was compiled."
-  :step step-call)
-
-(defun step-call (node task frame value)
-  (declare (ignore task))
-  (let ((procedure (call-procedure node))
-        (caller (call-caller node))
-        (environment (frame-environment frame)))
-    (cond ((plusp (frame-counter frame)) (values (frame-up frame) value))
-          ((defined-p procedure)
-           (setf (frame-counter frame) 1)
+(define-expression call
+  "A call with COUNT arguments of a procedure, or of a Lisp function that was unknown when the plan
+was compiled."
+  (:parts (procedure procedure) (count fixnum) (caller function))
+  (:steps
+   (begin
+    (cond ((defined-p procedure)
+           (next inside)
+           (note-depth task frame)
            (enter (the node (procedure-body procedure))
-                  (funcall caller environment (procedure-entry procedure))
+                  (funcall caller environment (entry-for procedure count))
                   frame))
           (t (values (frame-up frame)
                      (multiple-value-call #'bundle-up
                        (funcall caller environment
-                                (lisp-function (procedure-name procedure)))))))))
+                                (lisp-function (procedure-name procedure))))))))
+   (inside (values (frame-up frame) value))))
 
-(defun bundle-up (&optional value &rest more)
-  "Return the values it is called with as one object."
-  (if more (make-bundle (cons value more)) value))
-
-(define-node plan-call ((enter function))
-  "A call of a plan that is known when it happens: ENTER of the environment returns its body and the
-environment for that."
-  :step step-plan-call)
-
-(defun step-plan-call (node task frame value)
-  (declare (ignore task))
-  (cond ((plusp (frame-counter frame)) (values (frame-up frame) value))
-        (t (setf (frame-counter frame) 1)
-           (multiple-value-bind (body environment)
-               (funcall (plan-call-enter node) (frame-environment frame))
-             (enter (the node body) environment frame)))))
-
-(addition call-plan)
-(defmacro call-plan (plan &rest arguments)
+(define-construct call-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or the name of one, with ARGUMENTS as part of a plan; return its
 value."
-  (misplaced 'call-plan (list* plan arguments)))
+  (:arguments plan &rest arguments)
+  (:parts (entry function (value-lambda `(enter-plan ,plan ,@arguments) scope)))
+  (:steps
+   (begin
+    (next inside)
+    (note-depth task frame)
+    (multiple-value-bind (body environment) (funcall entry environment)
+      (enter (the node body) environment frame)))
+   (inside (values (frame-up frame) value))))
+
+;;; How deep the calls are in each other is kept in the memory of a call's frame.
+
+(addition *plan-depth-limit*)
+(defparameter *plan-depth-limit* 2000
+  "How deep calls of plans may be in each other, also across tasks, before the call fails with the
+class :TOO-DEEP: a number from 1. A plan that calls itself without end fails so (ours).")
+
+(defun depth-around (task frame)
+  "Return how deep the innermost call is that FRAME of TASK is part of, 0 if there is none."
+  (loop
+    (loop for each = frame then (frame-up each)
+          while each
+          do (when (or (call-p (frame-node each)) (call-plan-node-p (frame-node each)))
+               (when (frame-data each) (return-from depth-around (frame-data each)))))
+    (setf task (task-parent task))
+    (unless task (return 0))
+    (setf frame (task-frame task))))
+
+(defun note-depth (task frame)
+  "Note how deep the call of FRAME is, or let TASK fail if that is too deep."
+  (let ((depth (1+ (the fixnum (depth-around task (frame-up frame))))))
+    (when (> depth *plan-depth-limit*)
+      (fail :class :too-deep :depth depth))
+    (setf (frame-data frame) depth)))
+
+;;; Calling Lisp.
 
 (defun lisp-function (name)
   (if (and (fboundp name) (not (macro-function name)))

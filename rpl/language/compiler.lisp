@@ -13,13 +13,14 @@
         (t (append (element-names (car lambda-list)) (element-names (cdr lambda-list))))))
 
 (defmacro define-plan-form (name suspends lambda-list (form scope) &body body)
-  "Let plans understand the operator called NAME: BODY returns the code for FORM in SCOPE, its
-arguments bound by LAMBDA-LIST. SUSPENDS says whether it makes a task wait: see SUSPENSION."
+  "Let plans understand the operator called NAME, a string, or a symbol: BODY returns the code for
+FORM in SCOPE, its arguments bound by LAMBDA-LIST. SUSPENDS says whether it makes a task wait: see
+SUSPENSION."
   (let ((names (element-names lambda-list)))
     (with-gensyms (fits values)
-      `(setf (gethash ,name *plan-forms*)
+      `(setf (gethash (operator-key ',name) *plan-forms*)
              (make-plan-form
-              ,name ,suspends
+              ,(string name) ,suspends
               (lambda (,form ,scope)
                 (declare (ignorable ,scope))
                 (multiple-value-bind (,fits ,values)
@@ -32,7 +33,9 @@ arguments bound by LAMBDA-LIST. SUSPENDS says whether it makes a task wait: see 
 
 (defun reject-shape (form lambda-list)
   (let ((*print-case* :downcase))
-    (reject-clause "plan" form (format nil "(~A~{ ~A~})" (operator-text form) lambda-list))))
+    (reject-clause (author) form
+                   (format nil "(~A~{ ~A~})~@[, not ~A~]" (operator-text form) lambda-list
+                           (slip-in-construct form lambda-list)))))
 
 (defun refuse-code (form scope &optional (container form))
   "Return code for FORM, of CONTAINER, which plans cannot wait inside: a leaf, or an error if it
@@ -43,7 +46,17 @@ would wait."
         (leaf-code form scope))))
 
 (defun suspends-p (form scope)
+  "True if FORM in SCOPE makes its task wait, or may do so."
   (and (consp form) (suspension form scope)))
+
+(defun binds-fluents-p (form scope)
+  "True if FORM is a LET of the plan's text that binds variables to fluents; leaves do not keep an
+account of these."
+  (and (consp form)
+       (own-text-p form)
+       (operator-in-p form '("LET" "LET*"))
+       (proper-list-p (second form))
+       (bound-to-fluents (second form) (cddr form) scope (operator-in-p form '("LET*")))))
 
 ;;; An expression of which a part that Lisp is to use makes the task wait.
 
@@ -70,7 +83,9 @@ it, and those to the left of them too, to keep the order."
   (let* ((local (cdr (assoc (first form) (scope-procedures scope))))
          (arguments (loop for argument in (rest form) collect (as-lisp argument scope)))
          (outer (and local (list (environment-form scope (second local))))))
+    (check-call form scope)
     `(make-call :form ',form
+                :count ,(length arguments)
                 :procedure ,(if local (first local) `(ensure-procedure ',(first form)))
                 :caller ,(leaf-lambda `(funcall %function ,@outer ,@arguments) scope
                                       '%function))))
@@ -88,7 +103,10 @@ it, and those to the left of them too, to keep the order."
 
 (defun plan-code (form scope)
   "Return code that builds the node for FORM."
-  (if (not (suspends-p form scope))
+  (keep-place (node-code form scope) form))
+
+(defun node-code (form scope)
+  (if (not (or (suspends-p form scope) (binds-fluents-p form scope)))
       (leaf-code form scope)
       (let* ((environment (scope-environment scope))
              (plan-form (find-plan-form form environment)))
@@ -113,29 +131,3 @@ it, and those to the left of them too, to keep the order."
   (let ((expansion (macroexpand-1 form (scope-environment scope))))
     (unless (lisps-own-p (first form)) (note-own-text expansion))
     (plan-code expansion scope)))
-
-;;; Bodies.
-
-(defun body-code (forms scope)
-  "Return code for FORMS as the steps of a body, of which the last one gives the values."
-  (cond
-    ((null forms) '+nothing+)
-    ((null (rest forms)) (plan-code (first forms) scope))
-    (t (let ((single (single-scope scope)))
-        `(make-steps :form '(seq ,@forms)
-                     :parts (vector ,@(loop for (form . more) on forms
-                                            collect (plan-code form (if more single scope)))))))))
-
-(defun binding-body-code (forms scope)
-  "Return code for FORMS, a body that may start with declarations; these are for the reader only."
-  (body-code (remove-if #'declaration-p forms) scope))
-
-(defun declaration-p (form)
-  (and (consp form) (eq (first form) 'declare)))
-
-(defun declared-special (variables forms)
-  "Return those of VARIABLES that the declarations in FORMS call special."
-  (loop for form in forms
-        when (declaration-p form)
-          append (loop for (kind . names) in (rest form)
-                       when (eq kind 'special) append (intersection names variables))))

@@ -5,38 +5,30 @@
 ;;; To leave is to send an ESCAPE up. Where it crosses the border of a task, that task ends, its
 ;;; siblings evaporate, and the escape goes on in the task around them.
 
-(define-node block-node ((body node))
+(define-expression block-node
   "BODY, which can be left with a value."
-  :step step-block :unwind unwind-block)
+  (:parts (body node))
+  (:steps
+   (begin
+    (next inside)
+    (enter body environment frame))
+   (inside (values (frame-up frame) value)))
+  (:unwind
+   (and (escape-p signal)
+        (eq node (escape-target signal))
+        (values t (frame-up frame) (escape-value signal)))))
 
-(defun step-block (node task frame value)
-  (declare (ignore task))
-  (cond ((zerop (frame-counter frame))
-         (setf (frame-counter frame) 1)
-         (enter (block-node-body node) (frame-environment frame) frame))
-        (t (values (frame-up frame) value))))
-
-(defun unwind-block (node task frame signal)
-  (declare (ignore task))
-  (and (escape-p signal)
-       (eq node (escape-target signal))
-       (values t (frame-up frame) (escape-value signal))))
-
-(define-node leave ((target node) (result node))
+(define-expression leave
   "End of the block TARGET with the value of RESULT."
-  :step step-leave)
+  (:parts (target node) (result node))
+  (:steps
+   (begin
+    (next getting-result)
+    (enter result environment frame))
+   (getting-result (unwind task frame (make-escape target value)))))
 
-(defun step-leave (node task frame value)
-  (cond ((zerop (frame-counter frame))
-         (setf (frame-counter frame) 1)
-         (enter (leave-result node) (frame-environment frame) frame))
-        (t (unwind task frame (make-escape (leave-target node) value)))))
-
-(defun mentions-p (symbol code)
-  (loop for tail = code then (cdr tail)
-        while (consp tail)
-        thereis (mentions-p symbol (car tail))
-        finally (return (eq symbol tail))))
+(document-functions
+ make-leave "Return a node that leaves for its target with the value of its result, both nodes.")
 
 (defun block-code (name form scope coder)
   "Return the code that CODER returns for a scope in which a block called NAME, whose source is
@@ -62,32 +54,24 @@ FORM, can be left. There is a node for it only if it is."
 
 ;;; Tags.
 
-(define-node tag-body ((parts simple-vector))
-  "Expressions run in order, some of which can be gone to. COUNTER is the next one."
-  :step step-tag-body :unwind unwind-tag-body)
+(define-expression tag-body
+  "Expressions run in order, some of which can be gone to. A frame counts those done with."
+  (:parts (parts simple-vector))
+  (:step
+   (let ((i (frame-counter frame)))
+     (cond ((< i (length parts))
+            (setf (frame-counter frame) (1+ i))
+            (enter (the node (svref parts i)) environment frame))
+           (t (values (frame-up frame) nil)))))
+  (:unwind
+   (when (and (escape-p signal) (eq node (escape-target signal)))
+     (setf (frame-counter frame) (escape-value signal))
+     (values t frame nil))))
 
-(defun step-tag-body (node task frame value)
-  (declare (ignore task value))
-  (let ((i (frame-counter frame))
-        (parts (tag-body-parts node)))
-    (cond ((< i (length parts))
-           (setf (frame-counter frame) (1+ i))
-           (enter (the node (svref parts i)) (frame-environment frame) frame))
-          (t (values (frame-up frame) nil)))))
-
-(defun unwind-tag-body (node task frame signal)
-  (declare (ignore task))
-  (when (and (escape-p signal) (eq node (escape-target signal)))
-    (setf (frame-counter frame) (escape-value signal))
-    (values t frame nil)))
-
-(define-node jump ((target node) (place fixnum))
+(define-expression jump
   "Going on at the expression number PLACE of TARGET."
-  :step step-jump)
-
-(defun step-jump (node task frame value)
-  (declare (ignore value))
-  (unwind task (frame-up frame) (make-escape (jump-target node) (jump-place node))))
+  (:parts (target node) (place fixnum))
+  (:step (unwind task (frame-up frame) (make-escape target place))))
 
 (define-plan-form "TAGBODY" nil (&rest parts) (form scope)
   (with-gensyms (target)

@@ -1,7 +1,8 @@
 ;;;; package.lisp -- from a plan's text to nodes, and what of Lisp plans understand.
 
 (defpackage :ars-magna.rpl.language
-  (:documentation "Reads the text of plans: Lisp's own operators, procedures, macros; DEFINE-CONSTRUCT adds to it.")
+  (:documentation "Reads the text of plans: Lisp's own operators, procedures, macros;
+DEFINE-CONSTRUCT adds to it.")
   (:use :cl :ars-magna.base :ars-magna.rpl.fluents :ars-magna.rpl.tasks)
   (:import-from :ars-magna.nisp
                 #:untyped-bindings #:untyped-lambda-list #:lambda-list-variables
@@ -13,25 +14,23 @@
   (:export #:inner-scope #:scope #:scope-environment #:scope-retry #:scope-variables #:single-scope
            #:variable-scope)
   ;; leaf
-  (:export #:value-lambda)
+  (:export #:condition-lambda #:value-lambda)
   ;; compiler
-  (:export #:binding-body-code #:body-code #:define-plan-form #:hoisted-code #:plan-code
-           #:refuse-code #:suspends-p)
+  (:export #:define-plan-form #:hoisted-code #:plan-code #:refuse-code #:suspends-p)
   ;; steps
-  (:export #:seq)
+  (:export #:binding-body-code #:body-code)
   ;; leaving
   (:export #:block-code #:make-leave)
-  ;; branching
-  (:export #:branch)
   ;; repeating
-  (:export #:each-code #:n-times)
+  (:export #:each-body-code #:give-way)
   ;; tags
-  (:export #:start-branch #:tags-in #:task-status #:with-tags #:with-tags-code)
+  (:export #:start-branch #:tags-in #:task-status #:with-tags-code)
   ;; calling
-  (:export #:call-plan)
+  (:export #:*plan-depth-limit*)
   ;; definitions
   (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan)
   ;; construct
-  (:export #:call-hoisting
-           #:define-construct #:in-plans-only #:form #:build #:node #:frame #:value #:child #:how
-           #:result #:environment #:memory #:next))
+  (:export #:all-constructs #:define-construct #:in-plans-only #:form #:scope #:build)
+  ;; expression
+  (:export #:define-expression #:node #:task #:frame #:value #:child #:how #:result
+           #:environment #:memory #:next #:at-once #:in-state-p))

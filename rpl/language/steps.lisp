@@ -2,26 +2,25 @@
 
 (in-package :ars-magna.rpl.language)
 
-(define-node steps ((parts simple-vector))
-  "Expressions, at least one, run in order. COUNTER counts those begun."
-  :step step-steps)
-
 (declaim (inline enter-last))
 (defun enter-last (node environment frame)
   "Begin NODE as the last thing that FRAME does."
   (let ((up (frame-up frame)))
     (if (leaf-p node)
-        (values up (funcall (leaf-function node) environment))
+        (values up (call-leaf node environment))
         (values (make-frame node environment up) nil))))
 
-(defun step-steps (node task frame value)
-  (declare #.*hot* (ignore task value) (type steps node) (type frame frame))
-  (let* ((parts (steps-parts node))
-         (i (frame-counter frame))
-         (environment (frame-environment frame)))
-    (setf (frame-counter frame) (1+ i))
-    (cond ((< (1+ i) (length parts)) (enter (the node (svref parts i)) environment frame))
-          (t (enter-last (the node (svref parts i)) environment frame)))))
+(define-expression steps
+  "Expressions, at least one, run in order. A frame counts those begun."
+  (:hot)
+  (:parts (parts simple-vector))
+  (:step
+   (let ((parts parts)
+         (i (frame-counter frame)))
+     (setf (frame-counter frame) (1+ i))
+     (if (< (1+ i) (length parts))
+         (enter (the node (svref parts i)) environment frame)
+         (enter-last (the node (svref parts i)) environment frame)))))
 
 (defmethod current-form ((node steps) frame)
   (let ((i (frame-counter frame)))
@@ -29,14 +28,39 @@
         (node-form (svref (steps-parts node) (1- i)))
         (node-form node))))
 
-(public seq)
-(defmacro seq (&body steps)
+(defun body-code (forms scope)
+  "Return code for FORMS as the steps of a body, of which the last one gives the values."
+  (cond
+    ((null forms) '+nothing+)
+    ((null (rest forms)) (plan-code (first forms) scope))
+    (t (let ((single (single-scope scope)))
+        `(make-steps :form '(seq ,@forms)
+                     :parts (vector ,@(loop for (form . more) on forms
+                                            collect (plan-code form (if more single scope)))))))))
+
+(defun binding-body-code (forms scope)
+  "Return code for FORMS, a body that may start with declarations; these are for the reader only."
+  (body-code (remove-if #'declaration-p forms) scope))
+
+(defun declaration-p (form)
+  (and (consp form) (eq (first form) 'declare)))
+
+(defun declared-special (variables forms)
+  "Return those of VARIABLES that the declarations in FORMS call special."
+  (loop for form in forms
+        when (declaration-p form)
+          append (loop for (kind . names) in (rest form)
+                       when (eq kind 'special) append (intersection names variables))))
+
+;;; The forms.
+
+(define-construct seq (&body steps)
   "Run STEPS in order and return the value of the last one; fail as soon as one fails. Policies
 get their chance between steps. In ordinary Lisp, PROGN (manual D.2)."
-  `(progn ,@steps))
-
-(define-plan-form "SEQ" :may (&rest steps) (form scope)
-  (body-code steps scope))
+  (:manual)
+  (:waits :may)
+  (:in-lisp `(progn ,@steps))
+  (:code (body-code steps scope)))
 
 (define-plan-form "PROGN" nil (&rest steps) (form scope)
   (body-code steps scope))
@@ -56,9 +80,3 @@ get their chance between steps. In ordinary Lisp, PROGN (manual D.2)."
                        collect (note-own-text `(setq ,variable ,value)))
                  scope)
       (hoisted-code form scope 2)))
-
-(define-plan-form "CALL-PLAN" :must (&rest arguments) (form scope)
-  (if (some (lambda (argument) (suspends-p argument scope)) arguments)
-      (hoisted-code form scope)
-      `(make-plan-call :form ',form
-                       :enter ,(value-lambda `(enter-plan ,@arguments) scope))))

@@ -15,18 +15,18 @@ form and its scope and returns code that builds a node."
   (compiler #'list :type function :read-only t))
 
 (defvar *plan-forms* (make-hash-table :test 'equal)
-  "The operators that plans have a meaning of their own for.")
+  "The operators that plans have a meaning of their own for: names, and symbols of users.")
 
 (defparameter *stirring-functions* '("SET-VALUE" "PULSE" "SUSPEND" "WAKE-UP")
   "Functions after which somebody else may be ready.")
 
 (defun find-plan-form (form environment)
   "Return the plan form that FORM is one of, or NIL."
-  (let ((name (plan-operator-name form)))
-    (and name
-         (not (local-function-p (first form) environment))
-         (or (string/= name "LOOP") (plan-loop-p form))
-         (gethash name *plan-forms*))))
+  (and (consp form)
+       (symbolp (first form))
+       (not (local-function-p (first form) environment))
+       (or (not (operator-in-p form '("LOOP"))) (plan-loop-p form))
+       (gethash (or (plan-operator-name form) (first form)) *plan-forms*)))
 
 (defvar *inner-exits* '()
   "Names of blocks and tags inside the expression that is being looked at.")
@@ -47,7 +47,7 @@ LET that binds a task variable."
                    environment))
   (when (and (own-text-p form) (operator-in-p form '("IF")))
     (unless (typep form '(cons t (cons t (cons t (or null (cons t null))))))
-      (reject-clause "plan" form "(if test then [else]): put several forms into (seq ...)"))))
+      (reject-clause (author) form "(if test then [else]): put several forms into (seq ...)"))))
 
 (defun call-suspends (form scope environment)
   "Return :MUST, :MAY or NIL for FORM, a call or special form, its parts left aside."

@@ -5,10 +5,20 @@
 ;;; WITH-TAGS binds the name of each (:tag name form) in it to a task that is yet to start, so that
 ;;; other branches can refer to it before. A second run of the same form gets a task of its own.
 
-(define-node tagged ((name symbol) (place function) (body node))
+(define-expression tagged
   "BODY as a task of its own called NAME. PLACE returns the environment that holds the task and
 its index there, NIL if none does."
-  :step step-tagged :child-ended tagged-part-over)
+  (:parts (name symbol) (place function) (body node))
+  (:steps
+   (begin
+    (next inside)
+    (start-branch node task environment 0 (task-level task))
+    (park task nil)
+    +parked+)
+   (inside (values (frame-up frame) value)))
+  (:child-ended
+   (unless (fail-or-escape task how result)
+     (complete task result))))
 
 (defun tag-task (node environment)
   "Return the task that is to run NODE, which is tagged."
@@ -26,18 +36,6 @@ its index there, NIL if none does."
       (spawn-gated task (tagged-body branch) environment index level
                    (tag-task branch environment))
       (spawn task branch environment index level)))
-
-(defun tagged-part-over (node task frame child how result)
-  (declare (ignore node frame child))
-  (unless (fail-or-escape task how result)
-    (complete task result)))
-
-(defun step-tagged (node task frame value)
-  (cond ((plusp (frame-counter frame)) (values (frame-up frame) value))
-        (t (setf (frame-counter frame) 1)
-           (start-branch node task (frame-environment frame) 0 (task-level task))
-           (park task nil)
-           +parked+)))
 
 (define-plan-form ":TAG" :must (name &rest body) (form scope)
   (destructuring-bind (&optional level index) (cdr (assoc name (scope-task-tags scope)))
@@ -82,14 +80,10 @@ its index there, NIL if none does."
                                              :task-tags (append tags (scope-task-tags scope))))))
       (funcall coder scope)))
 
-(addition with-tags)
-(defmacro with-tags (&body body)
+(define-construct with-tags (&body body)
   "Run BODY in a plan with the name of each (:tag name form) in it bound to the task that runs that
 form: see TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. A procedure's body is a WITH-TAGS too."
-  (misplaced 'with-tags body))
-
-(define-plan-form "WITH-TAGS" :must (&rest body) (form scope)
-  (with-tags-code form (tags-in body) scope (lambda (scope) (body-code body scope))))
+  (:code (with-tags-code form (tags-in body) scope (lambda (scope) (body-code body scope)))))
 
 (addition task-status)
 (defun task-status (task)

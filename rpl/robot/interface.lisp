@@ -55,7 +55,7 @@ the plans; a plan that is reacting changes nothing."
   (let ((runner (interface-runner interface))
         (simulation (interface-simulation interface)))
     (advance-timers runner (simulation-tick simulation))
-    (loop while (and (eq :idle (react runner)) (apply-next-batch runner)))))
+    (react-to-all runner)))
 
 (defun wake (interface)
   (when (interface-thread interface)

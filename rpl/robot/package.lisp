@@ -15,8 +15,9 @@
                 #:remove-participant #:participant-after-tick #:participant-busy-p
                 #:participant-reseed #:participant-digest #:participant-end)
   (:import-from :ars-magna.rpl
-                #:create-fluent #:create-fluent-vector #:fluent-value #:post-batch #:react
-                #:apply-next-batch #:advance-timers #:next-wake-time #:make-plan-runner
+                #:create-fluent #:create-fluent-vector #:declare-fluent-variable
+                #:fluent-value #:post-batch #:react-to-all
+                #:advance-timers #:next-wake-time #:make-plan-runner
                 #:start-plan #:stop-plan #:plan-runner #:plan-runner-tasks #:task-over-p
                 #:task-state #:task-result #:task-p #:plan-deadlocked-p #:report-deadlock
                 #:reseed-runner #:digest-runner #:print-tasks #:find-procedure #:plan-trace

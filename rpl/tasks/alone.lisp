@@ -13,9 +13,8 @@
   "Run the plans of RUNNER until TASK is over. Return its state, or :deadlock, or :limit when it is
 past tick LIMIT."
   (loop
-    (react runner)
+    (react-to-all runner)
     (cond ((task-over-p task) (return (task-state task)))
-          ((apply-next-batch runner))
           ((not (or (any-ready-p runner) (next-wake-time runner))) (return :deadlock))
           ((and limit (> (or (next-wake-time runner) (runner-tick runner)) limit)) (return :limit))
           (t (pass-time runner)))))

@@ -24,12 +24,14 @@
                       (return-from handled-failure (frame-data frame))))))
 
 (defun failure-of (condition task frame)
-  "Return the failure that CONDITION, met by TASK at FRAME, means, with all that is known of it."
+  "Return the failure that CONDITION, met by TASK at FRAME, means, with all that is known of it. It
+counts as many steps as one could take meanwhile, so that a plan that only fails ends its slice."
   (let ((failure (if (typep condition 'plan-failure)
                      condition
                      (make-condition 'lisp-failure :condition condition
                                                    :backtrace (lisp-backtrace)))))
     (unless (failure-task-path failure)
+      (incf (runner-steps (task-runner task)) (if (typep failure 'lisp-failure) 500 20))
       (setf (failure-task-path failure) (task-path task)
             (failure-tick failure) (runner-tick (task-runner task))
             (failure-plan-backtrace failure) (plan-backtrace task frame)
@@ -38,7 +40,7 @@
     failure))
 
 (defun engine-call-p (call)
-  (member (first call) '(run-steps step-leaf call-catching-trouble)))
+  (member (first call) '(run-steps step-leaf call-with-care)))
 
 (defun signalling-call-p (call)
   (and (symbolp (first call)) (string= "%SIGNAL" (first call))))

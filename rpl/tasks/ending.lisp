@@ -74,6 +74,7 @@ those that are not over."
     t))
 
 (defun complete-when-alone (task value)
+  "End with VALUE the construct in which TASK waits for its children, unless some are left."
   (unless (task-newest-child task) (complete task value)))
 
 ;;; Unwinding.
@@ -110,6 +111,7 @@ none does and TASK has ended, +PARKED+."
   (:method (task awaited) (declare (ignore task awaited))))
 
 (defun stop-waiting (task)
+  "Let what TASK waits for, be it a fluent, a timer or another, forget it."
   (let ((awaited (shiftf (task-awaiting task) nil))
         (timer (shiftf (task-timer task) nil)))
     (cond ((null awaited))
@@ -131,8 +133,14 @@ none does and TASK has ended, +PARKED+."
         (setf (task-frame task) frame
               (task-value task) value)
         (if queued
-            (release-held (task-runner task))
+            (go-on-at-once task)
             (make-ready task))))))
+
+(defun go-on-at-once (task)
+  "Let TASK, which is ready but perhaps put aside, go on when it is its turn."
+  (setf (task-round task) 0)
+  (release-spent (task-runner task))
+  (release-held (task-runner task)))
 
 (defun evaporate-children (task)
   "Evaporate the children of TASK, newest first."
@@ -145,8 +153,9 @@ none does and TASK has ended, +PARKED+."
 (defun evaporate (task)
   "End TASK, because it is no longer needed, with all that it consists of, newest first. What it
 has protected by EVAP-PROTECT is done first and may take time. A task that has not started, is over
-or evaporates already is left alone. Call it only from plans; from elsewhere post it."
+or evaporates already is left alone. From outside of its plan it is heard before that goes on."
   (cond ((or (task-over-p task) (task-doomed task) (eq (task-state task) :created)))
+        ((not (eq *runner* (task-runner task))) (doom task))
         (t (setf (task-doomed task) t)
            (cond ((task-cleaning task)
                   (setf (frame-data (first (last (task-cleaning task)))) :evaporate))
@@ -155,9 +164,40 @@ or evaporates already is left alone. Call it only from plans; from elsewhere pos
                   (setf (runner-mask (task-runner task))
                         (logior +interrupt+ (runner-mask (task-runner task)))))
                  (t (stop-waiting task)
-                    (cond ((task-newest-child task)
-                           (setf (task-signal task) :evaporate)
-                           (evaporate-children task))
-                          (t (evaporate-now task)))))
+                    (end-parts task)))
            ;; What was kept from running, and cleans up, is so no longer.
            (when (runner-held (task-runner task)) (release-held (task-runner task))))))
+
+(defun end-parts (task)
+  "Let TASK, which does not run, evaporate when its children have."
+  (cond ((task-newest-child task)
+         (setf (task-signal task) :evaporate)
+         (evaporate-children task))
+        (t (evaporate-now task))))
+
+;;; Kills from outside, and cleanups that are given up.
+
+(defun doom (task)
+  "Let TASK evaporate as soon as its runner hears of it."
+  (let ((runner (task-runner task)))
+    (atomic-push task (runner-doomed runner))
+    (funcall (runner-on-post runner))))
+
+(defun end-doomed (runner)
+  "Evaporate the tasks that other threads, or code outside of plans, want to end."
+  (loop for tasks = (runner-doomed runner)
+        until (swap-if (runner-doomed runner) tasks '())
+        finally (mapc #'evaporate (reverse tasks))))
+
+(defun cleaning-part (task)
+  "Return an innermost part of TASK, or itself, that is cleaning up; or NIL."
+  (or (some #'cleaning-part (task-children task))
+      (and (task-cleaning task) task)))
+
+(defun give-up-cleanup (task)
+  "Let the cleanup that TASK is at end now, undone. Queue a warning."
+  (warning-set "The cleanup " (form-text (task-form task)) " in " (task-label task)
+               " was given up at tick " (runner-tick (task-runner task)) ".")
+  (setf (task-doomed task) t)
+  (stop-waiting task)
+  (end-parts task))

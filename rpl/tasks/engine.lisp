@@ -6,8 +6,8 @@
 ;;; time passes only when there is none. So a task that gives a command and waits for its pulse has
 ;;; reached the wait before the pulse can come.
 ;;;
-;;; The engine knows no simulator. Whoever drives it calls REACT, APPLY-NEXT-BATCH and
-;;; ADVANCE-TIMERS in one thread; any thread may post.
+;;; The engine knows no simulator. Whoever drives it calls REACT-TO-ALL and ADVANCE-TIMERS, in one
+;;; thread at a time; any thread may post.
 
 (defun make-plan-runner (&key trace budget clock (slow 0.1d0) dice (ticks-per-second 20)
                            (tick 0) (busy-p (constantly nil)) (on-post #'list) on-tick
@@ -32,73 +32,83 @@ ON-END with each top-level task that ends; by default it reports failures."
   "Start PLAN, a plan procedure or the name of one, with ARGUMENTS as a top-level task of RUNNER.
 Return the task, which runs at the next reaction."
   (multiple-value-bind (body environment) (apply #'enter-plan plan arguments)
-    (let ((*runner* runner)
-          (name (if (procedure-p plan) (procedure-name plan) plan)))
-      (first (push (spawn nil body environment 0 0 (make-task name body))
-                   (runner-roots runner))))))
+    (let ((name (if (procedure-p plan) (procedure-name plan) plan)))
+      (at-home (runner)
+        (first (push (spawn nil body environment 0 0 (make-task name body))
+                     (runner-roots runner)))))))
 
-;;; Reacting.
+;;; Reacting. In a round every ready task gets its turn, until it waits, ends or has used its slice.
+;;; Only then is the next post heard, and only when nothing is posted do those that have used their
+;;; slices get new ones. So a plan that never waits deafens nobody.
 
 (defun run-ready (runner)
-  "Run the ready tasks of RUNNER. Return :idle when none is ready, :budget when that is spent."
+  "Run the ready tasks of RUNNER. Return :idle when none is ready that has not used its slice,
+:budget when the steps of the reaction are spent."
   (loop
-    (when (>= (runner-steps runner) (runner-pause runner)) (return :budget))
+    (when (runner-doomed runner) (end-doomed runner))
+    (when (>= (runner-steps runner) (runner-limit runner)) (return :budget))
     (let ((task (take-ready runner)))
       (unless task (return :idle))
       (run-task task))))
 
-(defun fail-current (runner failure)
-  "Let FAILURE happen to the task of RUNNER that was running."
-  (let ((task (runner-current runner)))
-    (setf (task-signal task) failure)
-    (make-ready-first task)))
+(defun run-round (runner)
+  "Run the ready tasks of RUNNER, whatever becomes of one. Return as RUN-READY does."
+  (incf (runner-round runner))
+  (loop thereis (call-with-care runner #'run-ready)))
 
-(defun call-catching-trouble (runner function)
-  "Call FUNCTION and return its value. An error in the Lisp code of the running task becomes its
-failure, and NIL is returned."
-  (block nil
-    (handler-bind
-        (((or error plan-failure storage-condition)
-           (lambda (condition)
-             (let ((task (runner-current runner)))
-               (when (and *break-on-user-error* (typep condition 'error))
-                 (invoke-debugger condition))
-               (when (and task (eq (task-state task) :running))
-                 (fail-current runner (failure-of condition task (task-frame task)))
-                 (return nil))))))
-      (funcall function runner))))
+(defun run-rounds (runner hear)
+  "Run the ready tasks of RUNNER until none is ready; HEAR, a function, is called between rounds and
+returns true if it brought something new. Return :idle or :budget."
+  (declare (type function hear))
+  (loop
+    (let ((outcome (run-round runner)))
+      (cond ((eq outcome :budget) (return :budget))
+            ((funcall hear runner))
+            ((runner-spent runner) (release-spent runner))
+            (t (return :idle))))))
 
 (defun warn-of-runaway (runner)
-  (let* ((task (take-ready runner))
+  "Queue a warning that names a task of RUNNER that has used all its steps, once for each form."
+  (let* ((task (find :ready (append (runner-spent runner)
+                                    (remove nil (coerce (ring-items (svref (runner-rings runner) 0))
+                                                        'list)))
+                     :key #'task-state))
          (form (and task (task-form task))))
-    (when task
-      (make-ready-first task)
-      (unless (member form (runner-warned runner))
-        (push form (runner-warned runner))
-        (warning-set "A plan took " *runaway-limit* " steps without waiting, at " (form-text form)
-                     " in " (task-label task) "; time passes all the same.")))))
+    (when (and task (not (member form (runner-warned runner))))
+      (push form (runner-warned runner))
+      (warning-set "A plan took " *runaway-limit* " steps without waiting, at " (form-text form)
+                   " in " (task-label task) "; time passes all the same."))))
+
+(defun give-budget (runner budget)
+  "Let the reaction that begins take BUDGET steps."
+  (setf (runner-exhausted runner) nil
+        (runner-limit runner) (+ (runner-steps runner) budget)
+        (runner-slice runner) (max 1 (min +slice+ (floor budget 10)))))
+
+(defun react-hearing (runner hear)
+  "Let RUNNER react, as RUN-ROUNDS does."
+  (at-home (runner)
+    (give-budget runner (or (runner-budget runner) *runaway-limit*))
+    (let ((outcome (let ((*leaves-offer-restarts* *break-on-user-error*))
+                     (run-rounds runner hear))))
+      (when (and (eq outcome :budget)
+                 (null (runner-budget runner))
+                 (not (runner-exhausted runner)))
+        (warn-of-runaway runner))
+      outcome)))
 
 (defun react (runner)
   "Run the ready tasks of RUNNER until none is ready, and return :idle. Return :budget instead when
 the budget of steps is spent before; without a budget that is after *RUNAWAY-LIMIT* steps, with a
 warning."
-  (let ((*runner* runner)
-        (*backlog* (runner-backlog runner)))
-    (setf (runner-pause runner)
-          (+ (runner-steps runner) (or (runner-budget runner) *runaway-limit*)))
-    (loop
-      (let ((outcome (call-catching-trouble runner #'run-ready)))
-        (when (and (eq outcome :budget) (null (runner-budget runner)))
-          (warn-of-runaway runner))
-        (when outcome (return outcome))))))
+  (react-hearing runner (constantly nil)))
+
+(defun react-to-all (runner)
+  "Let RUNNER react to what is ready and, one after the other, to all that has been posted. Return
+as REACT does; after :budget what is left waits for the next reaction."
+  (react-hearing runner #'apply-next-batch))
 
 ;;; Posting.
-
-(defun post (runner entry)
-  (with-lock ((runner-lock runner))
-    (push entry (runner-inbox runner)))
-  (funcall (runner-on-post runner))
-  (values))
 
 (defun post-batch (runner settings)
   "Let SETTINGS be applied between two reactions of RUNNER, at one instant: (:set fluent value) and
@@ -110,40 +120,40 @@ they are posted, from any thread. See APPLY-SETTINGS."
   "Let FUNCTION be called, with no arguments, between two reactions of RUNNER. For any thread."
   (post runner function))
 
-(defun next-entry (runner)
-  "Return the oldest posted entry of RUNNER, removed, and true; or NIL and false."
-  (unless (runner-outbox runner)
-    (setf (runner-outbox runner)
-          (with-lock ((runner-lock runner))
-            (nreverse (shiftf (runner-inbox runner) '())))))
-  (if (runner-outbox runner)
-      (values (pop (runner-outbox runner)) t)
-      (values nil nil)))
-
 (defun apply-next-batch (runner)
   "Apply the batch or call posted to RUNNER first. True unless there was none. Errors in it become
 messages."
   (multiple-value-bind (entry there) (next-entry runner)
     (when there
-      (let ((*runner* runner)
-            (*backlog* (runner-backlog runner)))
+      (at-home (runner)
         (if (functionp entry)
             (call-user-code entry "a call posted to a plan runner")
             (call-user-code #'apply-settings "a batch posted to a plan runner" entry)))
       t)))
 
+;;; Ending.
+
 (defun stop-plan (runner &optional task)
-  "Let TASK, or else all top-level tasks of RUNNER, evaporate before its next reaction. For any
-thread."
-  (post-call runner (lambda ()
-                      (mapc #'evaporate (if task (list task) (runner-roots runner))))))
+  "Let TASK, or else all top-level tasks that RUNNER has now, evaporate before it takes another
+step. For any thread."
+  (mapc #'doom (if task (list task) (plan-runner-tasks runner))))
+
+(defun close-runner (runner)
+  "Let all tasks of RUNNER evaporate. What they do to clean up goes on as far as it can without any
+time; the rest is given up, with a warning for each. None is left."
+  (stop-plan runner)
+  (react-to-all runner)
+  (loop for part = (some #'cleaning-part (plan-runner-tasks runner))
+        while part
+        do (at-home (runner) (give-up-cleanup part))
+           (react-to-all runner)))
 
 ;;; Time.
 
 (defun advance-timers (runner tick)
   "Let it be TICK for RUNNER and wake those who waited for it."
   (setf (runner-tick runner) tick)
-  (let ((*runner* runner))
+  (at-home (runner)
     (run-timers (runner-timers runner) tick)
     (dolist (function (runner-on-tick runner))
       (call-user-code function "a plan runner's tick function" tick))))
@@ -153,14 +163,9 @@ thread."
   (let ((timer (next-timer (runner-timers runner))))
     (and timer (timer-due timer))))
 
-(defun any-ready-p (runner)
-  (some (lambda (ring) (plusp (ring-count ring))) (runner-rings runner)))
-
 (defun idle-p (runner)
   "True if no task of RUNNER is ready and nothing is posted: only time or a post can change that."
-  (not (or (any-ready-p runner)
-           (runner-outbox runner)
-           (runner-inbox runner))))
+  (not (or (any-ready-p runner) (runner-doomed runner) (posted-p runner))))
 
 (defun plan-deadlocked-p (runner)
   "True if tasks of RUNNER wait and nothing can ever wake them: no timer, and nobody who may post."

@@ -11,11 +11,11 @@
   ((class :initarg :class :initform nil :reader failure-class)
    (data :initarg :data :initform '() :reader failure-data)
    (form :initform nil :accessor failure-form)
-   (task-path :initform nil :accessor failure-task-path)
+   (path :initform nil :accessor failure-task-path)
    (tick :initform nil :accessor failure-tick)
    (cause :initarg :cause :initform nil :accessor failure-cause)
    (suppressed :initform '() :accessor failure-suppressed)
-   (plan-backtrace :initform '() :accessor failure-plan-backtrace))
+   (expressions :initform '() :accessor failure-plan-backtrace))
   (:report (lambda (failure stream) (write-failure failure stream)))
   (:documentation "A plan could not do what it is for. Conditions of a user's own may inherit from
 this; (fail :class name ...) makes one of them, or a plain one of class NAME."))

@@ -21,37 +21,68 @@
   (values '() :type list :read-only t))
 (declaim-final escape completion bundle)
 
+(document-functions
+ make-escape "Return a signal to leave for a node, with a value for it."
+ escape-p "True of signals to leave for a node."
+ escape-target "Return the node that the escape leaves for."
+ escape-value "Return the value that the escape brings."
+ make-completion "Return the signal by which a construct ends well, with a value."
+ completion-p "True of signals by which a construct ends well."
+ make-bundle "Return a list of values as one object."
+ bundle-p "True of several values as one object."
+ bundle-values "Return the list of values in the bundle.")
+
 (declaim (inline single-value))
 (defun single-value (value)
   "Return VALUE, or the first one of a bundle."
   (if (bundle-p value) (first (bundle-values value)) value))
 
-;;; Defining nodes.
-
-(defmacro define-node (name (&rest slots) documentation &key step unwind child-ended)
-  "Define the node type NAME, or (NAME PARENT), with SLOTS, each (slot type), and the functions
-named for it."
-  (destructuring-bind (name &optional (parent 'node)) (ensure-list name)
-    `(defstruct (,name (:include ,parent
-                        (step #',step)
-                        ,@(when unwind `((unwind #',unwind)))
-                        ,@(when child-ended `((child-ended #',child-ended))))
-                       (:copier nil))
-       ,documentation
-       ,@(loop for (slot type) in slots
-               collect `(,slot (required-slot ',slot) :type ,type)))))
+;;; Leaves.
 
 (defun required-slot (slot)
+  "Signal MISUSE: a node was made without its SLOT."
   (reject-use "A plan's node was made without its ~(~A~)." slot))
 
-(define-node leaf ((function function))
+(defstruct (leaf (:include node (step #'step-leaf)) (:copier nil))
   "An expression that cannot wait: FUNCTION takes the environment."
-  :step step-leaf)
+  (function (required-slot 'function) :type function))
 (declaim-final leaf)
+
+(defvar *leaves-offer-restarts* nil
+  "True while plans may enter the debugger: leaves offer to be done again, and to return a value.")
+
+(declaim (inline call-leaf))
+(defun call-leaf (leaf environment)
+  "Return what LEAF returns in ENVIRONMENT."
+  (if *leaves-offer-restarts*
+      (call-leaf-offering leaf environment)
+      (funcall (leaf-function leaf) environment)))
+
+(defun read-leaf-value ()
+  (format *query-io* "~&The value to return, a form: ")
+  (finish-output *query-io*)
+  (list (evaluate-form (read *query-io*))))
+
+(defun call-leaf-offering (leaf environment)
+  "Return what LEAF returns in ENVIRONMENT, with the restarts RETRY and USE-VALUE."
+  (let ((text (form-text (node-form leaf))))
+    (loop
+      (restart-case (return (funcall (leaf-function leaf) environment))
+        (retry ()
+          :report (lambda (stream) (format stream "Do ~A again." text)))
+        (use-value (value)
+          :report (lambda (stream) (format stream "Let ~A return a value." text))
+          :interactive read-leaf-value
+          (return value))))))
+
+(document-functions
+ make-leaf "Return a leaf for a source form and a function of the environment."
+ leaf-p "True of leaves: nodes that cannot wait."
+ leaf-function "Return the function of the environment that does what the leaf does.")
 
 (defun step-leaf (node task frame value)
   (declare (ignore task value))
-  (values (frame-up frame) (funcall (leaf-function node) (frame-environment frame))))
+  (values (frame-up frame) (call-leaf node (frame-environment frame))))
 
 (define-global +parked+ (make-frame (make-leaf :function #'identity) (vector) nil)
   "What a step returns instead of a frame when its task does not go on now.")
@@ -64,7 +95,7 @@ named for it."
   "Begin NODE in ENVIRONMENT for FRAME: return what a step returns. The next step of FRAME gets
 the value. A leaf takes no frame of its own."
   (if (leaf-p node)
-      (values frame (funcall (leaf-function node) environment))
+      (values frame (call-leaf node environment))
       (values (make-frame node environment frame) nil)))
 
 (defun park (task awaiting)

@@ -1,8 +1,9 @@
 ;;;; package.lisp -- what runs plans: tasks, how they go on, wait and end, and who runs next.
 
 (defpackage :ars-magna.rpl.tasks
-  (:documentation "Plans are cooperative tasks of one thread. A task runs nodes, a plan's expressions, as a chain of
-frames on the heap; a runner lets tasks react. Knows neither the text of plans nor a simulator.")
+  (:documentation "Plans are cooperative tasks of one thread. A task runs nodes, a plan's
+expressions, as a chain of frames on the heap; a runner lets tasks react. Knows neither the text of
+plans nor a simulator.")
   (:use :cl :ars-magna.base :ars-magna.rpl.fluents)
   ;; timer
   (:export #:cancel-timer #:set-timer #:timer #:timer-client)
@@ -14,42 +15,45 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
            #:lisp-failure-condition
            #:make-failure #:plan-failure)
   ;; task
-  (:export #:current-form #:frame #:frame-counter #:frame-data #:frame-environment #:frame-up
-           #:make-frame #:make-task #:node #:node-form #:task #:task-awaiting #:task-blocked
-           #:task-children #:task-cleaning #:task-form #:task-frame #:task-index #:task-label
-           #:task-level #:task-name #:task-newest-child #:task-over-p #:task-p #:task-parent
-           #:task-path #:task-result #:task-runner #:task-serial #:task-signal #:task-state
-           #:task-status-fluent #:task-timer #:part-of-p #:task-top #:under-way-p
-           #:evaporating-p)
+  (:export #:current-form #:form-text #:frame #:frame-counter #:frame-data #:frame-environment
+           #:frame-node #:frame-state #:frame-up #:make-frame #:make-task #:node #:node-form
+           #:task #:task-awaiting #:task-blocked #:task-children #:task-cleaning #:task-form
+           #:task-frame #:task-index #:task-label #:task-level #:task-name #:task-newest-child
+           #:task-over-p #:task-p #:task-parent #:task-path #:task-result #:task-runner
+           #:task-serial #:task-signal #:task-state #:task-status-fluent #:task-timer #:task-top
+           #:evaporating-p #:part-of-p #:under-way-p)
   ;; trace
   (:export #:trace-entry #:trace-entry-detail #:trace-entry-event #:trace-entry-form
            #:trace-entry-task #:trace-entry-tick #:write-trace)
   ;; runner
-  (:export #:*runaway-limit* #:*runner* #:alone-p #:current-task #:make-ready #:note-event
-           #:plan-runner #:plan-runner-steps #:plan-runner-tasks #:plan-runner-tick #:plan-time
-           #:plan-trace #:runner-blocks #:runner-dice #:runner-tick #:runner-ticks-per-second
-           #:runner-timers)
+  (:export #:*runaway-limit* #:alone-p #:current-task #:exhaust-reaction #:make-ready
+           #:note-event #:plan-runner #:plan-runner-steps #:plan-runner-tasks #:plan-runner-tick
+           #:plan-time #:plan-trace #:runner-blocks #:runner-dice #:runner-tick
+           #:runner-ticks-per-second #:runner-timers)
   ;; machine
-  (:export #:+nothing+ #:+parked+ #:awaited-text #:bundle-p #:bundle-values #:completion-p
-           #:define-node #:required-slot #:enter #:escape-p #:escape-target #:escape-value #:leaf-function
+  (:export #:+nothing+ #:+parked+ #:awaited-text #:bundle-p #:bundle-values #:call-leaf
+           #:completion-p #:enter #:escape-p #:escape-target #:escape-value #:leaf-function
            #:leaf-p #:make-bundle #:make-completion #:make-escape #:make-leaf #:park
-           #:single-value #:wake)
+           #:required-slot #:single-value #:wake)
   ;; ending
   (:export #:complete #:complete-when-alone #:decide #:evaporate #:fail-or-escape #:note-status
            #:receive #:release-held #:status-word #:stop-waiting #:unwind #:withdraw)
+  ;; shape
+  (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
   ;; procedure
-  (:export #:ensure-procedure #:make-procedure #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p #:enter-plan
-           #:find-procedure #:install-procedure #:procedure #:procedure-body #:procedure-entry
-           #:procedure-lambda-list #:procedure-name #:procedure-name-p #:procedure-p
-           #:procedure-source)
+  (:export #:entry-for #:declared-names #:declared-lambda-list #:reject-lisp-call
+           #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p
+           #:ensure-procedure #:enter-plan #:find-procedure #:install-procedure #:make-procedure
+           #:procedure #:procedure-body #:procedure-entry #:procedure-lambda-list
+           #:procedure-name #:procedure-name-p #:procedure-p #:procedure-source)
   ;; blame
   (:export #:failure-of)
   ;; report
   (:export #:*plan-end-hooks* #:print-tasks #:report-deadlock #:report-failure #:task-awaits)
   ;; engine
-  (:export #:advance-timers #:apply-next-batch #:digest-runner #:idle-p #:make-plan-runner
-           #:next-wake-time #:plan-deadlocked-p #:post-batch #:post-call #:react #:reseed-runner
-           #:start-plan #:stop-plan)
+  (:export #:advance-timers #:apply-next-batch #:close-runner #:digest-runner #:idle-p
+           #:make-plan-runner #:next-wake-time #:plan-deadlocked-p #:post-batch #:post-call
+           #:react #:react-to-all #:reseed-runner #:start-plan #:stop-plan)
   ;; blocking
   (:export #:block-task #:check-together #:make-heed #:suspend #:unblock-task #:wake-up)
   ;; circles

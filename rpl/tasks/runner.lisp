@@ -9,14 +9,18 @@
 (defconstant +levels+ 8 "How many levels there are: the plan's, and policies above policies.")
 (defconstant +interrupt+ (ash 1 +levels+))
 
+(defconstant +slice+ 10000
+  "How many steps a task may take before others, and what was posted meanwhile, get their turn; a
+tenth of the steps of a reaction if that is less.")
+
 (defparameter *runaway-limit* 1000000
   "How many steps a reaction without a budget takes before time passes all the same.")
 
-(defvar *runner* nil
-  "The plan runner at work, while plans run.")
-
-(defstruct (plan-runner (:constructor %make-plan-runner) (:copier nil) (:conc-name runner-))
-  "What runs plans: knows the tasks, the tick, the timers, and what was posted from outside."
+(defstruct (plan-runner (:include home) (:constructor %make-plan-runner) (:copier nil)
+                        (:conc-name runner-))
+  "What runs plans: knows the tasks, the tick, the timers, and what was posted from outside. PAUSE
+is the number of steps at which the running task is to pause, LIMIT that at which the reaction is to
+end. SPENT are the ready tasks that have used their slice in this ROUND, the last one first."
   (rings (coerce (loop repeat +levels+ collect (make-ring)) 'simple-vector)
    :type (simple-vector 8) :read-only t)
   (mask 0 :type fixnum)
@@ -26,10 +30,15 @@
   (blocks 0 :type fixnum)
   (tick 0 :type real)
   (timers (make-timers) :type timers :read-only t)
-  (backlog (make-backlog) :type backlog :read-only t)
   (serial 0 :type fixnum)
   (steps 0 :type (unsigned-byte 62))
   (pause 0 :type (unsigned-byte 62))
+  (limit 0 :type (unsigned-byte 62))
+  (slice +slice+ :type fixnum)
+  (round 0 :type fixnum)
+  (spent '() :type list)
+  (exhausted nil :type boolean)
+  (doomed '() :type t)
   (budget nil :type (or null (integer 1)))
   (ticks-per-second 20 :type (real (0)))
   (dice nil :type (or null dice))
@@ -37,13 +46,16 @@
   (clock nil :type (or null function))
   (slow 0.1d0 :type real)
   (warned '() :type list)
-  (lock (make-lock "plan inbox") :read-only t)
-  (inbox '() :type list)
-  (outbox '() :type list)
   (busy-p (constantly nil) :type function)
-  (on-post #'list :type function)
   (on-tick '() :type list)
   (on-end #'identity :type function))
+
+(document-functions
+ runner-tick "Return the tick that it is for the plan runner."
+ runner-timers "Return the timers of the plan runner."
+ runner-blocks "Return how many blocks of tasks of the plan runner there are."
+ runner-dice "Return the dice by which the plan runner's tasks choose, or NIL."
+ runner-ticks-per-second "Return how many ticks are a second for the plan runner's tasks.")
 
 (defun plan-runner-tick (&optional (runner *runner*))
   "Return the tick that it is for RUNNER."
@@ -115,8 +127,14 @@ does to clean up only by what blocks that."
         until (or (null each) (task-doomed each))
         thereis (plusp (task-blocked each))))
 
+(defun spent-p (task runner)
+  "True if TASK has used its slice in this round of RUNNER."
+  (and (= (task-round task) (runner-round runner))
+       (<= (task-slice task) 0)))
+
 (defun take-ready (runner)
-  "Return the task of RUNNER that is next to run, or NIL. Blocked ones are put aside."
+  "Return the task of RUNNER that is next to run, or NIL. Blocked ones are put aside, and those that
+have used their slice."
   (declare #.*hot* (type plan-runner runner))
   (loop
     (let ((level (1- (integer-length (logandc2 (runner-mask runner) +interrupt+)))))
@@ -130,7 +148,25 @@ does to clean up only by what blocks that."
               (cond ((not (eq (task-state task) :ready))) ; has evaporated meanwhile
                     ((and (plusp (runner-blocks runner)) (blocked-p task))
                      (push task (runner-held runner)))
+                    ((spent-p task runner) (push task (runner-spent runner)))
                     (t (return task)))))))))
+
+(defun release-spent (runner)
+  "Queue again the tasks that were put aside because they had used their slice."
+  (dolist (task (nreverse (shiftf (runner-spent runner) '())))
+    (when (eq (task-state task) :ready) (make-ready task))))
+
+(defun any-ready-p (runner)
+  "True if a task of RUNNER could go on now."
+  (or (some (lambda (ring) (plusp (ring-count ring))) (runner-rings runner))
+      (some (lambda (task) (eq (task-state task) :ready)) (runner-spent runner))))
+
+(addition exhaust-reaction)
+(defun exhaust-reaction (&optional (runner *runner*))
+  "Let the reaction of RUNNER under way end after this step: what is ready waits for the tick."
+  (setf (runner-exhausted runner) t
+        (runner-limit runner) 0
+        (runner-pause runner) 0))
 
 (defun alone-p (task)
   "True if no other task of TASK's level or above is ready."

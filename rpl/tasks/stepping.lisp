@@ -34,8 +34,9 @@
            +parked+)))
 
 (defun interrupt (task frame value)
-  "Evaporate as asked, or give way to a higher level or because the reaction has taken its steps.
-FRAME and VALUE are what the last step returned; return what it should have."
+  "Evaporate as asked, or give way to a higher level or because TASK has taken its steps. FRAME and
+VALUE are what the last step returned; return what it should have."
+  (when (runner-doomed (task-runner task)) (end-doomed (task-runner task)))
   (let* ((runner (task-runner task))
          (mask (logandc2 (runner-mask runner) +interrupt+))
          (preempted (>= mask (ash 2 (task-level task))))
@@ -59,7 +60,8 @@ FRAME and VALUE are what the last step returned; return what it should have."
     (declare (type plan-runner runner))
     (loop
       (when (or (>= (runner-mask runner) higher)
-                (>= (runner-steps runner) (runner-pause runner)))
+                (>= (runner-steps runner) (runner-pause runner))
+                (runner-doomed runner))
         (multiple-value-setq (frame value) (interrupt task frame value)))
       (cond ((null frame) (return (finish task :succeeded (single-value value))))
             ((eq frame +parked+) (return)))
@@ -71,18 +73,31 @@ FRAME and VALUE are what the last step returned; return what it should have."
               (timed-step clock node task frame value)
               (funcall (node-step node) node task frame value)))))))
 
+(defun begin-turn (task runner)
+  "Let TASK take what is left of its slice in this round of RUNNER, a new one if it has had none."
+  (declare #.*hot* (type task task) (type plan-runner runner))
+  (unless (= (task-round task) (runner-round runner))
+    (setf (task-round task) (runner-round runner)
+          (task-slice task) (runner-slice runner)))
+  (setf (runner-pause runner)
+        (min (runner-limit runner) (+ (runner-steps runner) (max 0 (task-slice task))))))
+
 (defun run-task (task)
   "Let TASK, just taken from the ready ones, go on, or let its signal happen to it."
-  (let ((frame (task-frame task))
-        (value (shiftf (task-value task) nil))
-        (signal (task-signal task)))
+  (let* ((frame (task-frame task))
+         (value (shiftf (task-value task) nil))
+         (signal (task-signal task))
+         (runner (task-runner task))
+         (start (runner-steps runner)))
     (setf (task-state task) :running
-          (runner-current (task-runner task)) task)
+          (runner-current runner) task)
+    (begin-turn task runner)
     (when signal
       (setf (task-signal task) nil)
       (multiple-value-setq (frame value) (receive task frame signal)))
     (let ((*asker* task))
-      (run-steps task frame value))))
+      (run-steps task frame value))
+    (decf (task-slice task) (- (runner-steps runner) start))))
 
 (defun spawn (parent node environment index level &optional (task (make-task nil node)))
   "Start TASK, the part number INDEX of PARENT (NIL: a top-level task), to run NODE in ENVIRONMENT.

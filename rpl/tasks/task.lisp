@@ -14,27 +14,38 @@
 that has ended, and returns the frame to go on with and a value for it. UNWIND is called with the
 same arguments but a signal when a signal passes the frame, and returns a frame that takes care of
 it, or NIL and, if another signal is to go on instead, that. CHILD-ENDED is called with node, task,
-frame, child, the child's state and its result."
+frame, child, the child's state and its result. STATES are the names of what a frame may be in."
   (form nil)
+  (states #() :type simple-vector)
   (step #'list :type function)
   (unwind nil :type (or null function))
   (child-ended nil :type (or null function)))
 
 (declaim (inline make-frame))
 (defstruct (frame (:constructor make-frame (node environment up)) (:copier nil))
-  "One run of NODE on behalf of the frame UP. COUNTER and DATA are the node's business."
+  "One run of NODE on behalf of the frame UP. COUNTER, the number of a state, and DATA are the
+node's business."
   (node nil :type node)
   (environment #() :type simple-vector)
   (up nil :type (or null frame))
   (counter 0 :type fixnum)
   (data nil))
 
+(defun frame-state (frame)
+  "Return the name of the state that FRAME is in, a keyword; a number of parts begun, if its node
+has no states."
+  (let ((states (node-states (frame-node frame))))
+    (if (plusp (length states))
+        (svref states (frame-counter frame))
+        (frame-counter frame))))
+
 (addition task)
 (defstruct (task (:constructor make-task (name node)) (:copier nil))
   "One incarnation of a plan's expression. FRAME and VALUE say how it will go on; SIGNAL, if any,
 what will happen to it instead. LEVEL 0 is the plan proper, a policy is one above what it guards.
-BLOCKED is how many keep it from running, SUSPENSIONS how many of these are so called, SUSPENDED
-whether SUSPEND is one. GATE is what it waits for before it starts, VARIABLES what it has set."
+SLICE is how many steps it may still take in the ROUND of that number. BLOCKED is how many keep it
+from running, SUSPENSIONS how many of these are so called, SUSPENDED whether SUSPEND is one. GATE is
+what it waits for before it starts, VARIABLES what it has set."
   (name nil)
   (node nil :type node)
   (runner nil)
@@ -50,6 +61,8 @@ whether SUSPEND is one. GATE is what it waits for before it starts, VARIABLES wh
   (timer nil :type (or null timer))
   (cleaning '() :type list)
   (blocked 0 :type fixnum)
+  (round 0 :type fixnum)
+  (slice 0 :type fixnum)
   (result nil)
   (status-fluent nil :type (or null fluent))
   (parent nil :type (or null task))
@@ -61,6 +74,27 @@ whether SUSPEND is one. GATE is what it waits for before it starts, VARIABLES wh
   (older nil :type (or null task))
   (newer nil :type (or null task)))
 (declaim-final frame task)
+
+(document-functions
+ node-form "Return the source of the expression that the node stands for."
+ make-frame "Return a frame for one run of a node, in an environment, on behalf of a frame or NIL."
+ frame-node "Return the node that the frame runs."
+ frame-environment "Return the vector of the variables that the node sees, and of those around it."
+ frame-up "Return the frame that gets the value, or NIL."
+ frame-counter "Return the number of the state that the frame is in: see FRAME-STATE."
+ frame-data "Return what the frame has to remember: in DEFINE-EXPRESSION, its MEMORY."
+ make-task "Return a task by name and node that has not started: see SPAWN."
+ task-runner "Return the plan runner that the task belongs to."
+ task-level "Return the level of the task: 0, or how many policies it is a part of."
+ task-index "Return which of the parts of the task around it the task is, from 0 on."
+ task-frame "Return the innermost frame of the task, NIL if it is over."
+ task-signal "Return what will happen to the task instead of going on, or NIL."
+ task-awaiting "Return what the task waits for: a watcher, a timer, a valve, a text; or NIL."
+ task-timer "Return the timer that ends the task's wait at the latest, or NIL."
+ task-cleaning "Return the frames of the task that clean up, innermost first."
+ task-blocked "Return by how many the task is blocked now."
+ task-status-fluent "Return the fluent that follows the task's status, or NIL: see TASK-STATUS."
+ task-newest-child "Return that part of the task which started last of those not over, or NIL.")
 
 (addition task-p task-name task-state task-serial task-parent task-result)
 (loop for (reader text) in

@@ -19,6 +19,8 @@
   (count 0 :type fixnum))
 (declaim-final timer timers)
 
+(document-functions timer-client "Return on whose behalf the timer was set, such as a task.")
+
 (defun earlier-p (a b)
   (or (< (timer-due a) (timer-due b))
       (and (= (timer-due a) (timer-due b))

@@ -98,6 +98,7 @@ names its origin, and the run goes on.")
   (apply #'error-set (append (ensure-list origin) (list " was aborted"))))
 
 (defun report-break (condition origin)
+  "Queue a message that CONDITION, which is no error, came up in ORIGIN."
   (apply #'message-set "Break in "
          (append (ensure-list origin) (list ": " (brief-text condition)))))
 

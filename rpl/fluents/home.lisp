@@ -1,0 +1,80 @@
+;;;; home.lisp -- where fluents are heard: in one thread at a time, to which all others post.
+
+(in-package :ars-magna.rpl.fluents)
+
+;;; A fluent that somebody waits for has a home, the plan runner of those who wait. One thread at a
+;;; time has a home; what others want to change meanwhile they post, and it is heard in the order of
+;;; posting. The newest entry of the inbox comes first, the oldest of the outbox.
+
+(defstruct (backlog (:constructor make-backlog ()) (:copier nil))
+  "Derived fluents to be computed, by height: those of each height in order of arrival."
+  (heads (make-array 8 :initial-element nil) :type simple-vector)
+  (tails (make-array 8 :initial-element nil) :type simple-vector)
+  (highest 0 :type fixnum))
+
+(defstruct (home (:constructor make-home ()) (:copier nil))
+  "Where changes are heard. HOLDER is the thread that has it, ON-POST is called after each post."
+  (holder nil :type t)
+  (backlog (make-backlog) :type backlog :read-only t)
+  (inbox '() :type t)
+  (outbox '() :type list)
+  (on-post #'list :type function))
+
+(defvar *runner* nil
+  "The plan runner that this thread has, while plans run.")
+
+;;; Having it.
+
+(defun take-home (home)
+  "Let this thread have HOME. True unless another one has it."
+  (swap-if (home-holder home) nil (current-thread)))
+
+(defun leave-home (home)
+  (setf (home-holder home) nil))
+
+(defun call-at-home (home function)
+  "Call FUNCTION while this thread has HOME. If another one has it wait until it is free."
+  (declare (type function function))
+  (cond ((eq home *runner*) (funcall function))
+        ((eq (home-holder home) (current-thread))
+         (let ((*runner* home)) (funcall function)))
+        (t (loop until (take-home home) do (yield-thread))
+           (unwind-protect (let ((*runner* home)) (funcall function))
+             (leave-home home)))))
+
+(defmacro at-home ((home) &body body)
+  "Run BODY as CALL-AT-HOME would a function."
+  `(flet ((body () ,@body))
+     (declare (dynamic-extent #'body))
+     (call-at-home ,home #'body)))
+
+;;; Posting.
+
+(defun post (home entry)
+  "Let ENTRY, a list of settings or a function, be next in HOME after all that was posted before."
+  (atomic-push entry (home-inbox home))
+  (funcall (home-on-post home))
+  (values))
+
+(defun take-inbox (home)
+  "Return what is in the inbox of HOME, the oldest first, and leave none there."
+  (loop for entries = (home-inbox home)
+        until (swap-if (home-inbox home) entries '())
+        finally (return (reverse entries))))
+
+(defun next-entry (home)
+  "Return the oldest entry posted to HOME, removed, and true; or NIL and false."
+  (unless (home-outbox home)
+    (setf (home-outbox home) (take-inbox home)))
+  (if (home-outbox home)
+      (values (pop (home-outbox home)) t)
+      (values nil nil)))
+
+(defun posted-p (home)
+  "True if something posted to HOME has not been heard yet."
+  (and (or (home-outbox home) (home-inbox home)) t))
+
+(document-functions
+  home-on-post "Return the function that is called after each post, in the posting thread."
+  make-backlog "Return an empty backlog, which grows as needed."
+  home-backlog "Return the derived fluents that are still to be computed.")
