@@ -64,7 +64,7 @@
                  (:file "places") (:file "driving") (:file "following")
                  (:file "handling") (:file "hands") (:file "inserting") (:file "bins")
                  (:file "patterns") (:file "manipulations") (:file "manipulating")
-                 (:file "looking") (:file "searching") (:file "tracking")
+                 (:file "looking") (:file "searching") (:file "tracking") (:file "withdrawing")
                  (:file "turning-cameras") (:file "approaching")))
    (:module "src/run" :serial t
     :components ((:file "package") (:file "participant") (:file "journal") (:file "run")
@@ -109,8 +109,10 @@
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
-    :components ((:file "package") (:file "fluents") (:file "interface") (:file "accessors")
-                 (:file "outcomes") (:file "commands") (:file "runs")))
+    :components ((:file "package") (:file "fluents") (:file "interface") (:file "takeovers")
+                 (:file "under-way") (:file "reacting") (:file "watching") (:file "thread")
+                 (:file "starting") (:file "accessors") (:file "outcomes") (:file "commands")
+                 (:file "runs")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.
@@ -190,9 +192,10 @@
                  (:file "rpl-constructs")
                  (:file "rpl-fairness") (:file "rpl-care")
                  (:file "rpl-kills")
-                 (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-robot-live")
+                 (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-issue")
+                 (:file "rpl-left") (:file "rpl-robot-live")
                  (:file "rpl-text")
-                 (:file "plans")
+                 (:file "plans") (:file "plans-killed")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "cli-files") (:file "kinds")

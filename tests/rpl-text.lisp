@@ -119,6 +119,15 @@
         do (is (same-text-p slip (car (first said))) "~S" said)
            (is (search expected (cdr (first said))) "~S" said)))
 
+(test text.what-only-lisp-runs-cannot-wait
+  (loop for (slip place expected)
+          in '(("(mapcar (lambda (x) (later x)) (list 1))" "(later x)" "later is a plan procedure")
+               ("(mapcar (lambda (x) (wait-for x)) (list 1))" "(wait-for x)"
+                "A plan cannot wait inside lambda"))
+        for (form . text) = (find expected (said-compiling (text-with slip))
+                                  :key #'cdr :test #'search)
+        do (is (and form (same-text-p place form)) "~S: ~S ~S" slip form text)))
+
 (test text.what-is-right-is-silent
   (let ((right "(def-interp-proc first-of-two (x &rest more) (second-of-two x) (list more)
                   (flet ((wait (n) (wait-time n) n)) (helping (wait 1) :b 2))

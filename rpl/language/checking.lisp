@@ -52,19 +52,32 @@
              (when known (check-fit form arguments))))
           (t (warn-of-unknown form)))))
 
+(defun look-later (look form)
+  "Call LOOK with FORM when all has been read, as if at this place."
+  (let ((definition *definition*) (package *package*) (file *compile-file-truename*)
+        (loaded *load-truename*))
+    (at-end-of-unit form
+                    (lambda ()
+                      (when (package-name package) ; which may have been deleted
+                        (let ((*definition* definition) (*package* package)
+                              (*compile-file-truename* file) (*load-truename* loaded))
+                          (funcall look form)))))))
+
 (defun check-call (form scope)
   "Warn, now or when all has been read, if FORM, a call of a plan or of what is not known, is not
 right."
   (let ((local (assoc (first form) (scope-procedures scope))))
     (if local
         (call-at-place form (lambda () (check-fit form (fourth local))))
-        (let ((definition *definition*) (package *package*) (file *compile-file-truename*)
-              (loaded *load-truename*))
-          (at-end-of-unit form
-                          (lambda ()
-                            (let ((*definition* definition) (*package* package)
-                                  (*compile-file-truename* file) (*load-truename* loaded))
-                              (look-at-call form))))))))
+        (look-later #'look-at-call form))))
+
+(defun look-at-lisp-call (form)
+  "Warn if FORM, a call in a Lisp form that a plan cannot wait inside, turns out to call a plan."
+  (when (procedure-name-p (first form))
+    (warn-of-call #'warn-of-definition form
+                  "~(~A~) is a plan procedure, defined only later. It cannot be called inside of a ~
+                   lambda, or another form that only Lisp runs."
+                  (first form))))
 
 (defun slip-in-construct (form lambda-list)
   "Return in words the keyword in FORM, a construct's, that is none of LAMBDA-LIST's, or NIL."

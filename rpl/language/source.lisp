@@ -17,14 +17,16 @@
         (title (first form) (second form)))
       "plan"))
 
-(define-condition misplaced-suspension (ars-magna-error)
+(define-condition misplaced-suspension (malformed-definition)
   ((form :initarg :form :reader misplaced-form)
    (container :initarg :container :reader misplaced-container)
    (advice :initarg :advice :reader misplaced-advice))
   (:report (lambda (condition stream)
              (let ((*print-case* :downcase))
-               (format stream "A plan cannot wait inside ~A:~%  ~S~%with, inside,~%  ~S~%~A"
+               (format stream "A plan cannot wait inside ~A~@[ (~A)~]:~%  ~S~%~
+                               with, inside,~%  ~S~%~A"
                        (operator-text (misplaced-container condition))
+                       (malformed-definition-place condition)
                        (misplaced-container condition) (misplaced-form condition)
                        (misplaced-advice condition)))))
   (:documentation "A plan waits, fails or runs another plan inside a form that only Lisp runs."))
@@ -63,9 +65,16 @@
 
 (defun reject-suspension (form container)
   "Signal MISPLACED-SUSPENSION: FORM would make the task wait inside CONTAINER."
-  (call-at-place form (lambda ()
-                        (error 'misplaced-suspension :form form :container container
-                                                     :advice (advice-for container)))))
+  (let ((advice (advice-for container)))
+    (call-at-place form
+                   (lambda ()
+                     (error 'misplaced-suspension
+                            :definition (author) :clause form
+                            :expected (format nil "nothing that waits inside ~A. ~A"
+                                              (operator-text container)
+                                              (string-right-trim "." advice))
+                            :form form :container container :advice advice
+                            :place (clause-place form))))))
 
 (defmacro in-plans-only (form)
   "Signal MISUSE: FORM, of the plan language, was met in ordinary Lisp code."

@@ -41,7 +41,7 @@ plans nor a simulator.")
   ;; shape
   (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
   ;; procedure
-  (:export #:entry-for #:declared-names #:declared-lambda-list #:reject-lisp-call
+  (:export #:entry-for #:set-lambda-list #:declared-names #:declared-lambda-list #:reject-lisp-call
            #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p
            #:ensure-procedure #:enter-plan #:find-procedure #:install-procedure #:make-procedure
            #:procedure #:procedure-body #:procedure-entry #:procedure-lambda-list
@@ -49,7 +49,8 @@ plans nor a simulator.")
   ;; blame
   (:export #:failure-of)
   ;; report
-  (:export #:*plan-end-hooks* #:print-tasks #:report-deadlock #:report-failure #:task-awaits)
+  (:export #:*plan-end-hooks* #:print-tasks #:report-deadlock #:report-end #:report-failure
+           #:task-awaits)
   ;; engine
   (:export #:advance-timers #:apply-next-batch #:close-runner #:digest-runner #:idle-p
            #:make-plan-runner #:next-wake-time #:plan-deadlocked-p #:post-batch #:post-call
