@@ -5,5 +5,17 @@
 DEFINE-CONSTRUCT, which also exports its name.")
   (:use :cl :ars-magna.base :ars-magna.rpl.fluents :ars-magna.rpl.tasks
         :ars-magna.rpl.language)
+  ;; retry-counters
+  (:export #:get-counter #:reset-counter)
+  ;; named-policies
+  (:export #:all-policies #:define-policy #:failed-policy #:find-policy #:make-policy
+           #:policy-check-condition-met #:policy-failure #:policy-get #:policy-init-failed
+           #:policy-lambda-list #:policy-name #:policy-p #:policy-setf)
+  ;; goals, achieving
+  (:export #:all-goals #:def-goal #:failed-goal #:failed-goal-operator #:find-goal #:goal-failure
+           #:goal-not-achieved #:goal-operator #:goal-p #:goal-pattern #:goals-under-way
+           #:unknown-goal #:unknown-goal-known)
+  ;; at-location
+  (:export #:location-lost #:lost-attempts #:lost-place)
   ;; valve
   (:export #:make-valve #:valve #:valve-name #:valve-owner #:valve-p))

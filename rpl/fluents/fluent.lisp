@@ -14,6 +14,9 @@
   (now nil)
   (home nil :type (or null home))
   (height 0 :type fixnum)
+  ;; How often it was set to another value, and pulsed: see views.lisp.
+  (sets 0 :type fixnum)
+  (pulses 0 :type fixnum)
   (first-watcher nil :type (or null watcher))
   (last-watcher nil :type (or null watcher))
   (first-link nil :type (or null link))

@@ -10,6 +10,9 @@
 (defvar *spreading* nil
   "True while a change is being spread: networks must not set fluents.")
 
+(defvar *instants* '()
+  "The views that are true for the instant at which the change that is being spread happened.")
+
 (defun backlog-now ()
   "Return the backlog of the plan runner at work, or one for this change alone."
   (if *runner* (home-backlog *runner*) (make-backlog)))
@@ -79,10 +82,26 @@
                       (enqueue-dependents derived backlog))))
   (setf (backlog-highest backlog) 0))
 
+;;; Views, see views.lisp.
+
+(defun note-instant (view)
+  "Note that VIEW is true, which it is no longer when the change under way, if any, is spread."
+  (when *spreading* (push view *instants*)))
+
+(defun end-instants ()
+  "Let the views that were true for this instant be false again."
+  (when *instants*
+    (let ((backlog (backlog-now)))
+      (dolist (view (nreverse (shiftf *instants* '())))
+        (setf (fluent-now view) nil)
+        (enqueue-dependents view backlog))
+      (spread-by-height backlog))))
+
 (defun spread-to-dependents (fluent)
   "Compute what depends on FLUENT. As long as only one fluent does, no backlog is needed."
   (declare #.*hot*)
-  (let ((*spreading* t))
+  (let ((*spreading* t)
+        (*instants* '()))
     (loop
       (let ((link (fluent-first-link fluent)))
         (cond ((null link) (return))
@@ -93,7 +112,8 @@
               (t (setf fluent (link-dependent link))
                  (if (recompute fluent)
                      (announce fluent)
-                     (return))))))))
+                     (return))))))
+    (end-instants)))
 
 (defun spread (fluent)
   "Let everybody concerned know that the base fluent FLUENT has changed."
@@ -106,10 +126,12 @@
   (if (and fluents (null (rest fluents)))
       (spread (first fluents))
       (let ((backlog (backlog-now))
-            (*spreading* t))
+            (*spreading* t)
+            (*instants* '()))
         (mapc #'announce fluents)
         (dolist (fluent fluents) (enqueue-dependents fluent backlog))
-        (spread-by-height backlog))))
+        (spread-by-height backlog)
+        (end-instants))))
 
 (defun check-settable (operator fluent)
   (unless (and (fluent-p fluent) (not (derived-p fluent)))
@@ -138,6 +160,7 @@
 (defun set-now (fluent value)
   (unless (eql value (fluent-now fluent))
     (setf (fluent-now fluent) value)
+    (incf (fluent-sets fluent))
     (spread fluent)))
 
 (public set-value)
@@ -184,9 +207,9 @@ a pause (manual D.2)."
 for a network that is true at that instant, will wake. Return VALUE. From outside of plans, in any
 thread, it is heard as soon as the plans at work have come to a pause (manual C)."
   (check-settable 'pulse fluent)
-  (if (elsewhere-p fluent)
-      (send (fluent-home fluent) `((:pulse ,fluent ,value)))
-      (pulse-all (list fluent) (list value)))
+  (cond ((elsewhere-p fluent) (send (fluent-home fluent) `((:pulse ,fluent ,value))))
+        (t (incf (fluent-pulses fluent))
+           (pulse-all (list fluent) (list value))))
   value)
 
 (defun apply-settings (settings)
@@ -198,8 +221,10 @@ all together. So whoever sees the pulses sees the values that came with them (re
              (ecase kind
                (:set (unless (eql (first more) (fluent-now fluent))
                        (setf (fluent-now fluent) (first more))
+                       (incf (fluent-sets fluent))
                        (pushnew fluent changed)))
-               (:pulse (push fluent pulsed)
+               (:pulse (incf (fluent-pulses fluent))
+                (push fluent pulsed)
                 (push (if more (first more) t) values))))
     (when changed (spread-all (nreverse changed)))
     (when pulsed (pulse-all (nreverse pulsed) (nreverse values)))))

@@ -11,9 +11,9 @@ DEFINE-CONSTRUCT adds to it.")
   (:export #:misplaced #:misplaced-advice #:misplaced-container #:misplaced-form
            #:misplaced-suspension #:note-own-text)
   ;; scope
-  (:export #:inner-scope #:scope #:scope-retry #:single-scope #:variable-scope)
+  (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope)
   ;; leaf
-  (:export #:value-lambda)
+  (:export #:condition-lambda #:value-lambda)
   ;; compiler
   (:export #:define-plan-form #:hoisted-code #:plan-code #:suspends-p)
   ;; steps
@@ -26,10 +26,15 @@ DEFINE-CONSTRUCT adds to it.")
   (:export #:start-branch #:tags-in #:task-status #:with-tags-code)
   ;; calling
   (:export #:*plan-depth-limit*)
+  ;; applying
+  (:export #:enter-application)
   ;; callers
   (:export #:called-procedures)
   ;; definitions
-  (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan)
+  (:export #:def-interp-macro #:def-interp-proc #:interp-lambda #:make-plan #:split-documentation
+           #:variable-of)
+  ;; replacing
+  (:export #:replace-task-code #:restore-task-code #:task-code)
   ;; construct
   (:export #:all-constructs #:define-construct #:in-plans-only #:form #:scope #:build)
   ;; expression

@@ -20,9 +20,12 @@ builds the plan, that hold their nodes."
   (procedures '() :type list)
   (retry nil :type symbol)
   (task-tags '() :type list)
+  ;; Those variables that are known to hold fluents.
+  (fluents '() :type list)
   (several nil :type boolean))
 
 (document-functions
+ scope-blocks "Return an alist from the names of the blocks around to the variables of their nodes."
  scope-retry "Return the variable that holds the node to begin anew at (retry), NIL outside.")
 
 (defmacro inner-scope (scope &rest changes)
@@ -55,9 +58,10 @@ builds the plan, that hold their nodes."
                             (special-variable-p variable (scope-environment scope)))
                           variables)))
     (when special
-      (reject-clause "plan" special "the name of a lexical variable; this one is special"))
-    (layered-scope scope (list :variables level variables) level
-                   :variable (remove-duplicates variables))))
+      (reject-clause (author) special "the name of a lexical variable; this one is special"))
+    (inner-scope (layered-scope scope (list :variables level variables) level
+                                :variable (remove-duplicates variables))
+                 :fluents (set-difference (scope-fluents scope) variables))))
 
 (defun function-scope (scope names)
   "Return SCOPE with the local functions NAMES held in an environment of their own."

@@ -7,8 +7,9 @@
 
 (define-expression tagged
   "BODY as a task of its own called NAME. PLACE returns the environment that holds the task and
-its index there, NIL if none does."
-  (:parts (name symbol) (place function) (body node))
+its index there, NIL if none does. LAYERS are those of its scope; REPLACED is NIL, or a list of what
+BODY is the code of and of the node that it stands for: see replacing.lisp."
+  (:parts (name symbol) (place function) (body node) (layers list) (replaced list))
   (:steps
    (begin
     (next inside)
@@ -43,7 +44,9 @@ its index there, NIL if none does."
                               `(lambda (,(scope-variable scope))
                                  (values ,(environment-form scope level) ,index))
                               '(constantly nil))
-                  :body ,(body-code body (single-scope scope)))))
+                  :body ,(body-code body (single-scope scope))
+                  :layers ',(scope-layers scope)
+                  :replaced '())))
 
 (defun tags-in (forms)
   "Return the names of the tags in FORMS, not counting those that belong to a WITH-TAGS in them."

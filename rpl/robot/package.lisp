@@ -16,7 +16,8 @@
                 #:remove-participant #:participant-after-tick #:participant-busy-p
                 #:participant-reseed #:participant-digest #:participant-end)
   (:import-from :ars-magna.rpl
-                #:create-fluent #:create-fluent-vector #:fluent-value #:apply-settings #:*runner*
+                #:create-fluent #:create-fluent-vector #:declare-fluent-variable
+                #:fluent-value #:apply-settings #:*runner*
                 #:post-call #:react-to-all #:exhaust-reaction #:close-runner #:advance-timers
                 #:next-wake-time #:make-plan-runner #:start-plan #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:plan-runner-steps #:current-task #:task #:task-p

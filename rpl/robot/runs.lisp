@@ -17,8 +17,8 @@
         *interface*)))
 
 (defun begin-in (interface plan arguments note)
-  "Start PLAN with the list ARGUMENTS by INTERFACE, and return its task, with which NOTE, a
-function, has been called before anything else can happen."
+  "Start PLAN with the list ARGUMENTS by INTERFACE, and return its task. NOTE, a function, has been
+called with that before anything else can happen."
   (prog1 (with-plans (interface)
            (let ((task (apply #'start-plan (interface-runner interface) plan arguments)))
              (funcall note task)

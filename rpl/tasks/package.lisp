@@ -12,7 +12,7 @@ plans nor a simulator.")
            #:failure-data #:failure-form #:failure-matches-p #:failure-plan-backtrace
            #:failure-subject #:failure-suppressed #:failure-task-path #:failure-text
            #:failure-tick #:lisp-failure #:lisp-failure-backtrace #:lisp-failure-condition
-           #:make-failure #:plan-failure)
+           #:make-failure #:plan-failure #:write-failure)
   ;; task
   (:export #:current-form #:form-text #:frame #:frame-counter #:frame-data #:frame-environment
            #:frame-node #:frame-state #:frame-up #:make-frame #:make-task #:node #:node-form
@@ -36,8 +36,11 @@ plans nor a simulator.")
   ;; ending
   (:export #:complete #:complete-when-alone #:decide #:evaporate #:fail-or-escape #:note-status
            #:receive #:release-held #:stop-waiting #:unwind #:withdraw)
+  ;; shape
+  (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
   ;; procedure
-  (:export #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p
+  (:export #:entry-for #:set-lambda-list #:declared-names #:declared-lambda-list #:reject-lisp-call
+           #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p
            #:ensure-procedure #:enter-plan #:find-procedure #:install-procedure #:make-procedure
            #:procedure #:procedure-body #:procedure-entry #:procedure-lambda-list
            #:procedure-name #:procedure-name-p #:procedure-p)

@@ -1,0 +1,157 @@
+;;;; achieving.lisp -- achieve, perceive, belief: doing what a goal is about, not how.
+
+(in-package :ars-magna.rpl.constructs)
+
+(addition goal-failure)
+(define-condition goal-failure (plan-failure)
+  ((operator :initarg :operator :initform nil :reader failed-goal-operator)
+   (goal :initarg :goal :initform nil :reader failed-goal))
+  (:documentation "A goal cannot be had."))
+
+(addition unknown-goal)
+(define-condition unknown-goal (goal-failure)
+  ((known :initarg :known :initform '() :reader unknown-goal-known))
+  (:documentation "No DEF-GOAL says what to do for the goal."))
+
+(addition goal-not-achieved)
+(define-condition goal-not-achieved (goal-failure)
+  ()
+  (:documentation "The plan for a goal has ended, but what it was for is not believed."))
+
+(addition failed-goal failed-goal-operator unknown-goal-known)
+(document-functions
+ failed-goal "Return the goal that cannot be had, such as (on a b)."
+ failed-goal-operator "Return what was to be done for it: ACHIEVE, PERCEIVE or BELIEF."
+ unknown-goal-known "Return the patterns of the goals that there are, a list.")
+
+(defmethod write-failure ((failure unknown-goal) stream)
+  (format stream "No def-goal matches (~A). ~:[There is none for ~A~;Known: ~:*~{~A~^, ~}~*~]"
+          (goal-text (failed-goal-operator failure) (failed-goal failure))
+          (mapcar #'pattern-text (unknown-goal-known failure))
+          (plain-name (failed-goal-operator failure))))
+
+(defmethod write-failure ((failure goal-not-achieved) stream)
+  (format stream "(~A) has ended, but that is not believed"
+          (goal-text (failed-goal-operator failure) (failed-goal failure))))
+
+;;; Running. A frame of one of these remembers a pursuit.
+
+(defstruct (pursuit (:constructor make-pursuit (operator goal)) (:copier nil))
+  "That OPERATOR is being done for GOAL, an instance such as (on a b). VALUE is what came of it."
+  (operator nil :type symbol :read-only t)
+  (goal nil :read-only t)
+  (value nil))
+
+(defun pursuit-form (pursuit)
+  (list (pursuit-operator pursuit) (pursuit-goal pursuit)))
+
+(defun fail-goal (class task frame &rest arguments)
+  "Let TASK fail at FRAME with a failure of CLASS about its pursuit. Return what a step returns."
+  (let ((pursuit (frame-data frame)))
+    (unwind task frame
+            (failure-of (apply #'make-condition class
+                               :operator (pursuit-operator pursuit) :goal (pursuit-goal pursuit)
+                               arguments)
+                        task frame))))
+
+(defun enter-goal (goal values frame)
+  "Begin the plan of GOAL with VALUES for FRAME. Return what a step returns."
+  (enter-application (goal-procedure goal) values frame))
+
+(defun pursue-goal (task frame)
+  "Begin the plan for the pursuit of FRAME. Return what a step returns."
+  (let ((pursuit (frame-data frame)))
+    (multiple-value-bind (goal values)
+        (choose-goal (pursuit-operator pursuit) (pursuit-goal pursuit))
+      (if goal
+          (enter-goal goal values frame)
+          (fail-goal 'unknown-goal task frame
+                     :known (mapcar #'goal-pattern (goals-of (pursuit-operator pursuit))))))))
+
+(defun ask-belief (frame otherwise)
+  "Begin the plan that says whether the goal of FRAME is believed; without one, let OTHERWISE be
+what it says. Return what a step returns."
+  (multiple-value-bind (goal values) (choose-goal 'belief (pursuit-goal (frame-data frame)))
+    (if goal
+        (enter-goal goal values frame)
+        (values frame otherwise))))
+
+(define-construct achieve (goal)
+  "Do in a plan what makes the robot believe GOAL, a list such as `(on ,a ,b), which is evaluated.
+If it is believed already, by the DEF-GOAL of BELIEF that matches, nothing is done, and the value is
+that of the belief. Otherwise what the DEF-GOAL of ACHIEVE says is done; its value is returned. If
+there is none, fails with UNKNOWN-GOAL; if GOAL is not believed afterwards, with GOAL-NOT-ACHIEVED.
+Where no BELIEF matches, the end of the plan is success. (CRAM's and XFRM's.)"
+  (:arguments goal)
+  (:parts (goal function (value-lambda goal scope)))
+  (:steps
+   (begin
+    (setf memory (make-pursuit 'achieve (funcall goal environment)))
+    (next asked)
+    (ask-belief frame nil))
+   (asked
+    (cond ((fluent-value (single-value value)) (values (frame-up frame) value))
+          (t (next done)
+             (pursue-goal task frame))))
+   (done
+    (setf (pursuit-value memory) value)
+    (next checked)
+    (ask-belief frame t))
+   (checked
+    (if (fluent-value (single-value value))
+        (values (frame-up frame) (pursuit-value memory))
+        (fail-goal 'goal-not-achieved task frame)))))
+
+(define-construct perceive (goal)
+  "Find out in a plan whether GOAL, a list such as `(on ,a ,b), which is evaluated, holds, by the
+DEF-GOAL of PERCEIVE that matches, which should leave the world as it was. Return whether it is then
+believed, by the DEF-GOAL of BELIEF that matches; where there is none, what was perceived. Fails
+with UNKNOWN-GOAL if there is none of PERCEIVE, and as its plan fails. (CRAM's and XFRM's; what it
+returns is ours.)"
+  (:arguments goal)
+  (:parts (goal function (value-lambda goal scope)))
+  (:steps
+   (begin
+    (setf memory (make-pursuit 'perceive (funcall goal environment)))
+    (next seen)
+    (pursue-goal task frame))
+   (seen
+    (next checked)
+    (ask-belief frame value))
+   (checked (values (frame-up frame) value))))
+
+(define-construct belief (goal)
+  "Return in a plan whether the robot believes GOAL, a list such as `(on ,a ,b), which is evaluated:
+what the DEF-GOAL of BELIEF that matches returns, which should do nothing to the world. Fails with
+UNKNOWN-GOAL if there is none. (BELIEF of XFRM; the syntax is ours.)"
+  (:arguments goal)
+  (:parts (goal function (value-lambda goal scope)))
+  (:steps
+   (begin
+    (setf memory (make-pursuit 'belief (funcall goal environment)))
+    (next answered)
+    (pursue-goal task frame))
+   (answered (values (frame-up frame) value))))
+
+;;; Looking.
+
+(macrolet ((define-current-forms (&rest nodes)
+             `(progn
+                ,@(loop for node in nodes
+                        collect `(defmethod current-form ((node ,node) frame)
+                                   (if (frame-data frame)
+                                       (pursuit-form (frame-data frame))
+                                       (node-form node)))))))
+  (define-current-forms achieve-node perceive-node belief-node))
+
+(addition goals-under-way)
+(defun goals-under-way (&optional (task (current-task)))
+  "Return the goals that TASK, by default the one that asks, is at work for, each a list such
+as (achieve (on a b)), innermost first: what it does is done for the first, and that for the next.
+Those of the tasks that it is part of come last. (Ours.)"
+  (loop for each = task then (task-parent each)
+        while each
+        append (loop for frame = (task-frame each) then (frame-up frame)
+                     while frame
+                     when (pursuit-p (frame-data frame))
+                       collect (pursuit-form (frame-data frame)))))

@@ -1,0 +1,104 @@
+;;;; at-location.lisp -- doing something at a place, and again if it is lost.
+
+(in-package :ars-magna.rpl.constructs)
+
+;;; WHEREABOUTS keep a robot where it is for those who stay there. Who comes to stay passes a valve;
+;;; who has to drive first waits, with the valve, until nobody stays. So those whose place fits do
+;;; not drive, and nobody waits for ever because others come and stay after him.
+
+(defstruct (whereabouts (:constructor make-whereabouts ()) (:copier nil))
+  "What keeps the plans of one runner from driving its robot away from each other's places. STAYS is
+a fluent: the stays under way."
+  (valve (make-valve 'whereabouts) :type valve :read-only t)
+  (stays (create-fluent 'stays '()) :type fluent :read-only t))
+
+(defstruct (stay (:constructor make-stay (task)) (:copier nil))
+  "That TASK does something at a place."
+  (task nil :type task :read-only t))
+
+(defvar *whereabouts* (make-hash-table :test 'eq :weakness :key :synchronized t)
+  "The whereabouts of each plan runner's robot.")
+
+(defun whereabouts ()
+  "Return the whereabouts of the robot of the plan that asks."
+  (or (gethash *runner* *whereabouts*)
+      (setf (gethash *runner* *whereabouts*) (make-whereabouts))))
+
+(defun begin-stay (whereabouts)
+  "Note that the task that asks stays where the robot is now. Return the stay."
+  (let ((stay (make-stay (current-task))))
+    (set-value (whereabouts-stays whereabouts)
+               (cons stay (fluent-value (whereabouts-stays whereabouts))))
+    stay))
+
+(defun end-stay (whereabouts stay)
+  "Note that STAY, if there is one, is over."
+  (when stay
+    (set-value (whereabouts-stays whereabouts)
+               (remove stay (fluent-value (whereabouts-stays whereabouts))))))
+
+(defun others-gone (whereabouts)
+  "Return a fluent that is true while nobody stays but tasks that the one that asks is part of."
+  (let ((task (current-task)))
+    (fl-funcall (lambda (stays)
+                  (every (lambda (stay) (part-of-p task (stay-task stay))) stays))
+                (whereabouts-stays whereabouts))))
+
+(addition location-lost)
+(define-condition location-lost (plan-failure)
+  ((place :initarg :place :initform nil :reader lost-place)
+   (attempts :initarg :attempts :initform 0 :reader lost-attempts))
+  (:documentation "AT-LOCATION lost its place more often than it was to go there again."))
+
+(addition lost-place lost-attempts)
+(document-functions
+ lost-place "Return the place that was lost."
+ lost-attempts "Return how often it was gone to anew.")
+
+(defmethod write-failure ((failure location-lost) stream)
+  (format stream "Not to be kept at ~A: it was gone to anew ~D time~:P"
+          (lost-place failure) (lost-attempts failure)))
+
+(defun check-attempts (attempts)
+  (check-argument at-location attempts (whole-p attempts 0) "an integer from 0 to 1e9")
+  attempts)
+
+(defun at-location-text (place there go attempts body)
+  "Return plan text that does BODY at PLACE, where GO leads and THERE is true."
+  (with-gensyms (at most left here stay done again lost)
+    `(let* ((,at ,place) (,most (check-attempts ,attempts)) (,left ,most)
+            (,here (whereabouts)) (,stay nil))
+       (block ,done
+         (tagbody
+            ,again
+            (evap-protect
+             (seq (with-valve ((whereabouts-valve ,here))
+                    (if (not ,there)
+                        (seq (wait-for (others-gone ,here))
+                             ,go))
+                    (setq ,stay (begin-stay ,here)))
+                  (if (not ,there) (go ,lost))
+                  (return-from ,done
+                    (with-policy (seq (wait-until (not ,there)) (go ,lost))
+                      ,@body)))
+             (end-stay ,here (shiftf ,stay nil)))
+            ,lost
+            (if (= 0 ,left)
+                (fail 'location-lost :place ,at :attempts ,most))
+            (setq ,left (- ,left 1))
+            (go ,again))))))
+
+(define-construct at-location ((place &key there go attempts) &body body)
+  "Run BODY in a plan at PLACE and return its value. THERE and GO are forms: THERE says whether the
+robot is at the place, and is watched as by WAIT-UNTIL; GO, plan text, brings it there, and is not
+done if it is there already. When the place is lost, BODY evaporates, GO is done again and BODY
+starts anew, ATTEMPTS times at most, 10 if that is not given; then it fails with LOCATION-LOST, a
+failure that names PLACE. If GO does not lead there, that counts too; its failures are the plan's.
+Of several at once in the plans of a robot, one whose place fits does not drive; any other waits,
+in order of arrival, until nobody is at a place. (CRAM's; THERE and GO are ours, where CRAM asks its
+process modules.)"
+  (:code (progn
+           (unless (and there go)
+             (reject-clause "plan" form "(at-location (place :there test :go form) form...)"))
+           (plan-code (note-own-text (at-location-text place there go (or attempts 10) body))
+                      scope))))

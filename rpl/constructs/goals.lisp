@@ -1,0 +1,116 @@
+;;;; goals.lisp -- def-goal: plans by what they are for.
+
+(in-package :ars-magna.rpl.constructs)
+
+;;; A goal is a plan that is found by a pattern. Of those that match, the most specific is chosen:
+;;; one whose pattern matches nothing that the others' do not; of several such, the one defined
+;;; first. So it does not matter in which order files are loaded, as it does for CRAM, which
+;;; takes the first that matches.
+
+(defparameter *goal-operators* '(achieve perceive belief)
+  "What can be done about a goal.")
+
+(defstruct (goal (:constructor make-goal (operator pattern shape variables procedure documentation))
+                 (:copier nil))
+  "How to do OPERATOR, such as ACHIEVE, for what PATTERN matches: by PROCEDURE of VARIABLES."
+  (operator nil :type symbol)
+  (pattern nil)
+  (shape nil)
+  (variables '() :type list)
+  (procedure nil :type (or null procedure))
+  (documentation nil :type (or null string)))
+(addition goal-p goal-operator goal-pattern)
+(document-functions
+ goal-p "True of what DEF-GOAL defines."
+ goal-operator "Return what the goal's plan does for it: ACHIEVE, PERCEIVE or BELIEF."
+ goal-pattern "Return the pattern of the goal, as it was defined.")
+
+(defun goal-text (operator pattern)
+  (format nil "~A ~A" (plain-name operator) (pattern-text pattern)))
+
+(defmethod print-object ((goal goal) stream)
+  (print-unreadable-object (goal stream :type t)
+    (write-string (goal-text (goal-operator goal) (goal-pattern goal)) stream)))
+
+(defmethod documentation ((goal goal) (kind (eql t)))
+  (goal-documentation goal))
+
+(define-registry goal "goal" :object-p goal-p)
+
+;;; Choosing.
+
+(defun goals-of (operator)
+  "Return the goals that there are for OPERATOR, in order of definition."
+  (remove operator (all-goals) :key #'goal-operator :test-not #'eq))
+
+(defun goal-covers-p (goal other)
+  (covers-p (goal-shape goal) (length (goal-variables goal)) (goal-shape other)))
+
+(defun more-specific-p (goal other)
+  "True if the pattern of OTHER matches all that of GOAL does, and more."
+  (and (goal-covers-p other goal)
+       (not (goal-covers-p goal other))))
+
+(defun choose-goal (operator instance)
+  "Return the goal for OPERATOR and INSTANCE, such as (on a b), and the values of its variables; NIL
+if there is none."
+  (let ((best nil) (values '()))
+    (dolist (goal (goals-of operator) (values best values))
+      (multiple-value-bind (matches found)
+          (match-shape (goal-shape goal) (length (goal-variables goal)) instance)
+        (when (and matches (or (null best) (more-specific-p goal best)))
+          (setf best goal
+                values found))))))
+
+;;; Defining. A pattern that matches the same as one defined before means that one.
+
+(defun goal-name (operator pattern shape count)
+  "Return the symbol that a goal for OPERATOR and PATTERN is called in the registry."
+  (let ((old (find-if (lambda (goal)
+                        (and (covers-p shape count (goal-shape goal))
+                             (covers-p (goal-shape goal) (length (goal-variables goal)) shape)))
+                      (goals-of operator))))
+    (if old
+        (entry-name (find old (registry-entries *goals*) :key #'entry-object))
+        (make-symbol (string-upcase (goal-text operator pattern))))))
+
+(defun install-goal (operator pattern procedure text)
+  "Let PROCEDURE be what OPERATOR does for what PATTERN matches, from now on."
+  (multiple-value-bind (shape variables) (parse-pattern pattern)
+    (register *goals* (goal-name operator pattern shape (length variables))
+              (make-goal operator pattern shape variables procedure text))))
+
+(defun parsed-operator (definition operator)
+  (or (and (symbolp operator) (find operator *goal-operators* :test #'same-name-p))
+      (reject-clause definition operator "achieve, perceive or belief")))
+
+(defun goal-form (definition operator pattern body environment)
+  "Return the form that defines the goal for OPERATOR and PATTERN."
+  (unless (consp pattern)
+    (reject-clause definition pattern "a goal's pattern, such as (on ?a ?b)"))
+  (multiple-value-bind (body text) (split-documentation body)
+    (let ((variables (nth-value 1 (parse-pattern pattern))))
+      `(install-goal ',(parsed-operator definition operator) ',pattern
+                     ,(macroexpand-1 `(interp-lambda ,variables (block succeed ,@body))
+                                     environment)
+                     ,text))))
+
+(addition def-goal)
+(define-user-macro def-goal (&whole form (operator pattern) &body body &environment environment)
+  "Define what OPERATOR, one of ACHIEVE, PERCEIVE and BELIEF, does for goals that PATTERN matches,
+such as (on ?a ?b): BODY, plan text, perhaps after a documentation string, in which the variables a
+and b are what ?a and ?b stand for; ?x twice matches the same twice, and a pattern may end in a dot
+and ?x. BODY's value, or that of (succeed value), is the goal's. Of several patterns that match, the
+most specific is meant, or else the one defined first (ours; CRAM's is the first). A pattern that
+differs only in its variables replaces the definition. Signals MALFORMED-DEFINITION. (CRAM's; the
+variables are as in DEF-INTERP-MACRO.)"
+  (let ((definition (format nil "def-goal (~(~A~) ...)" operator)))
+    (expand-definition form environment
+                       (lambda ()
+                         (list (goal-form definition operator pattern body environment))))))
+
+(define-construct succeed (&rest values)
+  "In the body of DEF-GOAL: end it well, with VALUES. (CRAM's.)"
+  (:code (if (assoc 'succeed (scope-blocks scope))
+             (plan-code (note-own-text `(return-from succeed (values ,@values))) scope)
+             (reject-clause "plan" form "succeed only in the body of a def-goal"))))

@@ -1,0 +1,202 @@
+;;;; named-policies.lisp -- policies by name: what to do first, what to watch, what to do then.
+
+(in-package :ars-magna.rpl.constructs)
+
+;;; The clauses of a policy are plans without a name. All take the policy's parameters, and before
+;;; them its use: what is remembered from clause to clause while it is in force once.
+
+(defstruct (policy (:constructor %make-policy (name lambda-list init check recover clean-up))
+                   (:copier nil))
+  "What is to hold while a part of a plan runs, and what to do about it."
+  (name nil :type symbol)
+  (lambda-list '() :type list)
+  (init nil :type (or null procedure))
+  (check nil :type (or null procedure))
+  (recover nil :type (or null procedure))
+  (clean-up nil :type (or null procedure)))
+(addition policy-p policy-name policy-lambda-list)
+(document-functions
+ policy-p "True of policies."
+ policy-name "Return the symbol that the policy is called, NIL if MAKE-POLICY made it."
+ policy-lambda-list "Return the lambda list of the policy's clauses.")
+
+(defmethod print-object ((policy policy) stream)
+  (print-unreadable-object (policy stream)
+    (format stream "policy ~:[without a name~;~:*~A~] ~:A" (policy-name policy)
+            (policy-lambda-list policy))))
+
+(define-registry policy "policy" :object-p policy-p :by-symbol t :lister all-policies)
+
+(addition policy-failure)
+(define-condition policy-failure (plan-failure)
+  ((policy :initarg :policy :initform nil :reader failed-policy))
+  (:documentation "A named policy does not hold."))
+
+(addition policy-init-failed)
+(define-condition policy-init-failed (policy-failure)
+  ()
+  (:documentation "The :INIT of a named policy returned false: nothing else was done (CRAM's)."))
+
+(addition policy-check-condition-met)
+(define-condition policy-check-condition-met (policy-failure)
+  ()
+  (:documentation "The :CHECK of a named policy became true while its body ran (CRAM's)."))
+
+(addition failed-policy)
+(setf (documentation 'failed-policy 'function) "Return the policy that does not hold.")
+
+(defmethod write-failure ((failure policy-init-failed) stream)
+  (format stream "~A could not begin" (failed-policy failure)))
+
+(defmethod write-failure ((failure policy-check-condition-met) stream)
+  (format stream "The condition of ~A was met" (failed-policy failure)))
+
+;;; A use.
+
+(defstruct (policy-use (:constructor make-policy-use (policy arguments)) (:copier nil)
+                       (:conc-name use-))
+  "That POLICY is in force with ARGUMENTS. MEMORY is a property list."
+  (policy nil :type policy :read-only t)
+  (arguments '() :type list :read-only t)
+  (memory '() :type list))
+
+(defun begin-use (policy arguments)
+  "Return a new use of POLICY, or what is called so, with ARGUMENTS."
+  (make-policy-use (find-policy policy) arguments))
+
+(defun clause-arguments (use)
+  (cons use (use-arguments use)))
+
+(defun remembered (use name) (getf (use-memory use) name))
+
+(defun remember (use name value)
+  (setf (getf (use-memory use) name) value))
+
+(define-global +use-variable+ (make-symbol "USE")
+  "The variable of each clause of a policy that holds its use.")
+
+(defun check-in-clause (operator environment)
+  (unless (local-variable-p +use-variable+ environment)
+    (reject-use "~(~A~) remembers within a policy. Write it in a clause of define-policy, outside ~
+                 of any other interp-lambda." operator)))
+
+(addition policy-get)
+(defmacro policy-get (name &environment environment)
+  "In a clause of a policy: return what was last kept under NAME, which is evaluated, since it came
+into force; NIL if nothing was. See POLICY-SETF (CRAM's)."
+  (check-in-clause 'policy-get environment)
+  `(remembered ,+use-variable+ ,name))
+
+(addition policy-setf)
+(defmacro policy-setf (name value &environment environment)
+  "In a clause of a policy: keep VALUE under NAME, both evaluated, for the other clauses and as long
+as the policy is in force. Return VALUE (CRAM's)."
+  (check-in-clause 'policy-setf environment)
+  `(remember ,+use-variable+ ,name ,value))
+
+;;; Defining.
+
+(defun check-policy-clauses (definition clauses)
+  (loop for (clause . more) on clauses
+        unless (and (consp clause) (member (first clause) '(:init :check :recover :clean-up)))
+          do (reject-clause definition clause
+                            "a list that starts with :init, :check, :recover or :clean-up")
+        when (assoc (first clause) more)
+          do (reject-clause definition clause "each kind of clause once")))
+
+(defun clause-code (kind parameters clauses environment)
+  "Return code for the plan of the clause of KIND in CLAUSES; NIL if there is none. There always is
+an :INIT, which sees whether the arguments are right."
+  (let ((clause (or (assoc kind clauses) (and (eq kind :init) '(:init t)))))
+    (and clause
+         (macroexpand-1 `(interp-lambda (,+use-variable+ ,@parameters) ,@(rest clause))
+                        environment))))
+
+(defun policy-code (definition name parameters clauses environment)
+  "Return code that makes the policy NAME."
+  (check-policy-clauses definition clauses)
+  `(%make-policy ',name ',parameters
+                 ,@(loop for kind in '(:init :check :recover :clean-up)
+                         collect (clause-code kind parameters clauses environment))))
+
+(addition define-policy)
+(define-user-macro define-policy (&whole form name (&rest parameters) &body clauses
+                                  &environment environment)
+  "Define NAME, also a special variable, as a policy with PARAMETERS, an ordinary lambda list. The
+clauses, perhaps after a documentation string, are plan text: they may wait.
+  (:init form...)      comes first; if it returns false the policy fails with POLICY-INIT-FAILED;
+  (:check form...)     is what must not come true, watched as by WAIT-UNTIL, before each step of
+                       the body: a fluent or network is waited for, else it is tested at each tick;
+  (:recover form...)   is done if it does, when the body has evaporated; then the policy fails with
+                       POLICY-CHECK-CONDITION-MET;
+  (:clean-up form...)  comes last, however it ends.
+In them POLICY-GET and POLICY-SETF remember. See WITH-NAMED-POLICY. Signals MALFORMED-DEFINITION.
+Return NAME. (CRAM's, which polls.)"
+  (let ((definition (title "define-policy" name))
+        (text (and (stringp (first clauses)) (pop clauses))))
+    (expand-definition
+     form environment
+     (lambda ()
+       (unless (and name (symbolp name) (not (keywordp name)))
+         (reject-clause definition name "a symbol, no keyword, as the name"))
+       (values `((register *policys* ',name
+                           ,(policy-code definition name parameters clauses environment)
+                           :variable t)
+                 ,@(when text `((setf (documentation ',name 'variable) ,text))))
+               (variable-forms name))))))
+
+(addition make-policy)
+(define-user-macro make-policy ((&rest parameters) &body clauses &environment environment)
+  "Return a policy without a name; PARAMETERS and CLAUSES are as for DEFINE-POLICY. Its clauses see
+the variables around it. (CRAM's, where it takes a name.)"
+  (policy-code "make-policy" nil parameters clauses environment))
+
+;;; Being in force.
+
+(defun policed-text (policy arguments body)
+  "Return plan text that does BODY while POLICY with ARGUMENTS is in force, all of them forms."
+  (with-gensyms (use over met value)
+    (flet ((clause (reader)
+             `(if (,reader (use-policy ,use))
+                  (apply-plan (,reader (use-policy ,use)) (clause-arguments ,use)))))
+      `(let ((,use (begin-use ,policy (list ,@arguments))) (,met nil) (,value nil))
+         (if (not ,(clause 'policy-init))
+             (fail 'policy-init-failed :policy (use-policy ,use)))
+         (evap-protect
+          (seq (block ,over
+                 (with-policy (if (policy-check (use-policy ,use))
+                                  (seq (wait-until ,(clause 'policy-check))
+                                       (setq ,met t)
+                                       (return-from ,over nil)))
+                   (setq ,value (seq ,@body))))
+               (if ,met
+                   (seq ,(clause 'policy-recover)
+                        (fail 'policy-check-condition-met :policy (use-policy ,use))))
+               ,value)
+          ,(clause 'policy-clean-up))))))
+
+(defun policies-text (policies body form)
+  (unless (proper-list-p policies)
+    (reject-clause "plan" form "(with-policies ((policy (argument...))...) form...)"))
+  (dolist (policy policies)
+    (unless (typep policy '(cons t (cons list null)))
+      (reject-clause "plan" policy "(policy (argument...)) for each policy")))
+  (loop with text = `(seq ,@body)
+        for (policy arguments) in (reverse policies)
+        do (setf text (policed-text policy arguments (list text)))
+        finally (return text)))
+
+(define-construct with-named-policy (policy arguments &body body)
+  "Run BODY in a plan while POLICY, a policy or its name, is in force with ARGUMENTS, a list of
+forms. See DEFINE-POLICY. Return the value of BODY. (CRAM's; the manual's WITH-POLICY takes plan
+text as its policy.)"
+  (:code (plan-code (note-own-text (policies-text `((,policy ,arguments)) body form)) scope)))
+
+(define-construct with-policies (policies &body body)
+  "Run BODY in a plan while POLICIES, each (policy (argument...)) as in WITH-NAMED-POLICY, are in
+force: the first comes into force first and takes precedence over those after it. (CRAM's.)"
+  (:code (plan-code (note-own-text (policies-text policies body form)) scope)))
+
+(define-construct with-named-policies (policies &body body)
+  "Do as WITH-POLICIES. (CRAM's.)"
+  (:code (plan-code (note-own-text (policies-text policies body form)) scope)))

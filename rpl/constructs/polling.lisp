@@ -1,0 +1,21 @@
+;;;; polling.lisp -- wait-until: waiting for what need be no fluent.
+
+(in-package :ars-magna.rpl.constructs)
+
+(defun wait-until-text (condition)
+  "Return plan text that waits until CONDITION, a form, is true, and has its value."
+  (with-gensyms (met again value)
+    `(block ,met
+       (tagbody
+          ,again
+          (let ((,value ,condition))
+            (if (fluent-p ,value) (return-from ,met (wait-for ,value)))
+            (if ,value (return-from ,met ,value)))
+          (wait-time 1)
+          (go ,again)))))
+
+(define-construct wait-until (condition)
+  "Wait in a plan until the form CONDITION is true; return its value. If it gives a fluent or a
+network, as (< level 46) does of a fluent, that is waited for; anything else is tested anew at each
+tick. CONDITION may itself wait. (Ours: what policies and AT-LOCATION watch is watched so.)"
+  (:code (plan-code (note-own-text (wait-until-text condition)) scope)))
