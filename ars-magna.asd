@@ -13,7 +13,7 @@
                  (:file "floats") (:file "numbers") (:file "globals") (:file "tables")
                  (:file "atomic") (:file "classes")
                  (:file "packages") (:file "files") (:file "processes")
-                 (:file "environments") (:file "interrupts") (:file "stacks") (:file "debuggers")
+                 (:file "environments") (:file "compiling") (:file "interrupts") (:file "stacks") (:file "debuggers")
                  (:file "abridging")
                  (:file "conditions") (:file "telling") (:file "threads") (:file "dice") (:file "names")
                  (:file "digest") (:file "sources") (:file "variables") (:file "definitions")
@@ -64,7 +64,7 @@
                  (:file "places") (:file "driving") (:file "following")
                  (:file "handling") (:file "hands") (:file "inserting") (:file "bins")
                  (:file "patterns") (:file "manipulations") (:file "manipulating")
-                 (:file "looking") (:file "searching") (:file "tracking")
+                 (:file "looking") (:file "searching") (:file "tracking") (:file "withdrawing")
                  (:file "turning-cameras") (:file "approaching")))
    (:module "src/run" :serial t
     :components ((:file "package") (:file "participant") (:file "journal") (:file "run")
@@ -81,16 +81,18 @@
                  (:file "world-display") (:file "details") (:file "displays")
                  (:file "picture") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
-    :components ((:file "package") (:file "home") (:file "fluent") (:file "network") (:file "propagation")
-                 (:file "views") (:file "operators")))
+    :components ((:file "package") (:file "home") (:file "fluent") (:file "network")
+                 (:file "known") (:file "propagation") (:file "views")
+                 (:file "operators")))
    (:module "rpl/tasks" :serial t
     :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
                  (:file "task") (:file "trace") (:file "runner") (:file "machine")
-                 (:file "ending") (:file "stepping") (:file "blame") (:file "procedure")
+                 (:file "ending") (:file "stepping") (:file "blame") (:file "shape")
+                 (:file "procedure")
                  (:file "report") (:file "care") (:file "engine") (:file "alone")))
    (:module "rpl/language" :serial t
     :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
-                 (:file "leaf") (:file "compiler") (:file "expression") (:file "construct")
+                 (:file "checking") (:file "known-fluents") (:file "leaf") (:file "compiler") (:file "expression") (:file "construct")
                  (:file "steps") (:file "binding") (:file "leaving") (:file "branching")
                  (:file "repeating") (:file "tags") (:file "calling") (:file "applying")
                  (:file "local-functions") (:file "definitions") (:file "replacing")))
@@ -104,8 +106,10 @@
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
-    :components ((:file "package") (:file "fluents") (:file "interface") (:file "accessors")
-                 (:file "outcomes") (:file "commands") (:file "runs")))
+    :components ((:file "package") (:file "fluents") (:file "interface") (:file "takeovers")
+                 (:file "under-way") (:file "reacting") (:file "watching") (:file "thread")
+                 (:file "starting") (:file "accessors") (:file "outcomes") (:file "commands")
+                 (:file "runs")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.
@@ -186,9 +190,11 @@
                  (:file "rpl-kills")
                  (:file "rpl-views") (:file "rpl-named-policies") (:file "rpl-goals")
                  (:file "rpl-at-location") (:file "rpl-replacing") (:file "rpl-examples")
-                 (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-robot-live")
+                 (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-issue")
+                 (:file "rpl-left") (:file "rpl-robot-live")
                  (:file "rpl-examples-robot") (:file "rpl-examples-goals")
-                 (:file "plans")
+                 (:file "rpl-text")
+                 (:file "plans") (:file "plans-killed")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "cli-files") (:file "kinds")

@@ -29,6 +29,11 @@ definitions are messages like others."
                  (compiler-note #'muffle-warning))
     (funcall function)))
 
+(defun call-telling-doubts (function)
+  "Call FUNCTION and return its values. What is doubtful in the forms that it evaluates, taken
+together, are messages."
+  (call-quietly (lambda () (call-as-unit function))))
+
 (defun write-but-diagnostics (text stream)
   "Write the lines of TEXT to STREAM, but not those that begin with a semicolon: the compiler's."
   (with-input-from-string (in text)
@@ -52,7 +57,7 @@ definitions are messages like others."
 (defun evaluate (session form)
   "Evaluate FORM and print its values, each on a line."
   (setf (session-lisp-p session) t)
-  (let ((values (multiple-value-list (eval-quietly form))))
+  (let ((values (multiple-value-list (call-telling-doubts (lambda () (eval-quietly form))))))
     (shiftf *** ** * (first values))
     (when values (fresh-line))
     (mapc #'write-value values)))

@@ -124,7 +124,8 @@ project's systems has been loaded.")
 
 (defun unit-of (name)
   "Return what has one door: NAME's package, or NAME itself if it is in one of many ideas."
-  (if (find (package-part name) '("sb-ext" "sb-sys" "sb-kernel" "sb-c") :test #'string=)
+  (if (find (package-part name) '("sb-ext" "sb-sys" "sb-kernel" "sb-c" "sb-int")
+            :test #'string=)
       name
       (package-part name)))
 

@@ -68,7 +68,9 @@
     (is (search "Lisp:" text))))
 
 (test failure.an-unknown-procedure-names-the-nearest
-  (let ((failure (plan-failure-of (count-upp 3))))
+  (let ((failure (plan-failure-of
+                   (rpl:call-plan (handler-bind ((warning #'muffle-warning))
+                                    (eval '(rpl:interp-lambda () (count-upp 3))))))))
     (is (typep (rpl:lisp-failure-condition failure) 'base:unknown-name))
     (is (search "count-up" (princ-to-string failure)))))
 

@@ -197,3 +197,143 @@
                             (base:signal-semaphore answered)))
       (is-true (base:wait-on-semaphore answered 30))
       (is-true trouble))))
+
+;;; Plans that never wait, and code that never returns.
+
+(defvar *stop* nil "True when what tests keep going for ever is to end all the same.")
+
+(rpl:def-interp-proc never-waiting ()
+  "Take step after step."
+  (loop UNTIL *stop* (rpl:seq (rpl:task-state (rpl:current-task)))))
+
+(defun stay-here ()
+  (loop until *stop*))
+
+(rpl:def-interp-proc never-returning ()
+  "Be at one expression for ever."
+  (rpl:seq (stay-here)))
+
+(defmacro with-quick-watch (() &body body)
+  "Run BODY, in which it takes little to be named as a hog."
+  `(let ((before time:*hog-seconds*))
+     (unwind-protect (progn (setf time:*hog-seconds* 0.05 *stop* nil) ,@body)
+       (setf time:*hog-seconds* before *stop* t))))
+
+(defun queued-text-p (text)
+  "True if a message that is queued contains TEXT; none is taken."
+  (some (lambda (message) (search text (base:message-text message)))
+        (base::message-queue-newest-first base:*message-queue*)))
+
+(test live.a-plan-that-never-waits-deafens-nobody
+  (with-quick-watch ()
+    (live (simulation)
+      (let ((runaway (driver:begin-plan 'never-waiting)))
+        (is (eq :fine (run-as-plan (rpl:n-times 5
+                                     (driver:rpl-robot-turn .1)
+                                     (rpl:wait-for driver:robot-stopped*))
+                                   (rpl:wait-time 3)
+                                   :fine)))
+        (is-false (rpl:task-over-p runaway))
+        (is (search "never-waiting" (with-output-to-string (stream)
+                                      (driver:print-plans stream))))
+        (driver:end-plan runaway)
+        (awaiting (eq :evaporated (rpl:task-state runaway)))))))
+
+(test live.many-steps-come-to-their-end
+  "More than a reaction takes: the thread never sleeps while a plan could go on."
+  (live (simulation)
+    (is (= 2500000 (let ((count 0))
+                     (run-as-plan
+                       (loop UNTIL (= count 2500000) (rpl:seq (incf count)))
+                       count))))))
+
+(test live.code-that-does-not-return-is-named-and-ended
+  (with-quick-watch ()
+    (live (simulation)
+      (let ((task (driver:begin-plan 'never-returning)))
+        (awaiting (queued-text-p "never-returning has kept the plans' thread"))
+        (is-false (rpl:task-over-p task))
+        (driver:end-plan task)
+        (awaiting (rpl:task-over-p task))
+        (is (eq :evaporated (rpl:task-state task)))
+        (is (eq :fine (run-as-plan (turned .1) :fine)))))))
+
+(test live.stopping-the-simulator-ends-runaways
+  (dolist (plan '(never-waiting never-returning))
+    (with-quick-watch ()
+      (live (simulation)
+        (let ((task (driver:begin-plan plan)))
+          (awaiting (eq :running (rpl:task-state task)))
+          (run:stop-clock simulation)
+          (awaiting (rpl:task-over-p task))
+          (awaiting (null (driver::interface-thread driver::*interface*)))
+          (run:start-clock simulation :rate :free)
+          (is (eq :fine (run-as-plan (turned .1) :fine))))))))
+
+(test live.the-simulator-never-waits-for-plans
+  (with-quick-watch ()
+    (live (simulation)
+      (driver:begin-plan 'never-returning)
+      (command:robot-turn fitter 30)
+      (let ((tick (run:simulation-tick simulation)))
+        (awaiting (> (run:simulation-tick simulation) (+ 20 tick)))))))
+
+(test live.an-abort-in-a-leaf-ends-that-plan-only
+  (live (simulation)
+    (let ((other (driver:begin-plan (rpl:interp-lambda () (rpl:wait-time 30) :done))))
+      (is (eq :evaporated (nth-value 1 (run-as-plan (rpl:wait-time 1) (abort)))))
+      (awaiting (eq :done (rpl:task-result other))))))
+
+(test live.a-thread-that-was-ended-leaves-no-trace
+  "Its plan ends; the others go on in another one."
+  (live (simulation)
+    (let* ((interface driver::*interface*)
+           (other (driver:begin-plan (rpl:interp-lambda ()
+                                       (loop (rpl:wait-time 1)))))
+           (task (driver:begin-plan (rpl:interp-lambda ()
+                                      (rpl:wait-time 1)
+                                      (base:interrupt-thread (base:current-thread)
+                                                             #'sb-thread:abort-thread)
+                                      (rpl:wait-time 1)))))
+      (awaiting (rpl:task-over-p task))
+      (let ((thread (driver::interface-thread interface)))
+        (awaiting (and (driver::thread-of interface)
+                       (base:thread-alive-p (driver::thread-of interface))))
+        (is-false (rpl:task-over-p other))
+        (is-true thread))
+      (driver:end-plan other)
+      (awaiting (rpl:task-over-p other))
+      (awaiting (null (driver::interface-thread interface)))
+      (is (eq :fine (run-as-plan (turned .1) :fine))))))
+
+(test live.run-plan-that-is-left-ends-its-plan
+  (live (simulation)
+    (let ((cleaned nil) (begun (base:make-semaphore "begun")) (thread nil))
+      (setf thread
+            (base:start-thread
+             (base:spread-specials
+              (lambda ()
+                (catch 'out
+                  (run-as-plan
+                    (rpl:evap-protect (rpl:seq (base:signal-semaphore begun)
+                                               (loop (rpl:wait-time 1)))
+                                      (setf cleaned t)))))
+              'driver::*interface* 'time:*simulation* 'base:*message-queue*)
+             "runs a plan"))
+      (is-true (base:wait-on-semaphore begun 30))
+      (base:interrupt-thread thread (lambda () (throw 'out nil)))
+      (base:join-thread thread)
+      (awaiting cleaned)
+      (awaiting (null (driver:plans))))))
+
+(test live.who-keeps-taking-the-robot-waits-for-ticks
+  (live (simulation)
+    (let ((first (driver:begin-plan 'keep-turning))
+          (second (driver:begin-plan 'keep-going)))
+      (awaiting (queued-text-p "from each other for ever"))
+      (let ((tick (run:simulation-tick simulation)))
+        (awaiting (> (run:simulation-tick simulation) (+ 5 tick))))
+      (is-false (rpl:task-over-p first))
+      (is-false (rpl:task-over-p second))
+      (driver:end-plan :all)
+      (awaiting (null (driver:plans))))))

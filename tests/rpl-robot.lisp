@@ -140,7 +140,6 @@
                      (rpl:wait-time 4)
                      (driver:rpl-robot-turn 1)
                      (rpl:wait-for driver:robot-stopped*)
-                     (rpl:wait-for driver:robot-stopped*)
                      (driver:rpl-robot-turn .5)
                      (rpl:wait-for driver:robot-stopped*)
                      (rpl:wait-time 1))

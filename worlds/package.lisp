@@ -22,6 +22,7 @@ and programs for the robots there. Written as users write theirs.")
            #:point-ahead)
   ;; plans: moving
   (:export #:outcome #:driving-speed* #:turn-by #:drive-by #:turn-towards #:drive-towards
+           #:stand-still
            #:feel-ahead #:look-for-places #:begin-track #:stop-track #:go-to-designated
            #:find-doorway #:in-doorway-p #:take-bearings #:pass-doorway #:widest-camera
            #:travel-to #:patrol-places)
@@ -31,7 +32,7 @@ and programs for the robots there. Written as users write theirs.")
   ;; plans: handling
   (:export #:open-bin #:close-bin #:reach-into-bin #:draw-back #:let-go #:holding-p
            #:look-closely #:grasp-thing #:stow-thing #:take-thing #:look-into-bin
-           #:withdraw-camera #:put-thing-down)
+           #:withdraw-camera #:put-thing-down #:free-hand #:stowed-p)
   ;; plans: errands
   (:export #:find-and-take #:fetch-thing #:tidy-once #:tidy-room)
   ;; an errand with continuations

@@ -5,7 +5,8 @@
 ;;;   (with-simulation (ars-worlds:marvin :seed 1)
 ;;;     (run-plan 'fetch-thing '((:color blue) (:substance plastic)) '((108.5 24.5))))
 ;;;
-;;; A robot knows its map, where it starts, and where to look; not where things are.
+;;; A robot knows its map, where it starts, and where to look; not where things are. One errand at a
+;;; time has the robot; the next waits until that is over, and has cleaned up if it was ended.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
@@ -31,22 +32,27 @@ most, for a thing that fits DESCRIPTION, and stow the first it finds in BIN. Fai
 
 (def-interp-proc bring-thing (me places description home camera hand bin)
   "Fetch a thing as FETCH-THING does, once. Fails with :NOTHING-INSIDE if it got lost on the way."
-  (find-and-take me places description :camera camera :hand hand :bin bin)
+  (if (not (stowed-p camera bin description))
+      (find-and-take me places description :camera camera :hand hand :bin bin))
   (travel-to me home :tolerance .7 :patience 100)
   (put-thing-down hand camera bin))
 
 (def-interp-proc fetch-thing (description places
-                              &key (start (here (rpl-robot))) (camera (widest-camera))
-                                   (hand 0) (bin 0))
-  "Let the robot, which is at START, a list (x y heading), look at PLACES, points of its map, for a
-thing that fits DESCRIPTION, stow it in BIN, come back and put it on the floor. Return the point
-where it believes to be then. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
-  (let ((me (begin-reckoning start))
-        (home (list (first start) (second start))))
-    (with-retry-counters ((losses 2))
-      (handle-failure ((:nothing-inside () (do-retry losses (retry))))
-        (bring-thing me places description home camera hand bin)))
-    (reckon me)))
+                              &key start (camera (widest-camera)) (hand 0) (bin 0))
+  "Let the robot look at PLACES, points of its map, for a thing that fits DESCRIPTION, stow it in
+BIN, come back to START and put it on the floor. START is where the robot is, a list (x y heading);
+by default it finds that out. Such a thing that it has in its hand or BIN already, as when an
+errand was ended and is started again, it brings at once. Return the point where it believes to be
+then. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
+  (with-valve ((rpl-robot-valve))
+    (let* ((start (or start (here (rpl-robot))))
+           (me (begin-reckoning start))
+           (home (list (first start) (second start))))
+      (free-hand hand bin)
+      (with-retry-counters ((losses 2))
+        (handle-failure ((:nothing-inside () (do-retry losses (retry))))
+          (bring-thing me places description home camera hand bin)))
+      (reckon me))))
 
 ;;; Tidying.
 
@@ -56,22 +62,24 @@ where it believes to be then. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :C
     (find-and-take me places description :camera camera :hand hand :bin bin :rounds 5)))
 
 (def-interp-proc tidy-room (descriptions places
-                            &key (start (here (rpl-robot))) (camera (widest-camera)) (hand 0)
-                                 (limit 20))
-  "Let the robot, which is at START, collect what lies about near PLACES, points of its map: things
-that fit the first of DESCRIPTIONS into its first storage bin, and so on. It goes on, up to LIMIT
+                            &key start (camera (widest-camera)) (hand 0) (limit 20))
+  "Let the robot collect what lies about near PLACES, points of its map: things that fit the first
+of DESCRIPTIONS into its first storage bin, and so on. START is where the robot is, a list (x y
+heading); by default it finds that out. What it has in its hand it drops. It goes on, up to LIMIT
 things, until it has seen none for a whole round; what is kicked about meanwhile is looked for anew.
 Return how many things it has stowed."
-  (let ((me (begin-reckoning start))
-        (count 0)
-        (found t))
-    (loop WHILE (and found (< count limit))
-      (setf found nil)
-      (let ((bin 0))
-        (dolist (description descriptions)
-          (handle-failure (((or :bin-full :too-heavy) () (return nil)))
-            (if (tidy-once me places description camera hand bin)
-                (seq (incf count)
-                     (setf found t))))
-          (incf bin))))
-    count))
+  (with-valve ((rpl-robot-valve))
+    (let ((me (begin-reckoning (or start (here (rpl-robot)))))
+          (count 0)
+          (found t))
+      (free-hand hand nil)
+      (loop WHILE (and found (< count limit))
+        (setf found nil)
+        (let ((bin 0))
+          (dolist (description descriptions)
+            (handle-failure (((or :bin-full :too-heavy) () (return nil)))
+              (if (tidy-once me places description camera hand bin)
+                  (seq (incf count)
+                       (setf found t))))
+            (incf bin))))
+      count)))

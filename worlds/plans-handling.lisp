@@ -108,6 +108,29 @@ hand still holding it, or with :LOST-GRIP if it does not: what is kicked about c
                    (:lost-grip () (draw-back hand)))
     (stow-thing hand bin)))
 
+;;; Beginning. An errand that was ended before may have left things as they happened to be.
+
+(def-interp-proc free-hand (hand bin)
+  "Take HAND out of whatever it is inside of, and let it stow what it holds in BIN, or drop it there
+if BIN is NIL or has no room. It knows what its fluents know."
+  (if (vref hand-inside* hand)
+      (draw-back hand))
+  (if (vref hand-grasping* hand)
+      (handle-failure ((:lost-grip () (draw-back hand))
+                       (:bin-full () (draw-back hand) (let-go hand)))
+        (if bin (stow-thing hand bin) (let-go hand)))))
+
+(def-interp-proc stowed-p (camera bin description)
+  "True if CAMERA sees in BIN, which may be empty, something that fits DESCRIPTION."
+  (let ((found nil))
+    (if (< (rpl-storage-bin-real-capacity bin) (rpl-storage-bin-capacity bin))
+        (seq (open-bin bin)
+             (evap-protect (seq (look-into-bin camera bin)
+                                (setf found (confirm-thing camera description)))
+                           (withdraw-camera camera))
+             (close-bin bin)))
+    (if found t nil)))
+
 ;;; Putting down.
 
 (def-interp-proc look-into-bin (camera bin)

@@ -34,6 +34,11 @@
   "Turn the robot of the reckoning ME to face POINT, a list (x y). Return an error code or NIL."
   (turn-by (angle-towards me point)))
 
+(def-interp-proc stand-still ()
+  "Let the robot stand at once, whatever it is doing."
+  (rpl-grab-robot)
+  (wait-time 1))
+
 ;;; Trouble.
 
 (def-interp-proc feel-ahead (me)
@@ -44,8 +49,7 @@ nothing is there any more."
   (if (wait-for robot-stopped* :timeout 12)
       (cond ((null (fluent-value robot-movement-error*)) (reckon me) (correct-by-wall me) :wall)
             (t (bar-ahead me) :thing))
- ;; Grabbing ends it with one pulse; a stop would end too, with another.
-      (seq (outcome (rpl-grab-robot) robot-stopped* robot-movement-error*)
+      (seq (stand-still)
            (reckon me)
            nil)))
 
@@ -85,7 +89,7 @@ given. Return an error code, or NIL when it is there."
   (or (begin-track camera designator)
       (seq (rpl-robot-goto-designator camera)
            (if (not (wait-for robot-stopped* :timeout patience))
-               (outcome (rpl-grab-robot) robot-stopped* robot-movement-error*))
+               (stand-still))
            (let ((error (fluent-value robot-movement-error*)))
              (stop-track camera)
              error))))
@@ -180,14 +184,16 @@ troubles, or at once if there is no way."
           (if stopped (get-free me stopped)))))
     (reckon me)))
 
-(def-interp-proc patrol-places (points &key (rounds 1) (start (here (rpl-robot))))
-  "Let the robot, which is at START, a list (x y heading), visit POINTS of its map in turn, ROUNDS
-times. What cannot be reached is left out. Return how many visits it made."
-  (let ((me (begin-reckoning start))
-        (visits 0))
-    (n-times rounds
-      (dolist (point points)
-        (handle-failure ((:cannot-get-there () (return nil)))
-          (travel-to me point)
-          (incf visits))))
-    visits))
+(def-interp-proc patrol-places (points &key (rounds 1) start)
+  "Let the robot visit POINTS of its map in turn, ROUNDS times. START is where it is, a list (x y
+heading); by default it finds that out. What cannot be reached is left out. Return how many visits
+it made."
+  (with-valve ((rpl-robot-valve))
+    (let ((me (begin-reckoning (or start (here (rpl-robot)))))
+          (visits 0))
+      (n-times rounds
+        (dolist (point points)
+          (handle-failure ((:cannot-get-there () (return nil)))
+            (travel-to me point)
+            (incf visits))))
+      visits)))

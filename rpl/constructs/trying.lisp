@@ -23,14 +23,18 @@
   "Return the failure of TASK at FRAME that stands for FAILURES, last first."
   (failure-of (make-condition 'composite-failure :failures (reverse failures)) task frame))
 
-(defun note-attempt-failed (failure record)
-  (push failure (attempt-record-failures record)))
+(defun give-up (record task frame)
+  "Let FRAME of TASK fail of all that has been tried. Return what a step returns."
+  (unwind task (frame-up frame) (all-failed (attempt-record-failures record) task frame)))
+
+(defun attempts-code (attempts scope)
+  "Return code for a vector of the nodes of ATTEMPTS."
+  `(vector ,@(loop for attempt in attempts collect (plan-code attempt scope))))
 
 (define-construct try-in-order (&body attempts)
   "Run ATTEMPTS in a plan one after the other until one succeeds; return its value. If all fail,
 fail with a composite failure."
-  (:parts (attempts simple-vector `(vector ,@(loop for attempt in attempts
-                                                   collect (plan-code attempt scope))))
+  (:parts (attempts simple-vector (attempts-code attempts scope))
           (order function '(function order-as-written)))
   (:steps
    (begin
@@ -38,15 +42,13 @@ fail with a composite failure."
     (at-once between-attempts))
    (trying (values (frame-up frame) value))
    (between-attempts
-    (let ((record memory))
-      (cond ((attempt-record-order record)
-             (next trying)
-             (enter (pop (attempt-record-order record)) environment frame))
-            (t (unwind task (frame-up frame)
-                       (all-failed (attempt-record-failures record) task frame)))))))
+    (cond ((attempt-record-order memory)
+           (next trying)
+           (enter (pop (attempt-record-order memory)) environment frame))
+          (t (give-up memory task frame)))))
   (:unwind
    (when (and (in-state-p trying) (typep signal 'plan-failure))
-     (note-attempt-failed signal memory)
+     (push signal (attempt-record-failures memory))
      (next between-attempts)
      (values t frame nil))))
 
@@ -54,8 +56,7 @@ fail with a composite failure."
   "Do as TRY-IN-ORDER, in an order that the plan runner chooses: at random if it was given dice,
 otherwise as written."
   (:like try-in-order)
-  (:parts (attempts simple-vector `(vector ,@(loop for attempt in attempts
-                                                   collect (plan-code attempt scope))))
+  (:parts (attempts simple-vector (attempts-code attempts scope))
           (order function '(function order-by-chance))))
 
 ;;; For each element.
@@ -73,14 +74,12 @@ return its value. If it never does, fail with a composite failure."
     (at-once between-attempts))
    (trying (values (frame-up frame) value))
    (between-attempts
-    (let ((record memory))
-      (cond ((attempt-record-order record)
-             (next trying)
-             (enter body (vector environment (pop (attempt-record-order record))) frame))
-            (t (unwind task (frame-up frame)
-                       (all-failed (attempt-record-failures record) task frame)))))))
+    (cond ((attempt-record-order memory)
+           (next trying)
+           (enter body (vector environment (pop (attempt-record-order memory))) frame))
+          (t (give-up memory task frame)))))
   (:unwind
    (when (and (in-state-p trying) (typep signal 'plan-failure))
-     (note-attempt-failed signal memory)
+     (push signal (attempt-record-failures memory))
      (next between-attempts)
      (values t frame nil))))

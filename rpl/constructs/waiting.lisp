@@ -37,7 +37,7 @@ already. A pulse is enough. Return its value. After TIMEOUT ticks, if given, go 
 return NIL (manual C). TIMEOUT is a number up to 1e15."
   (:manual)
   (:arguments fluent timeout)
-  (:parts (fluent function (value-lambda fluent scope))
+  (:parts (fluent function (condition-lambda fluent scope))
           (timeout function (value-lambda timeout scope)))
   (:steps
    (begin

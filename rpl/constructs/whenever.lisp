@@ -43,7 +43,7 @@ true. Several such events while BODY runs count as one; with (FLUENT :missed :al
 argument as many runs follow. Ends only by RETURN, failure or evaporation (manual D.4)."
   (:manual)
   (:arguments (first (split-condition fluent)))
-  (:parts (condition function (value-lambda (first (split-condition fluent)) scope))
+  (:parts (condition function (condition-lambda (first (split-condition fluent)) scope))
           (missed function (value-lambda (second (split-condition fluent)) scope))
           (body node (body-code body (single-scope scope))))
   (:code (block-code nil form scope #'build))

@@ -10,7 +10,10 @@
 fluent (reading 184)."
   (let* ((bindings (loop for argument in arguments
                          unless (constantp argument environment)
-                           collect (list (gensym "ARGUMENT") argument)))
+                           collect (list (gensym "ARGUMENT")
+                                         (if (member operator '(not null))
+                                             `(one-fluent ,argument)
+                                             argument))))
          (values (loop with variables = (mapcar #'first bindings)
                        for argument in arguments
                        collect (if (constantp argument environment) argument (pop variables)))))
@@ -34,10 +37,11 @@ fluent (reading 184)."
   "Return AND (if ABSORBING is NIL) or OR (if it is T) of what THUNKS return, the later ones not
 called if the result is known before. From the first fluent on, the result is a network."
   (loop for (thunk . more) on thunks
-        for value = (funcall (the function thunk))
+        for value = (one-fluent (funcall (the function thunk)))
         when (fluent-p value)
           return (apply #'lift name function value
-                        (mapcar (lambda (thunk) (funcall (the function thunk))) more))
+                        (mapcar (lambda (thunk) (one-fluent (funcall (the function thunk))))
+                               more))
         when (or (null more) (eq absorbing (and value t)))
           return value))
 
@@ -69,7 +73,7 @@ called if the result is known before. From the first fluent on, the result is a 
              collect `(define-compiler-macro ,name (&rest arguments)
                         (list* 'lifting ',operator arguments)))))
 
-(define-lifted not < > <= >= = + - * / eq eql equal)
+(define-lifted not null < > <= >= = + - * / eq eql equal)
 
 (defmacro lifted:and (&rest forms)
   "Evaluate FORMS until one is false, as Lisp's AND; from the first one that is a fluent on, return
@@ -83,26 +87,26 @@ network."
 
 (defmacro lifted:if (test then &optional else)
   "Evaluate THEN or ELSE as Lisp's IF; TEST may be a fluent and counts by its value (manual D.2)."
-  `(if (fluent-value ,test) ,then ,else))
+  `(if (truth-value ,test) ,then ,else))
 
 (defmacro lifted:when (test &body body)
   "Evaluate BODY if the value of TEST, a fluent or not, is true."
-  `(when (fluent-value ,test) ,@body))
+  `(when (truth-value ,test) ,@body))
 
 (defmacro lifted:unless (test &body body)
   "Evaluate BODY if the value of TEST, a fluent or not, is false."
-  `(unless (fluent-value ,test) ,@body))
+  `(unless (truth-value ,test) ,@body))
 
 (defmacro lifted:cond (&rest clauses)
   "Evaluate the first of CLAUSES whose test, a fluent or not, has a true value."
   `(cond ,@(loop for (test . body) in clauses
-                 collect `((fluent-value ,test) ,@body))))
+                 collect `((truth-value ,test) ,@body))))
 
 (defmacro lifted:loop (&rest forms)
   "Repeat FORMS; (loop UNTIL test ...) and (loop WHILE test ...) read fluents by value. Other FORMS
 mean what they mean to Lisp's LOOP (manual D.2)."
   (cond ((and (symbolp (first forms)) (string= (first forms) "UNTIL"))
-         `(loop (when (fluent-value ,(second forms)) (return)) ,@(cddr forms)))
+         `(loop (when (truth-value ,(second forms)) (return)) ,@(cddr forms)))
         ((and (symbolp (first forms)) (string= (first forms) "WHILE"))
-         `(loop (unless (fluent-value ,(second forms)) (return)) ,@(cddr forms)))
+         `(loop (unless (truth-value ,(second forms)) (return)) ,@(cddr forms)))
         (t `(loop ,@forms))))

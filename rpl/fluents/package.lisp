@@ -6,7 +6,7 @@ conditions read fluents by value, operators given a fluent return a network. Ins
 operators of Common Lisp mean these without further ado.")
   (:use)
   (:export #:if #:when #:unless #:cond #:loop
-           #:and #:or #:not #:< #:> #:<= #:>= #:= #:+ #:- #:* #:/ #:eq #:eql #:equal))
+           #:and #:or #:not #:null #:< #:> #:<= #:>= #:= #:+ #:- #:* #:/ #:eq #:eql #:equal))
 
 (defpackage :ars-magna.rpl.fluents
   (:documentation "Fluents, networks of fluents, and how a change reaches those who watch. Knows
@@ -22,6 +22,9 @@ no plan.")
   ;; home
   (:export #:*runner* #:home #:home-on-post #:home-backlog #:at-home #:call-at-home #:post
            #:next-entry #:posted-p)
+  ;; known
+  (:export #:declare-fluent-variable #:known-fluent-variable-p #:known-vector-variable-p
+           #:one-fluent #:truth-value)
   ;; propagation
   (:export #:apply-settings #:clear-backlog #:pulse #:set-value)
   ;; views

@@ -55,6 +55,12 @@ parts begun; its memory is the environment to be."
                                     collect (as-lisp value scope)))
                    (first scopes))))
 
+(defun binding-scope (scope variables bindings body sequential)
+  "Return SCOPE with VARIABLES bound as by BINDINGS around BODY, one after the other if SEQUENTIAL."
+  (let ((inner (variable-scope scope variables)))
+    (inner-scope inner :fluents (append (bound-to-fluents bindings body scope sequential)
+                                        (scope-fluents inner)))))
+
 (defun binding-code (form bindings body scope sequential)
   "Return code for FORM, a LET or, if SEQUENTIAL, a LET*."
   (let* ((bindings (untyped-bindings bindings (operator-text form)))
@@ -65,9 +71,12 @@ parts begun; its memory is the environment to be."
                        collect (if sequential
                                    (variable-scope single (subseq variables 0 i))
                                    single))))
+    (check-use variables (list* (and sequential values) body) form)
     (cond ((null bindings) (binding-body-code body scope))
           ((binds-special-p variables body scope) (refuse-code form scope))
-          (t (let ((body-code (binding-body-code body (variable-scope scope variables))))
+          (t (let ((body-code (binding-body-code
+                               body (binding-scope scope variables bindings body
+                                              sequential))))
                (if (some #'suspends-p values scopes)
                    `(make-filling :form ',form
                                   :parts (vector ,@(mapcar #'plan-code values scopes))
@@ -99,6 +108,7 @@ parts begun; its memory is the environment to be."
       (enter-last body inner frame)))))
 
 (define-plan-form "MULTIPLE-VALUE-BIND" nil (variables source &rest body) (form scope)
+  (check-use variables body form)
   (if (binds-special-p variables body scope)
       (refuse-code form scope)
       `(make-value-binding :form ',form

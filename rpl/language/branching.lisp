@@ -43,16 +43,26 @@
               (choice-code form test body (list more) scope)
               (plan-code (note-own-text `(or ,test ,more)) scope))))))
 
-(define-plan-form "CASE" nil (key &rest clauses) (form scope)
+(defun case-code (form operator key clauses scope)
+  "Return code for FORM, by OPERATOR, such as CASE, of the value of KEY."
   (hoisting (key) form scope
     `(make-branch :form ',form
-                  :chooser ,(value-lambda `(case (fluent-value ,key)
-                                             ,@(loop for (keys) in clauses
-                                                     for index from 0
-                                                     collect (list keys index)))
+                  :chooser ,(value-lambda `(,operator (fluent-value ,key)
+                                                      ,@(loop for (keys) in clauses
+                                                              for index from 0
+                                                              collect (list keys index)))
                                           scope)
                   :branches (vector ,@(loop for (nil . body) in clauses
                                             collect (body-code body scope))))))
+
+(define-plan-form "CASE" nil (key &rest clauses) (form scope)
+  (case-code form 'case key clauses scope))
+
+(define-plan-form "ECASE" nil (key &rest clauses) (form scope)
+  (case-code form 'ecase key clauses scope))
+
+(define-plan-form "CCASE" nil (key &rest clauses) (form scope)
+  (case-code form 'ecase key clauses scope))
 
 (define-plan-form "AND" nil (&rest forms) (form scope)
   (if (rest forms)

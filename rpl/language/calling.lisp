@@ -6,15 +6,16 @@
 ;;; either the procedure's entry or a Lisp function, and calls that with them.
 
 (define-expression call
-  "A call of a procedure, or of a Lisp function that was unknown when the plan was compiled."
-  (:parts (procedure procedure) (caller function))
+  "A call with COUNT arguments of a procedure, or of a Lisp function that was unknown when the plan
+was compiled."
+  (:parts (procedure procedure) (count fixnum) (caller function))
   (:steps
    (begin
     (cond ((defined-p procedure)
            (next inside)
            (note-depth task frame)
            (enter (the node (procedure-body procedure))
-                  (funcall caller environment (procedure-entry procedure))
+                  (funcall caller environment (entry-for procedure count))
                   frame))
           (t (values (frame-up frame)
                      (multiple-value-call #'bundle-up

@@ -33,7 +33,9 @@ SUSPENSION."
 
 (defun reject-shape (form lambda-list)
   (let ((*print-case* :downcase))
-    (reject-clause "plan" form (format nil "(~A~{ ~A~})" (operator-text form) lambda-list))))
+    (reject-clause (author) form
+                   (format nil "(~A~{ ~A~})~@[, not ~A~]" (operator-text form) lambda-list
+                           (slip-in-construct form lambda-list)))))
 
 (defun refuse-code (form scope)
   "Return code for FORM, which plans cannot wait inside: a leaf, or an error if it would wait."
@@ -45,6 +47,15 @@ SUSPENSION."
 (defun suspends-p (form scope)
   "True if FORM in SCOPE makes its task wait, or may do so."
   (and (consp form) (suspension form scope)))
+
+(defun binds-fluents-p (form scope)
+  "True if FORM is a LET of the plan's text that binds variables to fluents; leaves do not keep an
+account of these."
+  (and (consp form)
+       (own-text-p form)
+       (operator-in-p form '("LET" "LET*"))
+       (proper-list-p (second form))
+       (bound-to-fluents (second form) (cddr form) scope (operator-in-p form '("LET*")))))
 
 ;;; An expression of which a part that Lisp is to use makes the task wait.
 
@@ -71,7 +82,9 @@ it, and those to the left of them too, to keep the order."
   (let* ((local (cdr (assoc (first form) (scope-procedures scope))))
          (arguments (loop for argument in (rest form) collect (as-lisp argument scope)))
          (outer (and local (list (environment-form scope (second local))))))
+    (check-call form scope)
     `(make-call :form ',form
+                :count ,(length arguments)
                 :procedure ,(if local (first local) `(ensure-procedure ',(first form)))
                 :caller ,(leaf-lambda `(funcall %function ,@outer ,@arguments) scope
                                       '%function))))
@@ -89,7 +102,10 @@ it, and those to the left of them too, to keep the order."
 
 (defun plan-code (form scope)
   "Return code that builds the node for FORM."
-  (if (not (suspends-p form scope))
+  (keep-place (node-code form scope) form))
+
+(defun node-code (form scope)
+  (if (not (or (suspends-p form scope) (binds-fluents-p form scope)))
       (leaf-code form scope)
       (let* ((environment (scope-environment scope))
              (plan-form (find-plan-form form environment)))

@@ -6,10 +6,6 @@
 ;;; it is written outside of plans. The compiler makes a node of it. A task runs the node step by
 ;;; step, in states that have names. And signals pass it. See rpl/README.md for how to add one.
 
-(defmacro in-plans-only (form)
-  "Signal MISUSE: FORM, of the plan language, was met in ordinary Lisp code."
-  (misplaced (first form) (rest form)))
-
 ;;; All constructs.
 
 (defvar *constructs* '()

@@ -21,17 +21,27 @@
   (let* ((definition (title "def-interp-proc" name))
          (parameters (untyped-lambda-list parameters definition))
          (form (list* name parameters body)))
-    (declare-procedure name)
+    (declare-procedure name parameters)
+    (check-use (lambda-list-variables parameters)
+               (list* (remove-if #'symbolp parameters) body)
+               (if *definition* (defining-form *definition*) form))
     (with-own-text (form)
       (multiple-value-bind (body documentation) (split-documentation body)
         (multiple-value-bind (scope entry) (procedure-parts parameters environment)
           `(progn
              (eval-when (:compile-toplevel :load-toplevel :execute)
-               (declare-procedure ',name)
+               (declare-procedure ',name ',parameters)
                (declaim (ftype function ,name)))
              (install-procedure ',name ',parameters ,documentation
                                 ,entry ,(procedure-body-code name form body scope)
+                                ,(stub-lambda name)
                                 ',(source-here))))))))
+
+(defun stub-lambda (name)
+  "Return the lambda expression for what Lisp code gets that calls the plan procedure NAME."
+  `(lambda (&rest arguments)
+     (declare (ignore arguments))
+     (reject-lisp-call ',name)))
 
 (public def-interp-proc)
 (define-user-macro def-interp-proc (&whole form name parameters &body body &environment environment)
@@ -89,6 +99,26 @@ of the variable and the word for each word that must be there literally."
               (and given expected (symbolp given) (symbolp expected) (same-name-p given expected)))
     (reject-clause (format nil "~(~A~)" name) form (format nil "the word ~(~S~)" expected))))
 
+(defparameter *largest-pattern* 250
+  "How many lists, words and variables may be in a pattern: more than anybody writes, and no more
+than the compiler's stack can bear.")
+
+(defun larger-than-p (form limit)
+  "True if there are more than LIMIT conses in FORM."
+  (let ((open (list form)))
+    (loop while open
+          do (let ((part (pop open)))
+               (when (consp part)
+                 (when (minusp (decf limit)) (return t))
+                 (push (cdr part) open)
+                 (push (car part) open))))))
+
+(defun check-pattern (name pattern)
+  (when (larger-than-p pattern *largest-pattern*)
+    (reject-clause (title "def-interp-macro" name) (abridged pattern)
+                   (format nil "a pattern of at most ~D words and variables, of which the last may ~
+                                be . ?x for all the rest" *largest-pattern*))))
+
 (public def-interp-macro)
 (define-user-macro def-interp-macro ((name &rest pattern) &body template)
   "Define NAME as a macro for plans. ?x in PATTERN stands for any form, to which the variable x is
@@ -96,13 +126,30 @@ bound while TEMPLATE is evaluated; a pattern may end in a dot and ?x for all for
 The value of TEMPLATE is the plan text to use. A documentation string may come before TEMPLATE
 (manual D.8)."
   (check-function-name (title "def-interp-macro" name) name)
+  (check-pattern name pattern)
   (multiple-value-bind (parameters literals) (pattern-parameters pattern)
     (multiple-value-bind (body documentation) (split-documentation template)
       (with-gensyms (form)
-        (user-macro-form
-         name `(&whole ,form ,@parameters) (cons name pattern)
-         `(,@(when documentation (list documentation))
-           (declare (ignorable ,@(remove-if #'symbol-package (element-names parameters))))
-           ,@(loop for (variable word) in literals
-                   collect `(check-literal ',name ,form ,variable ',word))
-           ,@body))))))
+        `(progn
+           ,(user-macro-form
+             name `(&whole ,form ,@parameters) (cons name pattern)
+             `(,@(when documentation (list documentation))
+               (declare (ignorable ,@(remove-if #'symbol-package (element-names parameters))))
+               ,@(loop for (variable word) in literals
+                       collect `(check-literal ',name ,form ,variable ',word))
+               ,@body))
+           (show-lambda-list ',name ',(pattern-to-show parameters literals))
+           ',name)))))
+
+(defun pattern-to-show (parameters literals)
+  "Return PARAMETERS as a lambda list for people, with the words of LITERALS. A variable for all the
+rest called BODY or FORMS is for a body."
+  (cond ((null parameters) '())
+        ((atom parameters) (if (assoc parameters literals)
+                               (second (assoc parameters literals))
+                               (intern (string-right-trim "0123456789" (symbol-name parameters)))))
+        ((and (eq '&rest (first parameters))
+              (member (second parameters) '("BODY" "FORMS") :test #'string=))
+         (list '&body (second parameters)))
+        (t (cons (pattern-to-show (first parameters) literals)
+                 (pattern-to-show (rest parameters) literals)))))

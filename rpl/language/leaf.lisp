@@ -3,6 +3,7 @@
 (in-package :ars-magna.rpl.language)
 
 ;;; Where the plan's own text says so, conditions read fluents by value and operators are lifted.
+;;; What is written for a truth value must not be a vector of fluents.
 
 (defun own-operation-p (form environment names)
   "True if FORM is the plan's own call of one of the operators NAMES."
@@ -13,7 +14,8 @@
 
 (defun operand-form (form environment)
   "Return the form for the value of FORM, an argument of a lifted operator in a condition."
-  (cond ((own-operation-p form environment '("NOT")) (condition-form form environment))
+  (cond ((own-operation-p form environment '("AND" "OR" "NOT" "NULL"))
+         (condition-form form environment))
         ((own-operation-p form environment *lifted-operators*)
          (list* (first form)
                 (loop for argument in (rest form) collect (operand-form argument environment))))
@@ -22,16 +24,24 @@
 
 (defun condition-form (form environment)
   "Return a form that is true if FORM is, fluents counting by their values."
-  (flet ((conditions (forms)
-           (loop for form in forms collect (condition-form form environment))))
-    (cond ((own-operation-p form environment '("AND")) `(and ,@(conditions (rest form))))
-          ((own-operation-p form environment '("OR")) `(or ,@(conditions (rest form))))
-          ((own-operation-p form environment '("NOT")) `(not ,@(conditions (rest form))))
-          (t (operand-form form environment)))))
+  (flet ((conditions (operator)
+           (keep-place `(,operator ,@(loop for form in (rest form)
+                                           collect (condition-form form environment)))
+                       form)))
+    (check-condition form)
+    (cond ((own-operation-p form environment '("AND")) (conditions 'and))
+          ((own-operation-p form environment '("OR")) (conditions 'or))
+          ((own-operation-p form environment '("NOT" "NULL")) (conditions 'not))
+          ((own-operation-p form environment *lifted-operators*)
+           (keep-place (operand-form form environment) form))
+          ((constantp form environment) form)
+          (t (keep-place `(truth-value ,form) form)))))
 
 (defun plan-meaning (form environment)
   "Return what FORM, a call in the plan's own text, means; FORM itself if just what it says."
   (let ((name (or (plan-operator-name form) "")))
+    (when (member name '("AND" "OR" "NOT" "NULL") :test #'string=)
+      (mapc #'check-condition (rest form)))
     (flet ((condition (form) (condition-form form environment))
            (is (&rest names) (member name names :test #'string=)))
       (cond ((is "IF") `(if ,(condition (second form)) ,@(cddr form)))
@@ -39,13 +49,22 @@
             ((is "UNLESS") `(unless ,(condition (second form)) ,@(cddr form)))
             ((is "COND") `(cond ,@(loop for (test . body) in (rest form)
                                         collect `(,(condition test) ,@body))))
-            ((is "CASE") `(case (fluent-value ,(second form)) ,@(cddr form)))
+            ((is "CASE" "ECASE") `(,(first form) (fluent-value ,(second form)) ,@(cddr form)))
+            ((is "CCASE") (ccase-meaning form))
             ((is "LET" "LET*") (let-meaning form))
             ((is "AND") `(lifting-and ,@(rest form)))
             ((is "OR") `(lifting-or ,@(rest form)))
-            ((is "LOOP") (if (plan-loop-p form) (loop-meaning (rest form) environment) form))
+            ((is "LOOP") (if (plan-loop-p form)
+                             (loop-meaning (rest form) environment)
+                             (extended-loop-meaning form environment)))
             ((operator-in-p form *lifted-operators*) `(lifting ,@form))
             (t form)))))
+
+(defun ccase-meaning (form)
+  "Return what FORM, a CCASE, means: what another key is stored into is not the fluent."
+  (with-gensyms (key)
+    `(let ((,key (fluent-value ,(second form))))
+       (,(first form) ,key ,@(cddr form)))))
 
 (defun let-meaning (form)
   "Return FORM, a LET, without types; FORM itself if there are none."
@@ -60,10 +79,27 @@
          `(loop (unless ,(condition-form (second forms) environment) (return)) ,@(cddr forms)))
         (t `(loop ,@forms))))
 
+(defparameter *tests-in-loops*
+  '("WHILE" "UNTIL" "WHEN" "IF" "UNLESS" "ALWAYS" "NEVER" "THEREIS")
+  "The words after which a test stands in LOOP.")
+
+(defun extended-loop-meaning (form environment)
+  "Return FORM, a LOOP of Lisp's own kind, whose tests read fluents by value."
+  (let ((last nil) (test-p nil))
+    (flet ((word-p (word words) (and (symbolp word) (member word words :test #'string=))))
+      (cons (first form)
+            (loop for part in (rest form)
+                  collect (if (shiftf test-p (and (word-p part *tests-in-loops*)
+                                                  (not (word-p last '("FOR" "AS" "WITH" "INTO")))))
+                              (condition-form part environment)
+                              part)
+                  do (setf last part))))))
+
 (defun leaf-meaning (form environment)
   "Return FORM, met in a leaf, with its plan meaning."
   (cond ((not (and (consp form) (symbolp (first form)) (own-text-p form))) form)
         ((plan-in-leaf-p form) (values form t))
+        ((look-at-operands form environment))
         (t (let ((meaning (if (local-function-p (first form) environment)
                               form
                               (plan-meaning form environment))))
@@ -77,11 +113,18 @@
   "Return FORM, a leaf's, as Lisp is to compile it."
   (if (atom form)
       form
-      (walk-form form (scope-environment scope) #'leaf-meaning)))
+      (let ((*fluents-here* (scope-fluents scope)))
+        (walk-form form (scope-environment scope) #'leaf-meaning))))
 
 (defun test-lambda (form scope)
   "Return the lambda expression, of the environment, for FORM as a condition."
   (leaf-lambda (as-lisp (condition-form form (scope-environment scope)) scope) scope))
+
+(defun condition-lambda (form scope)
+  "Return the lambda expression, of the environment, for the object that FORM, a condition, is: a
+fluent to wait for."
+  (check-condition form)
+  (leaf-lambda `(one-fluent ,(as-lisp form scope)) scope))
 
 (defun value-lambda (form scope)
   "Return the lambda expression, of the environment, for the one value of FORM."

@@ -30,12 +30,6 @@
 (document-functions
  make-leave "Return a node that leaves for its target with the value of its result, both nodes.")
 
-(defun mentions-p (symbol code)
-  (loop for tail = code then (cdr tail)
-        while (consp tail)
-        thereis (mentions-p symbol (car tail))
-        finally (return (eq symbol tail))))
-
 (defun block-code (name form scope coder)
   "Return the code that CODER returns for a scope in which a block called NAME, whose source is
 FORM, can be left. There is a node for it only if it is."

@@ -56,9 +56,10 @@ them if OUTER, and returns the environment for a procedure's body."
   "Return SCOPE with DEFINITIONS, of local procedures, visible."
   (if definitions
       (inner-scope scope
-                   :procedures (append (loop for (name) in definitions
+                   :procedures (append (loop for (name parameters) in definitions
                                              collect (list name (gensym (string name))
-                                                           (scope-level scope)))
+                                                           (scope-level scope)
+                                                           (untyped-lambda-list parameters)))
                                        (scope-procedures scope))
                    :environment (extended-environment (scope-environment scope)
                                                       :function (mapcar #'first definitions)))

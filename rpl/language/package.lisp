@@ -13,7 +13,7 @@ DEFINE-CONSTRUCT adds to it.")
   ;; scope
   (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope)
   ;; leaf
-  (:export #:value-lambda)
+  (:export #:condition-lambda #:value-lambda)
   ;; compiler
   (:export #:define-plan-form #:hoisted-code #:plan-code #:suspends-p)
   ;; steps

@@ -10,11 +10,12 @@
   (make-ready task)
   +parked+)
 
-(defun checked-count (count)
-  "Return COUNT, of turns: a number, or NIL for as many as it takes. Signals WRONG-ARGUMENT."
-  (check-argument n-times count (or (null count) (quantity-p count))
-                  "a number of turns, from -1e15 to 1e15")
-  count)
+(defun turn-count (count)
+  "Return COUNT, of turns, a number or a fluent that holds one. Signals WRONG-ARGUMENT."
+  (let ((count (fluent-value count)))
+    (check-argument n-times count (quantity-p count)
+                    "a number of turns, from -1e15 to 1e15, first of all: (n-times count form...)")
+    count))
 
 (define-expression turns
   "BODY again and again: while UNTIL of the environment is false, at most TIMES of it times. A frame
@@ -23,7 +24,7 @@ remembers how many are left, NIL if any number."
   (:parts (until function) (times function) (body node))
   (:steps
    (begin
-    (setf memory (checked-count (funcall times environment)))
+    (setf memory (funcall times environment))
     (at-once between-turns))
    (in-turn
     (cond ((alone-p task) (at-once between-turns))
@@ -63,7 +64,7 @@ remembers how many are left, NIL if any number."
   "Run BODY in a plan COUNT times, one turn after the other. BODY may start with UNTIL or WHILE and
 a test made before each turn. COUNT is a number up to 1e15. Return NIL."
   (:arguments count)
-  (:code (turns-code form (note-own-text `(fluent-value ,count)) body scope)))
+  (:code (turns-code form (note-own-text `(turn-count ,count)) body scope)))
 
 ;;; Over the elements of a list, and numbers.
 

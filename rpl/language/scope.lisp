@@ -20,6 +20,8 @@ builds the plan, that hold their nodes."
   (procedures '() :type list)
   (retry nil :type symbol)
   (task-tags '() :type list)
+  ;; Those variables that are known to hold fluents.
+  (fluents '() :type list)
   (several nil :type boolean))
 
 (document-functions
@@ -56,9 +58,10 @@ builds the plan, that hold their nodes."
                             (special-variable-p variable (scope-environment scope)))
                           variables)))
     (when special
-      (reject-clause "plan" special "the name of a lexical variable; this one is special"))
-    (layered-scope scope (list :variables level variables) level
-                   :variable (remove-duplicates variables))))
+      (reject-clause (author) special "the name of a lexical variable; this one is special"))
+    (inner-scope (layered-scope scope (list :variables level variables) level
+                                :variable (remove-duplicates variables))
+                 :fluents (set-difference (scope-fluents scope) variables))))
 
 (defun function-scope (scope names)
   "Return SCOPE with the local functions NAMES held in an environment of their own."

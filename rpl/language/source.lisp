@@ -10,14 +10,23 @@
 ;;; So the conses of the text are remembered, and those of what other macros than Lisp's expand
 ;;; into.
 
-(define-condition misplaced-suspension (ars-magna-error)
+(defun author ()
+  "Return what the text at hand is called in messages."
+  (if *definition*
+      (let ((form (defining-form *definition*)))
+        (title (first form) (second form)))
+      "plan"))
+
+(define-condition misplaced-suspension (malformed-definition)
   ((form :initarg :form :reader misplaced-form)
    (container :initarg :container :reader misplaced-container)
    (advice :initarg :advice :reader misplaced-advice))
   (:report (lambda (condition stream)
              (let ((*print-case* :downcase))
-               (format stream "A plan cannot wait inside ~A:~%  ~S~%with, inside,~%  ~S~%~A"
+               (format stream "A plan cannot wait inside ~A~@[ (~A)~]:~%  ~S~%~
+                               with, inside,~%  ~S~%~A"
                        (operator-text (misplaced-container condition))
+                       (malformed-definition-place condition)
                        (misplaced-container condition) (misplaced-form condition)
                        (misplaced-advice condition)))))
   (:documentation "A plan waits, fails or runs another plan inside a form that only Lisp runs."))
@@ -52,13 +61,26 @@
 
 (defun reject-suspension (form container)
   "Signal MISPLACED-SUSPENSION: FORM would make the task wait inside CONTAINER."
-  (error 'misplaced-suspension :form form :container container :advice (advice-for container)))
+  (let ((advice (advice-for container)))
+    (call-at-place form
+                   (lambda ()
+                     (error 'misplaced-suspension
+                            :definition (author) :clause form
+                            :expected (format nil "nothing that waits inside ~A. ~A"
+                                              (operator-text container)
+                                              (string-right-trim "." advice))
+                            :form form :container container :advice advice
+                            :place (clause-place form))))))
 
-(defun misplaced (name arguments)
-  "Signal MISUSE: the construct called NAME was met in ordinary Lisp code."
+(defmacro in-plans-only (form)
+  "Signal MISUSE: FORM, of the plan language, was met in ordinary Lisp code."
   (reject-use "~S is part of the plan language. Write it in a def-interp-proc, or outside of any ~
                lambda or Lisp form there that keeps plans from waiting."
-              (cons name arguments)))
+              form))
+
+(defun misplaced (name arguments)
+  "Return what the construct called NAME with ARGUMENTS expands to in ordinary Lisp code."
+  (list 'in-plans-only (cons name arguments)))
 
 ;;; Names of operators.
 
@@ -87,7 +109,7 @@
   (operator-in-p form '("INTERP-LAMBDA" "DEF-INTERP-PROC")))
 
 (defparameter *lifted-operators*
-  '("NOT" "<" ">" "<=" ">=" "=" "+" "-" "*" "/" "EQ" "EQL" "EQUAL"))
+  '("NOT" "NULL" "<" ">" "<=" ">=" "=" "+" "-" "*" "/" "EQ" "EQL" "EQUAL"))
 
 (defun keyword-test (forms name)
   "True if FORMS start with the symbol NAME and a test, as after LOOP."
@@ -128,3 +150,12 @@ has the same names every time, so that traces can be compared."
          (*gensym-counter* 0))
      (note-own-text ,form)
      ,@body))
+
+(defun mentions-p (symbol code)
+  "True if SYMBOL occurs in CODE."
+  (loop for tail = code then (cdr tail)
+        while (consp tail)
+        thereis (mentions-p symbol (car tail))
+        finally (return (or (eq symbol tail)
+                            (and (form-behind-comma tail)
+                                 (mentions-p symbol (form-behind-comma tail)))))))

@@ -43,7 +43,7 @@ form and its scope and returns code that builds a node."
   "Signal MALFORMED-DEFINITION if FORM is an IF of the plan's text that is none of a plan's."
   (when (and (own-text-p form) (operator-in-p form '("IF")))
     (unless (typep form '(cons t (cons t (cons t (or null (cons t null))))))
-      (reject-clause "plan" form "(if test then [else]): put several forms into (seq ...)"))))
+      (reject-clause (author) form "(if test then [else]): put several forms into (seq ...)"))))
 
 (defun call-suspends (form scope environment)
   "Return :MUST, :MAY or NIL for FORM, a call or special form, its parts left aside."

@@ -86,20 +86,25 @@ name in a list, or attributes and values. Signals WRONG-ARGUMENT (manual, figure
 WRONG-ARGUMENT, and MISUSE without a robot."
   (find-part kind index 'rpl-robot-part))
 
+;;; What a grab ends is told to plans before the one that grabs goes on: it has nothing to wait for.
+
 (public rpl-grab-robot)
 (defun rpl-grab-robot ()
-  "Stop whatever the robot itself is doing (manual C)."
-  (grab-resource (rpl-robot) (interface-simulation (the-interface))))
+  "Stop whatever the robot itself is doing. Fluents say so at once: error code :INTERRUPT and the
+pulse; the robot stands from the next tick on (manual C)."
+  (grab (the-interface) (rpl-robot))
+  (values))
 
 (macrolet ((define-grabs (&rest definitions)
              `(progn
                 ,@(loop for (name kind text) in definitions
                         collect `(public ,name)
                         collect `(defun ,name (index)
-                                   ,(format nil "Stop whatever goes on on ~A INDEX. Signals ~
+                                   ,(format nil "Stop whatever goes on on ~A INDEX. Fluents say ~
+                                                 so at once; see RPL-GRAB-ROBOT. Signals ~
                                                  WRONG-ARGUMENT. (Manual C.)" text)
-                                   (grab-resource (find-part ',kind index ',name)
-                                                  (interface-simulation (the-interface))))))))
+                                   (grab (the-interface) (find-part ',kind index ',name))
+                                   (values))))))
   (define-grabs
     (rpl-grab-camera camera "the camera")
     (rpl-grab-hand hand "the hand")

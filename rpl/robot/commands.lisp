@@ -9,22 +9,22 @@
 ;;; The robot.
 
 (define-outcome (robot-set-speed robot-set-turn-angle) ()
-  (:set robot-movement-error* err))
+  (:error robot-movement-error*))
 
 (define-outcome (robot-turn robot-about-face robot-turn-left robot-turn-right robot-turn-corner
                  robot-align-place)
     (angle)
   (:when angle (:set robot-angle-diff* angle))
-  (:set robot-movement-error* err)
+  (:error robot-movement-error*)
   (:pulse robot-stopped*))
 
 (define-outcome (robot-go-forward robot-goto-wall robot-follow-wall robot-stop) ()
-  (:set robot-movement-error* err)
+  (:error robot-movement-error*)
   (:pulse robot-stopped*))
 
 (define-outcome (robot-goto-designator) (camera designator)
   (:when (null err) (:set robot-arrived-at* designator))
-  (:set robot-movement-error* err)
+  (:error robot-movement-error*)
   (:pulse robot-stopped*))
 
 (define-outcome (robot-place) (place-type)
@@ -34,33 +34,33 @@
 ;;; Cameras.
 
 (define-outcome (camera-turn camera-align-robot camera-align-place camera-insert camera-remove) ()
-  (:set camera-movement-error* err)
+  (:error camera-movement-error*)
   (:pulse camera-moved*))
 
 (define-outcome (camera-view) (view)
   (:when (null err) (:set camera-views* view))
-  (:set camera-error* err)
+  (:error camera-error*)
   (:pulse camera-input*))
 
 ;; As reading 178 says.
 (define-outcome (camera-get-object-designator camera-get-place-designator) (designator)
   (:set camera-designators* (if designator (list designator) '()))
-  (:set camera-error* err)
+  (:error camera-error*)
   (:pulse camera-input*))
 
 (define-outcome (camera-get-all-object-designators camera-get-all-place-designators) (designators)
   (:set camera-designators* designators)
-  (:set camera-error* err)
+  (:error camera-error*)
   (:pulse camera-input*))
 
 ;; A track is answered twice: when it starts, without an error, and when it ends, with one.
 (define-outcome (camera-track) ()
-  (:set camera-tracking-error* err)
+  (:error camera-tracking-error*)
   (:when (null err) (:pulse camera-tracking*)))
 
 ;; What it ended tells of that first, with :INTERRUPT.
 (define-outcome (camera-untrack) ()
-  (:set camera-tracking-error* err))
+  (:error camera-tracking-error*))
 
 ;;; Hands. One inside a box inside a bin is, when it comes out of the box, inside the bin.
 
@@ -82,44 +82,44 @@
 
 (define-outcome (hand-insert hand-insert-bin) (destination)
   (:when (null err) (:set hand-inside* (went-into resource destination)))
-  (:set hand-error* err)
+  (:error hand-error*)
   (:pulse hand-moved*))
 
 ;; As reading 180 says.
 (define-outcome (hand-remove) ()
   (:when (null err) (:set hand-inside* (came-out resource)))
-  (:set hand-error* err)
+  (:error hand-error*)
   (:pulse hand-moved*))
 
 (define-outcome (hand-grasp-desig) (designator)
   (:when (null err) (:set hand-grasping* designator))
-  (:set hand-error* err)
+  (:error hand-error*)
   (:pulse hand-moved*))
 
 (define-outcome (hand-ungrasp) ()
   (:when (member err '(nil :not-grasping)) (:set hand-grasping* nil))
-  (:set hand-error* err)
+  (:error hand-error*)
   (:pulse hand-moved*))
 
 (define-outcome (hand-grasp-check) ()
   (:when (eq err :not-grasping) (:set hand-grasping* nil))
-  (:set hand-error* err)
+  (:error hand-error*)
   (:pulse hand-input*))
 
 ;; As reading 23 says.
 (define-outcome (hand-track) ()
   (:when (member err '(:grasp-lost :not-grasping)) (:set hand-grasping* nil))
-  (:set hand-error* err)
+  (:error hand-error*)
   (:when (eq err :grasp-lost) (:pulse hand-lost*)))
 
 ;;; Storage bins.
 
 (define-outcome (storage-bin-open) ()
-  (:set storage-bin-error* err)
+  (:error storage-bin-error*)
   (:pulse storage-bin-moved*))
 
 ;; As reading 182 says.
 (define-outcome (storage-bin-close) (jammed-part)
   (:set storage-bin-jammer* jammed-part)
-  (:set storage-bin-error* err)
+  (:error storage-bin-error*)
   (:pulse storage-bin-moved*))

@@ -26,6 +26,9 @@ Return their names."
                                                  (unless (same-name-p kind 'robot)
                                                    (format nil " A vector, by ~(~A~)." kind))))
              collect `(pushnew '(,name ,kind) *fluent-variables* :key #'first)
+             collect `(declare-fluent-variable ',name ,(if (same-name-p kind 'robot)
+                                                           t
+                                                           (string-downcase kind)))
              collect `(pushnew ',name *simulation-variables*))
      ',(mapcar #'first definitions)))
 

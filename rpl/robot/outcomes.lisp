@@ -31,21 +31,9 @@ TYPE (reading 181)."
       (values (rpl-robot) arguments)
       (values (convert-argument (first arguments) type operator) (rest arguments))))
 
-(defun ends-p (command err)
-  "True if an answer of COMMAND with the error code ERR is its last: a track that begins will end."
-  (or err (not (eq 'camera-track (command-name command)))))
-
-(defun answering (interface command outcome)
-  "Return a continuation for COMMAND: it posts what OUTCOME makes of the answer."
-  (atomic-incf (interface-under-way interface))
-  (lambda (err resource &rest results)
-    (post-batch (interface-runner interface) (apply outcome resource err results))
-    (when (ends-p command err)
-      (atomic-decf (interface-under-way interface)))))
-
 (defun command-in-plan (operator command outcome arguments)
-  "Issue COMMAND as the plan function OPERATOR, and post what OUTCOME, a function of the resource,
-the error code and the results, makes of its end."
+  "Issue COMMAND as the plan function OPERATOR. OUTCOME, a function of the resource, the error code
+and the results, makes settings of its end."
   (let ((interface (the-interface)))
     (multiple-value-bind (resource arguments)
         (convert-resource arguments (spec-type (command-resource command)) operator)
@@ -53,8 +41,8 @@ the error code and the results, makes of its end."
                              for argument in arguments
                              collect (convert-argument argument (spec-type spec) operator))))
         (check-in-plan operator command arguments)
-        (apply (command-name command) resource
-               (append arguments (list (answering interface command outcome))))))))
+        (issue-deed interface command resource arguments outcome)
+        (values)))))
 
 (defun check-in-plan (operator command arguments)
   "Signal WRONG-ARGUMENT in the name of OPERATOR if COMMAND does not take ARGUMENTS."
@@ -84,23 +72,28 @@ and PARAMETERS, lists (variable type text)."
     (:set (destructuring-bind (fluent value) (rest clause)
             (check-fluent fluent clause)
             `(list (list :set (fluent-of ',fluent resource) ,value))))
+    (:error (check-fluent (second clause) clause)
+     `(list (list :error (fluent-of ',(second clause) resource) err)))
     (:pulse (check-fluent (second clause) clause)
      `(list (list :pulse (fluent-of ',(second clause) resource))))
     (:when (destructuring-bind (test . clauses) (rest clause)
              `(when ,test (append ,@(mapcar #'clause-form clauses)))))
     (t (reject-clause "define-outcome" clause
-                      "(:set fluent form), (:pulse fluent) or (:when form clause...)"))))
+                      (format nil "(:set fluent form), (:error fluent), (:pulse fluent) or ~
+                                   (:when form clause...)")))))
 
 (defun clause-fluents (clauses)
   (loop for clause in clauses
         append (case (first clause)
-                 ((:set :pulse) (list (second clause)))
+                 ((:set :error :pulse) (list (second clause)))
                  (:when (clause-fluents (cddr clause))))))
 
 (defmacro define-outcome (commands (&rest results) &body clauses)
   "Define the plan functions of COMMANDS. When one ends, CLAUSES are carried out with ERR bound to
-its error code and RESULTS to its results: (:set fluent form), (:pulse fluent), (:when form
-clause...). See reading 179."
+its error code and RESULTS to its results: (:set fluent form), (:error fluent), which sets the
+fluent to ERR, (:pulse fluent), (:when form clause...). When a plan's newer command interrupts one,
+that happens at once, with :INTERRUPT and no results; what the robot answers to it later sets only
+the fluents of :SET, which say what the robot is or has. See reading 179."
   `(progn
      ,@(loop for command-name in commands
              for (resource specifications sentence) = (command-shape command-name)

@@ -6,7 +6,8 @@
   (:import-from :ars-magna.world #:world-map #:*world* #:remaining-capacity)
   (:import-from :ars-magna.time
                 #:*simulation* #:seconds-now #:current-simulation #:asking #:live-p
-                #:grab-resource #:wake-owner #:timeline-inbox #:agenda-pending #:*hog-seconds*)
+                #:grab-resource #:wake-owner #:timeline-inbox #:agenda-pending #:*hog-seconds*
+                #:hog-seconds)
   (:import-from :ars-magna.run
                 #:simulation-tick #:add-observer #:remove-observer #:run-ticks #:call-as-owner
                 #:simulation-over #:simulation-seed #:simulation-agenda #:simulation-thread
@@ -15,12 +16,16 @@
                 #:remove-participant #:participant-after-tick #:participant-busy-p
                 #:participant-reseed #:participant-digest #:participant-end)
   (:import-from :ars-magna.rpl
-                #:create-fluent #:create-fluent-vector #:fluent-value #:post-batch #:react-to-all
-                #:advance-timers #:next-wake-time #:make-plan-runner
-                #:start-plan #:stop-plan #:plan-runner #:plan-runner-tasks #:task-over-p
-                #:task-state #:task-result #:task-p #:plan-deadlocked-p #:report-deadlock
-                #:reseed-runner #:digest-runner #:print-tasks #:find-procedure #:plan-trace
-                #:write-trace)
+                #:create-fluent #:create-fluent-vector #:declare-fluent-variable
+                #:fluent-value #:apply-settings #:*runner*
+                #:post-call #:react-to-all #:exhaust-reaction #:close-runner #:advance-timers
+                #:next-wake-time #:make-plan-runner #:start-plan #:stop-plan #:plan-runner
+                #:plan-runner-tasks #:plan-runner-steps #:current-task #:task #:task-p
+                #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
+                #:task-label #:task-serial #:task-form #:task-cleaning #:form-text
+                #:plan-deadlocked-p #:report-deadlock #:report-end #:reseed-runner
+                #:digest-runner #:print-tasks #:find-procedure #:plan-trace #:write-trace #:valve
+                #:make-valve)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
            #:robot-place-input* #:robot-place*
@@ -30,7 +35,7 @@
            #:storage-bin-moved* #:storage-bin-error* #:storage-bin-jammer*)
   (:export #:define-fluents #:define-outcome)
   ;; interface, accessors
-  (:export #:rpl-init-robot #:rpl-robot #:rpl-robot-part #:*trace-plans*
+  (:export #:rpl-init-robot #:rpl-robot #:rpl-robot-valve #:rpl-robot-part #:*trace-plans*
            #:rpl-robot-speed #:rpl-robot-turn-angle #:rpl-robot-num-cameras
            #:rpl-robot-num-hands #:rpl-robot-num-bins #:rpl-camera-field-of-view
            #:rpl-camera-resolution #:rpl-camera-angle #:rpl-camera-last-view

@@ -8,8 +8,7 @@
 
 (defun ensure-interface ()
   "Return the interface in use; make one if the current simulation has a single robot."
-  (if (usable-p *interface*)
-      *interface*
+  (or (usable-interface)
       (let ((robots (simulation-robots (current-simulation))))
         (unless (= 1 (length robots))
           (reject-use "There are ~D robots here. Say which is to be driven: (rpl-init-robot ROBOT)."
@@ -17,15 +16,24 @@
         (rpl-init-robot (first robots))
         *interface*)))
 
+(defun begin-in (interface plan arguments note)
+  "Start PLAN with the list ARGUMENTS by INTERFACE, and return its task. NOTE, a function, has been
+called with that before anything else can happen."
+  (prog1 (with-plans (interface)
+           (let ((task (apply #'start-plan (interface-runner interface) plan arguments)))
+             (funcall note task)
+             task))
+    (ensure-thread interface)
+    (wake interface)))
+
 (addition begin-plan)
 (defun begin-plan (plan &rest arguments)
   "Start PLAN, a plan procedure or its name, with ARGUMENTS, and return its task at once. Headless
 it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
-  (let ((interface (ensure-interface)))
-    (prog1 (with-plans (interface)
-             (apply #'start-plan (interface-runner interface) plan arguments))
-      (ensure-thread interface)
-      (wake interface))))
+  (begin-in (ensure-interface) plan arguments #'identity))
+
+(defconstant +longest-report+ 4000
+  "How many characters a report of plans has at most.")
 
 (defun deadlocked-p (interface)
   (with-plans (interface) (plan-deadlocked-p (interface-runner interface))))
@@ -76,48 +84,74 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
   (when (eq (current-thread) (simulation-thread (interface-simulation interface)))
     (reject-use "run-plan: the simulator would wait for itself. Use begin-plan here.")))
 
+;;; What did not end.
+
+(defun report-limit (interface task)
+  "Queue an error message that says that TASK was given up, and what it and its parts wait for."
+  (error-set "The plan " (task-label task) " was given up at tick "
+             (simulation-tick (interface-simulation interface)) ", after " *plan-limit*
+             " ticks; see *PLAN-LIMIT*. It was at:" t
+             (cut (with-output-to-string (stream) (print-tasks task stream)) +longest-report+)))
+
+(defun report-not-over (interface task state)
+  "Report why TASK is not over, if STATE says that it never would be."
+  (case state
+    (:deadlock (with-plans (interface) (report-deadlock (interface-runner interface))))
+    (:limit (with-plans (interface) (report-limit interface task)))))
+
+(defun await-plan (interface task)
+  "Let TASK go on until it is over, or cannot be. Return its state, or how it came that it is not."
+  (let ((state (if (live-p (interface-simulation interface))
+                   (await-over interface task)
+                   (run-headless interface task))))
+    (report-not-over interface task state)
+    state))
+
 (addition run-plan)
 (defun run-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or its name, with ARGUMENTS on the robot of RPL-INIT-ROBOT, or on
 the only one of the current simulation. Return what it returns, or the failure with which it failed,
 and how it ended: :succeeded, :failed, :evaporated, :deadlock (it waits for what can never
-come, which is reported), :limit (*PLAN-LIMIT* ticks have passed, headless) or :stopped (the
-simulator was stopped or started anew, or the robot defined anew). Signals UNKNOWN-NAME and MISUSE."
+come), :limit (*PLAN-LIMIT* ticks have passed, headless) or :stopped (the simulator was stopped or
+started anew, or the robot defined anew). Failures, deadlocks and limits are reported. A plan that
+is not over when RUN-PLAN returns or is left, as by an abort, ends. Signals UNKNOWN-NAME and
+MISUSE."
   (let ((interface (ensure-interface)))
     (check-outside interface)
-    (let* ((task (apply #'begin-plan plan arguments))
-           (state (if (live-p (interface-simulation interface))
-                      (await-over interface task)
-                      (run-headless interface task))))
-      (when (eq state :deadlock)
-        (with-plans (interface) (report-deadlock (interface-runner interface))))
-      (unless (task-over-p task) (end-in interface task))
+    (let ((task nil) (state nil))
+      (in-any-case
+        (progn (begin-in interface plan arguments (lambda (begun) (setf task begun)))
+               (setf state (await-plan interface task)))
+        (when (and task (not (task-over-p task))) (end-in interface task)))
       (values (task-result task) state))))
 
 (addition plans)
 (defun plans ()
   "Return a list of the tasks of the plans under way, in order of their start."
-  (if (usable-p *interface*)
-      (plan-runner-tasks (interface-runner *interface*))
-      '()))
+  (let ((interface (usable-interface)))
+    (and interface (tasks-of interface))))
 
 (addition print-plans)
 (defun print-plans (&optional (stream *standard-output*))
   "Print the plans under way to STREAM, each as a tree of tasks: what each does and waits for."
-  (if (usable-p *interface*)
-      (with-plans (*interface*) (print-tasks (interface-runner *interface*) stream))
-      (format stream "No plans.~%")))
+  (let ((interface (usable-interface)))
+    (if interface
+        (with-plans (interface) (print-tasks (interface-runner interface) stream))
+        (format stream "No plans.~%"))))
 
 (defun end-in (interface task)
   "Let TASK of INTERFACE, or all if it is NIL, evaporate: now, or when their thread gets to it."
+  (dolist (task (if task (list task) (tasks-of interface)))
+    (unless (task-over-p task) (atomic-push task (interface-unwanted interface))))
   (stop-plan (interface-runner interface) task)
-  (unless (or (holding-p interface) (interface-thread interface))
+  (unless (or (holding-p interface) (thread-of interface))
     (with-plans (interface) (react-fully interface))))
 
 (addition end-plan)
 (defun end-plan (task)
-  "Let the plan TASK, or all plans if it is :ALL, evaporate. Returns nothing. Signals
-WRONG-ARGUMENT."
+  "Let the plan TASK, or all plans if it is :ALL, evaporate. Commands of theirs that are under way
+are interrupted, but for what they asked for to clean up. Lisp code of a live plan that keeps the
+plans' thread is aborted. Returns nothing. Signals WRONG-ARGUMENT."
   (check-argument end-plan task (or (eq task :all) (task-p task))
                   "a task, as begin-plan returns, or :ALL")
   (end-in (the-interface) (if (eq task :all) nil task))

@@ -36,15 +36,19 @@ plans nor a simulator.")
   ;; ending
   (:export #:complete #:complete-when-alone #:decide #:evaporate #:fail-or-escape #:note-status
            #:receive #:release-held #:stop-waiting #:unwind #:withdraw)
+  ;; shape
+  (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
   ;; procedure
-  (:export #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p
+  (:export #:entry-for #:set-lambda-list #:declared-names #:declared-lambda-list #:reject-lisp-call
+           #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p
            #:ensure-procedure #:enter-plan #:find-procedure #:install-procedure #:make-procedure
            #:procedure #:procedure-body #:procedure-entry #:procedure-lambda-list
            #:procedure-name #:procedure-name-p #:procedure-p)
   ;; blame
   (:export #:failure-of)
   ;; report
-  (:export #:*plan-end-hooks* #:print-tasks #:report-deadlock #:report-failure #:task-awaits)
+  (:export #:*plan-end-hooks* #:print-tasks #:report-deadlock #:report-end #:report-failure
+           #:task-awaits)
   ;; engine
   (:export #:advance-timers #:apply-next-batch #:close-runner #:digest-runner #:idle-p
            #:make-plan-runner #:next-wake-time #:plan-deadlocked-p #:post-batch #:post-call

@@ -9,9 +9,13 @@
 
 (defstruct (procedure (:constructor make-procedure (name)) (:copier nil))
   "A plan with parameters. ENTRY takes the arguments and returns the environment to run BODY in;
-it is NIL as long as there is only the name. STUB is what Lisp code gets that calls the name."
+it is NIL as long as there is only the name. STUB is what Lisp code gets that calls the name. LEAST
+and MOST say how many arguments it takes, KEYS-P whether there are keywords among them."
   (name nil :type symbol :read-only t)
   (lambda-list '() :type list)
+  (least 0 :type fixnum)
+  (most most-positive-fixnum :type fixnum)
+  (keys-p nil :type boolean)
   (entry nil :type (or null function))
   (body nil :type (or null node))
   (stub nil :type (or null function)))
@@ -75,11 +79,12 @@ or return NIL if ERRORP is NIL."
 ;;; Which names are plans' is also known while the file that defines them is compiled.
 
 (defvar *declared-procedures* (make-hash-table :test 'eq :synchronized t)
-  "Names that a DEF-INTERP-PROC has been compiled or loaded for.")
+  "Lists of their lambda list by the names that a DEF-INTERP-PROC has been compiled or loaded for.")
 
-(defun declare-procedure (name)
-  "Let the plans that are compiled from now on take NAME for that of a plan procedure."
-  (setf (gethash name *declared-procedures*) t))
+(defun declare-procedure (name lambda-list)
+  "Let the plans that are compiled from now on take NAME for that of a plan procedure with
+LAMBDA-LIST."
+  (setf (gethash name *declared-procedures*) (list lambda-list)))
 
 (defun procedure-name-p (name)
   "True if NAME is known to name a plan procedure."
@@ -87,22 +92,38 @@ or return NIL if ERRORP is NIL."
        (let ((procedure (gethash name *cells*)))
          (or (null procedure) (null (procedure-entry procedure)) (defined-p procedure)))))
 
-(defun procedure-stub-for (name)
-  "Return the Lisp function called NAME: it says that NAME is a plan."
-  (lambda (&rest arguments)
-    (declare (ignore arguments))
-    (reject-use "~S is a plan procedure and was called by Lisp code. Call it from a plan, outside ~
-                 of any lambda; at top level run it: (run-plan-alone '~S ...)." name name)))
+(defun declared-lambda-list (name)
+  "Return the lambda list of the plan procedure that NAME is known to name."
+  (first (gethash name *declared-procedures*)))
 
-(defun install-procedure (name lambda-list documentation entry body &optional source)
+(defun declared-names ()
+  "Return the names that are known to name plan procedures."
+  (loop for name being the hash-keys of *declared-procedures*
+        when (procedure-name-p name) collect name))
+
+(defun reject-lisp-call (name)
+  "Signal MISUSE: Lisp code has called NAME."
+  (reject-use "~S is a plan procedure and was called by Lisp code. Call it from a plan, outside of ~
+               any lambda; at top level run it: (run-plan-alone '~S ...)." name name))
+
+(defun set-lambda-list (procedure lambda-list)
+  "Let PROCEDURE take what LAMBDA-LIST says."
+  (let ((shape (shape-of lambda-list)))
+    (setf (procedure-lambda-list procedure) lambda-list
+          (procedure-least procedure) (shape-least shape)
+          (procedure-most procedure) (shape-most shape)
+          (procedure-keys-p procedure) (not (eq :none (shape-keys shape))))))
+
+(defun install-procedure (name lambda-list documentation entry body stub &optional source)
   "Make NAME a plan procedure, as SOURCE defines it. Calls from now on, also in running plans, mean
 this one."
   (let ((procedure (ensure-procedure name)))
-    (declare-procedure name)
-    (setf (procedure-lambda-list procedure) lambda-list
-          (procedure-entry procedure) entry
+    (declare-procedure name lambda-list)
+    (set-lambda-list procedure lambda-list)
+    (show-lambda-list name lambda-list stub)
+    (setf (procedure-entry procedure) entry
           (procedure-body procedure) body
-          (procedure-stub procedure) (procedure-stub-for name)
+          (procedure-stub procedure) stub
           (documentation name 'function) documentation)
     (reinstate procedure)
     (let ((*definition* (make-defining source (list "def-interp-proc" name))))
@@ -110,23 +131,60 @@ this one."
     name))
 
 (defmethod reinstate ((procedure procedure))
+  (declare-procedure (procedure-name procedure) (procedure-lambda-list procedure))
   (setf (fdefinition (procedure-name procedure)) (procedure-stub procedure))
   procedure)
 
 (defmethod take-back ((procedure procedure))
   (when (defined-p procedure) (fmakunbound (procedure-name procedure)))
+  (remhash (procedure-name procedure) *declared-procedures*)
   (setf (procedure-entry procedure) nil))
 
 (defun anonymous-procedure (lambda-list entry body)
   "Return a procedure without a name, of LAMBDA-LIST, ENTRY and BODY."
   (let ((procedure (make-procedure nil)))
-    (setf (procedure-lambda-list procedure) lambda-list
-          (procedure-entry procedure) entry
+    (set-lambda-list procedure lambda-list)
+    (setf (procedure-entry procedure) entry
           (procedure-body procedure) body)
     procedure))
+
+;;; Arguments.
+
+(define-condition wrong-arguments (wrong-argument program-error)
+  ()
+  (:documentation "A plan was called with arguments that it does not take."))
+
+(defun reject-arguments (procedure arguments trouble)
+  "Signal WRONG-ARGUMENTS: PROCEDURE does not take the list ARGUMENTS, for TROUBLE."
+  (error 'wrong-arguments
+         :operator (or (procedure-name procedure) "interp-lambda") :name "argument list"
+         :value arguments
+         :expected (format nil "~A, not ~A"
+                           (shape-text (procedure-lambda-list procedure)) trouble)))
+
+(defun check-arguments (procedure arguments)
+  "Signal WRONG-ARGUMENTS unless PROCEDURE takes the list ARGUMENTS."
+  (let ((trouble (misfit (shape-of (procedure-lambda-list procedure)) arguments
+                         :wrong-p (constantly t))))
+    (when trouble (reject-arguments procedure arguments trouble))))
+
+(declaim (inline entry-for))
+(defun entry-for (procedure count)
+  "Return the function of COUNT arguments that returns the environment for the body of PROCEDURE."
+  (declare (type procedure procedure) (type fixnum count))
+  (if (and (<= (procedure-least procedure) count (procedure-most procedure))
+           (not (procedure-keys-p procedure)))
+      (procedure-entry procedure)
+      (careful-entry procedure)))
+
+(defun careful-entry (procedure)
+  (lambda (&rest arguments)
+    (check-arguments procedure arguments)
+    (apply (procedure-entry procedure) arguments)))
 
 (defun enter-plan (plan &rest arguments)
   "Return the body of PLAN, a procedure or the name of one, and its environment for ARGUMENTS."
   (let ((procedure (if (procedure-p plan) plan (find-procedure plan))))
+    (check-arguments procedure arguments)
     (values (procedure-body procedure)
             (apply (procedure-entry procedure) arguments))))

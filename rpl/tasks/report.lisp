@@ -36,18 +36,46 @@ state, expression, and what each waits for."
 
 ;;; Failures.
 
+(defun brief-failure-text (failure)
+  "Return what FAILURE reports, of bounded length."
+  (cut (failure-text failure) 500))
+
+(defun write-some (control items stream &optional (most 30))
+  "Write ITEMS by CONTROL, one at a time, and how many there are beyond MOST."
+  (loop for item in items
+        for number from 1
+        while (<= number most)
+        do (format stream control item))
+  (when (< most (length items))
+    (format stream "    ... and ~D more~%" (- (length items) most))))
+
 (defun write-failure-report (failure stream)
-  (format stream "~A~%  at tick ~A in ~A~%  task: ~{~A~^ > ~}~%"
-          (failure-text failure) (failure-tick failure) (form-text (failure-form failure))
-          (failure-task-path failure))
-  (format stream "  plan:~%~{    ~A~%~}"
-          (mapcar #'form-text (failure-plan-backtrace failure)))
+  (format stream "~A~%  at tick ~A in ~A~%  task: ~A~%"
+          (brief-failure-text failure) (failure-tick failure) (form-text (failure-form failure))
+          (cut (format nil "~{~A~^ > ~}" (failure-task-path failure)) 500))
+  (format stream "  plan:~%")
+  (write-some "    ~A~%" (mapcar #'form-text (failure-plan-backtrace failure)) stream)
   (when (failure-cause failure)
-    (format stream "  while handling: ~A~%" (failure-text (failure-cause failure))))
-  (dolist (suppressed (failure-suppressed failure))
-    (format stream "  and in a cleanup: ~A~%" (failure-text suppressed)))
+    (format stream "  while handling: ~A~%" (brief-failure-text (failure-cause failure))))
+  (write-some "  and in a cleanup: ~A~%"
+              (mapcar #'brief-failure-text (failure-suppressed failure)) stream)
   (when (and (typep failure 'lisp-failure) (string/= "" (lisp-failure-backtrace failure)))
-    (format stream "  Lisp:~%~A" (lisp-failure-backtrace failure))))
+    (format stream "  Lisp:~%~A" (cut (lisp-failure-backtrace failure) 4000))))
+
+(defun failure-story (failure)
+  "Return in a line what FAILURE is, when and where it happened, and after what."
+  (format nil "~A~@[ at tick ~A~]~@[ in ~{~A~^ < ~}~]~@[, after ~A~]"
+          (one-line (brief-failure-text failure))
+          (failure-tick failure)
+          (mapcar (lambda (form) (form-text form 40)) (failure-plan-backtrace failure))
+          (and (failure-cause failure) (one-line (brief-failure-text (failure-cause failure))))))
+
+;; What a REPL shows of the value of a plan that failed.
+(defmethod print-object ((failure plan-failure) stream)
+  (if *print-escape*
+      (print-unreadable-object (failure stream)
+        (write-string (cut (failure-story failure) 600) stream))
+      (call-next-method)))
 
 (defun report-failure (failure)
   "Queue an error message with all that is known of FAILURE, of a plan: where it happened, in which
@@ -71,4 +99,4 @@ failure is left to the first that returns true. In any thread that lets plans re
 wait for."
   (error-set "Deadlock at tick " (runner-tick runner)
              ": nothing can wake these tasks." t
-             (with-output-to-string (stream) (print-tasks runner stream))))
+             (cut (with-output-to-string (stream) (print-tasks runner stream)) 4000)))

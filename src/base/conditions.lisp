@@ -64,10 +64,22 @@
 (setf (documentation 'definition-warning-text 'function)
       "Return what a DEFINITION-WARNING says, a string.")
 
+(define-condition definition-doubt (definition-warning style-warning)
+  ()
+  (:documentation "A definition needs what there is not yet, or has what it does not need."))
+
+(defun text-for-author (control arguments)
+  (let ((*print-case* :downcase))
+    (apply #'format nil control arguments)))
+
 (defun warn-of-definition (control &rest arguments)
   "Signal a DEFINITION-WARNING with a text formatted from CONTROL and ARGUMENTS."
-  (warn 'definition-warning :text (let ((*print-case* :downcase))
-                                    (apply #'format nil control arguments))))
+  (warn 'definition-warning :text (text-for-author control arguments)))
+
+(defun doubt-definition (control &rest arguments)
+  "Do as WARN-OF-DEFINITION; but the warning is a STYLE-WARNING: the definition may be what its
+author meant."
+  (warn 'definition-doubt :text (text-for-author control arguments)))
 
 (defun plain-name (name)
   "Return NAME as people write it: a symbol in lower case, without its package."

@@ -177,7 +177,9 @@ the definition."
 
 (defun rejected-form (condition)
   "Return a form that signals again, where it is evaluated, what CONDITION says."
-  (when *compile-file-truename* (warn-of-definition "~A" condition))
+  (when *compile-file-truename*
+    (call-at-place (malformed-definition-clause condition)
+                   (lambda () (warn-of-definition "~A" condition))))
   `(reject-clause ,(malformed-definition-definition condition)
                   ',(malformed-definition-clause condition)
                   ,(malformed-definition-expected condition)))

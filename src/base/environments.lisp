@@ -35,6 +35,15 @@ on, or NIL if it is none that is known."
   (or (fboundp name)
       (eq :function (sb-cltl2:function-information name environment))))
 
+(defun function-arguments (name)
+  "Return what the function NAME takes, types and lambda list keywords as in the type FUNCTION, and
+true; or NIL twice if the compiler does not know."
+  (let ((type (and (member (sb-int:info :function :where-from name) '(:declared :defined))
+                   (sb-kernel:type-specifier (sb-int:info :function :type name)))))
+    (if (typep type '(cons (eql function) (cons list)))
+        (values (second type) t)
+        (values nil nil))))
+
 (defun macro-expander (definition environment)
   "Return the expander of DEFINITION, (name lambda-list form...) as in MACROLET."
   (destructuring-bind (name lambda-list &rest body) definition
@@ -47,21 +56,12 @@ on, or NIL if it is none that is known."
          (or (eq package #.(find-package :cl))
              (starts-with-subseq "SB-" (package-name package))))))
 
-(defun show-lambda-list (name lambda-list)
-  "Let those who ask how the macro NAME is used be told LAMBDA-LIST."
-  (funcall (fdefinition `(setf ,(uiop:find-symbol* '#:%simple-fun-arglist :sb-c)))
-           lambda-list (macro-function name)))
-
 ;;; Environments.
 
 (defun extended-environment (environment &rest additions &key &allow-other-keys)
   "Return ENVIRONMENT with ADDITIONS: :variable and :function and lists of names, :macro and a list
 of (name expander), :symbol-macro and a list of (name expansion)."
   (apply #'sb-cltl2:augment-environment environment additions))
-
-(defun nested-p (environment)
-  "True if a form in ENVIRONMENT stands inside others that are compiled with it."
-  (and environment (uiop:symbol-call :sb-c '#:lexenv-lambda environment) t))
 
 ;;; Forms.
 
@@ -77,10 +77,27 @@ of (name expander), :symbol-macro and a list of (name expansion)."
 (defun walk-form (form environment visit)
   "Return FORM with each expression in it replaced by what VISIT returns for it and its environment,
 outermost first; what is put in place is visited in turn. A second value that is true keeps the
-walk out of what is put there."
+walk out of what is put there. What takes the place of an expression stands where that stood."
   (declare (type function visit))
-  (sb-walker:walk-form form environment
-                       (lambda (form context environment)
-                         (if (eq context :eval)
-                             (funcall visit form environment)
-                             form))))
+  (let ((entered nil))
+    (labels ((walk (form environment)
+               (sb-walker:walk-form form environment #'replacement))
+             (inside (form environment)
+               (setf entered form)
+               (values (keep-place (walk form environment) form) t))
+             (replacement (form context environment)
+               (cond ((not (eq context :eval)) form)
+                     ((and (consp form) (eq form (shiftf entered nil))) form)
+                     (t (multiple-value-bind (new done) (funcall visit form environment)
+                          (keep-place new form)
+                          (cond (done (values new t))
+                                ((atom new) new)
+                                ((eq new form) (inside form environment))
+                                (t (values (keep-place (walk new environment) form) t))))))))
+      (walk form environment))))
+
+(defun bound-in-walk-p (variable environment)
+  "True if VARIABLE is bound by an expression that the walk which visits ENVIRONMENT has entered."
+  ;; Variables of the environment that the walk began in are entries, others lists of these.
+  (let ((found (sb-walker:var-lexical-p variable environment)))
+    (and (consp found) (consp (first found)))))

@@ -39,15 +39,19 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
            #:local-function-p #:known-function-p #:macro-expander
-           #:show-lambda-list #:lisps-own-p
-           #:extended-environment #:nested-p #:evaluate-form #:form-behind-comma #:walk-form)
+           #:function-arguments #:lisps-own-p
+           #:extended-environment #:evaluate-form #:form-behind-comma #:walk-form
+           #:bound-in-walk-p)
+  ;; compiling
+  (:export #:show-lambda-list #:nested-p #:keep-place #:in-source-p #:call-at-place #:at-end-of-unit
+           #:call-as-unit)
   ;; abridging
   (:export #:abridged #:+more+)
   ;; conditions
   (:export #:ars-magna-error #:wrong-argument #:check-argument #:reject-argument
            #:malformed-definition
            #:malformed-definition-place
-           #:definition-warning #:definition-warning-text #:warn-of-definition
+           #:definition-warning #:definition-warning-text #:warn-of-definition #:doubt-definition
            #:unknown-name #:plain-name #:misuse #:reject-use)
   ;; threads
   (:export #:make-lock #:with-lock #:make-semaphore #:signal-semaphore #:wait-on-semaphore

@@ -61,6 +61,8 @@ function of the operation that returns one."
   command-resource "Return the specification of the command's first argument, its resource."
   command-parameters "Return the specifications of its arguments but resource and continuation."
   command-results "Return the specifications of what its continuation gets besides."
+  command-instant-p "True if the command is done in the tick after it was issued, whatever is issued
+with it."
   command-errors "Return the command's own error codes; any can also end with :INTERRUPT.")
 
 (defmethod reference ((command command))

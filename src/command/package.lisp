@@ -13,7 +13,8 @@
            #:command-errors #:command-documentation #:command-prefix
            #:parameter-spec #:spec-name #:spec-type #:spec-text
            #:error-code #:error-code-keyword #:error-code-text
-           #:all-commands #:*commands* #:find-command #:command-of #:command-shape)
+           #:all-commands #:*commands* #:find-command #:command-of #:command-shape
+           #:command-instant-p)
   ;; operation
   (:export #:operation #:operation-command #:operation-resource #:operation-arguments
            #:operation-p #:operation-world #:operation-finished-p #:operation-continuation
@@ -23,6 +24,8 @@
   (:export #:under-way #:last-interruption #:under-way-text #:interruption-text)
   ;; define-command
   (:export #:define-command)
+  ;; withdrawing
+  (:export #:withdraw-command)
   ;; hands
   (:export #:check-grips)
   ;; moving

@@ -31,6 +31,7 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
   ;; pacing, stopping, clock
   (:export #:timeline-thread #:pacer-p #:check-rate #:live-p #:paused-p #:pause #:resume
            #:let-pass #:pace #:set-rate #:*default-rate* #:*hog-seconds*
+           #:hog-seconds
            #:seconds-now #:abort-hog #:stop-pacing #:call-alone #:start-pacing)
   ;; schedule
   (:export #:schedule #:call-scheduled #:abandon #:grab-resource #:release-resource))

@@ -1,0 +1,53 @@
+;;;; known.lisp -- fluents where a truth value is wanted, and variables known to hold fluents.
+
+(in-package :ars-magna.rpl.fluents)
+
+;;; Of a part of which the robot has several, such as a camera, a variable holds a vector of
+;;; fluents. That vector is true, always, and so never what a condition means.
+
+(defvar *known-variables* (make-hash-table :test 'eq :synchronized t)
+  "What the variables hold that are known to: the name of a kind of part if a vector of fluents, one
+for each part, or T if a fluent.")
+
+(defun declare-fluent-variable (name &optional (kind t))
+  "Note that the variable NAME holds a fluent, or a vector of fluents for parts of KIND, a string."
+  (setf (gethash name *known-variables*) kind))
+
+(defun known-fluent-variable-p (name)
+  "True if the variable NAME is known to hold a fluent."
+  (eq t (gethash name *known-variables*)))
+
+(defun known-vector-variable-p (name)
+  "Return the name of the kind of part for which the variable NAME holds fluents, or NIL."
+  (let ((kind (gethash name *known-variables*)))
+    (and (stringp kind) kind)))
+
+(defun fluents-vector-p (object)
+  (and (simple-vector-p object)
+       (plusp (length object))
+       (every #'fluent-p object)))
+
+(defun reject-vector (vector)
+  "Signal MISUSE: VECTOR, of fluents, stands where a fluent should."
+  (let* ((name (princ-to-string (fluent-name (svref vector 0))))
+         (variable (subseq name 0 (position #\Space name :from-end t))))
+    (reject-use "~A is a vector of fluents: a condition needs one of them. Write (vref ~:*~A ~A)."
+                variable
+                (or (known-vector-variable-p (find-known variable)) "index"))))
+
+(defun find-known (name)
+  "Return the known variable called NAME, or NIL."
+  (loop for variable being the hash-keys of *known-variables*
+        when (string-equal name variable) return variable))
+
+(declaim (inline one-fluent truth-value))
+(defun one-fluent (object)
+  "Return OBJECT, a condition. Signals MISUSE if it is a vector of fluents."
+  (if (and (simple-vector-p object) (fluents-vector-p object))
+      (reject-vector object)
+      object))
+
+(defun truth-value (object)
+  "Return the value of OBJECT, a condition: a fluent, or else its own value. Signals MISUSE if it is
+a vector of fluents."
+  (if (fluent-p object) (current-value object) (one-fluent object)))

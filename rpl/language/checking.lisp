@@ -1,0 +1,102 @@
+;;;; checking.lisp -- whether what a plan calls is there, and takes what it is given.
+
+(in-package :ars-magna.rpl.language)
+
+;;; Plans and functions may be defined in any order, and in several files. So calls are looked at
+;;; when all has been read that is compiled or loaded together, as Lisp does with its functions.
+;;; What Lisp code calls is for Lisp to see.
+
+(defun place-to-tell (form)
+  (and (not *compile-file-truename*) (clause-place form)))
+
+(defun warn-of-call (warn form control &rest arguments)
+  "Let WARN, a function, say of FORM what is formatted from CONTROL and ARGUMENTS."
+  (funcall warn "~A~@[ (~A)~]: ~A" (author) (place-to-tell form)
+           (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
+
+(defun known-operators ()
+  "Return the names that calls at hand could be meant for."
+  (let ((names (declared-names)))
+    (do-symbols (symbol *package* names)
+      (when (and (fboundp symbol) (not (lisps-own-p symbol)))
+        (push symbol names)))))
+
+(defun check-fit (form lambda-list)
+  "Warn if the call FORM does not fit LAMBDA-LIST, or that of the type of a function."
+  (let ((trouble (misfit (shape-of lambda-list) (rest form))))
+    (when trouble
+      (warn-of-call #'warn-of-definition form "~(~A~) takes ~A, not ~A."
+                    (first form) (shape-text lambda-list) trouble))))
+
+(defun warn-of-unknown (form)
+  (let* ((name (first form))
+         (namesake (find-procedure name nil)))
+    (if namesake
+        (warn-of-call #'doubt-definition form
+                      "there is no plan procedure or function ~S. If the plan of another package ~
+                       is meant, write ~S."
+                      name (procedure-name namesake))
+        (warn-of-call #'doubt-definition form
+                      "there is no plan procedure or function ~(~A~).~@[ Did you mean ~(~A~)?~]"
+                      name (nearest-name name (known-operators))))))
+
+(defun look-at-call (form)
+  "Warn if the call FORM is not right, as far as anybody knows now."
+  (let ((name (first form)))
+    (cond ((procedure-name-p name) (check-fit form (declared-lambda-list name)))
+          ((macro-function name)
+           (warn-of-call #'warn-of-definition form "~(~A~) is a macro that is defined only later."
+                         name))
+          ((known-function-p name nil)
+           (multiple-value-bind (arguments known) (function-arguments name)
+             (when known (check-fit form arguments))))
+          (t (warn-of-unknown form)))))
+
+(defun look-later (look form)
+  "Call LOOK with FORM when all has been read, as if at this place."
+  (let ((definition *definition*) (package *package*) (file *compile-file-truename*)
+        (loaded *load-truename*))
+    (at-end-of-unit form
+                    (lambda ()
+                      (when (package-name package) ; which may have been deleted
+                        (let ((*definition* definition) (*package* package)
+                              (*compile-file-truename* file) (*load-truename* loaded))
+                          (funcall look form)))))))
+
+(defun check-call (form scope)
+  "Warn, now or when all has been read, if FORM, a call of a plan or of what is not known, is not
+right."
+  (let ((local (assoc (first form) (scope-procedures scope))))
+    (if local
+        (call-at-place form (lambda () (check-fit form (fourth local))))
+        (look-later #'look-at-call form))))
+
+(defun look-at-lisp-call (form)
+  "Warn if FORM, a call in a Lisp form that a plan cannot wait inside, turns out to call a plan."
+  (when (procedure-name-p (first form))
+    (warn-of-call #'warn-of-definition form
+                  "~(~A~) is a plan procedure, defined only later. It cannot be called inside of a ~
+                   lambda, or another form that only Lisp runs."
+                  (first form))))
+
+(defun slip-in-construct (form lambda-list)
+  "Return in words the keyword in FORM, a construct's, that is none of LAMBDA-LIST's, or NIL."
+  (let ((shape (shape-of lambda-list)))
+    (and (consp (shape-keys shape))
+         (proper-list-p form)
+         (keyword-slip shape (nthcdr (shape-fixed shape) (rest form))))))
+
+;;; Variables.
+
+(defun check-use (variables where form)
+  "Warn of those of VARIABLES, bound by FORM of the author's text, that the forms WHERE do not
+mention: declarations count."
+  (when (in-source-p form)
+    (dolist (variable variables)
+      (when (and (symbol-package variable) (not (mentions-p variable where)))
+        (call-at-place form
+                       (lambda ()
+                         (warn-of-call #'doubt-definition form
+                                       "the variable ~(~A~) is never used. If that is meant, ~
+                                        say (declare (ignore ~:*~(~A~)))."
+                                       variable)))))))

@@ -1,0 +1,129 @@
+;;;; known-fluents.lisp -- where a plan's text gives a fluent to what cannot take one.
+
+(in-package :ars-magna.rpl.language)
+
+;;; Most of Lisp's functions take values. Which arguments they can take the compiler knows, and of
+;;; some expressions that they are fluents: the robot's variables, what CREATE-FLUENT and the like
+;;; return, what lifted operators make of these, and variables that are bound to such, for good.
+
+(defvar *fluents-here* '() "The variables of the plan that are known to hold fluents.")
+
+(defparameter *makers-of-fluents*
+  '("CREATE-FLUENT" "STATE" "TASK-STATUS" "FL-PULSED" "FL-VALUE-CHANGED")
+  "Functions that always return a fluent.")
+
+(defun vector-variable (form)
+  "Return the name of the kind of part if FORM is a variable of a vector of fluents, or NIL."
+  (and (symbolp form) (known-vector-variable-p form)))
+
+(defun element-of-vector-p (form)
+  "True if FORM is one of the fluents in a variable such as CAMERA-MOVED*."
+  (and (consp form)
+       (symbolp (first form))
+       (member (first form) '("VREF" "AREF" "SVREF" "ELT") :test #'string=)
+       (vector-variable (second form))))
+
+(defun known-fluent-p (form environment)
+  "True if FORM, in ENVIRONMENT, is known to be a fluent."
+  (cond ((null form) nil)
+        ((symbolp form)
+         (or (known-fluent-variable-p form)
+             (and (member form *fluents-here*) (not (bound-in-walk-p form environment)))))
+        ((atom form) nil)
+        ((element-of-vector-p form))
+        ((operator-in-p form *makers-of-fluents*))
+        ((and (own-text-p form) (operator-in-p form *lifted-operators*))
+         (some (lambda (argument) (known-fluent-p argument environment)) (rest form)))))
+
+;;; Conditions.
+
+(defun check-condition (form)
+  "Signal MALFORMED-DEFINITION if FORM, a condition, is a variable that holds a vector of fluents."
+  (let ((kind (vector-variable form)))
+    (when kind
+      (reject-clause (author) form
+                     (format nil "one of the fluents in that vector: (vref ~(~A~) ~A)"
+                             form kind)))))
+
+;;; Arguments.
+
+(defun takes-fluents-p (type)
+  "True if an argument of TYPE may be a fluent."
+  (multiple-value-bind (may known) (ignore-errors (subtypep 'fluent type))
+    (or may (not known))))
+
+(defun argument-types (name count)
+  "Return the types of the first arguments, COUNT at most, that the function NAME takes in order."
+  (let ((mode nil) (types '()))
+    (loop for (part . more) on (function-arguments name)
+          while (< (length types) count)
+          do (case part
+               (&optional)
+               (&rest (return (append (nreverse types) (list (first more)))))
+               ((&key &allow-other-keys) (return (nreverse types)))
+               (t (push part types)))
+          finally (return (values (nreverse types) mode)))))
+
+(defun misplaced-fluent (form environment)
+  "Return the argument of FORM, a call, that is a fluent where the function can take none, or NIL."
+  (let ((arguments (rest form)))
+    (and (some (lambda (argument) (known-fluent-p argument environment)) arguments)
+         (loop for argument in arguments
+               for types = (argument-types (first form) (length arguments))
+                 then (or (rest types) types)
+               while types
+               when (and (known-fluent-p argument environment)
+                         (not (takes-fluents-p (first types))))
+                 return argument))))
+
+(defun look-at-operands (form environment)
+  "Warn if FORM, of the plan's text, gives a fluent to a function that cannot take it. Return NIL."
+  (let ((name (first form)))
+    (when (and (proper-list-p form)
+               (not (operator-in-p form *lifted-operators*))
+               (not (local-function-p name environment))
+               (not (macro-function name))
+               (not (special-operator-p name)))
+      (if (fboundp name)
+          (let ((fluent (misplaced-fluent form environment)))
+            (when fluent (warn-of-fluent form fluent)))
+          (look-later #'look-at-lisp-call form)))
+    nil))
+
+(defun warn-of-fluent (form fluent)
+  (call-at-place
+   form
+   (lambda ()
+     (warn-of-call #'warn-of-definition form
+                   "~(~A~) cannot take ~S, which is a fluent. Write (fluent-value ~:*~S) for its ~
+                    value now, or (fl-funcall #'~(~2:*~A~) ...) for a network."
+                   (first form) fluent))))
+
+;;; Variables.
+
+(defparameter *assigning-operators*
+  '("SETQ" "SETF" "PSETQ" "PSETF" "PUSH" "PUSHNEW" "POP" "INCF" "DECF" "MULTIPLE-VALUE-SETQ"
+    "ROTATEF" "SHIFTF")
+  "Operators that give variables another value.")
+
+(defun assigned-p (variable forms)
+  "True if VARIABLE may get another value in FORMS."
+  (loop for tail = forms then (rest tail)
+        while (consp tail)
+        thereis (let ((form (first tail)))
+                  (and (consp form)
+                       (or (and (operator-in-p form *assigning-operators*)
+                                (mentions-p variable (rest form)))
+                           (assigned-p variable form))))))
+
+(defun bound-to-fluents (bindings body scope sequential)
+  "Return the variables that BINDINGS, of a LET or if SEQUENTIAL a LET* around BODY, bind to known
+fluents for good."
+  (let ((*fluents-here* (scope-fluents scope)) (found '()))
+    (loop for (variable value) in (remove-if #'atom bindings)
+          do (cond ((and (known-fluent-p value (scope-environment scope))
+                         (not (assigned-p variable body)))
+                    (push variable found)
+                    (when sequential (push variable *fluents-here*)))
+                   (t (setf found (remove variable found)))))
+    found))

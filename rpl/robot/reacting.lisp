@@ -1,0 +1,102 @@
+;;;; reacting.lisp -- the plans of an interface react, and take part in its simulation.
+
+(in-package :ars-magna.rpl-robot)
+
+;;; Headless, plans react at the end of each tick until all wait, so that they see every tick.
+
+(defun react-fully (interface)
+  "Let the plans of INTERFACE react to time and to all that was posted, until all of them wait or
+have used their steps. Return :IDLE or :BUDGET. The caller holds the plans; inside of a reaction
+nothing happens."
+  (if (eq interface *reacting*)
+      :idle
+      (let ((runner (interface-runner interface)) (*reacting* interface))
+        (advance-timers runner (simulation-tick (interface-simulation interface)))
+        (let ((outcome (react-to-all runner)))
+          (cond ((interface-closing-p interface) (finish-closing interface) :idle)
+                (t outcome))))))
+
+(defun finish-closing (interface)
+  "Let the plans of INTERFACE, which react no more, be over, and nobody drive its robot by it."
+  (unless (interface-closed-p interface)
+    (in-any-case
+      (close-runner (interface-runner interface))
+      (setf (interface-closed-p interface) t))))
+
+(defun tasks-of (interface)
+  (plan-runner-tasks (interface-runner interface)))
+
+;;; Taking part.
+
+(defun time-to-wake-p (interface)
+  "True if plans of INTERFACE, which wait, wait for this tick."
+  (let ((tick (next-wake-time (interface-runner interface))))
+    (or (interface-tick-wanted-p interface)
+        (and tick (>= (simulation-tick (interface-simulation interface)) tick)))))
+
+(defun apply-posts (interface)
+  "Apply what was posted to INTERFACE, if it has no plans."
+  (with-plans (interface)
+    (unless (tasks-of interface) (react-fully interface))))
+
+;; In a live simulation only the plans' thread lets plans react: a plan may be waiting for the owner
+;; to answer it.
+(defmethod participant-after-tick ((interface interface) simulation)
+  (cond ((thread-of interface)
+         (when (time-to-wake-p interface) (wake interface)))
+        ((not (live-p simulation)) (with-plans (interface) (react-fully interface)))
+        ((tasks-of interface) (ensure-thread interface))
+        ((interface-answers interface) (apply-posts interface))))
+
+;; What was left ready by a thread that has ended from outside waits for the next tick.
+(defmethod participant-busy-p ((interface interface) simulation)
+  (or (next-wake-time (interface-runner interface))
+      (and (live-p simulation)
+           (tasks-of interface)
+           (null (thread-of interface)))))
+
+(defmethod participant-reseed ((interface interface) seed)
+  (reseed-runner (interface-runner interface) seed))
+
+(defmethod participant-digest ((interface interface) digest)
+  (with-plans (interface) (digest-runner (interface-runner interface) digest)))
+
+(defmethod participant-end ((interface interface) simulation)
+  (declare (ignore simulation))
+  (close-interface interface))
+
+;;; The runner.
+
+(defun busy-p (interface)
+  "True if a command of a plan is under way, or something else that is sure to happen. Kickers do
+not count: they tell plans nothing."
+  (let ((simulation (interface-simulation interface)))
+    (or (commands-under-way-p interface)
+        (plusp (agenda-pending (simulation-agenda simulation)))
+        (timeline-inbox (simulation-timeline simulation)))))
+
+(defun seconds-when-live (simulation)
+  "Return the time in seconds, by which plans that hog their thread are noticed; headless 0."
+  (if (live-p simulation) (seconds-now) 0d0))
+
+(defun no-longer-unwanted (interface task)
+  (loop for tasks = (interface-unwanted interface)
+        until (or (not (member task tasks))
+                  (swap-if (interface-unwanted interface) tasks (remove task tasks)))))
+
+(defun note-end (interface task)
+  "Do what is due when TASK, a top-level task of INTERFACE, has ended."
+  (no-longer-unwanted interface task)
+  (unless (eq :succeeded (task-state task)) (interrupt-deeds interface task))
+  (report-end task))
+
+(defun make-runner (interface)
+  (let ((simulation (interface-simulation interface)))
+    (make-plan-runner :trace *trace-plans*
+                      :dice (make-dice (simulation-seed simulation) :plans)
+                      :tick (simulation-tick simulation)
+                      :busy-p (lambda () (busy-p interface))
+                      :clock (lambda () (seconds-when-live simulation))
+                      :slow *hog-seconds*
+                      :on-post (lambda () (wake interface))
+                      :on-end (lambda (task) (note-end interface task)))))

@@ -1,0 +1,71 @@
+;;;; starting.lisp -- which robot plans drive: beginning and end of that.
+
+(in-package :ars-magna.rpl-robot)
+
+(defun close-interface (interface)
+  "Let INTERFACE hear no more of its simulation, and its plans end: now, or, if they react in
+another thread or around this call, when they get to it."
+  (let ((simulation (interface-simulation interface)))
+    (unless (interface-closing-p interface)
+      (setf (interface-closing-p interface) t)
+      (in-any-case
+        (asking (simulation)
+          (remove-participant interface simulation))
+        (removef (robot-enders (interface-robot interface)) (interface-ender interface))
+        (cond ((holding-p interface) (stop-plan (interface-runner interface)))
+              ((thread-of interface) (wake interface))
+              (t (with-plans (interface) (react-fully interface))))))))
+
+(defun attach (interface)
+  (let ((simulation (interface-simulation interface)))
+    (setf (interface-runner interface) (make-runner interface)
+          (interface-ender interface) (lambda () (close-interface interface)))
+    (asking (simulation)
+      (add-participant interface simulation)
+      (push (interface-ender interface) (robot-enders (interface-robot interface))))))
+
+(defun check-world (robot)
+  "Signal MISUSE if ROBOT is in another world than the one that we are in, if any."
+  (let ((world (robot-world robot)))
+    (unless (or (null *world*) (eq world *world*))
+      (reject-use "rpl-init-robot: ~A is not in the world that we are in, ~
+                   ~:[which is of another map~;but in another of the same map~]. Call it where ~
+                   that robot is: inside of (with-simulation (~A) ...), or after (simulator ~A)."
+                  robot (eq (world-map world) (world-map *world*)) robot robot))))
+
+(defun ended-by-p (interface simulation)
+  "True if plans of INTERFACE must end when others are to run in SIMULATION. One that a headless
+simulation inside of a live one has only inherited is left alone."
+  (or (eq simulation (interface-simulation interface))
+      (not (interface-valid-p interface))
+      (and (live-p simulation) (live-p (interface-simulation interface)))))
+
+(public rpl-init-robot)
+(defun rpl-init-robot (robot)
+  "Let plans drive ROBOT, a robot or its name, or a fluent whose value is one, from now on: make the
+fluents anew, for the parts that it has. Plans under way end; what they do to clean up goes on only
+as far as it takes no time. Return the robot. To be called before anything else of the interface
+(manual C); RUN-PLAN does it for the robot of a simulation that has only one. Signals UNKNOWN-NAME,
+and MISUSE if the robot is in another world than the current one."
+  (let* ((named (fluent-value robot))
+         (robot (if (robot-p named) named (find-robot named)))
+         (simulation (robot-simulation robot)))
+    (check-world robot)
+    (when (and *interface* (ended-by-p *interface* simulation))
+      (close-interface *interface*))
+    (make-fluents robot)
+    (setf *interface* (make-interface robot simulation))
+    (attach *interface*)
+    robot))
+
+;;; When a simulator starts.
+
+(defun forget-interface (robot options)
+  "End the plans of a simulation that is gone, now that the simulator of ROBOT has started."
+  (declare (ignore options))
+  (when (and *interface*
+             (not (eq (interface-simulation *interface*) (robot-simulation robot))))
+    (unless (interface-valid-p *interface*) (close-interface *interface*))
+    (setf *interface* nil)))
+
+(pushnew 'forget-interface *simulator-hooks*)

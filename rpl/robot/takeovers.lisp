@@ -1,0 +1,59 @@
+;;;; takeovers.lisp -- plans that keep taking the robot from each other are named and slowed down.
+
+(in-package :ars-magna.rpl-robot)
+
+;;; A plan that hears that its command was interrupted may issue it again, and so interrupt who did
+;;; that, who then does the same. No time passes meanwhile. After *MOST-TAKEOVERS* in a tick
+;;; each further one ends the reaction.
+
+(defparameter *most-takeovers* 100
+  "How often plans may take one part of the robot from each other before time has to pass.")
+
+(defun takeover-count (interface resource)
+  "Return a cons of RESOURCE and how often it has been taken over in this tick."
+  (let ((tick (simulation-tick (interface-simulation interface))))
+    (unless (eql tick (interface-takeover-tick interface))
+      (setf (interface-takeover-tick interface) tick
+            (interface-takeovers interface) '()))
+    (or (assoc resource (interface-takeovers interface))
+        (first (push (cons resource 0) (interface-takeovers interface))))))
+
+(defun taker-text (task)
+  "Return in words which TASK it is."
+  (if task
+      (format nil "~{~A~^ > ~} (task ~D)" (task-path task) (task-serial task))
+      "somebody outside of plans"))
+
+(defun takeover-text (resource older newer)
+  "Return in words that the tasks OLDER and NEWER, perhaps the same, take RESOURCE over for ever,
+the same words whichever of them it is that takes it."
+  (when (and older newer (> (task-serial older) (task-serial newer)))
+    (rotatef older newer))
+  (if (eq older newer)
+      (format nil "~A takes ~A from itself for ever: each time it hears that its command was ~
+                   interrupted it issues another"
+              (taker-text newer) resource)
+      (format nil "~A and ~A take ~A from each other for ever: each time one hears that its ~
+                   command was interrupted it issues another"
+              (taker-text older) (taker-text newer) resource)))
+
+(defun warn-of-takeovers (interface text)
+  "Queue the warning TEXT, once."
+  (unless (member text (interface-warned interface) :test #'string=)
+    (push text (interface-warned interface))
+    (warning-set text ". They go on with the ticks. Let one at a time have it: see "
+                 "RPL-ROBOT-VALVE.")))
+
+(defun count-takeover (interface resource older newer)
+  "Note that the task NEWER has taken over RESOURCE from OLDER (NIL: no task), and let time pass if
+that was too often."
+  (let ((count (takeover-count interface resource)))
+    (when (< *most-takeovers* (incf (cdr count)))
+      (warn-of-takeovers interface (takeover-text resource older newer))
+      (exhaust-reaction (interface-runner interface)))))
+
+(defun waits-for-tick-p (interface)
+  "True if plans have taken a part from each other so often in this tick that another is to come."
+  (and (eql (simulation-tick (interface-simulation interface)) (interface-takeover-tick interface))
+       (loop for (nil . count) in (interface-takeovers interface)
+               thereis (< *most-takeovers* count))))

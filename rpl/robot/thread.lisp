@@ -1,0 +1,91 @@
+;;;; thread.lisp -- the thread in which the plans of a live simulation react.
+
+(in-package :ars-magna.rpl-robot)
+
+;;; It lives as long as there are plans, and sleeps only while none of them is ready. If it is ended
+;;; from outside, the next tick that finds plans starts another.
+
+(defun wake (interface)
+  (when (interface-thread interface)
+    (signal-semaphore (interface-wake-up interface))))
+
+(defun thread-of (interface)
+  "Return the thread of the plans of INTERFACE, :STARTING if it is yet to start, or NIL."
+  (let ((thread (interface-thread interface)))
+    (unless (or (member thread '(nil :starting)) (thread-alive-p thread))
+      (swap-if (interface-thread interface) thread nil))
+    (interface-thread interface)))
+
+(defun react-in-thread (interface)
+  "Let the plans of INTERFACE react. Return :IDLE or :BUDGET, :OVER if there are none to go on, NIL
+if that was aborted."
+  (with-plans (interface)
+    ;; Looked at first: what is to end the plans is heard in this reaction.
+    (let* ((closing-p (interface-closing-p interface))
+           (outcome (call-user-code #'react-fully "running plans" interface)))
+      (cond ((and (tasks-of interface) (not closing-p)) outcome)
+            (t (setf (interface-thread interface) nil)
+               :over)))))
+
+(defun call-for-ticks (interface)
+  "Have the live simulation, if it rests for want of events, go on while a plan waits for time."
+  (let ((simulation (interface-simulation interface)))
+    (when (and (or (interface-tick-wanted-p interface)
+                   (next-wake-time (interface-runner interface)))
+               (zerop (agenda-pending (simulation-agenda simulation))))
+      (wake-owner (simulation-timeline simulation)))))
+
+(defun rest-plans (interface &optional seconds)
+  "Wait until something may have changed for the plans of INTERFACE, at most for SECONDS."
+  (atomic-incf (interface-rests interface))
+  (call-for-ticks interface)
+  (wait-on-semaphore (interface-wake-up interface) seconds)
+  (setf (interface-tick-wanted-p interface) nil))
+
+(defun run-thread (interface)
+  "Let the plans react to what is posted for as long as there are any."
+  (loop
+    (let-others-hold interface)
+    (ecase (react-in-thread interface)
+      (:over (return))
+      (:idle (rest-plans interface))
+      (:budget (when (waits-for-tick-p interface)
+                 (setf (interface-tick-wanted-p interface) t)
+                 (rest-plans interface)))
+      ((nil) (rest-plans interface 0.05)))))
+
+(defun call-as-thread (interface function)
+  "Call FUNCTION in what is the thread of INTERFACE from now on, until it returns or is left."
+  (let ((thread (current-thread)))
+    (swap-if (interface-thread interface) :starting thread)
+    (in-any-case
+      (funcall function)
+      (swap-if (interface-thread interface) thread nil)
+      (wake-owner (simulation-timeline (interface-simulation interface))))))
+
+(defun start-plans-thread (interface)
+  (let ((simulation (interface-simulation interface))
+        (calls (make-user-calls))
+        (ended (make-semaphore "plans' thread ended")))
+    (flet ((run ()
+             (let ((*user-calls* calls))
+               (in-any-case
+                 (call-as-owner simulation
+                                (lambda ()
+                                  (call-as-thread interface (lambda () (run-thread interface)))))
+                 (signal-semaphore ended))))
+           (name (control)
+             (format nil control (interface-robot interface))))
+      (let ((thread (start-thread #'run (name "plans of ~A"))))
+        (swap-if (interface-thread interface) :starting thread)
+        (start-thread (lambda ()
+                        (call-as-owner simulation
+                                       (lambda () (watch-plans interface thread calls ended))))
+                      (name "watcher of the plans of ~A"))))))
+
+(defun ensure-thread (interface)
+  "Have a thread for the plans of a live simulation."
+  (when (and (live-p (interface-simulation interface))
+             (null (thread-of interface))
+             (swap-if (interface-thread interface) nil :starting))
+    (start-plans-thread interface)))

@@ -1,0 +1,190 @@
+;;;; under-way.lisp -- the commands of plans that are under way, and how plans hear of their ends.
+
+(in-package :ars-magna.rpl-robot)
+
+;;; A command that a plan has issued is a DEED until its last answer has been heard. The simulator
+;;; answers in its own thread; plans hear an answer, a list of settings of fluents, between two
+;;; reactions. A plan's command that ends older ones on its resource lets the plan hear of that at
+;;; once: of their answers that have come in already, and else :INTERRUPT. So a wait that follows a
+;;; command hears that command. What the simulator answers in the end for what has been told so
+;;; sets only the fluents that say what the robot is or has: no error fluent, no pulse.
+
+(defstruct (deed (:constructor make-deed (command resource outcome task cleanup-p)) (:copier nil))
+  "That COMMAND is done on RESOURCE, as TASK (NIL: no plan) asked for, perhaps to clean up. OUTCOME
+makes settings of an answer."
+  (command nil :type command :read-only t)
+  (resource nil :read-only t)
+  (outcome nil :type function :read-only t)
+  (task nil :type (or null task) :read-only t)
+  (cleanup-p nil :read-only t)
+  ;; By what the simulator knows it.
+  (continuation nil :type (or null function))
+  ;; It goes on in the background, as a track that has begun.
+  (begun-p nil)
+  ;; Plans have been told that it was interrupted.
+  (told-p nil)
+  ;; It has been answered for the last time.
+  (over-p nil))
+
+(defstruct (answer (:constructor make-answer (deed settings last-p)) (:copier nil))
+  "SETTINGS that an answer to DEED means, not yet heard."
+  (deed nil :type deed :read-only t)
+  (settings '() :type list :read-only t)
+  (last-p nil :read-only t))
+
+(defun add-deed (deed interface)
+  (with-lock ((interface-deeds-lock interface))
+    (setf (interface-deeds interface) (append (interface-deeds interface) (list deed))))
+  deed)
+
+(defun forget-deed (deed interface)
+  (with-lock ((interface-deeds-lock interface))
+    (removef (interface-deeds interface) deed)))
+
+(defun deed-open-p (deed)
+  "True if DEED is under way, and nobody has been told that it is not."
+  (not (or (deed-told-p deed) (deed-over-p deed))))
+
+(defun commands-under-way-p (interface)
+  "True if a command of a plan is still to be answered."
+  (find nil (interface-deeds interface) :key #'deed-over-p))
+
+;;; Settings. (:error fluent code) sets a fluent as :SET does.
+
+(defun plain-settings (settings)
+  "Return SETTINGS as APPLY-SETTINGS takes them."
+  (loop for (kind . more) in settings
+        collect (cons (if (eq kind :error) :set kind) more)))
+
+(defun state-settings (settings)
+  "Return those of SETTINGS that say what the robot is or has."
+  (remove :set settings :key #'first :test-not #'eq))
+
+;;; Answers.
+
+(defun ends-p (command err)
+  "True if an answer of COMMAND with the error code ERR is its last: a track that begins will end."
+  (or err (not (eq 'camera-track (command-name command)))))
+
+(defun add-answer (answer interface)
+  (with-lock ((interface-deeds-lock interface))
+    (setf (interface-answers interface) (append (interface-answers interface) (list answer)))))
+
+(defun take-answer (answer interface)
+  "Take ANSWER from those that are not yet heard, and with the last one its deed. True unless
+somebody has done so before."
+  (with-lock ((interface-deeds-lock interface))
+    (when (member answer (interface-answers interface))
+      (removef (interface-answers interface) answer)
+      (when (answer-last-p answer) (removef (interface-deeds interface) (answer-deed answer)))
+      t)))
+
+(defun hear (answer interface)
+  "Let plans hear ANSWER, unless they have. The caller holds the plans."
+  (when (take-answer answer interface)
+    (let ((deed (answer-deed answer)) (settings (answer-settings answer)))
+      (setf (deed-begun-p deed) t)
+      (apply-settings (if (deed-told-p deed)
+                          (state-settings settings)
+                          (plain-settings settings))))))
+
+(defun post-answer (interface deed err results)
+  "Let plans hear soon that DEED was answered by ERR and RESULTS. In the simulator's thread."
+  (let ((settings '()))
+    (in-any-case
+      (setf settings (apply (deed-outcome deed) (deed-resource deed) err results))
+      (let ((answer (make-answer deed settings (ends-p (deed-command deed) err))))
+        (add-answer answer interface)
+        (post-call (interface-runner interface) (lambda () (hear answer interface)))
+        (when (answer-last-p answer) (setf (deed-over-p deed) t))))))
+
+(defun answering (interface deed)
+  "Return the continuation for the command of DEED."
+  (setf (deed-continuation deed)
+        (lambda (err resource &rest results)
+          (declare (ignore resource))
+          (post-answer interface deed err results))))
+
+;;; Telling before the simulator does.
+
+(defun tell-interrupted (deed)
+  "Let plans hear that DEED was interrupted."
+  (setf (deed-told-p deed) t)
+  (apply-settings (plain-settings (funcall (deed-outcome deed) (deed-resource deed) :interrupt))))
+
+(defun hear-answers-on (resource interface except)
+  "Let plans hear what has been answered on RESOURCE, but for answers to EXCEPT."
+  (dolist (answer (interface-answers interface))
+    (let ((deed (answer-deed answer)))
+      (when (and (eq resource (deed-resource deed)) (not (eq deed except)))
+        (hear answer interface)))))
+
+(defun ends-by-command-p (deed)
+  "True if a new command on its resource interrupts DEED when it is issued: unless it takes no time,
+and is carried out first, or goes on in the background."
+  (not (or (deed-begun-p deed)
+           (command-instant-p (deed-command deed)))))
+
+(defun reacting-p (interface)
+  "True where plans of INTERFACE react."
+  (eq *runner* (interface-runner interface)))
+
+(defun task-at-work (interface)
+  "Return the task of INTERFACE that is at work here, or NIL."
+  (let ((task (and (reacting-p interface) (current-task))))
+    (and task (eq :running (task-state task)) task)))
+
+(defun take-over (interface resource &key except (test #'ends-by-command-p))
+  "Let plans hear that what was under way on RESOURCE, but for EXCEPT, and for which TEST is true,
+has been ended by the plan that is at work, if one is."
+  (when (reacting-p interface)
+    (hear-answers-on resource interface except)
+    (dolist (deed (interface-deeds interface))
+      (when (and (eq resource (deed-resource deed))
+                 (not (eq deed except))
+                 (deed-open-p deed)
+                 (funcall test deed))
+        (tell-interrupted deed)
+        (count-takeover interface resource (deed-task deed) (task-at-work interface))))))
+
+;;; Issuing.
+
+(defun cleaning-up-p (task)
+  "True if TASK, or a task that it is part of, is cleaning up."
+  (loop for each = task then (task-parent each)
+        while each
+        thereis (task-cleaning each)))
+
+(defun issue-deed (interface command resource arguments outcome)
+  "Issue COMMAND on RESOURCE with ARGUMENTS; OUTCOME says what plans hear of its end."
+  (let* ((task (task-at-work interface))
+         (deed (add-deed (make-deed command resource outcome task
+                                    (and task (cleaning-up-p task) t))
+                         interface))
+         (issued-p nil))
+    (unwind-protect
+         (progn (apply (command-name command) resource
+                       (append arguments (list (answering interface deed))))
+                (setf issued-p t))
+      (unless issued-p (forget-deed deed interface)))
+    (take-over interface resource :except deed)))
+
+(defun grab (interface resource)
+  "Interrupt whatever goes on on RESOURCE, also what takes no time and in the background."
+  (grab-resource resource (interface-simulation interface))
+  (take-over interface resource :test (constantly t)))
+
+;;; When a plan ends.
+
+;; What was issued to clean up is meant to last.
+(defun interrupt-deeds (interface task)
+  "Interrupt what the top-level TASK, which has not succeeded, has asked for and is under way."
+  (dolist (deed (interface-deeds interface))
+    (when (and (deed-open-p deed)
+               (deed-task deed)
+               (eq task (task-top (deed-task deed)))
+               (not (deed-cleanup-p deed))
+               (not (command-instant-p (deed-command deed))))
+      (unless (simulation-over (interface-simulation interface))
+        (withdraw-command (deed-resource deed) (deed-continuation deed)))
+      (tell-interrupted deed))))

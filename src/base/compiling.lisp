@@ -1,0 +1,155 @@
+;;;; compiling.lisp -- where in its source the compiler is, and what waits until it has read all.
+
+(in-package :ars-magna.base)
+
+;;; SBCL remembers where each list stands that it has read to compile or load it. A list that was
+;;; made of one that stands somewhere can be given its place: what the compiler has to say of it is
+;;; then said of what the author wrote. That is all in tables and variables of the compiler.
+
+(defun compiler-variable (name)
+  "Return the variable of the compiler called NAME."
+  (uiop:find-symbol* name :sb-c))
+
+(defun compiler-function (name)
+  (fdefinition (uiop:find-symbol* name :sb-c)))
+
+(defun show-lambda-list (name lambda-list &optional (function (macro-function name)))
+  "Let those who ask how FUNCTION, by default the macro NAME, is used be told LAMBDA-LIST."
+  (when (compiled-function-p function)
+    (funcall (compiler-function-setter '#:%simple-fun-arglist) lambda-list function)))
+
+(defun compiler-function-setter (name)
+  (fdefinition `(setf ,(uiop:find-symbol* name :sb-c))))
+
+(defun nested-p (environment)
+  "True if a form in ENVIRONMENT stands inside others that are compiled with it."
+  (and environment (funcall (compiler-function '#:lexenv-lambda) environment) t))
+
+;;; Places.
+
+(defun places ()
+  "Return the table of the places of what is being compiled, or NIL."
+  (let ((variable (compiler-variable '#:*source-paths*)))
+    (and (boundp variable)
+         (hash-table-p (symbol-value variable))
+         (symbol-value variable))))
+
+(defun place-of (form)
+  "Return where FORM stands in what is being compiled, or NIL."
+  (let ((places (places)))
+    (and places (consp form) (values (gethash form places)))))
+
+(defun in-source-p (form)
+  "True if FORM was read from what is being compiled, or stands in place of what was."
+  (and (place-of form) t))
+
+(defun keep-place (new old)
+  "Let NEW, made of OLD, stand where OLD does if it has no place yet. Return NEW."
+  (let ((place (and (consp new) (not (eq new old)) (place-of old))))
+    (when (and place (not (place-of new)))
+      (setf (gethash new (places)) place))
+    new))
+
+(defun call-at-place (form function)
+  "Call FUNCTION. What it warns of the compiler takes to be about FORM."
+  (let ((place (place-of form)))
+    (if place
+        (progv (list (compiler-variable '#:*current-path*)) (list place) (funcall function))
+        (funcall function))))
+
+;;; What can be said only when all of a file has been read, or of all files of a system.
+;;;
+;;; Forms that are loaded belong together, and so do files that are compiled in one
+;;; WITH-COMPILATION-UNIT; a file compiled by itself is a whole. When a form is evaluated Lisp makes
+;;; a unit of it too: what is to be said at its end is left to the unit around that.
+
+(defstruct (unit (:constructor make-unit (kind outer)) (:copier nil))
+  "What is compiled or loaded as a whole, of KIND :LOAD or :COMPILATION, within OUTER. TASKS are
+pairs of a function to call at its end and a place, by form."
+  (kind :load :type (member :load :compilation) :read-only t)
+  (outer nil :type (or null unit) :read-only t)
+  (files-p nil :type boolean)
+  (tasks (make-hash-table :test 'eq) :type hash-table :read-only t))
+
+(defvar *unit* nil "The unit that is being compiled or loaded, or NIL.")
+
+(defun context-of (form)
+  "Return how the compiler would tell about FORM later."
+  (call-at-place form (lambda () (funcall (compiler-function '#:find-error-context) nil))))
+
+(defun at-end-of-unit (form function)
+  "Call FUNCTION when all has been read of what is compiled or loaded together with FORM, once. What
+it warns of the compiler takes to be about FORM. Without a compiler, do nothing."
+  (when (and *unit* (not (gethash form (unit-tasks *unit*))))
+    (setf (gethash form (unit-tasks *unit*)) (cons function (context-of form)))))
+
+(defun call-as-compiler (function)
+  "Call FUNCTION. What it warns of is told as what the compiler warns of. Return whether there was a
+warning, and whether it was more than a matter of style."
+  (let ((warned nil) (failed nil))
+    (with-compilation-unit ()
+      (progv (mapcar #'compiler-variable '(#:*last-message-count* #:*last-error-context*))
+          (list (list* 0 nil nil) nil)
+        (handler-bind ((style-warning (compiler-function '#:compiler-style-warning-handler))
+                       (warning (compiler-function '#:compiler-warning-handler)))
+          (handler-bind ((warning (lambda (condition)
+                                    (setf warned t)
+                                    (unless (typep condition 'style-warning) (setf failed t)))))
+            (funcall function)))))
+    (values warned failed)))
+
+(defun end-unit (unit)
+  "Do what was to be done at the end of UNIT, in order. Return what CALL-AS-COMPILER does."
+  (let ((context (compiler-variable '#:*compiler-error-context*)))
+    (if (plusp (hash-table-count (unit-tasks unit)))
+        (call-as-compiler
+         (lambda ()
+           (loop for (function . place) being the hash-values of (unit-tasks unit)
+                 do (progv (list context) (list place) (funcall function)))))
+        (values nil nil))))
+
+(defun leave-to-outer (unit)
+  (loop for form being the hash-keys of (unit-tasks unit) using (hash-value task)
+        do (setf (gethash form (unit-tasks (unit-outer unit))) task)))
+
+(defun call-in-unit (kind function &optional own)
+  "Call FUNCTION in a unit of KIND, and return its values: the unit at hand if that will do and OWN
+is not true, or else another."
+  (if (and *unit* (not own) (member (unit-kind *unit*) (list kind :compilation)))
+      (funcall function)
+      (let ((*unit* (make-unit kind (and (not own) *unit*))))
+        (multiple-value-prog1 (funcall function)
+          (if (and (unit-outer *unit*) (not (unit-files-p *unit*)))
+              (leave-to-outer *unit*)
+              (let ((unit (shiftf *unit* nil))) (end-unit unit)))))))
+
+(defun call-as-unit (function)
+  "Call FUNCTION, which evaluates forms that belong together, and return its values."
+  (call-in-unit :load function t))
+
+(defun compile-in-unit (function)
+  "Call FUNCTION, which compiles a file and returns what COMPILE-FILE does. Return that."
+  (cond ((and *unit* (eq :compilation (unit-kind *unit*)))
+         (setf (unit-files-p *unit*) t)
+         (funcall function))
+        (t (let ((*unit* (make-unit :compilation nil)))
+             (multiple-value-bind (output warned failed) (funcall function)
+               (let ((unit (shiftf *unit* nil)))
+                 (multiple-value-bind (warned-now failed-now) (end-unit unit)
+                   (values output (or warned warned-now) (or failed failed-now)))))))))
+
+;;; SBCL has no hook for the end of a unit.
+
+(defun watch-units ()
+  "Let what SBCL compiles or loads be a unit."
+  (flet ((wrap (name wrapper)
+           (sb-int:encapsulate name 'ars-magna wrapper)))
+    (wrap 'compile-file (lambda (function &rest arguments)
+                          (compile-in-unit (lambda () (apply function arguments)))))
+    (wrap 'load (lambda (function &rest arguments)
+                  (call-in-unit :load (lambda () (apply function arguments)))))
+    (wrap (compiler-variable '#:%with-compilation-unit)
+          (lambda (function body &rest options &key override &allow-other-keys)
+            (apply function (lambda () (call-in-unit :compilation body override)) options)))))
+
+(watch-units)

@@ -1,0 +1,63 @@
+;;;; withdrawing.lisp -- a command is interrupted by who issued it, if it is still under way.
+
+(in-package :ars-magna.command)
+
+;;; GRAB-RESOURCE takes a resource from whatever occupies it by then. Who only wants an end of what
+;;; it has asked for itself withdraws that. A command is known by its continuation. What the journal
+;;; notes is what that came to: that a command was interrupted, a track, or nothing.
+
+(define-kind (withdrawal :include request
+                         :constructor (make-withdrawal (continuation arguments
+                                                        &aux (operator 'withdraw-command))))
+    "That a command is to be interrupted on a resource, the first argument, if it is under way."
+  (:fixed
+   (continuation nil t "what the command was to tell of its end; NIL if the second argument says
+where the command is: :COMMAND, :TRACK or NIL")))
+
+(defun track-operation-of (resource)
+  "Return the operation of the track that RESOURCE keeps, or NIL."
+  (let ((track (and (camera-p resource) (camera-tracking resource))))
+    (and track (operation-p (track-operation track)) (track-operation track))))
+
+(defun tells-p (operation continuation)
+  "True if OPERATION, an event or NIL, is to tell CONTINUATION of its end."
+  (and (operation-p operation)
+       (eq continuation (operation-continuation operation))))
+
+(defun place-of-withdrawn (withdrawal)
+  "Return where the command of WITHDRAWAL is: on its resource, :COMMAND; in the background of that,
+:TRACK; or nowhere, NIL."
+  (destructuring-bind (resource &optional place) (request-arguments withdrawal)
+    (let ((continuation (withdrawal-continuation withdrawal)))
+      (cond ((null continuation) place)
+            ((tells-p (resource-event resource) continuation) :command)
+            ((tells-p (track-operation-of resource) continuation) :track)))))
+
+;; Called right before it is performed.
+(defmethod request-entry ((withdrawal withdrawal))
+  (list 'withdraw-command
+        (first (request-arguments withdrawal))
+        (place-of-withdrawn withdrawal)))
+
+(defmethod perform ((withdrawal withdrawal) timeline)
+  (let* ((resource (first (request-arguments withdrawal)))
+         (agenda (timeline-agenda timeline))
+         (tick (1+ (agenda-tick agenda))))
+    (ecase (place-of-withdrawn withdrawal)
+      (:command (let ((event (resource-event resource)))
+                  (note-interruption event withdrawal tick)
+                  (interrupt-event agenda event)))
+      (:track (note-interruption (track-operation-of resource) withdrawal tick)
+       (end-track resource :interrupt))
+      ((nil)))))
+
+(defun withdraw-command (resource continuation)
+  "Interrupt the command on RESOURCE, also in the background of that, that is to tell CONTINUATION
+of its end, at the start of the next tick, if it is under way by then. Returns nothing."
+  (post (make-withdrawal continuation (list resource)) resource))
+
+(defun withdraw-again (resource place)
+  "Do to RESOURCE what a withdrawal came to in a run that is repeated."
+  (post (make-withdrawal nil (list resource place)) resource))
+
+(define-operator 'withdraw-command '(datum datum) #'withdraw-again)
