@@ -85,7 +85,7 @@
                  (:file "operators")))
    (:module "rpl/tasks" :serial t
     :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
-                 (:file "task") (:file "trace") (:file "runner") (:file "machine")
+                 (:file "task") (:file "trace") (:file "runner") (:file "tracing") (:file "machine")
                  (:file "ending") (:file "stepping") (:file "blame") (:file "procedure")
                  (:file "report") (:file "engine") (:file "alone")))
    (:module "rpl/language" :serial t
@@ -98,11 +98,18 @@
     :components ((:file "package") (:file "waiting") (:file "whenever") (:file "failing")
                  (:file "handling") (:file "trying") (:file "protecting") (:file "parallel")
                  (:file "policy") (:file "blocking") (:file "ordering") (:file "valve")))
+   (:module "rpl/seeing" :serial t
+    :components ((:file "package") (:file "variables") (:file "subjects") (:file "tree")
+                 (:file "describing") (:file "history") (:file "why") (:file "spans")
+                 (:file "breaking") (:file "stepping")))
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
     :components ((:file "package") (:file "fluents") (:file "interface") (:file "accessors")
-                 (:file "outcomes") (:file "commands") (:file "runs")))
+                 (:file "outcomes") (:file "commands") (:file "runs")
+                 (:file "seeing")))
+   (:module "rpl/pictures" :serial t
+    :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline") (:file "saving")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.

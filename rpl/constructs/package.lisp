@@ -21,4 +21,4 @@
   ;; ordering
   (:export #:partial-order #:plan)
   ;; valve
-  (:export #:make-valve #:valve #:valve-name #:valve-owner #:valve-p))
+  (:export #:make-valve #:valve #:valve-name #:valve-owner #:valve-p #:valve-requests))

@@ -14,6 +14,7 @@
   (setf (frame-counter frame) 2
         (frame-data frame) signal)
   (push frame (task-cleaning task))
+  (note-event task :clean)
   (make-frame (protection-cleanup node) (frame-environment frame) frame))
 
 (defun end-cleanup (task frame)

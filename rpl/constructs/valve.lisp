@@ -13,6 +13,7 @@
 
 (setf (documentation 'valve-name 'function) "Return the name that the valve was made with."
       (documentation 'valve-owner 'function) "Return the task that has the valve, or NIL."
+      (documentation 'valve-requests 'function) "Return the tasks that queue for the valve."
       (documentation 'valve-p 'function) "True of valves.")
 
 (addition make-valve)

@@ -16,8 +16,8 @@ operators of Common Lisp mean these without further ado.")
   (:export #:create-fluent #:create-fluent-vector #:fluent #:fluent-name #:fluent-p
            #:make-watcher #:state #:watcher #:watcher-client #:watcher-pending #:watcher-fluent #:watcher-p)
   ;; network
-  (:export #:fl-apply #:fl-funcall #:fluent-text #:fluent-value #:unwatch #:watch)
+  (:export #:base-fluents #:depends-p #:fluent-watchers #:fl-apply #:fl-funcall #:fluent-text #:fluent-value #:unwatch #:watch)
   ;; propagation
-  (:export #:*backlog* #:apply-settings #:backlog #:make-backlog #:pulse #:set-value)
+  (:export #:*backlog* #:apply-settings #:backlog #:backlog-on-change #:make-backlog #:pulse #:set-value)
   ;; operators
   (:export #:lifting #:lifting-and #:lifting-or))

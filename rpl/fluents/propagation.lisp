@@ -8,7 +8,9 @@
 ;;; heard to be true is committed to waking: what happens to the fluent afterwards is no matter.
 
 (defstruct (backlog (:constructor make-backlog ()) (:copier nil))
-  "Derived fluents to be computed, by height: those of each height in order of arrival."
+  "Derived fluents to be computed, by height: those of each height in order of arrival. ON-CHANGE,
+if any, is called with :SET or :PULSE, a base fluent, and its value, before anybody hears of it."
+  (on-change nil :type (or null function))
   (heads (make-array 8 :initial-element nil) :type simple-vector)
   (tails (make-array 8 :initial-element nil) :type simple-vector)
   (highest 0 :type fixnum))
@@ -18,6 +20,14 @@
 
 (defvar *spreading* nil
   "True while a change is being spread: networks must not set fluents.")
+
+;; Costs 1 ns where nobody keeps a trace.
+(declaim (inline note-change))
+(defun note-change (kind fluent value)
+  "Let the plan runner at work, if it keeps a trace, know that FLUENT has VALUE now."
+  (let* ((backlog *backlog*)
+         (function (and backlog (backlog-on-change backlog))))
+    (when function (funcall function kind fluent value))))
 
 (defun grow-backlog (backlog height)
   (flet ((grown (vector)
@@ -122,6 +132,7 @@ network (manual D.2)."
   (check-settable 'set-value fluent)
   (unless (eql value (fluent-now fluent))
     (setf (fluent-now fluent) value)
+    (note-change :set fluent value)
     (spread fluent))
   value)
 
@@ -133,7 +144,8 @@ network (manual D.2)."
 (defun pulse-all (fluents values)
   (loop for fluent in fluents
         for value in values
-        do (setf (fluent-now fluent) value))
+        do (setf (fluent-now fluent) value)
+           (note-change :pulse fluent value))
   (spread-all fluents)
   (dolist (fluent fluents) (setf (fluent-now fluent) nil))
   (spread-all fluents))
@@ -144,6 +156,7 @@ network (manual D.2)."
 network that is true at that instant, will wake. Return VALUE (manual C)."
   (check-settable 'pulse fluent)
   (setf (fluent-now fluent) value)
+  (note-change :pulse fluent value)
   (spread fluent)
   (setf (fluent-now fluent) nil)
   (spread fluent)
@@ -158,6 +171,7 @@ all together. So whoever sees the pulses sees the values that came with them (re
              (ecase kind
                (:set (unless (eql (first more) (fluent-now fluent))
                        (setf (fluent-now fluent) (first more))
+                       (note-change :set fluent (first more))
                        (pushnew fluent changed)))
                (:pulse (push fluent pulsed)
                 (push (if more (first more) t) values))))

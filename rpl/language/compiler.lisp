@@ -89,23 +89,40 @@ it, and those to the left of them too, to keep the order."
   "Return code that builds the node for FORM."
   (if (not (suspends-p form scope))
       (leaf-code form scope)
-      (let* ((environment (scope-environment scope))
-             (plan-form (find-plan-form form environment)))
-        (cond (plan-form (funcall (plan-form-compiler plan-form) form scope))
-              ((not (symbolp (first form))) (refuse-code form scope))
-              ((assoc (first form) (scope-procedures scope)) (function-form-code form scope))
-              ((local-function-p (first form) environment)
-               (if (macro-function (first form) environment)
-                   (expansion-code form scope)
-                   (function-form-code form scope)))
-              ((container-p form) (refuse-code form scope))
-              ((macro-function (first form) environment) (expansion-code form scope))
-              ((special-operator-p (first form)) (refuse-code form scope))
-              ((operator-in-p form *stirring-functions*)
-               (if (some (lambda (argument) (suspends-p argument scope)) (rest form))
-                   (hoisted-code form scope)
-                   (leaf-code form scope)))
-              (t (function-form-code form scope))))))
+      (naming-code (waiting-code form scope) scope)))
+
+(defun naming-code (code scope)
+  "Return CODE, which builds a node that runs in the environment of SCOPE, so that the node knows the
+names of the variables there."
+  (let ((names (names-by-level scope)))
+    (if (some #'identity names)
+        `(name-variables ,code ',names)
+        code)))
+
+(defun name-variables (node names)
+  (unless (leaf-p node)
+    (setf (node-names node) names))
+  node)
+
+(defun waiting-code (form scope)
+  "Return code that builds the node for FORM, which makes its task wait."
+  (let* ((environment (scope-environment scope))
+         (plan-form (find-plan-form form environment)))
+    (cond (plan-form (funcall (plan-form-compiler plan-form) form scope))
+          ((not (symbolp (first form))) (refuse-code form scope))
+          ((assoc (first form) (scope-procedures scope)) (function-form-code form scope))
+          ((local-function-p (first form) environment)
+           (if (macro-function (first form) environment)
+               (expansion-code form scope)
+               (function-form-code form scope)))
+          ((container-p form) (refuse-code form scope))
+          ((macro-function (first form) environment) (expansion-code form scope))
+          ((special-operator-p (first form)) (refuse-code form scope))
+          ((operator-in-p form *stirring-functions*)
+           (if (some (lambda (argument) (suspends-p argument scope)) (rest form))
+               (hoisted-code form scope)
+               (leaf-code form scope)))
+          (t (function-form-code form scope)))))
 
 (defun expansion-code (form scope)
   "Return code for FORM, a macro call."
@@ -121,9 +138,11 @@ it, and those to the left of them too, to keep the order."
     ((null forms) '+nothing+)
     ((null (rest forms)) (plan-code (first forms) scope))
     (t (let ((single (single-scope scope)))
-        `(make-steps :form '(seq ,@forms)
-                     :parts (vector ,@(loop for (form . more) on forms
-                                            collect (plan-code form (if more single scope)))))))))
+         (naming-code `(make-steps :form '(seq ,@forms)
+                                   :parts (vector ,@(loop for (form . more) on forms
+                                                          for inner = (if more single scope)
+                                                          collect (plan-code form inner))))
+                      scope)))))
 
 (defun binding-body-code (forms scope)
   "Return code for FORMS, a body that may start with declarations; these are for the reader only."

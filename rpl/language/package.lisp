@@ -17,7 +17,7 @@
   (:export #:binding-body-code #:body-code #:define-plan-form #:hoisted-code #:plan-code
            #:suspends-p)
   ;; steps
-  (:export #:seq)
+  (:export #:seq #:steps #:steps-parts)
   ;; leaving
   (:export #:block-code #:make-leave)
   ;; branching

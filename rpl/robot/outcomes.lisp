@@ -35,18 +35,20 @@ TYPE (reading 181)."
   "True if an answer of COMMAND with the error code ERR is its last: a track that begins will end."
   (or err (not (eq 'camera-track (command-name command)))))
 
-(defun answering (interface command outcome)
-  "Return a continuation for COMMAND: it posts what OUTCOME makes of the answer."
+(defun answering (interface command outcome issue)
+  "Return a continuation for COMMAND: it posts what OUTCOME makes of the answer to ISSUE."
   (atomic-incf (interface-under-way interface))
   (lambda (err resource &rest results)
-    (post-batch (interface-runner interface) (apply outcome resource err results))
+    (with-answer (issue err)
+      (post-batch (interface-runner interface) (apply outcome resource err results)))
     (when (ends-p command err)
       (atomic-decf (interface-under-way interface)))))
 
 (defun command-in-plan (operator command outcome arguments)
   "Issue COMMAND as the plan function OPERATOR, and post what OUTCOME, a function of the resource,
 the error code and the results, makes of its end."
-  (let ((interface (the-interface)))
+  (let ((interface (the-interface))
+        (issue (note-command operator arguments)))
     (multiple-value-bind (resource arguments)
         (convert-resource arguments (spec-type (command-resource command)) operator)
       (let ((arguments (loop for spec in (command-parameters command)
@@ -54,7 +56,7 @@ the error code and the results, makes of its end."
                              collect (convert-argument argument (spec-type spec) operator))))
         (check-in-plan operator command arguments)
         (apply (command-name command) resource
-               (append arguments (list (answering interface command outcome))))))))
+               (append arguments (list (answering interface command outcome issue))))))))
 
 (defun check-in-plan (operator command arguments)
   "Signal WRONG-ARGUMENT in the name of OPERATOR if COMMAND does not take ARGUMENTS."

@@ -20,7 +20,7 @@
                 #:start-plan #:stop-plan #:plan-runner #:plan-runner-tasks #:task-over-p
                 #:task-state #:task-result #:task-p #:plan-deadlocked-p #:report-deadlock
                 #:reseed-runner #:digest-runner #:print-tasks #:find-procedure #:plan-trace
-                #:write-trace)
+                #:write-trace #:note-command #:with-answer #:*runner-in-use* #:*step-plans*)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
            #:robot-place-input* #:robot-place*
@@ -52,5 +52,6 @@
            #:rpl-hand-ungrasp #:rpl-hand-grasp-check #:rpl-hand-track
            #:rpl-storage-bin-open #:rpl-storage-bin-close)
   ;; running
-  (:export #:run-plan #:begin-plan #:end-plan #:plans #:print-plans #:*plan-limit*
-           #:rpl-runner))
+  (:export #:run-plan #:begin-plan #:end-plan #:plans #:*plan-limit* #:rpl-runner)
+  ;; seeing
+  (:export #:call-with-plans-in-use #:print-plans #:step-plan))

@@ -101,13 +101,6 @@ simulator was stopped or started anew, or the robot defined anew). Signals UNKNO
       (plan-runner-tasks (interface-runner *interface*))
       '()))
 
-(addition print-plans)
-(defun print-plans (&optional (stream *standard-output*))
-  "Print the plans under way to STREAM, each as a tree of tasks: what each does and waits for."
-  (if (usable-p *interface*)
-      (with-plans (*interface*) (print-tasks (interface-runner *interface*) stream))
-      (format stream "No plans.~%")))
-
 (defun end-in (interface task)
   "Let TASK of INTERFACE, or all if it is NIL, evaporate: now, or when their thread gets to it."
   (stop-plan (interface-runner interface) task)

@@ -35,6 +35,7 @@
   (dice nil :type (or null dice))
   (trace nil :type (or null vector))
   (clock nil :type (or null function))
+  (stepper nil :type (or null function))
   (slow 0.1d0 :type real)
   (warned '() :type list)
   (lock (make-lock "plan inbox") :read-only t)
@@ -71,18 +72,6 @@
 (defun current-task ()
   "Return the task that asks."
   (runner-current *runner*))
-
-(defmacro note-event (task event &optional detail)
-  "Add to the trace, if one is kept, that EVENT happened to TASK. DETAIL is evaluated only then."
-  (once-only (task)
-    `(when (runner-trace (the plan-runner (task-runner ,task)))
-       (add-trace-entry ,task ,event ,detail))))
-
-(defun add-trace-entry (task event detail)
-  (let ((runner (task-runner task)))
-    (vector-push-extend (make-trace-entry (runner-tick runner) event (task-serial task)
-                                          (task-form task) detail)
-                        (runner-trace runner))))
 
 ;;; The ready queues.
 

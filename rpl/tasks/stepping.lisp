@@ -22,6 +22,16 @@
         (when (> seconds (runner-slow (task-runner task)))
           (warn-of-slow-step task frame seconds))))))
 
+(defun watched-step (node task frame value)
+  "Do the step of NODE as RUN-STEPS would, for whoever measures or goes through plans step by step."
+  (let* ((runner (task-runner task))
+         (stepper (runner-stepper runner))
+         (clock (runner-clock runner)))
+    (when stepper (funcall stepper task frame))
+    (if clock
+        (timed-step clock node task frame value)
+        (funcall (node-step node) node task frame value))))
+
 (defun evaporate-self (task frame)
   "Let TASK, which has asked for its own end in the step that returned FRAME, evaporate."
   (cond ((not (eq frame +parked+))
@@ -53,7 +63,7 @@ FRAME and VALUE are what the last step returned; return what it should have."
   "Let TASK go on from FRAME with VALUE until it waits, gives way or ends."
   (declare #.*hot* (type task task))    ; 15 ns a step beyond what the step does
   (let* ((runner (task-runner task))
-         (clock (runner-clock runner))
+         (watched (or (runner-clock runner) (runner-stepper runner)))
          (higher (ash 2 (task-level task))))
     (declare (type plan-runner runner))
     (loop
@@ -66,8 +76,8 @@ FRAME and VALUE are what the last step returned; return what it should have."
       (incf (runner-steps runner))
       (let ((node (frame-node frame)))
         (multiple-value-setq (frame value)
-          (if clock
-              (timed-step clock node task frame value)
+          (if watched
+              (watched-step node task frame value)
               (funcall (node-step node) node task frame value)))))))
 
 (defun run-task (task)
@@ -77,10 +87,10 @@ FRAME and VALUE are what the last step returned; return what it should have."
         (signal (task-signal task)))
     (setf (task-state task) :running
           (runner-current (task-runner task)) task)
-    (when signal
-      (setf (task-signal task) nil)
-      (multiple-value-setq (frame value) (receive task frame signal)))
     (let ((*asker* task))
+      (when signal
+        (setf (task-signal task) nil)
+        (multiple-value-setq (frame value) (receive task frame signal)))
       (run-steps task frame value))))
 
 (defun spawn (parent node environment index level &optional (task (make-task nil node)))
@@ -93,7 +103,7 @@ Return it."
           (task-index task) index
           (task-frame task) (make-frame node environment nil))
     (when parent (link-child task parent))
-    (note-event task :start)
+    (note-event task :start (task-name task) (and parent (task-serial parent)))
     (note-status task :running)
     (make-ready task)
     task))

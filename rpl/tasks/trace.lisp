@@ -3,29 +3,99 @@
 (in-package :ars-magna.rpl.tasks)
 
 ;;; A trace names tasks by number and holds no clock time, so that it is the same on every replay.
+;;; An entry keeps things, not words: what is written of it is made when somebody reads it.
 
-(defstruct (trace-entry (:constructor make-trace-entry (tick event task form detail))
+(defstruct (trace-entry (:constructor make-trace-entry (tick event task form subject value agent))
                         (:copier nil))
-  "At TICK, EVENT (:start, :wait, :wake, :succeed, :fail, :evaporate, :block or :unblock) happened
-to the task number TASK at the expression FORM. DETAIL is what it waits for, or why it failed."
+  "At TICK, EVENT happened to the task number TASK (0: to none) at the expression FORM, by the doing
+of AGENT: a task's number, an ANSWER, or another asker (see *ASKER*). What SUBJECT and VALUE are:
+:start: name and parent's number; :wait and :wake: what the task waits for; :succeed: NIL and the
+value; :failure (where it happens) and :fail (it ends the task): the failure; :set and :pulse: fluent and
+value; :command: an ISSUE and the expressions under way, innermost first; :answer: the ISSUE and the
+error code; :evaporate, :clean, :block and :unblock: nothing."
   (tick 0 :type real :read-only t)
   (event :start :type keyword :read-only t)
   (task 0 :type fixnum :read-only t)
   (form nil :read-only t)
-  (detail nil :read-only t))
+  (subject nil :read-only t)
+  (value nil :read-only t)
+  (agent nil :read-only t))
+(declaim-final trace-entry)
 
-(addition trace-entry-tick trace-entry-event trace-entry-task trace-entry-form trace-entry-detail)
-(loop for (reader text) in
-      '((trace-entry-tick "Return the tick of a trace entry.")
-        (trace-entry-event "Return what happened: :start, :wait, :wake, :succeed, :fail,
-:evaporate, :block or :unblock.")
-        (trace-entry-task "Return the serial number of the task that it happened to.")
-        (trace-entry-form "Return the plan's expression that the task was at.")
-        (trace-entry-detail "Return what the task waits for, or why it failed, as text, or NIL."))
-      do (setf (documentation reader 'function) text))
+(defstruct (issue (:constructor make-issue (name arguments task)) (:copier nil))
+  "That the task number TASK asked somebody outside of the plans for NAME, with ARGUMENTS."
+  (name nil :type symbol :read-only t)
+  (arguments '() :type list :read-only t)
+  (task 0 :type fixnum :read-only t))
+
+(defstruct (answer (:constructor make-answer (issue error)) (:copier nil))
+  "What came of ISSUE: ERROR, or NIL if all went well."
+  (issue nil :type issue :read-only t)
+  (error nil :read-only t))
+
+(addition trace-entry-tick trace-entry-event trace-entry-task trace-entry-form trace-entry-value
+          trace-entry-detail)
+(document-functions
+  trace-entry-tick "Return the tick of a trace entry."
+  trace-entry-event "Return what happened: :start, :wait, :wake, :succeed, :fail, :evaporate, :failure
+(whatever becomes of it), :clean (a cleanup begins), :block or :unblock; :set or :pulse (a fluent),
+:command or :answer."
+  trace-entry-task "Return the serial number of the task that it happened to, or that did it; 0 for none."
+  trace-entry-form "Return the plan's expression that the task was at."
+  trace-entry-subject "Return what it is about, an object that depends on the event."
+  trace-entry-agent "Return by whose doing it happened: a task's number, an answer, or an asker."
+  trace-entry-value "Return what a task succeeded with, the value that a fluent was given, the error
+code of an answer, the expressions under way when a command was issued, the number of the task that a
+task is part of when it starts."
+  issue-p "True of records that a command was issued."
+  issue-name "Return the plan function by which a command was issued."
+  issue-arguments "Return the list of what it was called with."
+  issue-task "Return the number of the task that issued the command."
+  answer-p "True of answers to commands."
+  answer-issue "Return the record of the command that an answer is for."
+  answer-error "Return the error code of an answer, or NIL.")
+
+(defun issue-text (issue)
+  (form-text (cons (issue-name issue) (issue-arguments issue))))
+
+(defmethod asker-note ((answer answer))
+  (list "the answer to " (issue-text (answer-issue answer))))
+
+(defun agent-text (agent)
+  "Return in words who AGENT, of a trace entry, is."
+  (if (integerp agent)
+      (format nil "task ~D" agent)
+      (cut (one-line (note-text (if agent (asker-note agent) "a program or the REPL"))) 100)))
+
+(defun subject-text (subject)
+  "Return in words what a task waits for whose trace entry has SUBJECT."
+  (cond ((null subject) nil)
+        ((realp subject) (format nil "tick ~A" subject))
+        (t (awaited-text subject))))
+
+(addition trace-entry-detail)
+(defun trace-entry-detail (entry)
+  "Return what a trace entry is about as text, or NIL: what the task waits for, why it failed, what
+value a fluent was given and by whom, which command was issued or answered, and how."
+  (let ((subject (trace-entry-subject entry))
+        (value (trace-entry-value entry)))
+    (case (trace-entry-event entry)
+      ((:wait :wake) (subject-text subject))
+      ((:failure :fail) (failure-text subject))
+      ((:set :pulse) (format nil "~A = ~A, by ~A" (awaited-text subject) (form-text value 40)
+                             (agent-text (trace-entry-agent entry))))
+      (:command (issue-text subject))
+      (:answer (format nil "~A: ~(~A~)" (issue-text subject) (or value "done"))))))
 
 (defun make-trace ()
   (make-array 64 :adjustable t :fill-pointer 0))
+
+(defun add-trace-entry (trace tick event task form subject value)
+  "Add an entry to TRACE: *ASKER* is its agent."
+  (let ((asker *asker*))
+    (vector-push-extend (make-trace-entry tick event task form subject value
+                                          (if (task-p asker) (task-serial asker) asker))
+                        (the (and vector (not simple-array)) trace))))
 
 (defun write-trace-entry (entry stream)
   (format stream "~6@A ~(~9A~) ~5D ~A~@[  ; ~A~]~%"

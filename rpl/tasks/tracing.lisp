@@ -1,0 +1,61 @@
+;;;; tracing.lisp -- what a plan runner tells its trace, if it keeps one.
+
+(in-package :ars-magna.rpl.tasks)
+
+;;; By whose doing something happens is known by *ASKER*: the task at work, or whoever posted what
+;;; is being applied.
+
+(defmacro note-event (task event &optional subject value)
+  "Add to the trace, if one is kept, that EVENT happened to TASK. SUBJECT and VALUE, see TRACE-ENTRY,
+are evaluated only then."
+  (once-only (task)
+    `(when (runner-trace (the plan-runner (task-runner ,task)))
+       (trace-task ,task ,event ,subject ,value))))
+
+(defun trace-task (task event subject value)
+  (let ((runner (task-runner task)))
+    (add-trace-entry (runner-trace runner) (runner-tick runner) event (task-serial task)
+                     (task-form task) subject value)))
+
+(defun trace-doing (runner event subject value)
+  "Add to the trace of RUNNER that the task at work, if any, did something: EVENT."
+  (let* ((asker *asker*)
+         (task (and (task-p asker) (eq runner (task-runner asker)) asker)))
+    (add-trace-entry (runner-trace runner) (runner-tick runner) event
+                     (if task (task-serial task) 0)
+                     (and task (task-form task))
+                     subject value)))
+
+(defun trace-changes (runner)
+  "Let the trace of RUNNER be told of every change of a fluent."
+  (setf (backlog-on-change (runner-backlog runner))
+        (lambda (kind fluent value) (trace-doing runner kind fluent value))))
+
+;;; What is posted.
+
+(defun on-behalf (entry runner)
+  "Return a function that applies ENTRY, posted to RUNNER, on behalf of who asks now."
+  (let ((asker *asker*))
+    (lambda ()
+      (let ((*asker* asker))
+        (when (answer-p asker)
+          (trace-doing runner :answer (answer-issue asker) (answer-error asker)))
+        (if (functionp entry)
+            (funcall entry)
+            (apply-settings entry))))))
+
+;;; Commands: what tasks ask of others than plans.
+
+(defun note-command (name arguments)
+  "Note in the trace that the task at work calls the plan function NAME with ARGUMENTS. Return a
+record of that for WITH-ANSWER; NIL if no task is at work or no trace is kept."
+  (let ((task *asker*))
+    (when (and (task-p task) *runner* (runner-trace *runner*))
+      (let ((issue (make-issue name (mapcar #'fluent-value arguments) (task-serial task))))
+        (note-event task :command issue (plan-backtrace task (task-frame task)))
+        issue))))
+
+(defmacro with-answer ((issue error) &body body)
+  "Run BODY, which posts the answer to ISSUE, as NOTE-COMMAND returned it, with the error code ERROR."
+  `(let ((*asker* (if ,issue (make-answer ,issue ,error) *asker*)))
+     ,@body))
