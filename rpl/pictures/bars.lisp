@@ -66,6 +66,7 @@ of ten."
          (text (and (eq :waiting (span-kind span)) (span-text span)
                     (fitted (span-text span) (- width 6)))))
     (box canvas (look (span-kind span)) x y width 14)
+    (box canvas #xA8B4C8 x y 1 14)
     (when text (write-at canvas (+ x 3) (+ y 11) text #x505868))))
 
 (defun draw-command (canvas span y scale)
@@ -99,5 +100,4 @@ of ten."
       (dolist (kind '(:waiting :cleaning :blocked))
         (dolist (span (bar-spans bar))
           (when (eq kind (span-kind span)) (draw-span canvas span y scale)))))
-    (dolist (span (bar-commands bar)) (draw-command canvas span y scale))
-    (draw-mark canvas (bar-outcome bar) (place (bar-end bar) scale) y)))
+    (dolist (span (bar-commands bar)) (draw-command canvas span y scale))))

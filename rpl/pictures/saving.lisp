@@ -7,7 +7,7 @@
   (let ((trace (plan-trace runner)))
     (cond ((null trace)
            (reject-use "No trace was kept of these plans. Set *trace-plans* to true before ~
-                        rpl-init-robot, or give make-plan-runner :trace t."))
+                        they start."))
           ((bars trace (plan-runner-tick runner)))
           (t (reject-use "No plan has run here.")))))
 

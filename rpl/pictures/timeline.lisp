@@ -40,7 +40,9 @@
         for y from (+ +top+ 2) by +row-height+
         do (write-at canvas 10 (+ y 11)
                      (fitted (row-label row) (- +label-width+ 20)))
-           (dolist (bar (row-bars row)) (draw-bar canvas bar y scale))))
+           (dolist (bar (row-bars row)) (draw-bar canvas bar y scale))
+           (dolist (bar (row-bars row))
+             (draw-mark canvas (bar-outcome bar) (place (bar-end bar) scale) y))))
 
 (defun draw-timeline (canvas bars most)
   "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows. Return width and height in pixels."

@@ -4,6 +4,12 @@
 
 (setf *runner-in-use* (lambda () (and *interface* (interface-runner *interface*))))
 
+(defun trace-if-wanted (task)
+  "Let the runner of TASK, a plan that starts, keep a trace if *TRACE-PLANS* says so."
+  (when *trace-plans* (start-trace (task-runner task))))
+
+(pushnew 'trace-if-wanted *plan-start-hooks*)
+
 (defun call-with-plans-in-use (function)
   "Call FUNCTION with the runner of the plans in use, none of which goes on meanwhile, or with NIL."
   (if *interface*

@@ -10,7 +10,7 @@
   (let ((runner (or runner (runner-to-see which))))
     (values (or (plan-trace runner)
                 (reject-use "No trace was kept of these plans. Set *trace-plans* to true before ~
-                             rpl-init-robot, or give make-plan-runner :trace t."))
+                             they start."))
             (if (task-p which) (task-serial which) which))))
 
 (defun start-of (number trace)

@@ -54,13 +54,18 @@ them), :blocked, :cleaning or :command (TEXT was under way; ERROR is what it was
 
 ;;; From entries to bars.
 
-(defun open-span (bar kind entry)
-  (push (make-span kind (trace-entry-tick entry) (trace-entry-detail entry)) (bar-spans bar)))
-
 (defun close-spans (bar kinds tick)
   (dolist (span (bar-spans bar))
     (when (and (null (span-end span)) (member (span-kind span) kinds))
       (setf (span-end span) tick))))
+
+(defun open-span (bar kind entry)
+  (push (make-span kind (trace-entry-tick entry) (trace-entry-detail entry)) (bar-spans bar)))
+
+;; What decides a construct ends the wait for its parts without a wake-up.
+(defun begin-wait (bar entry)
+  (close-spans bar '(:waiting :parts) (trace-entry-tick entry))
+  (open-span bar (if (trace-entry-subject entry) :waiting :parts) entry))
 
 (defun end-bar (bar outcome tick)
   (close-spans bar '(:waiting :parts :blocked :cleaning) tick)
@@ -71,7 +76,7 @@ them), :blocked, :cleaning or :command (TEXT was under way; ERROR is what it was
   "Let BAR know of ENTRY, of its task, but for its start and commands."
   (let ((tick (trace-entry-tick entry)))
     (case (trace-entry-event entry)
-      (:wait (open-span bar (if (trace-entry-subject entry) :waiting :parts) entry))
+      (:wait (begin-wait bar entry))
       (:wake (close-spans bar '(:waiting :parts) tick))
       (:block (open-span bar :blocked entry))
       (:unblock (close-spans bar '(:blocked) tick))

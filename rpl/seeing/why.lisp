@@ -66,15 +66,19 @@
         (change-words change trace)
         (format nil "~A came true" (fluent-text fluent)))))
 
+(defun part-words (end trace)
+  "Return in words what END, an entry of TRACE, says of a part that has ended."
+  (format nil "its part ~D, ~A, ~A" (trace-entry-task end)
+          (task-words (trace-entry-task end) trace)
+          (ecase (trace-entry-event end)
+            (:succeed "succeeded")
+            (:fail (format nil "failed (~A)" (cut (trace-entry-detail end) 100)))
+            (:evaporate "evaporated"))))
+
 (defun part-reason (number index trace)
   (let ((end (earlier trace index (lambda (entry) (part-ended-p entry number trace)))))
     (if end
-        (format nil "its part ~D, ~A, ~A" (trace-entry-task end)
-                (task-words (trace-entry-task end) trace)
-                (ecase (trace-entry-event end)
-                  (:succeed "succeeded")
-                  (:fail (format nil "failed (~A)" (cut (trace-entry-detail end) 100)))
-                  (:evaporate "evaporated")))
+        (part-words end trace)
         "its turn had come")))
 
 (defun wake-reason (entry index trace)
@@ -126,12 +130,38 @@
       (:block (format nil "was blocked by ~A" (agent-words (trace-entry-agent entry) trace)))
       (:unblock "was blocked no longer"))))
 
+(defun deciding-part (number start end trace)
+  "Return the entry of TRACE, between the indices START and END, for the first part of the task NUMBER
+that succeeded or failed, or NIL."
+  (find-if (lambda (entry)
+             (and (member (trace-entry-event entry) '(:succeed :fail))
+                  (part-ended-p entry number trace)))
+           trace :start start :end end))
+
+;; A construct that is decided while some parts are still to evaporate ends without a wake-up.
+(defun decision-sentence (entry start end trace)
+  "Return how it came that the wait for parts of ENTRY, number START of TRACE, was over before number
+END, if by no wake-up; or NIL."
+  (let ((part (deciding-part (trace-entry-task entry) start end trace)))
+    (and part
+         (format nil "At tick ~A it was done with ~A, because ~A." (trace-entry-tick part)
+                 (quoted (trace-entry-form entry)) (part-words part trace)))))
+
 (defun own-sentences (number trace)
   "Return what happened to the task NUMBER of TRACE after its start, the newest first."
-  (loop for index from (1- (length trace)) downto 0
-        for entry = (aref trace index)
-        for words = (and (= number (trace-entry-task entry)) (event-words entry index trace))
-        when words collect (format nil "At tick ~A it ~A." (trace-entry-tick entry) words)))
+  (let ((sentences '()) (parts-wait nil) (since 0))
+    (loop for entry across trace
+          for index from 0
+          for event = (trace-entry-event entry)
+          for words = (and (= number (trace-entry-task entry)) (event-words entry index trace))
+          when words
+            do (when (and parts-wait (not (member event '(:wake :evaporate :block :unblock))))
+                 (push (decision-sentence parts-wait since index trace) sentences))
+               (push (format nil "At tick ~A it ~A." (trace-entry-tick entry) words) sentences)
+               (unless (member event '(:block :unblock))
+                 (setf parts-wait (and (eq :wait event) (null (trace-entry-subject entry)) entry)
+                       since index)))
+    (remove nil sentences)))
 
 (defun start-sentence (number trace)
   (let* ((start (start-of number trace))

@@ -25,7 +25,7 @@ frames on the heap; a runner lets tasks react. Knows neither the text of plans n
            #:trace-entry-subject #:trace-entry-task #:trace-entry-tick #:trace-entry-value
            #:write-trace)
   ;; tracing
-  (:export #:note-command #:note-event #:with-answer)
+  (:export #:note-command #:note-event #:start-trace #:with-answer)
   ;; runner
   (:export #:*runaway-limit* #:*runner* #:alone-p #:current-task #:make-ready
            #:plan-runner #:plan-runner-steps #:plan-runner-tasks #:plan-runner-tick #:plan-time

@@ -31,6 +31,19 @@ are evaluated only then."
   (setf (backlog-on-change (runner-backlog runner))
         (lambda (kind fluent value) (trace-doing runner kind fluent value))))
 
+(defun trace-start (task)
+  "Note the start of TASK, and of the tasks that it consists of."
+  (note-event task :start (task-name task) (and (task-parent task) (task-serial (task-parent task))))
+  (mapc #'trace-start (task-children task)))
+
+(defun start-trace (runner)
+  "Let RUNNER keep a trace from now on, in which tasks under way seem to start now. Nothing happens if
+it keeps one."
+  (unless (runner-trace runner)
+    (setf (runner-trace runner) (make-trace))
+    (trace-changes runner)
+    (mapc #'trace-start (plan-runner-tasks runner))))
+
 ;;; What is posted.
 
 (defun on-behalf (entry runner)
