@@ -144,6 +144,7 @@
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
                  (:file "status-lines") (:file "running-lines") (:file "loading") (:file "worlds")
                  (:file "world-lines") (:file "plans") (:file "plan-lines")
+                 (:file "plan-views")
                  (:file "picture-lines") (:file "debugger") (:file "prompt")
                  (:file "options") (:file "main")))))
 

@@ -8,7 +8,8 @@
 (defconstant +top+ 74 "How much room there is above the rows, in pixels.")
 
 (defparameter *looks*
-  '((:parts #x9DB9DC "runs its parts") (:waiting #xE6ECF5 "waits")
+  '((:parts #x9DB9DC "runs its parts") (:call #xDDD3EF "commands in a call")
+    (:waiting #xE6ECF5 "waits")
     (:blocked #x8C8C94 "is blocked") (:cleaning #xF2BE6A "cleans up")
     (:command #x3C68FF "command under way") (:trouble #xE0301E "command with an error"))
   "Lists (kind color text): what the parts of a bar look like, and what the legend says.")
@@ -96,7 +97,7 @@ of ten."
   "Draw BAR with its upper edge at Y."
   (let ((x (place (bar-start bar) scale)))
     (with-subject (canvas (bar-title bar))
-      (box canvas (look :parts) x y (- (place (bar-end bar) scale) x) 14)
+      (box canvas (look (if (bar-call-p bar) :call :parts)) x y (- (place (bar-end bar) scale) x) 14)
       (dolist (kind '(:waiting :cleaning :blocked))
         (dolist (span (bar-spans bar))
           (when (eq kind (span-kind span)) (draw-span canvas span y scale)))))

@@ -39,5 +39,5 @@
   "Return the rows for BARS and their parts, from top to bottom."
   (loop for row in (lanes bars)
         collect row
-        append (rows (sort (mapcan (lambda (bar) (copy-list (bar-parts bar))) (row-bars row))
+        append (rows (stable-sort (mapcan (lambda (bar) (copy-list (bar-parts bar))) (row-bars row))
                            #'< :key #'bar-serial))))

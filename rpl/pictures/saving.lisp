@@ -11,12 +11,19 @@
           ((bars trace (plan-runner-tick runner)))
           (t (reject-use "No plan has run here.")))))
 
+(defun plan-package (bars)
+  "Return the package in which the first plan of BARS was written, as far as that is known."
+  (let ((name (some #'bar-name bars)))
+    (or (and (symbolp name) (symbol-package name))
+        *package*)))
+
 (defun timeline-svg (bars most)
   "Return the timeline of BARS, in at most MOST rows, as an SVG document."
-  (with-output-to-string (stream)
-    (with-svg (canvas stream)
-      (with-canvas (canvas)
-        (draw-timeline canvas bars most)))))
+  (let ((*package* (plan-package bars)))
+    (with-output-to-string (stream)
+      (with-svg (canvas stream)
+        (with-canvas (canvas)
+          (draw-timeline canvas bars most))))))
 
 (addition save-plan-timeline)
 (defun save-plan-timeline (file &key runner (most 1000))

@@ -23,6 +23,7 @@
   (+ x 46 (* +character-width+ (length text))))
 
 (defun draw-legend (canvas)
+  "Draw what colors and marks mean. Return how wide that is, in pixels."
   (let ((x 10))
     (loop for (kind color text) in *looks*
           for low = (member kind '(:command :trouble))
@@ -31,7 +32,8 @@
                                    (box canvas color x (if low 33 27) 18 (if low 4 14))))))
     (loop for (outcome nil text) in *end-looks*
           do (setf x (draw-entry canvas x text
-                                 (lambda (x) (draw-mark canvas outcome (+ x 12) 27)))))))
+                                 (lambda (x) (draw-mark canvas outcome (+ x 12) 27)))))
+    x))
 
 ;;; The whole.
 
@@ -53,9 +55,8 @@
          (bottom (+ +top+ (* +row-height+ (length rows)))))
     (write-at canvas 10 16 (format nil "Plans from tick ~A to ~A" (scale-start scale)
                                    (scale-end scale)))
-    (draw-legend canvas)
     (draw-axis canvas scale bottom)
     (draw-rows canvas rows scale)
     (when (< most (length all))
       (write-at canvas 10 (+ bottom 34) (format nil "~D more rows are left out." (- (length all) most))))
-    (values (+ +label-width+ +chart-width+ 40) (+ bottom 42))))
+    (values (max (draw-legend canvas) (+ +label-width+ +chart-width+ 40)) (+ bottom 42))))

@@ -13,6 +13,10 @@
   (:report (lambda (break stream) (write-break break stream)))
   (:documentation "A plan has stopped for somebody to look at it: where it failed, or step by step."))
 
+(defun plan-break-p (object)
+  "True of breaks of plans."
+  (typep object 'plan-break))
+
 (document-functions
   plan-break-task "Return the task that stopped."
   plan-break-frame "Return the frame of the task that it stopped at.")

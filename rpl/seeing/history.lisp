@@ -80,7 +80,7 @@ expressions of the plan that were under way, innermost first, the tasks around i
           collect (list :tick (trace-entry-tick entry)
                         :command (cons (issue-name issue) (issue-arguments issue))
                         :task (trace-entry-task entry)
-                        :for (trace-entry-value entry)
+                        :for (without-repetition (apply #'append (trace-entry-value entry)))
                         :answered (and answer (trace-entry-tick answer))
                         :error (and answer (trace-entry-value answer))))))
 

@@ -8,7 +8,7 @@ of plans. Changes nothing.")
   ;; variables
   (:export #:task-stack #:task-variables)
   ;; subjects
-  (:export #:*runner-in-use* #:runner-to-see)
+  (:export #:*runner-in-use* #:runner-to-see #:task-numbered)
   ;; tree
   (:export #:print-tasks)
   ;; history
@@ -16,10 +16,10 @@ of plans. Changes nothing.")
   ;; why
   (:export #:why)
   ;; spans
-  (:export #:bar #:bar-commands #:bar-depth #:bar-end #:bar-failure #:bar-form
+  (:export #:bar #:bar-call-p #:bar-commands #:bar-depth #:bar-end #:bar-failure #:bar-form
            #:bar-label #:bar-name #:bar-outcome #:bar-parent #:bar-parts #:bar-serial #:bar-spans #:bar-start #:bars #:span #:span-error
            #:span-end #:span-kind #:span-start #:span-text)
   ;; breaking
-  (:export #:*break-on-plan-failures* #:plan-break #:plan-break-frame #:plan-break-task)
+  (:export #:*break-on-plan-failures* #:plan-break #:plan-break-p #:plan-break-frame #:plan-break-task)
   ;; stepping
   (:export #:*step-plans* #:step-task))

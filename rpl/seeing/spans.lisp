@@ -4,16 +4,19 @@
 
 (defstruct (span (:constructor make-span (kind start text &optional end)) (:copier nil))
   "From tick START to END of a task: KIND is :waiting (for what TEXT says), :parts (waiting for
-them), :blocked, :cleaning or :command (TEXT was under way; ERROR is what it was answered with)."
+them), :blocked, :cleaning or :command (TEXT was under way; ERROR is what it was answered with, CALLS the calls of procedures that it was
+issued in, outermost first)."
   (kind :waiting :type keyword :read-only t)
   (start 0 :type real :read-only t)
   (text nil :read-only t)
   (end nil :type (or null real))
-  (error nil))
+  (error nil)
+  (calls '() :type list))
 
 (defstruct (bar (:constructor make-bar (serial parent name form start depth)) (:copier nil))
   "The life of the task SERIAL, at DEPTH, part of the bar PARENT. OUTCOME is :succeeded, :failed,
-:evaporated, or NIL if it goes on; then END is the tick of the trace's end."
+:evaporated, or NIL if it goes on; then END is the tick of the trace's end. If CALL-P, it is a call of
+a procedure within the task, as far as commands were issued in it."
   (serial 0 :type fixnum :read-only t)
   (parent nil :type (or null bar) :read-only t)
   (name nil :read-only t)
@@ -25,7 +28,8 @@ them), :blocked, :cleaning or :command (TEXT was under way; ERROR is what it was
   (failure nil)
   (spans '() :type list)
   (commands '() :type list)
-  (parts '() :type list))
+  (parts '() :type list)
+  (call-p nil :type boolean))
 
 (document-functions
   span-kind "Return what a span is of: :waiting, :parts, :blocked, :cleaning or :command."
@@ -44,13 +48,14 @@ them), :blocked, :cleaning or :command (TEXT was under way; ERROR is what it was
   bar-failure "Return the failure of a task that failed, or NIL."
   bar-spans "Return the spans of the task, oldest first."
   bar-commands "Return the spans of the commands that the task issued, oldest first."
+  bar-call-p "True if the bar is of a call of a procedure, within a task."
   bar-parts "Return the bars of the tasks that the task consisted of, oldest first.")
 
 (defun bar-label (bar)
-  "Return a short text that says which task BAR is of."
-  (if (bar-name bar)
-      (format nil "~D ~(~A~)" (bar-serial bar) (bar-name bar))
-      (format nil "~D ~A" (bar-serial bar) (form-text (bar-form bar) 60))))
+  "Return a short text that says which task BAR is of, or which call within a task."
+  (cond ((bar-call-p bar) (form-text (bar-form bar) 60))
+        ((bar-name bar) (format nil "~D ~(~A~)" (bar-serial bar) (bar-name bar)))
+        (t (format nil "~D ~A" (bar-serial bar) (form-text (bar-form bar) 60)))))
 
 ;;; From entries to bars.
 
@@ -94,16 +99,55 @@ them), :blocked, :cleaning or :command (TEXT was under way; ERROR is what it was
     (when parent (push bar (bar-parts parent)))
     bar))
 
+(defun calls-in (stack)
+  "Return the calls of plan procedures among the expressions of STACK, innermost first, outermost
+first."
+  (reverse (remove-if-not (lambda (form)
+                            (and (consp form) (symbolp (first form)) (procedure-name-p (first form))))
+                          (without-repetition stack))))
+
 (defun begin-command (bar entry commands)
-  (setf (gethash (trace-entry-subject entry) commands)
-        (first (push (make-span :command (trace-entry-tick entry) (trace-entry-detail entry))
-                     (bar-commands bar)))))
+  (let ((span (make-span :command (trace-entry-tick entry) (trace-entry-detail entry))))
+    (setf (span-calls span) (calls-in (first (trace-entry-value entry)))
+          (gethash (trace-entry-subject entry) commands) span)
+    (push span (bar-commands bar))))
 
 (defun end-command (entry commands)
   (let ((span (gethash (trace-entry-subject entry) commands)))
     (when span
       (setf (span-end span) (trace-entry-tick entry)
             (span-error span) (trace-entry-value entry)))))
+
+;;; Calls within a task.
+
+(defun call-at (span depth) (nth depth (span-calls span)))
+
+(defun runs-of (spans depth)
+  "Return SPANS, of commands, as a list of lists: those that follow each other in one call at DEPTH."
+  (loop while spans
+        collect (let ((call (call-at (first spans) depth)))
+                  (loop while (and spans (eq call (call-at (first spans) depth)))
+                        collect (pop spans)))))
+
+(defun call-bar (bar spans depth until)
+  "Return the bar, part of BAR, of the call at DEPTH in which the commands SPANS were issued; it ends
+before UNTIL."
+  (let ((call (make-bar (bar-serial bar) bar nil (call-at (first spans) depth)
+                        (span-start (first spans)) (1+ (bar-depth bar)))))
+    (setf (bar-call-p call) t
+          (bar-end call) (min until (reduce #'max spans :key #'span-end))
+          (bar-commands call) (remove-if (lambda (span) (call-at span (1+ depth))) spans)
+          (bar-parts call) (call-bars call spans (1+ depth)))
+    call))
+
+(defun call-bars (bar spans &optional (depth 0))
+  "Return bars, parts of BAR, for the calls at DEPTH in which the commands SPANS were issued."
+  (loop for (run . more) on (runs-of spans depth)
+        when (call-at (first run) depth)
+          collect (call-bar bar run depth
+                            (if more
+                                (span-start (first (first more)))
+                                (reduce #'max run :key #'span-end)))))
 
 (defun finish-bar (bar now)
   "Put what is in BAR, and its parts, in order; what has not ended goes on until NOW."
@@ -113,7 +157,8 @@ them), :blocked, :cleaning or :command (TEXT was under way; ERROR is what it was
         (bar-parts bar) (nreverse (bar-parts bar)))
   (dolist (span (bar-commands bar))
     (unless (span-end span) (setf (span-end span) now)))
-  (dolist (part (bar-parts bar)) (finish-bar part now)))
+  (dolist (part (bar-parts bar)) (finish-bar part now))
+  (setf (bar-parts bar) (append (call-bars bar (bar-commands bar)) (bar-parts bar))))
 
 (defun bars (trace &optional now)
   "Return the bars of the plans, top-level tasks, that TRACE tells of, in order of their start; those of

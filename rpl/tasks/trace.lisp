@@ -11,7 +11,7 @@
 of AGENT: a task's number, an ANSWER, or another asker (see *ASKER*). What SUBJECT and VALUE are:
 :start: name and parent's number; :wait and :wake: what the task waits for; :succeed: NIL and the
 value; :failure (where it happens) and :fail (it ends the task): the failure; :set and :pulse: fluent and
-value; :command: an ISSUE and the expressions under way, innermost first; :answer: the ISSUE and the
+value; :command: an ISSUE and the STACKS; :answer: the ISSUE and the
 error code; :evaporate, :clean, :block and :unblock: nothing."
   (tick 0 :type real :read-only t)
   (event :start :type keyword :read-only t)
@@ -45,7 +45,7 @@ error code; :evaporate, :clean, :block and :unblock: nothing."
   trace-entry-subject "Return what it is about, an object that depends on the event."
   trace-entry-agent "Return by whose doing it happened: a task's number, an answer, or an asker."
   trace-entry-value "Return what a task succeeded with, the value that a fluent was given, the error
-code of an answer, the expressions under way when a command was issued, the number of the task that a
+code of an answer, for a command a list of the expressions under way for the task and each that it is part of, the number of the task that a
 task is part of when it starts."
   issue-p "True of records that a command was issued."
   issue-name "Return the plan function by which a command was issued."
@@ -57,6 +57,15 @@ task is part of when it starts."
 
 (defun issue-text (issue)
   (form-text (cons (issue-name issue) (issue-arguments issue))))
+
+(defmethod print-object ((issue issue) stream)
+  (print-unreadable-object (issue stream)
+    (format stream "~A of task ~D" (issue-text issue) (issue-task issue))))
+
+(defmethod print-object ((answer answer) stream)
+  (print-unreadable-object (answer stream)
+    (format stream "answer to ~A~@[: ~(~A~)~]" (issue-text (answer-issue answer))
+            (answer-error answer))))
 
 (defmethod asker-note ((answer answer))
   (list "the answer to " (issue-text (answer-issue answer))))
@@ -86,6 +95,11 @@ value a fluent was given and by whom, which command was issued or answered, and 
                              (agent-text (trace-entry-agent entry))))
       (:command (issue-text subject))
       (:answer (format nil "~A: ~(~A~)" (issue-text subject) (or value "done"))))))
+
+(defmethod print-object ((entry trace-entry) stream)
+  (print-unreadable-object (entry stream)
+    (format stream "tick ~A, task ~D: ~(~A~)~@[ ~A~]" (trace-entry-tick entry)
+            (trace-entry-task entry) (trace-entry-event entry) (trace-entry-detail entry))))
 
 (defun make-trace ()
   (make-array 64 :adjustable t :fill-pointer 0))
