@@ -33,7 +33,7 @@
   (budget nil :type (or null (integer 1)))
   (ticks-per-second 20 :type (real (0)))
   (dice nil :type (or null dice))
-  (trace nil :type (or null vector))
+  (trace nil :type (or null chronicle))
   (clock nil :type (or null function))
   (stepper nil :type (or null function))
   (slow 0.1d0 :type real)
@@ -61,7 +61,7 @@
 (addition plan-trace)
 (defun plan-trace (&optional (runner *runner*))
   "Return the trace of RUNNER, a vector of trace entries in order; NIL if it keeps none."
-  (runner-trace runner))
+  (and (runner-trace runner) (trace-entries (runner-trace runner))))
 
 (addition plan-time)
 (defun plan-time ()

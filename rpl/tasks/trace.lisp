@@ -101,15 +101,52 @@ value a fluent was given and by whom, which command was issued or answered, and 
     (format stream "tick ~A, task ~D: ~(~A~)~@[ ~A~]" (trace-entry-tick entry)
             (trace-entry-task entry) (trace-entry-event entry) (trace-entry-detail entry))))
 
-(defun make-trace ()
-  (make-array 64 :adjustable t :fill-pointer 0))
+;;; While plans run, an entry is seven elements of a vector, which costs less than an object would.
+
+(defconstant +chunk-length+ (* 7 1024) "How long the vectors are that entries are kept in.")
+
+(defstruct (chronicle (:constructor make-trace ()) (:copier nil))
+  "A trace as it is kept: CHUNK, filled up to FILL, and the full ones before it, the newest first."
+  (chunk (make-array +chunk-length+ :initial-element 0) :type simple-vector)
+  (fill 0 :type (integer 0 #.(* 7 1024)))
+  (full '() :type list))
+(declaim-final chronicle)
+
+(defun begin-chunk (trace)
+  (push (chronicle-chunk trace) (chronicle-full trace))
+  (setf (chronicle-chunk trace) (make-array +chunk-length+ :initial-element 0)
+        (chronicle-fill trace) 0))
 
 (defun add-trace-entry (trace tick event task form subject value)
-  "Add an entry to TRACE: *ASKER* is its agent."
-  (let ((asker *asker*))
-    (vector-push-extend (make-trace-entry tick event task form subject value
-                                          (if (task-p asker) (task-serial asker) asker))
-                        (the (and vector (not simple-array)) trace))))
+  "Add an entry to TRACE, a chronicle: *ASKER* is its agent."
+  (declare #.*hot* (type chronicle trace))
+  (when (= (chronicle-fill trace) +chunk-length+) (begin-chunk trace))
+  (let ((chunk (chronicle-chunk trace))
+        (fill (chronicle-fill trace))
+        (asker *asker*))
+    (setf (svref chunk fill) tick
+          (svref chunk (+ fill 1)) event
+          (svref chunk (+ fill 2)) task
+          (svref chunk (+ fill 3)) form
+          (svref chunk (+ fill 4)) subject
+          (svref chunk (+ fill 5)) value
+          (svref chunk (+ fill 6)) (if (task-p asker) (task-serial asker) asker)
+          (chronicle-fill trace) (+ fill 7))))
+
+(defun trace-entries (trace)
+  "Return the entries of TRACE, a chronicle, as a vector."
+  (let ((entries (make-array (+ (* 1024 (length (chronicle-full trace)))
+                                (/ (chronicle-fill trace) 7))))
+        (count 0))
+    (flet ((add-from (chunk fill)
+             (loop for start from 0 below fill by 7
+                   do (setf (svref entries count)
+                            (apply #'make-trace-entry (coerce (subseq chunk start (+ start 7))
+                                                              'list)))
+                      (incf count))))
+      (dolist (chunk (reverse (chronicle-full trace))) (add-from chunk +chunk-length+))
+      (add-from (chronicle-chunk trace) (chronicle-fill trace)))
+    entries))
 
 (defun write-trace-entry (entry stream)
   (format stream "~6@A ~(~9A~) ~5D ~A~@[  ; ~A~]~%"
