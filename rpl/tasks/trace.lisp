@@ -101,52 +101,82 @@ value a fluent was given and by whom, which command was issued or answered, and 
     (format stream "tick ~A, task ~D: ~(~A~)~@[ ~A~]" (trace-entry-tick entry)
             (trace-entry-task entry) (trace-entry-event entry) (trace-entry-detail entry))))
 
-;;; While plans run, an entry is seven elements of a vector, which costs less than an object would.
+;;; While plans run, an entry is four to six elements of a vector, which costs less than an object
+;;; would: tick; a number that tells event, task and what follows; form; subject; the value if there is
+;;; one; the agent if it is not the task itself. All vectors but the first are so long that the
+;;; collector leaves them where they are.
 
-(defconstant +chunk-length+ (* 7 1024) "How long the vectors are that entries are kept in.")
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defparameter *trace-events*
+    #(:start :wait :wake :succeed :fail :evaporate :failure :clean :block :unblock
+      :set :pulse :command :answer)
+    "All events of traces.")
+
+  (defun event-code (event)
+    "Return the number that stands for EVENT."
+    (or (position event *trace-events*)
+        (reject-name "event of traces" event (coerce *trace-events* 'list)))))
+
+(defun make-chunk (count)
+  (make-array count :initial-element 0))
 
 (defstruct (chronicle (:constructor make-trace ()) (:copier nil))
-  "A trace as it is kept: CHUNK, filled up to FILL, and the full ones before it, the newest first."
-  (chunk (make-array +chunk-length+ :initial-element 0) :type simple-vector)
-  (fill 0 :type (integer 0 #.(* 7 1024)))
+  "A trace as it is kept: CHUNK, filled up to FILL, and the full ones before it, the newest first, each
+in a list with its own FILL."
+  (chunk (make-chunk 512) :type simple-vector)
+  (fill 0 :type (unsigned-byte 32))
   (full '() :type list))
 (declaim-final chronicle)
 
 (defun begin-chunk (trace)
-  (push (chronicle-chunk trace) (chronicle-full trace))
-  (setf (chronicle-chunk trace) (make-array +chunk-length+ :initial-element 0)
+  (push (list (chronicle-chunk trace) (chronicle-fill trace)) (chronicle-full trace))
+  (setf (chronicle-chunk trace) (make-chunk 65536)
         (chronicle-fill trace) 0))
 
-(defun add-trace-entry (trace tick event task form subject value)
-  "Add an entry to TRACE, a chronicle: *ASKER* is its agent."
-  (declare #.*hot* (type chronicle trace))
-  (when (= (chronicle-fill trace) +chunk-length+) (begin-chunk trace))
-  (let ((chunk (chronicle-chunk trace))
-        (fill (chronicle-fill trace))
-        (asker *asker*))
+(defun add-trace-entry (trace tick code task form subject value)
+  "Add an entry to TRACE, a chronicle, for the event of CODE: *ASKER* is its agent."
+  (declare #.*hot* (type chronicle trace) (type fixnum task) (type (unsigned-byte 4) code))
+  (when (> (+ 6 (chronicle-fill trace)) (length (chronicle-chunk trace))) (begin-chunk trace))
+  (let* ((chunk (chronicle-chunk trace))
+         (fill (chronicle-fill trace))
+         (asker *asker*)
+         (agent (if (task-p asker) (task-serial asker) asker))
+         (foreign (not (eql agent task))))
     (setf (svref chunk fill) tick
-          (svref chunk (+ fill 1)) event
-          (svref chunk (+ fill 2)) task
-          (svref chunk (+ fill 3)) form
-          (svref chunk (+ fill 4)) subject
-          (svref chunk (+ fill 5)) value
-          (svref chunk (+ fill 6)) (if (task-p asker) (task-serial asker) asker)
-          (chronicle-fill trace) (+ fill 7))))
+          (svref chunk (+ fill 1)) (logior (the fixnum (ash (ldb (byte 54 0) task) 6))
+                                           (the fixnum (ash code 2))
+                                           (if value 2 0)
+                                           (if foreign 1 0))
+          (svref chunk (+ fill 2)) form
+          (svref chunk (+ fill 3)) subject)
+    (incf fill 4)
+    (when value
+      (setf (svref chunk fill) value)
+      (incf fill))
+    (when foreign
+      (setf (svref chunk fill) agent)
+      (incf fill))
+    (setf (chronicle-fill trace) fill)))
+
+(defun chunk-entries (chunk fill)
+  "Return a list of the entries in CHUNK up to FILL."
+  (loop with place = 0
+        while (< place fill)
+        collect (flet ((next () (prog1 (svref chunk place) (incf place))))
+                  (let* ((tick (next)) (code (next)) (form (next)) (subject (next))
+                         (task (ash code -6)))
+                    (make-trace-entry tick (svref *trace-events* (ldb (byte 4 2) code)) task
+                                      form subject
+                                      (if (logbitp 1 code) (next) nil)
+                                      (if (logbitp 0 code) (next) task))))))
 
 (defun trace-entries (trace)
   "Return the entries of TRACE, a chronicle, as a vector."
-  (let ((entries (make-array (+ (* 1024 (length (chronicle-full trace)))
-                                (/ (chronicle-fill trace) 7))))
-        (count 0))
-    (flet ((add-from (chunk fill)
-             (loop for start from 0 below fill by 7
-                   do (setf (svref entries count)
-                            (apply #'make-trace-entry (coerce (subseq chunk start (+ start 7))
-                                                              'list)))
-                      (incf count))))
-      (dolist (chunk (reverse (chronicle-full trace))) (add-from chunk +chunk-length+))
-      (add-from (chronicle-chunk trace) (chronicle-fill trace)))
-    entries))
+  (let ((fill (chronicle-fill trace)))
+    (coerce (append (loop for (chunk fill) in (reverse (chronicle-full trace))
+                          append (chunk-entries chunk fill))
+                    (chunk-entries (chronicle-chunk trace) fill))
+            'simple-vector)))
 
 (defun write-trace-entry (entry stream)
   (format stream "~6@A ~(~9A~) ~5D ~A~@[  ; ~A~]~%"

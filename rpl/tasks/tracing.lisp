@@ -5,25 +5,40 @@
 ;;; By whose doing something happens is known by *ASKER*: the task at work, or whoever posted what
 ;;; is being applied.
 
+;; Here to be known when calls are compiled.
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defun event-form (event)
+    "Return a form for the code of what EVENT, a form, says."
+    (if (keywordp event) (event-code event) `(event-code ,event))))
+
 (defmacro note-event (task event &optional subject value)
   "Add to the trace, if one is kept, that EVENT happened to TASK. SUBJECT and VALUE, see TRACE-ENTRY,
 are evaluated only then."
   (once-only (task)
     `(when (runner-trace (the plan-runner (task-runner ,task)))
-       (trace-task ,task ,event ,subject ,value))))
+       (trace-task ,task ,(event-form event) ,subject ,value))))
 
-(defun trace-task (task event subject value)
+;; Most frames that are noted have not begun: then one need not ask the node.
+(declaim (inline form-now))
+(defun form-now (task)
+  "Return the expression that TASK is at."
+  (let ((frame (task-frame task)))
+    (if (and frame (zerop (frame-counter frame)))
+        (node-form (frame-node frame))
+        (task-form task))))
+
+(defun trace-task (task code subject value)
   (declare #.*hot* (type task task))    ; 40 ns
   (let ((runner (task-runner task)))
     (declare (type plan-runner runner))
-    (add-trace-entry (runner-trace runner) (runner-tick runner) event (task-serial task)
-                     (task-form task) subject value)))
+    (add-trace-entry (runner-trace runner) (runner-tick runner) code (task-serial task)
+                     (form-now task) subject value)))
 
-(defun trace-doing (runner event subject value)
-  "Add to the trace of RUNNER that the task at work, if any, did something: EVENT."
+(defun trace-doing (runner code subject value)
+  "Add to the trace of RUNNER that the task at work, if any, did something: the event of CODE."
   (let* ((asker *asker*)
          (task (and (task-p asker) (eq runner (task-runner asker)) asker)))
-    (add-trace-entry (runner-trace runner) (runner-tick runner) event
+    (add-trace-entry (runner-trace runner) (runner-tick runner) code
                      (if task (task-serial task) 0)
                      (and task (task-form task))
                      subject value)))
@@ -31,7 +46,9 @@ are evaluated only then."
 (defun trace-changes (runner)
   "Let the trace of RUNNER be told of every change of a fluent."
   (setf (backlog-on-change (runner-backlog runner))
-        (lambda (kind fluent value) (trace-doing runner kind fluent value))))
+        (lambda (kind fluent value)
+          (trace-doing runner (if (eq kind :set) #.(event-code :set) #.(event-code :pulse))
+                       fluent value))))
 
 (defun trace-start (task)
   "Note the start of TASK, and of the tasks that it consists of."
@@ -54,7 +71,7 @@ it keeps one."
     (lambda ()
       (let ((*asker* asker))
         (when (answer-p asker)
-          (trace-doing runner :answer (answer-issue asker) (answer-error asker)))
+          (trace-doing runner #.(event-code :answer) (answer-issue asker) (answer-error asker)))
         (if (functionp entry)
             (funcall entry)
             (apply-settings entry))))))
