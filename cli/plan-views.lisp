@@ -2,27 +2,29 @@
 
 (in-package :ars-magna.cli)
 
-(defun task-tree-text (n)
-  "Return the whole stacks and variables of the task number N, or of all if it is NIL, as text; NIL
-where there is no such task. To be called while no plan goes on."
-  (call-with-plans-in-use
-   (lambda (runner)
-     (let* ((which (if (and n runner) (task-numbered n runner) runner))
-            (task (if (task-p which) which (first (plans)))))
-       (when task
-         (call-reading-plan (plan-name-of task)
-                            (lambda ()
-                              (with-output-to-string (out) (print-tasks which out t)))))))))
-
 (defun plan-name-of (task)
   "Return the name of the plan that TASK is part of."
   (loop for each = task then (task-parent each)
         unless (task-parent each) return (task-name each)))
 
+(defun tree-text (which)
+  "Return the whole stacks and variables of WHICH, a task or a plan runner with plans, as text."
+  (call-reading-plan (plan-name-of (if (task-p which) which (first (plans))))
+                     (lambda () (with-output-to-string (out) (print-tasks which out t)))))
+
+(defun tree-text-of-number (n)
+  "Return the text for the task number N, or for all tasks if it is NIL; NIL if there is none."
+  (call-with-plans-in-use
+   (lambda (runner)
+     (let ((which (cond ((null (plans)) nil)
+                        (n (task-numbered n runner))
+                        (t runner))))
+       (and which (tree-text which))))))
+
 (define-line "PLAN-TREE" (session (n count "the number of a task" :optional)) (:planning)
     "Show the plans under way, or the task N of one with its parts, whole: each task with all that it
 is in the middle of, its variables, what it waits for and since when; and who has which valve."
-  (let ((text (and (plans) (task-tree-text n))))
+  (let ((text (tree-text-of-number n)))
     (cond (text (write-string (visible text)))
           ((null (plans)) (reject-line "No plan is under way."))
           (t (reject-line "No task ~D is under way. PLANS shows which are." n)))))
