@@ -14,7 +14,8 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:stream-read-char #:stream-read-line #:stream-unread-char
                 #:stream-listen #:stream-clear-input)
   (:import-from :ars-magna.rpl
-                #:task-p #:task-name #:task-parent #:task-serial #:task-state #:task-result #:task-over-p
+                #:task-p #:task-name #:task-parent #:task-serial #:task-state #:task-result
+                #:task-over-p
                 #:task-children #:task-awaits #:plan-failure #:failure-class #:failure-data
                 #:report-failure #:*plan-end-hooks* #:plan-deadlocked-p #:post-call
                 #:stop-plan

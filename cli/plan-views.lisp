@@ -22,8 +22,8 @@
        (and which (tree-text which))))))
 
 (define-line "PLAN-TREE" (session (n count "the number of a task" :optional)) (:planning)
-    "Show the plans under way, or the task N of one with its parts, whole: each task with all that it
-is in the middle of, its variables, what it waits for and since when; and who has which valve."
+    "Show the plans under way, or the task N of one with its parts, whole: each task with all that
+it is in the middle of, its variables, what it waits for and since when; and who has which valve."
   (let ((text (tree-text-of-number n)))
     (cond (text (write-string (visible text)))
           ((null (plans)) (reject-line "No plan is under way."))
@@ -42,7 +42,7 @@ set that, and how it was started. Needs a trace: (setf *trace-plans* t) before t
 
 (define-line "PLAN-TIMELINE" (session (file :token "a name that ends in .svg or .png"))
     (:planning)
-    "Save a picture of the plans that have run in FILE, replacing it: each task as a bar over ticks, with
-what it waited for and the commands that it gave. Needs a trace: (setf *trace-plans* t) before the plan
-starts."
+    "Save a picture of the plans that have run in FILE, replacing it: each task as a bar over
+ticks, with what it waited for and the commands that it gave. Needs a trace: (setf *trace-plans* t)
+before the plan starts."
   (format t "~A~%" (native-name (save-plan-timeline (native-path file)))))

@@ -19,11 +19,13 @@
     (is-true (has-words-p shown "3 waiting: lazy" "waits for bell"))
     (is-false (has-words-p shown "1 waiting")))
   (is-true (has-words-p (complaint "plan-tree") "No plan is under way"))
-  (is-true (has-words-p (joined (type-batch "(begin-plan 'loiter 9)" "step" "plan-tree 7" "stop-plan"))
+  (is-true (has-words-p (joined (type-batch "(begin-plan 'loiter 9)" "step" "plan-tree 7"
+                                            "stop-plan"))
                         "*ERROR*" "No task 7")))
 
 (test why.tells-at-the-prompt
-  (let ((shown (joined (type-batch "(setf *trace-plans* t)" "plan dawdle 3" "why 1" "plan stroll 1" "why 2"
+  (let ((shown (joined (type-batch "(setf *trace-plans* t)" "plan dawdle 3" "why 1"
+                                   "plan stroll 1" "why 2"
                                    "(setf *trace-plans* nil)"))))
     (is-true (has-words-p shown "At tick 4 it went on" "because tick 4 had come"
                           "Task 1 is the plan dawdle, started at tick 0 by the prompt"

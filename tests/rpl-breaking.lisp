@@ -5,7 +5,8 @@
 
 (defun call-answering (function answers)
   "Call FUNCTION; each time the debugger is entered, invoke the next restart that ANSWERS names, or
-CONTINUE when there are no more. Return the texts of all breaks, and the values of FUNCTION in a list."
+CONTINUE when there are no more. Return the texts of all breaks, and the values of FUNCTION in a
+list."
   (let ((texts '()))
     (flet ((answer (condition hook)
              (declare (ignore hook))
@@ -109,7 +110,8 @@ CONTINUE when there are no more. Return the texts of all breaks, and the values 
               texts))))
 
 (defun operator-in (text)
-  "Return the operator of the expression that TEXT says is next, or that expression if it is an atom."
+  "Return the operator of the expression that TEXT says is next, or that expression if it is an
+atom."
   (read-from-string text t nil :start (1+ (or (position #\( text) 5))))
 
 (test step.stops-before-each-expression
@@ -131,7 +133,8 @@ CONTINUE when there are no more. Return the texts of all breaks, and the values 
 
 (test step.shows-where-it-is
   (let ((text (second (nth-value 1 (stops '("STEP" "CONTINUE"))))))
-    (is-true (has-words-p text "Next: (stepped-inner 1)" "in task stepped, at tick 0" "count = 3"))))
+    (is-true (has-words-p text "Next: (stepped-inner 1)" "in task stepped, at tick 0"
+                          "count = 3"))))
 
 (test step-task.is-for-one-task-and-can-be-ended
   (let* ((runner (rpl:make-plan-runner))

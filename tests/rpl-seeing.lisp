@@ -94,14 +94,17 @@
 
 (test task-variables.of-every-binding-form
   (is (equal '(1 2) (variables-in '(let ((a 1)) (let* ((b 2)) (rpl:wait-time 9))) '(a b))))
-  (is (equal '(3 4) (variables-in '(multiple-value-bind (a b) (values 3 4) (rpl:wait-time 9)) '(a b))))
+  (is (equal '(3 4) (variables-in '(multiple-value-bind (a b) (values 3 4) (rpl:wait-time 9))
+                                  '(a b))))
   (is (equal '(x) (variables-in '(dolist (a '(x y)) (rpl:wait-time 9)) '(a))))
   (is (equal '(0) (variables-in '(dotimes (a 3) (rpl:wait-time 9)) '(a))))
   (is (equal '(nil 7) (variables-in '(labels ((f (b) (rpl:wait-time b)))
                                     (let ((a 5)) (f (+ a 2))))
                                   '(a b)))
       "a local plan sees what is around it and its own")
-  (is (equal '(1 2) (variables-in '(let ((a 1)) (flet ((f (x) x)) (let ((b (f 2))) (rpl:wait-time b))))
+  (is (equal '(1 2) (variables-in '(let ((a 1))
+                                    (flet ((f (x) x))
+                                      (let ((b (f 2))) (rpl:wait-time b))))
                                   '(a b))))
   (is (equal '(2) (variables-in '(let ((a 1)) (let ((a 2)) (rpl:wait-time a))) '(a)))))
 
@@ -124,19 +127,24 @@
 (test describe.tells-of-tasks-fluents-valves-and-plans
   (multiple-value-bind (runner task) (seen-until 5)
     (declare (ignore runner))
-    (is-true (has-words-p (described task) "State: waiting" "Stack:" "count = 8" "Parts:" "2 waiting"))
+    (is-true (has-words-p (described task) "State: waiting" "Stack:" "count = 8" "Parts:"
+                          "2 waiting"))
     (is-true (has-words-p (described (part task 1)) "Waits for: valve arm, since tick 0"
                           "Path: seen-boss > two" "wanted by 3"))
     (let ((variables (rpl:task-variables task)))
-      (is-true (has-words-p (described (second (assoc 'arm variables))) "Owner: #<" "task 2 waiting" "Queue: #<" "task 3"))
-      (is-true (has-words-p (described (second (assoc 'door variables))) "Name: door" "Value: :open")))
+      (is-true (has-words-p (described (second (assoc 'arm variables)))
+                            "Owner: #<" "task 2 waiting" "Queue: #<" "task 3"))
+      (is-true (has-words-p (described (second (assoc 'door variables)))
+                            "Name: door" "Value: :open")))
     (is-true (has-words-p (described (rpl:find-procedure 'seen-worker))
-                          "Called as: (seen-worker number door valve)" "Wait for DOOR with VALVE."))))
+                          "Called as: (seen-worker number door valve)"
+                          "Wait for DOOR with VALVE."))))
 
 (test describe.tells-of-networks-and-of-who-waits
   (let* ((f (fluent nil 'f)) (g (fluent nil 'g))
          (runner (rpl:make-plan-runner)))
-    (rpl:start-plan runner (rpl:interp-lambda () (rpl:par (rpl:wait-for f) (rpl:wait-for (and f g)))))
+    (rpl:start-plan runner (rpl:interp-lambda ()
+                             (rpl:par (rpl:wait-for f) (rpl:wait-for (and f g)))))
     (rpl:react runner)
     (is-true (has-words-p (described f) "Waited for by: #<" "task 2"))
     (is-true (has-words-p (described (rpl:fl-funcall #'list f g)) "Computed from: #<fluent f"))
@@ -190,7 +198,8 @@
     (is (equal "Task 1 is the plan seen-boss, started at tick 0 by a program or the REPL."
                (first (last lines))))
     (is (find-if (lambda (line)
-                   (and (search "went on at (constructs:wait-for door), because door was set to :open by task 4" line)
+                   (and (search "went on at (constructs:wait-for door)" line)
+                        (search "because door was set to :open by task 4" line)
                         (search "at (fluents:set-value door :open)" line)
                         (eql 0 (search "At tick 4" line))))
                  lines)
@@ -200,7 +209,8 @@
 (test why.tells-of-parts-and-ends
   (let ((runner (seen-until 30)))
     (is-true (has-words-p (why-text 5 runner) "At tick 22 it succeeded"
-                          "it was done with" "because its part 7, (constructs:wait-time 2), succeeded"))
+                          "it was done with"
+                          "because its part 7, (constructs:wait-time 2), succeeded"))
     (is-true (has-words-p (why-text 8 runner) "evaporated" "began to clean up" "because task 7"
                           "as a part of task 5"))
     (is-true (has-words-p (why-text 6 runner) "failed at" ":SLIP"))

@@ -51,7 +51,8 @@
          (rows (ars-magna.rpl-pictures::rows bars)))
     (is (= 41 (1+ (length (rpl:bar-parts (first bars))))))
     (is (= 3 (length rows)))
-    (is (equal '(1 20 20) (mapcar (lambda (row) (length (ars-magna.rpl-pictures::row-bars row))) rows)))))
+    (is (equal '(1 20 20)
+               (mapcar (lambda (row) (length (ars-magna.rpl-pictures::row-bars row))) rows)))))
 
 ;;; Files.
 
@@ -121,7 +122,8 @@
 (test timeline.has-commands-and-the-calls-they-were-issued-in
   (with-traced-turns ()
     (let ((text (timeline-text nil)))
-      (is-true (has-words-p text "rpl-storage-bin-open 0), ticks" ": bin-open" "(turn-and-tell 1)")))))
+      (is-true (has-words-p text "rpl-storage-bin-open 0), ticks" ": bin-open"
+                            "(turn-and-tell 1)")))))
 
 (test trace-plans.takes-effect-at-the-next-plan
   (run:with-simulation (ars-user::butler :clean t)

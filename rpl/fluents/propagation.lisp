@@ -15,6 +15,9 @@ if any, is called with :SET or :PULSE, a base fluent, and its value, before anyb
   (tails (make-array 8 :initial-element nil) :type simple-vector)
   (highest 0 :type fixnum))
 
+(document-functions
+  backlog-on-change "Return the function that is told of changes, or NIL. Can be set.")
+
 (defvar *backlog* nil
   "The backlog of the plan runner at work, so that a change need not make one.")
 

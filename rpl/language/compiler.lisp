@@ -92,8 +92,8 @@ it, and those to the left of them too, to keep the order."
       (naming-code (waiting-code form scope) scope)))
 
 (defun naming-code (code scope)
-  "Return CODE, which builds a node that runs in the environment of SCOPE, so that the node knows the
-names of the variables there."
+  "Return CODE, which builds a node that runs in the environment of SCOPE, so that the node knows
+the names of the variables there."
   (let ((names (names-by-level scope)))
     (if (some #'identity names)
         `(name-variables ,code ',names)

@@ -6,6 +6,9 @@
   "Expressions, at least one, run in order. COUNTER counts those begun."
   :step step-steps)
 
+(document-functions
+  steps-parts "Return the vector of the nodes that are run one after the other.")
+
 (declaim (inline enter-last))
 (defun enter-last (node environment frame)
   "Begin NODE as the last thing that FRAME does."

@@ -15,7 +15,8 @@
   "Lists (kind color text): what the parts of a bar look like, and what the legend says.")
 
 (defparameter *end-looks*
-  '((:succeeded #x1E9632 "succeeded") (:failed #xE0301E "failed") (:evaporated #x606060 "evaporated"))
+  '((:succeeded #x1E9632 "succeeded") (:failed #xE0301E "failed")
+    (:evaporated #x606060 "evaporated"))
   "Lists (outcome color text): what the end of a bar looks like.")
 
 (defun look (kind) (second (assoc kind *looks*)))
@@ -89,15 +90,16 @@ of ten."
                                                        (- x 4) (+ y 11) (+ x 4) (+ y 3)))))))))
 
 (defun bar-title (bar)
-  (format nil "~A, ticks ~A to ~A~@[, ~(~A~)~]~@[: ~A~]" (bar-label bar) (bar-start bar) (bar-end bar)
-          (bar-outcome bar)
+  (format nil "~A, ticks ~A to ~A~@[, ~(~A~)~]~@[: ~A~]" (bar-label bar) (bar-start bar)
+          (bar-end bar) (bar-outcome bar)
           (and (bar-failure bar) (cut (one-line (own-text (bar-failure bar))) 200))))
 
 (defun draw-bar (canvas bar y scale)
   "Draw BAR with its upper edge at Y."
   (let ((x (place (bar-start bar) scale)))
     (with-subject (canvas (bar-title bar))
-      (box canvas (look (if (bar-call-p bar) :call :parts)) x y (- (place (bar-end bar) scale) x) 14)
+      (box canvas (look (if (bar-call-p bar) :call :parts))
+           x y (- (place (bar-end bar) scale) x) 14)
       (dolist (kind '(:waiting :cleaning :blocked))
         (dolist (span (bar-spans bar))
           (when (eq kind (span-kind span)) (draw-span canvas span y scale)))))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.rpl-pictures)
 
-;;; The parts of a task stand below it. Parts that run the same expression one after the other, as the
-;;; turns of a loop do, share a row, so that a long run needs no more rows than a short one.
+;;; The parts of a task stand below it. Parts that run the same expression one after the other, as
+;;; the turns of a loop do, share a row, so that a long run needs no more rows than a short one.
 
 (defstruct (row (:constructor make-row (bars)) (:copier nil))
   "Bars of one expression that do not overlap, oldest first."

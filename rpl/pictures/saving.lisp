@@ -28,11 +28,11 @@
 (addition save-plan-timeline)
 (defun save-plan-timeline (file &key runner (most 1000))
   "Save a picture of the plans that have run in FILE, replacing it: SVG or, where the program
-rsvg-convert is installed, PNG, as its name ends. Each task is a bar over ticks, below the one that it
-is part of, with what it waited for, the commands that it issued while these were under way, and how it
-ended; turns of a loop share a row. RUNNER is the plan runner, by default the one in use, which must
-have kept a trace: see *TRACE-PLANS*. At most MOST rows are drawn. Return the file's truename. Signals
-WRONG-ARGUMENT and MISUSE."
+rsvg-convert is installed, PNG, as its name ends. Each task is a bar over ticks, below the one that
+it is part of, with what it waited for, the commands that it issued while these were under way, and
+how it ended; turns of a loop share a row. RUNNER is the plan runner, by default the one in use,
+which must have kept a trace: see *TRACE-PLANS*. At most MOST rows are drawn. Return the file's
+truename. Signals WRONG-ARGUMENT and MISUSE."
   (check-argument save-plan-timeline most (whole-p most 1 1000000) "an integer from 1 to 1000000")
   (let ((kind (picture-kind 'save-plan-timeline file))
         (bars (call-with-plans-in-use

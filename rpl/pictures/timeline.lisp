@@ -47,7 +47,8 @@
              (draw-mark canvas (bar-outcome bar) (place (bar-end bar) scale) y))))
 
 (defun draw-timeline (canvas bars most)
-  "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows. Return width and height in pixels."
+  "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows. Return width and height in
+pixels."
   (let* ((all (rows bars))
          (rows (subseq all 0 (min most (length all))))
          (scale (make-scale (reduce #'min bars :key #'bar-start)
@@ -58,5 +59,6 @@
     (draw-axis canvas scale bottom)
     (draw-rows canvas rows scale)
     (when (< most (length all))
-      (write-at canvas 10 (+ bottom 34) (format nil "~D more rows are left out." (- (length all) most))))
+      (write-at canvas 10 (+ bottom 34)
+                (format nil "~D more rows are left out." (- (length all) most))))
     (values (max (draw-legend canvas) (+ +label-width+ +chart-width+ 40)) (+ bottom 42))))

@@ -11,7 +11,8 @@
    (task :initarg :task :reader plan-break-task)
    (frame :initarg :frame :reader plan-break-frame))
   (:report (lambda (break stream) (write-break break stream)))
-  (:documentation "A plan has stopped for somebody to look at it: where it failed, or step by step."))
+  (:documentation "A plan has stopped for somebody to look at it: where it failed, or step by
+step."))
 
 (defun plan-break-p (object)
   "True of breaks of plans."
@@ -49,9 +50,9 @@
 
 (addition *break-on-plan-failures*)
 (defvar *break-on-plan-failures* nil
-  "T, a class of failures as HANDLE-FAILURE takes it, or a list of such: a failure of that class enters
-the debugger where it happens, also if the plan handles it. NIL: none does. Where nobody is there to
-answer, it is a message.")
+  "T, a class of failures as HANDLE-FAILURE takes it, or a list of such: a failure of that class
+enters the debugger where it happens, also if the plan handles it. NIL: none does. Where nobody is
+there to answer, it is a message.")
 
 (defun break-wanted-p (failure)
   (let ((types *break-on-plan-failures*))

@@ -47,7 +47,8 @@
                  "Name" (form-text (fluent-name fluent))
                  "Value" (handler-case (form-text (fluent-value fluent) 70)
                            (error (condition) (format nil "error: ~A" (own-text condition))))
-                 "Computed from" (and sources (format nil "~{~A~^, ~}" (mapcar #'form-text sources)))
+                 "Computed from" (and sources
+                                      (format nil "~{~A~^, ~}" (mapcar #'form-text sources)))
                  "Waited for by" (and clients (format nil "~{~A~^, ~}" clients)))))
 
 (defmethod describe-object ((valve valve) stream)

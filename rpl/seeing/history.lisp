@@ -1,4 +1,4 @@
-;;;; history.lisp -- asking a trace what became of a task: its entries, failures, commands, ancestry.
+;;;; history.lisp -- asking a trace what became of a task: its entries, failures and commands.
 
 (in-package :ars-magna.rpl.seeing)
 
@@ -36,10 +36,10 @@
 
 (addition trace-of)
 (defun trace-of (which &key event form runner)
-  "Return a list of the trace entries of WHICH and of the tasks that it consisted of, in order. WHICH
-is a task, also one that is over, or its number, or NIL for all. EVENT, if given, is an event or a list
-of some, FORM the name of an operator: then only entries of these events, and at calls of that. The
-RUNNER is that of the task, or the one in use. Signals MISUSE if no trace was kept."
+  "Return a list of the trace entries of WHICH and of the tasks that it consisted of, in order.
+WHICH is a task, also one that is over, or its number, or NIL for all. EVENT, if given, is an event
+or a list of some, FORM the name of an operator: then only entries of these events, and at calls of
+that. The RUNNER is that of the task, or the one in use. Signals MISUSE if no trace was kept."
   (multiple-value-bind (trace number) (trace-to-read which runner)
     (let ((member-p (if number (family number trace) (constantly t))))
       (loop for entry across trace
@@ -57,8 +57,8 @@ RUNNER is that of the task, or the one in use. Signals MISUSE if no trace was ke
 
 (addition task-failures)
 (defun task-failures (which &key runner)
-  "Return a list of the failures that happened in WHICH and its parts, also those that were handled, in
-order. See TRACE-OF."
+  "Return a list of the failures that happened in WHICH and its parts, also those that were
+handled, in order. See TRACE-OF."
   (mapcar #'trace-entry-subject (trace-of which :event :failure :runner runner)))
 
 (defun answer-to (issue trace)
@@ -71,8 +71,9 @@ order. See TRACE-OF."
 (defun task-commands (which &key runner)
   "Return a list of the commands that WHICH and its parts have issued, in order. Each is a property
 list: :tick, :command (name and arguments), :task (the number of the one that issued it), :for (the
-expressions of the plan that were under way, innermost first, the tasks around it included), :answered
-(the tick of the last answer, NIL if there was none) and :error (its code). See TRACE-OF."
+expressions of the plan that were under way, innermost first, the tasks around it included),
+:answered (the tick of the last answer, NIL if there was none) and :error (its code). See
+TRACE-OF."
   (let ((trace (trace-to-read which runner)))
     (loop for entry in (trace-of which :event :command :runner runner)
           for issue = (trace-entry-subject entry)
@@ -86,8 +87,8 @@ expressions of the plan that were under way, innermost first, the tasks around i
 
 (addition task-ancestry)
 (defun task-ancestry (task &key runner)
-  "Return a list of TASK, a task or its number, and those that it is part of, up to the plan itself: for
-each a list of its number, its name or NIL, and its expression. See TRACE-OF."
+  "Return a list of TASK, a task or its number, and those that it is part of, up to the plan
+itself: for each a list of its number, its name or NIL, and its expression. See TRACE-OF."
   (multiple-value-bind (trace number) (trace-to-read task runner)
     (loop for each = number then (trace-entry-value start)
           while each

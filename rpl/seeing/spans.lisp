@@ -1,11 +1,11 @@
-;;;; spans.lisp -- a trace as bars: from when to when each task lived, waited, had commands under way.
+;;;; spans.lisp -- a trace as bars: from when to when each task lived, waited, had commands.
 
 (in-package :ars-magna.rpl.seeing)
 
 (defstruct (span (:constructor make-span (kind start text &optional end)) (:copier nil))
   "From tick START to END of a task: KIND is :waiting (for what TEXT says), :parts (waiting for
-them), :blocked, :cleaning or :command (TEXT was under way; ERROR is what it was answered with, CALLS the calls of procedures that it was
-issued in, outermost first)."
+them), :blocked, :cleaning or :command (TEXT was under way; ERROR is what it was answered with,
+CALLS the calls of procedures that it was issued in, outermost first)."
   (kind :waiting :type keyword :read-only t)
   (start 0 :type real :read-only t)
   (text nil :read-only t)
@@ -15,8 +15,8 @@ issued in, outermost first)."
 
 (defstruct (bar (:constructor make-bar (serial parent name form start depth)) (:copier nil))
   "The life of the task SERIAL, at DEPTH, part of the bar PARENT. OUTCOME is :succeeded, :failed,
-:evaporated, or NIL if it goes on; then END is the tick of the trace's end. If CALL-P, it is a call of
-a procedure within the task, as far as commands were issued in it."
+:evaporated, or NIL if it goes on; then END is the tick of the trace's end. If CALL-P, it is a call
+of a procedure within the task, as far as commands were issued in it."
   (serial 0 :type fixnum :read-only t)
   (parent nil :type (or null bar) :read-only t)
   (name nil :read-only t)
@@ -103,7 +103,9 @@ a procedure within the task, as far as commands were issued in it."
   "Return the calls of plan procedures among the expressions of STACK, innermost first, outermost
 first."
   (reverse (remove-if-not (lambda (form)
-                            (and (consp form) (symbolp (first form)) (procedure-name-p (first form))))
+                            (and (consp form)
+                                 (symbolp (first form))
+                                 (procedure-name-p (first form))))
                           (without-repetition stack))))
 
 (defun begin-command (bar entry commands)
@@ -123,15 +125,16 @@ first."
 (defun call-at (span depth) (nth depth (span-calls span)))
 
 (defun runs-of (spans depth)
-  "Return SPANS, of commands, as a list of lists: those that follow each other in one call at DEPTH."
+  "Return SPANS, of commands, as a list of lists: those that follow each other in one call at
+DEPTH."
   (loop while spans
         collect (let ((call (call-at (first spans) depth)))
                   (loop while (and spans (eq call (call-at (first spans) depth)))
                         collect (pop spans)))))
 
 (defun call-bar (bar spans depth until)
-  "Return the bar, part of BAR, of the call at DEPTH in which the commands SPANS were issued; it ends
-before UNTIL."
+  "Return the bar, part of BAR, of the call at DEPTH in which the commands SPANS were issued; it
+ends before UNTIL."
   (let ((call (make-bar (bar-serial bar) bar nil (call-at (first spans) depth)
                         (span-start (first spans)) (1+ (bar-depth bar)))))
     (setf (bar-call-p call) t
@@ -161,9 +164,9 @@ before UNTIL."
   (setf (bar-parts bar) (append (call-bars bar (bar-commands bar)) (bar-parts bar))))
 
 (defun bars (trace &optional now)
-  "Return the bars of the plans, top-level tasks, that TRACE tells of, in order of their start; those of
-other tasks are parts of these. What has not ended goes on until the tick NOW, by default the last of
-TRACE."
+  "Return the bars of the plans, top-level tasks, that TRACE tells of, in order of their start;
+those of other tasks are parts of these. What has not ended goes on until the tick NOW, by default
+the last of TRACE."
   (let ((bars (make-hash-table)) (commands (make-hash-table :test 'eq)) (roots '()) (last 0))
     (loop for entry across trace
           for bar = (gethash (trace-entry-task entry) bars)

@@ -12,9 +12,9 @@
   "When true, plans that are started are gone through expression by expression: see STEP-TASK.")
 
 (defstruct (course (:constructor make-course (task)) (:copier nil))
-  "How somebody goes through TASK. MODE is :run, :step (stop before any expression) or :over: run the
-task WITHIN until it comes back to the frame UNTIL; to any of its expressions, if that is :NEXT; until
-it is over, if that is NIL."
+  "How somebody goes through TASK. MODE is :run, :step (stop before any expression) or :over: run
+the task WITHIN until it comes back to the frame UNTIL; to any of its expressions, if that is
+:NEXT; until it is over, if that is NIL."
   (task nil :type task :read-only t)
   (mode :step :type (member :step :over :run))
   (within nil :type (or null task))
@@ -113,9 +113,9 @@ that is a leaf; NIL if it begins none, or one that has a step of its own.")
 
 (addition step-task)
 (defun step-task (task &optional (on t))
-  "From now on, stop before each expression of TASK and of the tasks that it consists of; no longer if ON
-is NIL. Stopping enters the debugger; its restarts STEP, NEXT, OUT and CONTINUE say how far to go on.
-Where nobody is there to answer, it is a message, and the task goes on. Returns nothing."
+  "From now on, stop before each expression of TASK and of the tasks that it consists of; no longer
+if ON is NIL. Stopping enters the debugger; its restarts STEP, NEXT, OUT and CONTINUE say how far
+to go on. Where nobody is there to answer, it is a message, and the task goes on. Returns nothing."
   (check-argument step-task task (task-p task) "a task, as begin-plan returns")
   (let* ((runner (task-runner task))
          (others (remove task (courses-of runner) :key #'course-task)))

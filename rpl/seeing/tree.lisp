@@ -28,10 +28,10 @@
 
 (addition print-tasks)
 (defun print-tasks (&optional which (stream *standard-output*) all)
-  "Write to STREAM the tree of tasks of WHICH, a task or a plan runner (all its tasks; NIL: the one in
-use): number, state, expression, what each waits for and since which tick. If ALL is true, also
-the whole stack of each, innermost expression first, with the variables of the plan and their values;
-and the valves that they have or want."
+  "Write to STREAM the tree of tasks of WHICH, a task or a plan runner (all its tasks; NIL: the one
+in use): number, state, expression, what each waits for and since which tick. If ALL is true, also
+the whole stack of each, innermost expression first, with the variables of the plan and their
+values; and the valves that they have or want."
   (let ((which (or which (runner-to-see))))
     (dolist (task (if (task-p which) (list which) (plan-runner-tasks which)))
       (if all

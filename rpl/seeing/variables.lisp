@@ -62,8 +62,8 @@ tasks that it is part of. () when it is over."
     (and frame (environments (frame-environment frame)))))
 
 (defun stack-entries (task)
-  "Return what TASK is at, innermost first: a list of lists (form variable...), each variable, a list
-(name value), with the outermost expression that sees it."
+  "Return what TASK is at, innermost first: a list of lists (form variable...), each variable, a
+list (name value), with the outermost expression that sees it."
   (let ((known (known-environments task)) (entries '()))
     (dolist (frame (reverse (stack-frames task)))
       (let ((form (frame-form frame))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.rpl.seeing)
 
-;;; Effects follow their causes in the trace at once: a wake-up is due to the last change before it of
-;;; what was waited for, the end of a wait for parts to the last part that ended.
+;;; Effects follow their causes in the trace at once: a wake-up is due to the last change before it
+;;; of what was waited for, the end of a wait for parts to the last part that ended.
 
 (defparameter *longest-chain* 12 "How many steps of a task's history WHY tells at most.")
 
@@ -131,8 +131,8 @@
       (:unblock "was blocked no longer"))))
 
 (defun deciding-part (number start end trace)
-  "Return the entry of TRACE, between the indices START and END, for the first part of the task NUMBER
-that succeeded or failed, or NIL."
+  "Return the entry of TRACE, between the indices START and END, for the first part of the task
+NUMBER that succeeded or failed, or NIL."
   (find-if (lambda (entry)
              (and (member (trace-entry-event entry) '(:succeed :fail))
                   (part-ended-p entry number trace)))
@@ -140,8 +140,8 @@ that succeeded or failed, or NIL."
 
 ;; A construct that is decided while some parts are still to evaporate ends without a wake-up.
 (defun decision-sentence (entry start end trace)
-  "Return how it came that the wait for parts of ENTRY, number START of TRACE, was over before number
-END, if by no wake-up; or NIL."
+  "Return how it came that the wait for parts of ENTRY, number START of TRACE, was over before
+number END, if by no wake-up; or NIL."
   (let ((part (deciding-part (trace-entry-task entry) start end trace)))
     (and part
          (format nil "At tick ~A it was done with ~A, because ~A." (trace-entry-tick part)
@@ -184,7 +184,8 @@ END, if by no wake-up; or NIL."
   (let ((more (- (length sentences) *longest-chain*)))
     (if (plusp more)
         (append (subseq sentences 0 *longest-chain*)
-                (list (format nil "Before that, ~D more things happened to it; TASK-HISTORY has them."
+                (list (format nil "Before that, ~D more things happened to it; ~
+                                   TASK-HISTORY has them."
                               more)))
         sentences)))
 
@@ -196,8 +197,9 @@ END, if by no wake-up; or NIL."
 
 (addition why)
 (defun why (task &key runner (stream *standard-output*))
-  "Write to STREAM, from the trace, what brought TASK, over or not, or the task of that number, where it
-is: what happened to it, the last first, which fluent woke it and who had set that, and how it and
-those that it is part of were started. Signals MISUSE if no trace was kept: see *TRACE-PLANS*."
+  "Write to STREAM, from the trace, what brought TASK, over or not, or the task of that number,
+where it is: what happened to it, the last first, which fluent woke it and who had set that, and
+how it and those that it is part of were started. Signals MISUSE if no trace was kept: see
+*TRACE-PLANS*."
   (format stream "~{~A~%~}" (why-sentences task runner))
   (values))

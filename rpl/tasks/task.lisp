@@ -65,7 +65,7 @@ what will happen to it instead. LEVEL 0 is the plan proper, a policy is one abov
         (task-state "Return the task's state: :created, :ready, :running, :waiting, and when it is
 over :succeeded, :failed or :evaporated.")
         (task-serial "Return the number of the task within its plan runner.")
-        (task-since "Return the tick at which the task began to wait for what it waits for, or waited for last.")
+        (task-since "Return the tick at which the task began to wait, or did so last.")
         (task-parent "Return the task that the task is part of, or NIL.")
         (task-result "Return the value of a task that succeeded, the failure of one that failed.")
         (task-p "True of tasks."))

@@ -7,12 +7,12 @@
 
 (defstruct (trace-entry (:constructor make-trace-entry (tick event task form subject value agent))
                         (:copier nil))
-  "At TICK, EVENT happened to the task number TASK (0: to none) at the expression FORM, by the doing
-of AGENT: a task's number, an ANSWER, or another asker (see *ASKER*). What SUBJECT and VALUE are:
-:start: name and parent's number; :wait and :wake: what the task waits for; :succeed: NIL and the
-value; :failure (where it happens) and :fail (it ends the task): the failure; :set and :pulse: fluent and
-value; :command: an ISSUE and the STACKS; :answer: the ISSUE and the
-error code; :evaporate, :clean, :block and :unblock: nothing."
+  "At TICK, EVENT happened to the task number TASK (0: to none) at the expression FORM, by the
+doing of AGENT: a task's number, an ANSWER, or another asker (see *ASKER*). What SUBJECT and VALUE
+are: :start: name and parent's number; :wait and :wake: what the task waits for; :succeed: NIL and
+the value; :failure (where it happens) and :fail (it ends the task): the failure; :set and :pulse:
+fluent and value; :command: an ISSUE and the STACKS; :answer: the ISSUE and the error code;
+:evaporate, :clean, :block and :unblock: nothing."
   (tick 0 :type real :read-only t)
   (event :start :type keyword :read-only t)
   (task 0 :type fixnum :read-only t)
@@ -37,16 +37,16 @@ error code; :evaporate, :clean, :block and :unblock: nothing."
           trace-entry-detail)
 (document-functions
   trace-entry-tick "Return the tick of a trace entry."
-  trace-entry-event "Return what happened: :start, :wait, :wake, :succeed, :fail, :evaporate, :failure
-(whatever becomes of it), :clean (a cleanup begins), :block or :unblock; :set or :pulse (a fluent),
-:command or :answer."
-  trace-entry-task "Return the serial number of the task that it happened to, or that did it; 0 for none."
+  trace-entry-event "Return what happened: :start, :wait, :wake, :succeed, :fail, :evaporate,
+:failure (whatever becomes of it), :clean (a cleanup begins), :block or :unblock; :set or :pulse (a
+fluent), :command or :answer."
+  trace-entry-task "Return the number of the task that it happened to, or that did it; 0: none."
   trace-entry-form "Return the plan's expression that the task was at."
   trace-entry-subject "Return what it is about, an object that depends on the event."
   trace-entry-agent "Return by whose doing it happened: a task's number, an answer, or an asker."
-  trace-entry-value "Return what a task succeeded with, the value that a fluent was given, the error
-code of an answer, for a command a list of the expressions under way for the task and each that it is part of, the number of the task that a
-task is part of when it starts."
+  trace-entry-value "Return what a task succeeded with; the value that a fluent was given; the error
+code of an answer; for a command the expressions under way, a list for the task and each that it is
+part of; the number of the task that a task is part of when it starts."
   issue-p "True of records that a command was issued."
   issue-name "Return the plan function by which a command was issued."
   issue-arguments "Return the list of what it was called with."
@@ -102,9 +102,9 @@ value a fluent was given and by whom, which command was issued or answered, and 
             (trace-entry-task entry) (trace-entry-event entry) (trace-entry-detail entry))))
 
 ;;; While plans run, an entry is four to six elements of a vector, which costs less than an object
-;;; would: tick; a number that tells event, task and what follows; form; subject; the value if there is
-;;; one; the agent if it is not the task itself. All vectors but the first are so long that the
-;;; collector leaves them where they are.
+;;; would: tick; a number that tells event, task and what follows; form; subject; the value if
+;;; there is one; the agent if it is not the task itself. All vectors but the first are so long
+;;; that the collector leaves them where they are.
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defparameter *trace-events*
@@ -121,8 +121,8 @@ value a fluent was given and by whom, which command was issued or answered, and 
   (make-array count :initial-element 0))
 
 (defstruct (chronicle (:constructor make-trace ()) (:copier nil))
-  "A trace as it is kept: CHUNK, filled up to FILL, and the full ones before it, the newest first, each
-in a list with its own FILL."
+  "A trace as it is kept: CHUNK, filled up to FILL, and the full ones before it, the newest first,
+each in a list with its own FILL."
   (chunk (make-chunk 512) :type simple-vector)
   (fill 0 :type (unsigned-byte 32))
   (full '() :type list))

@@ -12,8 +12,8 @@
     (if (keywordp event) (event-code event) `(event-code ,event))))
 
 (defmacro note-event (task event &optional subject value)
-  "Add to the trace, if one is kept, that EVENT happened to TASK. SUBJECT and VALUE, see TRACE-ENTRY,
-are evaluated only then."
+  "Add to the trace, if one is kept, that EVENT happened to TASK. SUBJECT and VALUE, see
+TRACE-ENTRY, are evaluated only then."
   (once-only (task)
     `(when (runner-trace (the plan-runner (task-runner ,task)))
        (trace-task ,task ,(event-form event) ,subject ,value))))
@@ -52,12 +52,14 @@ are evaluated only then."
 
 (defun trace-start (task)
   "Note the start of TASK, and of the tasks that it consists of."
-  (note-event task :start (task-name task) (and (task-parent task) (task-serial (task-parent task))))
+  (note-event task :start
+              (task-name task)
+              (and (task-parent task) (task-serial (task-parent task))))
   (mapc #'trace-start (task-children task)))
 
 (defun start-trace (runner)
-  "Let RUNNER keep a trace from now on, in which tasks under way seem to start now. Nothing happens if
-it keeps one."
+  "Let RUNNER keep a trace from now on, in which tasks under way seem to start now. Nothing happens
+if it keeps one."
   (unless (runner-trace runner)
     (setf (runner-trace runner) (make-trace))
     (trace-changes runner)
@@ -96,6 +98,17 @@ record of that for WITH-ANSWER; NIL if no task is at work or no trace is kept."
         issue))))
 
 (defmacro with-answer ((issue error) &body body)
-  "Run BODY, which posts the answer to ISSUE, as NOTE-COMMAND returned it, with the error code ERROR."
+  "Run BODY, which posts the answer to ISSUE, as NOTE-COMMAND returned it, with the error code
+ERROR."
   `(let ((*asker* (if ,issue (make-answer ,issue ,error) *asker*)))
      ,@body))
+
+(document-functions
+  runner-trace "Return the trace of the plan runner as it is kept, or NIL: see PLAN-TRACE."
+  runner-current "Return the task of the plan runner that runs, or ran last."
+  runner-stepper "Return the function, of task and frame, that is called before each step, or NIL."
+  frame-p "True of frames."
+  frame-node "Return the node that the frame runs."
+  node-names "Return the names of the variables that the node sees: a list for each level."
+  task-node "Return the node that the task was started to run."
+  task-doomed "True if the task is to evaporate.")
