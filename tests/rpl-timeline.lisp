@@ -134,3 +134,26 @@
     (is (plusp (length (rpl:trace-of nil))))
     (is (null (set-difference '(:start :command :answer :succeed)
                               (mapcar #'rpl:trace-entry-event (rpl:trace-of nil)))))))
+
+(test trace.answers-what-planners-ask
+  "Did it grasp a green thing; why did it drive there; which look failed?"
+  (run:with-simulation (ars-worlds:robbie :seed 1)
+    (let ((driver:*trace-plans* t))
+      (driver:run-plan 'ars-worlds:fetch-thing
+                       '((:color world:lightgreen) (:substance world:wood)) '((35.5 22.5))))
+    (let ((commands (rpl:task-commands nil)))
+      (flet ((issued (name)
+               (remove name commands :key (lambda (command) (first (getf command :command)))
+                                     :test-not #'eq))
+             (for-p (name command)
+               (find name (getf command :for) :key #'first)))
+        (let ((grasp (find nil (issued 'driver:rpl-hand-grasp-desig)
+                           :key (lambda (command) (getf command :error)))))
+          (is (robot:designator-p (third (getf grasp :command))))
+          (is (for-p 'ars-worlds:take-thing grasp)))
+        (is (every (lambda (drive) (or (for-p 'ars-worlds:travel-to drive)
+                                       (for-p 'ars-worlds:find-and-take drive)
+                                       (for-p 'ars-worlds:put-thing-down drive)))
+                   (issued 'driver:rpl-robot-go-forward)))
+        (let ((looks (issued 'driver:rpl-camera-get-object-designator)))
+          (is (< 0 (count-if (lambda (look) (getf look :error)) looks) (length looks))))))))

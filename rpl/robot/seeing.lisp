@@ -16,6 +16,11 @@
       (with-plans (*interface*) (funcall function (interface-runner *interface*)))
       (funcall function nil)))
 
+(setf *still* (lambda (function)
+                (call-with-plans-in-use (lambda (runner)
+                                          (declare (ignore runner))
+                                          (funcall function)))))
+
 (addition print-plans)
 (defun print-plans (&optional (stream *standard-output*) all)
   "Print the plans under way to STREAM, each as a tree of tasks: what each does and waits for. If

@@ -57,7 +57,8 @@ there to answer, it is a message.")
 (defun break-wanted-p (failure)
   (let ((types *break-on-plan-failures*))
     (and types
-         (some (lambda (type) (failure-matches-p failure type))
+         (some (lambda (type)
+                 (and (typep type '(or symbol cons)) (failure-matches-p failure type)))
                (if (and (consp types) (not (eq 'or (first types)))) types (list types))))))
 
 (defun consider-break (failure task frame)

@@ -8,7 +8,7 @@
 (defun trace-to-read (which runner)
   "Return the trace that tells of WHICH, a task or a number, and that number."
   (let ((runner (or runner (runner-to-see which))))
-    (values (or (plan-trace runner)
+    (values (or (funcall *still* (lambda () (plan-trace runner)))
                 (reject-use "No trace was kept of these plans. Set *trace-plans* to true before ~
                              they start."))
             (if (task-p which) (task-serial which) which))))

@@ -5,6 +5,9 @@
 (defvar *runner-in-use* (constantly nil)
   "A function that returns the plan runner whose tasks are shown where nobody says which, or NIL.")
 
+(defvar *still* #'funcall
+  "A function that calls another while no plan in use goes on.")
+
 (defun runner-to-see (&optional subject)
   "Return the plan runner of SUBJECT: itself, a task's, that of the plan that asks, or the one in
 use. Signals MISUSE if there is none."
