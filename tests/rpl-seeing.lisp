@@ -109,17 +109,17 @@
   (is (equal '(2) (variables-in '(let ((a 1)) (let ((a 2)) (rpl:wait-time a))) '(a)))))
 
 (test values.that-cannot-be-printed-are-shown-all-the-same
-  (let* ((form '(let ((ring (let ((list (list 1 2))) (setf (cddr list) list)))
-                      (long (make-string 100000 :initial-element #\x))
-                      (many (loop for i below 100000 collect i))
-                      (bad (make-grumpy)))
+  (let* ((form '(let ((a-ring (let ((list (list 1 2))) (setf (cddr list) list)))
+                      (a-text (make-string 100000 :initial-element #\x))
+                      (a-list (loop for i below 100000 collect i))
+                      (a-grump (make-grumpy)))
                  (rpl:wait-time 9)
-                 (list ring long many bad)))
+                 (list a-ring a-text a-list a-grump)))
          (task (nth-value 1 (seen-until 0 :plan (rpl:make-plan form))))
          (text (tree-text task t)))
     (is (< (length text) 2000))
-    (is-true (has-words-p text "ring = (1 2 1 2" "long = \"xxx" "many = (0 1 2"
-                          "bad = what cannot be printed"))
+    (is-true (has-words-p text "a-ring = (1 2 1 2" "a-text = \"xxx" "a-list = (0 1 2"
+                          "a-grump = what cannot be printed"))
     (is (< (length (described task)) 3000))))
 
 ;;; DESCRIBE.

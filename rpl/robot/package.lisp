@@ -20,7 +20,8 @@
                 #:start-plan #:stop-plan #:plan-runner #:plan-runner-tasks #:task-over-p
                 #:task-state #:task-result #:task-p #:plan-deadlocked-p #:report-deadlock
                 #:reseed-runner #:digest-runner #:print-tasks #:find-procedure #:plan-trace
-                #:write-trace #:note-command #:with-answer #:*runner-in-use* #:*still* #:*step-plans*
+                #:write-trace #:note-command #:with-answer #:*runner-in-use* #:*still*
+                #:*step-plans*
                 #:*plan-start-hooks*
                 #:start-trace #:task-runner)
   ;; fluents

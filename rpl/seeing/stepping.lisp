@@ -63,9 +63,11 @@ that is a leaf; NIL if it begins none, or one that has a step of its own.")
 
 (defun stop-at (course task frame form leaf-p)
   "Let somebody see TASK of COURSE before FORM at FRAME, and say how far it is to go."
-  (restart-case (enter-break (make-condition 'plan-break
-                                             :task task :frame frame
-                                             :text (format nil "Next: ~A" (form-text form 70))))
+  (restart-case
+      (progn (enter-break (make-condition 'plan-break
+                                          :task task :frame frame
+                                          :text (format nil "Next: ~A" (form-text form 70))))
+             (go-on course :run))       ; nobody was there
     (continue ()
       :report "Go on without stopping."
       (go-on course :run))
