@@ -86,7 +86,8 @@
                  (:file "views") (:file "operators")))
    (:module "rpl/tasks" :serial t
     :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
-                 (:file "task") (:file "trace") (:file "runner") (:file "machine")
+                 (:file "task") (:file "trace") (:file "runner") (:file "tracing")
+                 (:file "machine")
                  (:file "ending") (:file "stepping") (:file "blame") (:file "shape")
                  (:file "procedure")
                  (:file "report") (:file "care") (:file "engine") (:file "circles")
@@ -109,13 +110,20 @@
                  (:file "task-variables") (:file "deadline") (:file "ordering")
                  (:file "valve") (:file "with-valve") (:file "polling") (:file "named-policies")
                  (:file "patterns") (:file "goals") (:file "achieving") (:file "at-location")))
+   (:module "rpl/seeing" :serial t
+    :components ((:file "package") (:file "variables") (:file "subjects") (:file "tree")
+                 (:file "describing") (:file "history") (:file "why") (:file "spans")
+                 (:file "breaking") (:file "stepping")))
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
     :components ((:file "package") (:file "fluents") (:file "interface") (:file "takeovers")
                  (:file "under-way") (:file "reacting") (:file "watching") (:file "thread")
                  (:file "starting") (:file "accessors") (:file "outcomes") (:file "commands")
-                 (:file "runs")))
+                 (:file "runs") (:file "seeing")))
+   (:module "rpl/pictures" :serial t
+    :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")
+                 (:file "saving")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.
@@ -150,6 +158,7 @@
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
                  (:file "status-lines") (:file "running-lines") (:file "loading") (:file "worlds")
                  (:file "world-lines") (:file "plans") (:file "plan-lines")
+                 (:file "plan-views")
                  (:file "picture-lines") (:file "debugger") (:file "prompt")
                  (:file "options") (:file "main")))))
 
@@ -204,7 +213,9 @@
                  (:file "plans") (:file "plans-killed")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
-                 (:file "cli-debugger") (:file "cli-files") (:file "kinds")
+                 (:file "cli-debugger") (:file "cli-files") (:file "cli-plan-tree")
+                 (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
+                 (:file "kinds")
                  (:file "digests") (:file "runs") (:file "outliving") (:file "outliving-live")
                  (:file "users-parts")
                  (:file "user-package")

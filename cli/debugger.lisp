@@ -62,10 +62,16 @@ may be expected to. Only the thread that has the prompt can ask him for a value.
           ((and *simulation* (eq thread (simulation-thread *simulation*))) "the simulator's thread")
           (t "another thread"))))
 
+(defun break-words (condition)
+  "Return what CONDITION says: on a line, unless it is that a plan has stopped, with its stack."
+  (if (plan-break-p condition)
+      (visible (condition-text condition))
+      (complaint-text (condition-text condition))))
+
 (defun break-text (session breakage)
   (format nil "*BREAK* -> ~A~@[ (in ~A)~]~%~:{  ~2D  ~16A ~A~%~}~
                A number chooses. BACKTRACE tells where it is; a line in parentheses is Lisp.~%"
-          (complaint-text (condition-text (breakage-condition breakage)))
+          (break-words (breakage-condition breakage))
           (whereabouts session breakage)
           (loop for restart in (breakage-restarts breakage)
                 for number from 0

@@ -14,15 +14,18 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:stream-read-char #:stream-read-line #:stream-unread-char
                 #:stream-listen #:stream-clear-input)
   (:import-from :ars-magna.rpl
-                #:task-p #:task-name #:task-serial #:task-state #:task-result #:task-over-p
+                #:task-p #:task-name #:task-parent #:task-serial #:task-state #:task-result
+                #:task-over-p
                 #:task-children #:task-awaits #:plan-failure #:failure-class #:failure-data
                 #:report-failure #:*plan-end-hooks* #:plan-deadlocked-p #:post-call
                 #:stop-plan
                 #:find-procedure #:all-procedures #:called-procedures #:procedure-name
-                #:procedure-lambda-list)
+                #:procedure-lambda-list #:task-runner #:print-tasks #:task-numbered
+                #:plan-break-p #:why)
   (:import-from :ars-magna.rpl-robot
                 #:rpl-init-robot #:rpl-robot #:rpl-runner
-                #:begin-plan #:end-plan #:plans #:print-plans)
+                #:begin-plan #:end-plan #:plans #:print-plans #:call-with-plans-in-use)
+  (:import-from :ars-magna.rpl-pictures #:save-plan-timeline)
   ;; trivial-gray-streams
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream
            #:stream-line-column #:stream-write-char #:stream-write-string

@@ -278,7 +278,7 @@
     (is (equal '((0 :start 1) (0 :start 2) (0 :start 3) (0 :start 4) (0 :wait 1)
                  (0 :wait 2) (0 :start 5) (0 :start 6) (0 :wait 3) (0 :wait 4) (0 :wait 5)
                  (0 :wait 6) (2 :wake 6) (2 :succeed 6) (2 :evaporate 5) (2 :succeed 3)
-                 (3 :wake 4) (3 :fail 4) (3 :evaporate 2) (3 :succeed 1))
+                 (3 :wake 4) (3 :failure 4) (3 :fail 4) (3 :evaporate 2) (3 :succeed 1))
                (map 'list (lambda (entry)
                             (list (rpl:trace-entry-tick entry) (rpl:trace-entry-event entry)
                                   (rpl:trace-entry-task entry)))
@@ -293,4 +293,4 @@
 (test trace.is-written-to-a-file
   (uiop:with-temporary-file (:pathname path)
     (rpl:write-trace (trace-of 'traced-plan) path)
-    (is (= 20 (length (uiop:read-file-lines path))))))
+    (is (= 21 (length (uiop:read-file-lines path))))))

@@ -9,6 +9,7 @@
   "Return the frame that runs CLEANUP for FRAME before SIGNAL goes on."
   (setf (frame-data frame) signal)
   (push frame (task-cleaning task))
+  (note-event task :clean)
   (make-frame cleanup (frame-environment frame) frame))
 
 (defun end-cleanup (task frame)

@@ -37,12 +37,12 @@ it when a task sets it is ours)."
 that runs BODY and for what that starts, until BODY ends, however it ends. The values are had before
 any is bound. Return the value of BODY (ours, after CRAM's variables of tasks)."
   (:arguments &rest (mapcar #'second (checked-bindings bindings form scope)))
-  (:parts (names list `',(mapcar #'first bindings))
+  (:parts (variables list `',(mapcar #'first bindings))
           (values-of function (value-lambda `(list ,@(mapcar #'second bindings)) scope))
           (body node (body-code body scope)))
   (:steps
    (begin
-    (let ((cells (mapcar #'cons names (funcall values-of environment))))
+    (let ((cells (mapcar #'cons variables (funcall values-of environment))))
       (next inside)
       (setf memory (make-task-bindings cells))
       (enter body environment frame)))

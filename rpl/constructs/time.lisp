@@ -7,7 +7,7 @@
   (let ((task (timer-client timer)))
     (setf (task-timer task) nil)
     (stop-waiting task)
-    (wake task nil)))
+    (wake task nil timer)))
 
 (defun start-timer (task ticks)
   "Let TASK be woken after TICKS."

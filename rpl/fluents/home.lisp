@@ -13,12 +13,16 @@
   (highest 0 :type fixnum))
 
 (defstruct (home (:constructor make-home ()) (:copier nil))
-  "Where changes are heard. HOLDER is the thread that has it, ON-POST is called after each post."
+  "Where changes are heard. HOLDER is the thread that has it, ON-POST is called after each post. For
+whoever keeps a trace, ON-CHANGE is called with :SET or :PULSE, a base fluent and its value, before
+anybody hears of that, and WRAPPER with each entry: it returns what is posted instead."
   (holder nil :type t)
   (backlog (make-backlog) :type backlog :read-only t)
   (inbox '() :type t)
   (outbox '() :type list)
-  (on-post #'list :type function))
+  (on-post #'list :type function)
+  (on-change nil :type (or null function))
+  (wrapper nil :type (or null function)))
 
 (defvar *runner* nil
   "The plan runner that this thread has, while plans run.")
@@ -52,7 +56,8 @@
 
 (defun post (home entry)
   "Let ENTRY, a list of settings or a function, be next in HOME after all that was posted before."
-  (atomic-push entry (home-inbox home))
+  (let ((wrapper (home-wrapper home)))
+    (atomic-push (if wrapper (funcall wrapper entry) entry) (home-inbox home)))
   (funcall (home-on-post home))
   (values))
 
@@ -77,4 +82,6 @@
 (document-functions
   home-on-post "Return the function that is called after each post, in the posting thread."
   make-backlog "Return an empty backlog, which grows as needed."
+  home-on-change "Return the function that is told of changes, or NIL. Can be set."
+  home-wrapper "Return the function that is given what is posted, or NIL. Can be set."
   home-backlog "Return the derived fluents that are still to be computed.")

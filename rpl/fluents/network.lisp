@@ -141,6 +141,26 @@ ARGUMENTS, call FUNCTION at once."
   "Do as FL-FUNCALL; the last of ARGUMENTS is a list of further ones, as for APPLY."
   (apply #'fl-funcall function (apply #'list* arguments)))
 
+(defun depends-p (fluent source)
+  "True if FLUENT is SOURCE, or a network that is computed from it."
+  (or (eq fluent source)
+      (and (derived-p fluent)
+           (some (lambda (each) (and (fluent-p each) (depends-p each source)))
+                 (derived-sources fluent)))))
+
+(defun base-fluents (fluent)
+  "Return the base fluents that FLUENT is computed from, without repetition; of a base fluent, it."
+  (if (derived-p fluent)
+      (remove-duplicates (loop for source in (derived-sources fluent)
+                               when (fluent-p source) append (base-fluents source))
+                         :from-end t)
+      (list fluent)))
+
+(defun fluent-watchers (fluent)
+  "Return the clients of those who watch FLUENT itself, in order of arrival."
+  (loop for watcher = (fluent-first-watcher fluent) then (watcher-next watcher)
+        while watcher collect (watcher-client watcher)))
+
 ;;; Printing.
 
 (defun write-network (fluent stream)

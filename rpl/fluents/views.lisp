@@ -8,13 +8,6 @@
 ;;; that each event is heard. Nothing is missed while nobody waits: fluents count how often they
 ;;; were set and pulsed, so that a view costs nothing until it is read.
 
-(defun base-fluents (fluent)
-  "Return the fluents that can be set that FLUENT is, or is computed from."
-  (if (derived-p fluent)
-      (remove-duplicates (loop for source in (derived-sources fluent)
-                               when (fluent-p source) append (base-fluents source)))
-      (list fluent)))
-
 (defun count-sets (fluents)
   (loop for fluent in fluents sum (fluent-sets fluent)))
 

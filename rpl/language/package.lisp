@@ -18,7 +18,7 @@ DEFINE-CONSTRUCT adds to it.")
   ;; compiler
   (:export #:define-plan-form #:hoisted-code #:plan-code #:refuse-code #:suspends-p)
   ;; steps
-  (:export #:binding-body-code #:body-code)
+  (:export #:binding-body-code #:body-code #:steps #:steps-parts)
   ;; leaving
   (:export #:block-code #:make-leave)
   ;; repeating

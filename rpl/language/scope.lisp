@@ -87,6 +87,13 @@ ADDITIONS."
   (loop for (kind nil names) in (scope-layers scope)
         when (eq kind :variables) append names))
 
+(defun names-by-level (scope)
+  "Return a list of lists: the variables in each environment of SCOPE, innermost first."
+  (loop for level from (scope-level scope) above 0
+        collect (loop for (kind layer-level names) in (scope-layers scope)
+                      when (and (eq kind :variables) (= level layer-level))
+                        return names)))
+
 ;;; How a leaf sees its scope.
 
 (defun element-form (scope level index)

@@ -22,6 +22,9 @@
          (enter (the node (svref parts i)) environment frame)
          (enter-last (the node (svref parts i)) environment frame)))))
 
+(document-functions
+  steps-parts "Return the vector of the nodes that are run one after the other.")
+
 (defmethod current-form ((node steps) frame)
   (let ((i (frame-counter frame)))
     (if (plusp i)
@@ -34,9 +37,11 @@
     ((null forms) '+nothing+)
     ((null (rest forms)) (plan-code (first forms) scope))
     (t (let ((single (single-scope scope)))
-        `(make-steps :form '(seq ,@forms)
-                     :parts (vector ,@(loop for (form . more) on forms
-                                            collect (plan-code form (if more single scope)))))))))
+         (naming-code `(make-steps :form '(seq ,@forms)
+                                   :parts (vector ,@(loop for (form . more) on forms
+                                                          for inner = (if more single scope)
+                                                          collect (plan-code form inner))))
+                      scope)))))
 
 (defun binding-body-code (forms scope)
   "Return code for FORMS, a body that may start with declarations; these are for the reader only."

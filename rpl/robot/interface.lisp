@@ -8,7 +8,9 @@
 
 (addition *trace-plans*)
 (defparameter *trace-plans* nil
-  "When true, RPL-INIT-ROBOT makes the plans' runner keep a trace; see PLAN-TRACE.")
+  "When true, the plans' runner keeps a trace from RPL-INIT-ROBOT on, or from the start of the next
+plan: of all that happens to tasks and fluents, some 50 octets for each. See PLAN-TRACE, WHY and
+SAVE-PLAN-TIMELINE.")
 
 (defstruct (interface (:constructor make-interface (robot simulation)) (:copier nil))
   "The robot that plans drive, and what runs them."

@@ -34,14 +34,15 @@ TYPE (reading 181)."
 (defun command-in-plan (operator command outcome arguments)
   "Issue COMMAND as the plan function OPERATOR. OUTCOME, a function of the resource, the error code
 and the results, makes settings of its end."
-  (let ((interface (the-interface)))
+  (let ((interface (the-interface))
+        (issue (note-command operator arguments)))
     (multiple-value-bind (resource arguments)
         (convert-resource arguments (spec-type (command-resource command)) operator)
       (let ((arguments (loop for spec in (command-parameters command)
                              for argument in arguments
                              collect (convert-argument argument (spec-type spec) operator))))
         (check-in-plan operator command arguments)
-        (issue-deed interface command resource arguments outcome)
+        (issue-deed interface command resource arguments outcome issue)
         (values)))))
 
 (defun check-in-plan (operator command arguments)

@@ -16,16 +16,16 @@
                 #:remove-participant #:participant-after-tick #:participant-busy-p
                 #:participant-reseed #:participant-digest #:participant-end)
   (:import-from :ars-magna.rpl
-                #:create-fluent #:create-fluent-vector #:declare-fluent-variable
-                #:fluent-value #:apply-settings #:*runner*
-                #:post-call #:react-to-all #:exhaust-reaction #:close-runner #:advance-timers
-                #:next-wake-time #:make-plan-runner #:start-plan #:stop-plan #:plan-runner
-                #:plan-runner-tasks #:plan-runner-steps #:current-task #:task #:task-p
-                #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
-                #:task-label #:task-serial #:task-form #:task-cleaning #:form-text
-                #:plan-deadlocked-p #:report-deadlock #:report-end #:reseed-runner
-                #:digest-runner #:print-tasks #:find-procedure #:plan-trace #:write-trace #:valve
-                #:make-valve)
+                #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:fluent-value
+                #:apply-settings #:*runner* #:post-call #:react-to-all #:exhaust-reaction
+                #:close-runner #:advance-timers #:next-wake-time #:make-plan-runner #:start-plan
+                #:stop-plan #:plan-runner #:plan-runner-tasks #:plan-runner-steps #:current-task
+                #:task #:task-p #:task-over-p #:task-state #:task-result #:task-top
+                #:task-parent #:task-path #:task-label #:task-serial #:task-form #:task-cleaning
+                #:form-text #:plan-deadlocked-p #:report-deadlock #:report-end #:reseed-runner
+                #:digest-runner #:print-tasks #:find-procedure #:plan-trace #:write-trace
+                #:valve #:make-valve #:note-command #:with-answer #:*runner-in-use* #:*still*
+                #:*step-plans* #:*plan-start-hooks* #:start-trace #:task-runner)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
            #:robot-place-input* #:robot-place*
@@ -57,5 +57,6 @@
            #:rpl-hand-ungrasp #:rpl-hand-grasp-check #:rpl-hand-track
            #:rpl-storage-bin-open #:rpl-storage-bin-close)
   ;; running
-  (:export #:run-plan #:begin-plan #:end-plan #:plans #:print-plans #:*plan-limit*
-           #:rpl-runner))
+  (:export #:run-plan #:begin-plan #:end-plan #:plans #:*plan-limit* #:rpl-runner)
+  ;; seeing
+  (:export #:call-with-plans-in-use #:print-plans #:step-plan))

@@ -132,14 +132,6 @@ MISUSE."
   (let ((interface (usable-interface)))
     (and interface (tasks-of interface))))
 
-(addition print-plans)
-(defun print-plans (&optional (stream *standard-output*))
-  "Print the plans under way to STREAM, each as a tree of tasks: what each does and waits for."
-  (let ((interface (usable-interface)))
-    (if interface
-        (with-plans (interface) (print-tasks (interface-runner interface) stream))
-        (format stream "No plans.~%"))))
-
 (defun end-in (interface task)
   "Let TASK of INTERFACE, or all if it is NIL, evaporate: now, or when their thread gets to it."
   (dolist (task (if task (list task) (tasks-of interface)))

@@ -9,7 +9,8 @@
 ;;; command hears that command. What the simulator answers in the end for what has been told so
 ;;; sets only the fluents that say what the robot is or has: no error fluent, no pulse.
 
-(defstruct (deed (:constructor make-deed (command resource outcome task cleanup-p)) (:copier nil))
+(defstruct (deed (:constructor make-deed (command resource outcome task cleanup-p issue))
+                 (:copier nil))
   "That COMMAND is done on RESOURCE, as TASK (NIL: no plan) asked for, perhaps to clean up. OUTCOME
 makes settings of an answer."
   (command nil :type command :read-only t)
@@ -17,6 +18,8 @@ makes settings of an answer."
   (outcome nil :type function :read-only t)
   (task nil :type (or null task) :read-only t)
   (cleanup-p nil :read-only t)
+  ;; What the trace knows of it, or NIL.
+  (issue nil :read-only t)
   ;; By what the simulator knows it.
   (continuation nil :type (or null function))
   ;; It goes on in the background, as a track that has begun.
@@ -26,9 +29,10 @@ makes settings of an answer."
   ;; It has been answered for the last time.
   (over-p nil))
 
-(defstruct (answer (:constructor make-answer (deed settings last-p)) (:copier nil))
-  "SETTINGS that an answer to DEED means, not yet heard."
+(defstruct (answer (:constructor make-answer (deed err settings last-p)) (:copier nil))
+  "SETTINGS that an answer to DEED with the error code ERR means, not yet heard."
   (deed nil :type deed :read-only t)
+  (err nil :read-only t)
   (settings '() :type list :read-only t)
   (last-p nil :read-only t))
 
@@ -84,16 +88,17 @@ somebody has done so before."
   (when (take-answer answer interface)
     (let ((deed (answer-deed answer)) (settings (answer-settings answer)))
       (setf (deed-begun-p deed) t)
-      (apply-settings (if (deed-told-p deed)
-                          (state-settings settings)
-                          (plain-settings settings))))))
+      (with-answer ((deed-issue deed) (answer-err answer))
+        (apply-settings (if (deed-told-p deed)
+                            (state-settings settings)
+                            (plain-settings settings)))))))
 
 (defun post-answer (interface deed err results)
   "Let plans hear soon that DEED was answered by ERR and RESULTS. In the simulator's thread."
   (let ((settings '()))
     (in-any-case
       (setf settings (apply (deed-outcome deed) (deed-resource deed) err results))
-      (let ((answer (make-answer deed settings (ends-p (deed-command deed) err))))
+      (let ((answer (make-answer deed err settings (ends-p (deed-command deed) err))))
         (add-answer answer interface)
         (post-call (interface-runner interface) (lambda () (hear answer interface)))
         (when (answer-last-p answer) (setf (deed-over-p deed) t))))))
@@ -110,7 +115,9 @@ somebody has done so before."
 (defun tell-interrupted (deed)
   "Let plans hear that DEED was interrupted."
   (setf (deed-told-p deed) t)
-  (apply-settings (plain-settings (funcall (deed-outcome deed) (deed-resource deed) :interrupt))))
+  (with-answer ((deed-issue deed) :interrupt)
+    (apply-settings (plain-settings (funcall (deed-outcome deed) (deed-resource deed)
+                                             :interrupt)))))
 
 (defun hear-answers-on (resource interface except)
   "Let plans hear what has been answered on RESOURCE, but for answers to EXCEPT."
@@ -155,11 +162,12 @@ has been ended by the plan that is at work, if one is."
         while each
         thereis (task-cleaning each)))
 
-(defun issue-deed (interface command resource arguments outcome)
-  "Issue COMMAND on RESOURCE with ARGUMENTS; OUTCOME says what plans hear of its end."
+(defun issue-deed (interface command resource arguments outcome issue)
+  "Issue COMMAND on RESOURCE with ARGUMENTS; OUTCOME says what plans hear of its end. ISSUE is what
+the trace knows of it."
   (let* ((task (task-at-work interface))
          (deed (add-deed (make-deed command resource outcome task
-                                    (and task (cleaning-up-p task) t))
+                                    (and task (cleaning-up-p task) t) issue)
                          interface))
          (issued-p nil))
     (unwind-protect

@@ -23,6 +23,9 @@
                  do (when (typep (frame-data frame) 'plan-failure)
                       (return-from handled-failure (frame-data frame))))))
 
+(defvar *failure-hook* nil
+  "A function, or its name, called with each failure, its task and frame where it happens; or NIL.")
+
 (defun failure-of (condition task frame)
   "Return the failure that CONDITION, met by TASK at FRAME, means, with all that is known of it. It
 counts as many steps as one could take meanwhile, so that a plan that only fails ends its slice."
@@ -36,7 +39,9 @@ counts as many steps as one could take meanwhile, so that a plan that only fails
             (failure-tick failure) (runner-tick (task-runner task))
             (failure-plan-backtrace failure) (plan-backtrace task frame)
             (failure-form failure) (first (failure-plan-backtrace failure))
-            (failure-cause failure) (or (failure-cause failure) (handled-failure task frame))))
+            (failure-cause failure) (or (failure-cause failure) (handled-failure task frame)))
+      (note-event task :failure failure)
+      (when *failure-hook* (funcall *failure-hook* failure task frame)))
     failure))
 
 (defun engine-call-p (call)

@@ -26,7 +26,8 @@
 (defun finish (task state result &optional (how state))
   "End TASK in STATE with RESULT. HOW says it to the construct that TASK is part of."
   (note-event task (ecase state (:succeeded :succeed) (:failed :fail) (:evaporated :evaporate))
-              (and (eq state :failed) (failure-text result)))
+              (and (eq state :failed) result)
+              (and (eq how :succeeded) result))
   (setf (task-state task) state
         (task-result task) result
         (task-frame task) nil

@@ -20,9 +20,12 @@ after each post, in the posting thread, ON-TICK, if given, with the tick when ti
 ON-END with each top-level task that ends; by default it reports failures."
   (check-argument make-plan-runner budget (or (null budget) (whole-p budget 1))
                   "NIL or an integer from 1 to 1e9")
-  (%make-plan-runner :trace (and trace (make-trace)) :budget budget :clock clock :slow slow
-                     :dice dice :ticks-per-second ticks-per-second :tick tick :busy-p busy-p
-                     :on-post on-post :on-tick (ensure-list on-tick) :on-end on-end))
+  (let ((runner (%make-plan-runner :trace (and trace (make-trace)) :budget budget :clock clock
+                                   :slow slow :dice dice :ticks-per-second ticks-per-second
+                                   :tick tick :busy-p busy-p :on-post on-post
+                                   :on-tick (ensure-list on-tick) :on-end on-end)))
+    (when trace (trace-changes runner))
+    runner))
 
 (defmethod print-object ((runner plan-runner) stream)
   (print-unreadable-object (runner stream :type t)
@@ -34,8 +37,10 @@ Return the task, which runs at the next reaction."
   (multiple-value-bind (body environment) (apply #'enter-plan plan arguments)
     (let ((name (if (procedure-p plan) (procedure-name plan) plan)))
       (at-home (runner)
-        (first (push (spawn nil body environment 0 0 (make-task name body))
-                     (runner-roots runner)))))))
+        (let ((task (spawn nil body environment 0 0 (make-task name body))))
+          (push task (runner-roots runner))
+          (dolist (hook *plan-start-hooks*) (funcall hook task))
+          task)))))
 
 ;;; Reacting. In a round every ready task gets its turn, until it waits, ends or has used its slice.
 ;;; Only then is the next post heard, and only when nothing is posted do those that have used their

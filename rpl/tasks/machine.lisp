@@ -98,12 +98,6 @@ the value. A leaf takes no frame of its own."
       (values frame (call-leaf node environment))
       (values (make-frame node environment frame) nil)))
 
-(defun park (task awaiting)
-  "Note that TASK, at a step that will return +PARKED+, waits for AWAITING."
-  (setf (task-state task) :waiting
-        (task-awaiting task) awaiting)
-  (note-event task :wait (and awaiting (awaited-text awaiting))))
-
 (defgeneric awaited-text (awaited)
   (:documentation "Return in words what a task that waits for AWAITED waits for.")
   (:method (awaited) (princ-to-string awaited))
@@ -112,9 +106,22 @@ the value. A leaf takes no frame of its own."
   (:method ((timer timer))
     (format nil "tick ~A" (timer-due timer))))
 
-(defun wake (task value)
-  "Let TASK, which waits, go on with VALUE."
+(defgeneric traced-subject (awaited)
+  (:documentation "Return what a trace keeps of AWAITED, that a task waits for: no task.")
+  (:method (awaited) awaited)
+  (:method ((watcher watcher)) (watcher-fluent watcher))
+  (:method ((timer timer)) (timer-due timer)))
+
+(defun park (task awaiting)
+  "Note that TASK, at a step that will return +PARKED+, waits for AWAITING."
+  (setf (task-state task) :waiting
+        (task-awaiting task) awaiting
+        (task-since task) (runner-tick (the plan-runner (task-runner task))))
+  (note-event task :wait (traced-subject awaiting)))
+
+(defun wake (task value &optional (reason (task-awaiting task)))
+  "Let TASK, which waits, go on with VALUE. REASON is what it has heard."
+  (note-event task :wake (traced-subject reason))
   (setf (task-awaiting task) nil
         (task-value task) value)
-  (note-event task :wake)
   (make-ready task))

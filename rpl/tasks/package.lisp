@@ -20,15 +20,21 @@ plans nor a simulator.")
            #:task-frame #:task-index #:task-label #:task-level #:task-name #:task-newest-child
            #:task-over-p #:task-p #:task-parent #:task-path #:task-result #:task-runner
            #:task-serial #:task-signal #:task-state #:task-status-fluent #:task-timer #:task-top
-           #:evaporating-p #:part-of-p #:under-way-p)
+           #:evaporating-p #:part-of-p #:under-way-p #:frame-p #:node-names #:task-since
+           #:task-doomed #:task-node)
   ;; trace
-  (:export #:trace-entry #:trace-entry-detail #:trace-entry-event #:trace-entry-form
-           #:trace-entry-task #:trace-entry-tick #:write-trace)
+  (:export #:agent-text #:answer-p #:answer-error #:answer-issue #:issue-arguments #:issue-name
+           #:issue-p #:issue-task #:trace-entry #:trace-entry-agent #:trace-entry-detail
+           #:trace-entry-event #:trace-entry-form #:trace-entry-subject #:trace-entry-task
+           #:trace-entry-tick #:trace-entry-value #:write-trace)
+  ;; tracing
+  (:export #:note-command #:note-event #:start-trace #:with-answer #:call-with-answer)
   ;; runner
   (:export #:*runaway-limit* #:alone-p #:current-task #:exhaust-reaction #:make-ready
            #:note-event #:plan-runner #:plan-runner-steps #:plan-runner-tasks #:plan-runner-tick
            #:plan-time #:plan-trace #:runner-blocks #:runner-dice #:runner-tick
-           #:runner-ticks-per-second #:runner-timers)
+           #:runner-ticks-per-second #:runner-timers #:runner-current #:runner-stepper
+           #:runner-trace)
   ;; machine
   (:export #:+nothing+ #:+parked+ #:awaited-text #:bundle-p #:bundle-values #:call-leaf
            #:completion-p #:enter #:escape-p #:escape-target #:escape-value #:leaf-function
@@ -40,16 +46,18 @@ plans nor a simulator.")
   ;; shape
   (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
   ;; procedure
-  (:export #:entry-for #:set-lambda-list #:declared-names #:declared-lambda-list #:reject-lisp-call
-           #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p
-           #:ensure-procedure #:enter-plan #:find-procedure #:install-procedure #:make-procedure
-           #:procedure #:procedure-body #:procedure-entry #:procedure-lambda-list
-           #:procedure-name #:procedure-name-p #:procedure-p #:procedure-source)
+  (:export #:entry-for #:set-lambda-list #:declared-names #:declared-lambda-list
+           #:reject-lisp-call #:all-procedures #:anonymous-procedure #:declare-procedure
+           #:defined-p #:ensure-procedure #:enter-plan #:find-procedure #:install-procedure
+           #:make-procedure #:procedure #:procedure-body #:procedure-entry
+           #:procedure-lambda-list #:procedure-name #:procedure-name-p #:procedure-p
+           #:procedure-source)
   ;; blame
-  (:export #:failure-of)
+  (:export #:*failure-hook* #:failure-of #:plan-backtrace)
   ;; report
-  (:export #:*plan-end-hooks* #:print-tasks #:report-deadlock #:report-end #:report-failure
-           #:task-awaits)
+  (:export #:*plan-end-hooks* #:report-deadlock #:report-end #:report-failure #:task-awaits
+           #:*plan-start-hooks* #:blocker-of #:task-state-text #:write-task-line
+           #:write-task-tree)
   ;; engine
   (:export #:advance-timers #:apply-next-batch #:close-runner #:digest-runner #:idle-p
            #:make-plan-runner #:next-wake-time #:plan-deadlocked-p #:post-batch #:post-call

@@ -10,29 +10,35 @@ waits for its own parts."
        (task-awaiting task)
        (awaited-text (task-awaiting task))))
 
+(defun blocker-of (task)
+  "Return the task nearest to TASK, itself or one that it is part of, that is blocked; or NIL."
+  (unless (task-doomed task)
+    (loop for each = task then (task-parent each)
+          while each
+          when (plusp (task-blocked each)) return each)))
+
 (defun task-state-text (task)
-  (format nil "~(~A~)~:[~;, evaporating~]~:[~;, blocked~]" (task-state task)
-          (and (task-doomed task) (not (task-over-p task)))
-          (plusp (task-blocked task))))
+  "Return in words how TASK is: its state, and whether it evaporates, cleans up or is blocked."
+  (let ((blocker (blocker-of task)))
+    (format nil "~(~A~)~:[~;, evaporating~]~:[~;, cleaning up~]~@[, blocked~A~]" (task-state task)
+            (and (task-doomed task) (not (task-over-p task)))
+            (task-cleaning task)
+            (cond ((null blocker) nil)
+                  ((eq blocker task) "")
+                  (t (format nil " with ~D" (task-serial blocker)))))))
 
 (defun write-task-line (task depth stream)
-  (format stream "~V@T~D ~A: ~:[~;~:*~(~A~) ~]~A~@[ waits for ~A~]~%"
+  "Write on a line to STREAM which task TASK is, how it is, and what it waits for and since when."
+  (format stream "~V@T~D ~A: ~:[~;~:*~(~A~) ~]~A~@[ waits for ~A~]~@[ since tick ~A~]~%"
           (* 2 depth) (task-serial task) (task-state-text task)
-          (task-name task) (form-text (task-form task)) (task-awaits task)))
+          (task-name task) (form-text (task-form task)) (task-awaits task)
+          (and (task-awaits task) (task-since task))))
 
 (defun write-task-tree (task depth stream)
+  "Write TASK and its parts to STREAM, on a line each."
   (write-task-line task depth stream)
   (dolist (child (task-children task))
     (write-task-tree child (1+ depth) stream)))
-
-(addition print-tasks)
-(defun print-tasks (&optional (which *runner*) (stream *standard-output*))
-  "Write to STREAM the tree of tasks of WHICH, a task or a plan runner (all its tasks): number,
-state, expression, and what each waits for."
-  (if (task-p which)
-      (write-task-tree which 0 stream)
-      (dolist (task (plan-runner-tasks which))
-        (write-task-tree task 0 stream))))
 
 ;;; Failures.
 
@@ -82,6 +88,9 @@ state, expression, and what each waits for."
 task, what was under way, and the Lisp backtrace of an error."
   (error-set (with-output-to-string (stream) (write-failure-report failure stream))))
 
+(defvar *plan-start-hooks* '()
+  "Functions, or their names, called with each top-level task before it runs.")
+
 (defvar *plan-end-hooks* '()
   "Functions, or their names, called with each top-level task that has ended; the report of its
 failure is left to the first that returns true. In any thread that lets plans react.")
@@ -99,4 +108,7 @@ failure is left to the first that returns true. In any thread that lets plans re
 wait for."
   (error-set "Deadlock at tick " (runner-tick runner)
              ": nothing can wake these tasks." t
-             (cut (with-output-to-string (stream) (print-tasks runner stream)) 4000)))
+             (cut (with-output-to-string (stream)
+                    (dolist (task (plan-runner-tasks runner))
+                      (write-task-tree task 0 stream)))
+                  4000)))

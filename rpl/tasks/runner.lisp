@@ -42,8 +42,9 @@ end. SPENT are the ready tasks that have used their slice in this ROUND, the las
   (budget nil :type (or null (integer 1)))
   (ticks-per-second 20 :type (real (0)))
   (dice nil :type (or null dice))
-  (trace nil :type (or null vector))
+  (trace nil :type (or null chronicle))
   (clock nil :type (or null function))
+  (stepper nil :type (or null function))
   (slow 0.1d0 :type real)
   (warned '() :type list)
   (busy-p (constantly nil) :type function)
@@ -72,7 +73,7 @@ end. SPENT are the ready tasks that have used their slice in this ROUND, the las
 (addition plan-trace)
 (defun plan-trace (&optional (runner *runner*))
   "Return the trace of RUNNER, a vector of trace entries in order; NIL if it keeps none."
-  (runner-trace runner))
+  (and (runner-trace runner) (trace-entries (runner-trace runner))))
 
 (addition plan-time)
 (defun plan-time ()
@@ -83,18 +84,6 @@ end. SPENT are the ready tasks that have used their slice in this ROUND, the las
 (defun current-task ()
   "Return the task that asks."
   (runner-current *runner*))
-
-(defmacro note-event (task event &optional detail)
-  "Add to the trace, if one is kept, that EVENT happened to TASK. DETAIL is evaluated only then."
-  (once-only (task)
-    `(when (runner-trace (the plan-runner (task-runner ,task)))
-       (add-trace-entry ,task ,event ,detail))))
-
-(defun add-trace-entry (task event detail)
-  (let ((runner (task-runner task)))
-    (vector-push-extend (make-trace-entry (runner-tick runner) event (task-serial task)
-                                          (task-form task) detail)
-                        (runner-trace runner))))
 
 ;;; The ready queues.
 

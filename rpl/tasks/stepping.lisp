@@ -22,6 +22,16 @@
         (when (> seconds (runner-slow (task-runner task)))
           (warn-of-slow-step task frame seconds))))))
 
+(defun watched-step (node task frame value)
+  "Do the step of NODE as RUN-STEPS would, for whoever measures or goes through plans step by step."
+  (let* ((runner (task-runner task))
+         (stepper (runner-stepper runner))
+         (clock (runner-clock runner)))
+    (when stepper (funcall stepper task frame))
+    (if clock
+        (timed-step clock node task frame value)
+        (funcall (node-step node) node task frame value))))
+
 (defun evaporate-self (task frame)
   "Let TASK, which has asked for its own end in the step that returned FRAME, evaporate."
   (cond ((not (eq frame +parked+))
@@ -55,7 +65,7 @@ VALUE are what the last step returned; return what it should have."
   "Let TASK go on from FRAME with VALUE until it waits, gives way or ends."
   (declare #.*hot* (type task task))    ; 15 ns a step beyond what the step does
   (let* ((runner (task-runner task))
-         (clock (runner-clock runner))
+         (watched (or (runner-clock runner) (runner-stepper runner)))
          (higher (ash 2 (task-level task))))
     (declare (type plan-runner runner))
     (loop
@@ -69,8 +79,8 @@ VALUE are what the last step returned; return what it should have."
       (incf (runner-steps runner))
       (let ((node (frame-node frame)))
         (multiple-value-setq (frame value)
-          (if clock
-              (timed-step clock node task frame value)
+          (if watched
+              (watched-step node task frame value)
               (funcall (node-step node) node task frame value)))))))
 
 (defun begin-turn (task runner)
@@ -92,10 +102,10 @@ VALUE are what the last step returned; return what it should have."
     (setf (task-state task) :running
           (runner-current runner) task)
     (begin-turn task runner)
-    (when signal
-      (setf (task-signal task) nil)
-      (multiple-value-setq (frame value) (receive task frame signal)))
     (let ((*asker* task))
+      (when signal
+        (setf (task-signal task) nil)
+        (multiple-value-setq (frame value) (receive task frame signal)))
       (run-steps task frame value))
     (decf (task-slice task) (- (runner-steps runner) start))))
 
@@ -111,7 +121,7 @@ Return it."
           (task-frame task) (make-frame node environment nil))
     (when parent (link-child task parent))
     (incf (runner-blocks runner) (task-blocked task))
-    (note-event task :start)
+    (note-event task :start (task-name task) (and parent (task-serial parent)))
     (note-status task :running)
     (make-ready task)
     task))

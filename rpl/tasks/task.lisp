@@ -14,8 +14,11 @@
 that has ended, and returns the frame to go on with and a value for it. UNWIND is called with the
 same arguments but a signal when a signal passes the frame, and returns a frame that takes care of
 it, or NIL and, if another signal is to go on instead, that. CHILD-ENDED is called with node, task,
-frame, child, the child's state and its result. STATES are the names of what a frame may be in."
+frame, child, the child's state and its result. STATES are the names of what a frame may be in,
+NAMES those of the variables in the environment that it runs in: a list for each level of that,
+innermost first."
   (form nil)
+  (names '() :type list)
   (states #() :type simple-vector)
   (step #'list :type function)
   (unwind nil :type (or null function))
@@ -58,6 +61,7 @@ what it waits for before it starts, VARIABLES what it has set."
   (value nil)
   (signal nil)
   (awaiting nil)
+  (since 0 :type real)
   (timer nil :type (or null timer))
   (cleaning '() :type list)
   (blocked 0 :type fixnum)
@@ -96,12 +100,13 @@ what it waits for before it starts, VARIABLES what it has set."
  task-status-fluent "Return the fluent that follows the task's status, or NIL: see TASK-STATUS."
  task-newest-child "Return that part of the task which started last of those not over, or NIL.")
 
-(addition task-p task-name task-state task-serial task-parent task-result)
+(addition task-p task-name task-state task-serial task-parent task-result task-since)
 (loop for (reader text) in
       '((task-name "Return what the task is called: its tag, its procedure, or NIL.")
         (task-state "Return the task's state: :created, :ready, :running, :waiting, and when it is
 over :succeeded, :failed or :evaporated.")
         (task-serial "Return the number of the task within its plan runner.")
+        (task-since "Return the tick at which the task began to wait, or did so last.")
         (task-parent "Return the task that the task is part of, or NIL.")
         (task-result "Return the value of a task that succeeded, the failure of one that failed.")
         (task-p "True of tasks."))
@@ -156,14 +161,18 @@ over :succeeded, :failed or :evaporated.")
         (current-form (frame-node frame) frame)
         (node-form (task-node task)))))
 
+(defun brief (object)
+  "Return OBJECT, or what stands for it if it is data that takes long to print."
+  (if (typep object '(or cons string bit-vector number symbol)) (abridged object) object))
+
 (defun form-text (form &optional (width 60))
-  "Return FORM on one line of at most WIDTH characters."
-  (let* ((*print-case* :downcase) (*print-pretty* nil) (*print-length* 8) (*print-level* 4)
-         (text (substitute #\Space #\Newline (handler-case (prin1-to-string form)
-                                                (error () "what cannot be printed")))))
-    (if (> (length text) width)
-        (concatenate 'string (subseq text 0 (- width 3)) "...")
-        text)))
+  "Return FORM, or any other object, on one line of at most WIDTH characters."
+  (let ((*print-case* :downcase) (*print-pretty* nil) (*print-readably* nil)
+        (*print-length* 8) (*print-level* 4))
+    (cut (substitute #\Space #\Newline
+                     (handler-case (prin1-to-string (brief form))
+                       ((or error storage-condition) () "what cannot be printed")))
+         width)))
 
 (defmethod print-object ((node node) stream)
   (print-unreadable-object (node stream :type t)

@@ -3,29 +3,180 @@
 (in-package :ars-magna.rpl.tasks)
 
 ;;; A trace names tasks by number and holds no clock time, so that it is the same on every replay.
+;;; An entry keeps things, not words: what is written of it is made when somebody reads it.
 
-(defstruct (trace-entry (:constructor make-trace-entry (tick event task form detail))
+(defstruct (trace-entry (:constructor make-trace-entry (tick event task form subject value agent))
                         (:copier nil))
-  "At TICK, EVENT (:start, :wait, :wake, :succeed, :fail, :evaporate, :block or :unblock) happened
-to the task number TASK at the expression FORM. DETAIL is what it waits for, or why it failed."
+  "At TICK, EVENT happened to the task number TASK (0: to none) at the expression FORM, by the
+doing of AGENT: a task's number, an ANSWER, or another asker (see *ASKER*). What SUBJECT and VALUE
+are: :start: name and parent's number; :wait and :wake: what the task waits for; :succeed: NIL and
+the value; :failure (where it happens) and :fail (it ends the task): the failure; :set and :pulse:
+fluent and value; :command: an ISSUE and the STACKS; :answer: the ISSUE and the error code;
+:evaporate, :clean, :block and :unblock: nothing."
   (tick 0 :type real :read-only t)
   (event :start :type keyword :read-only t)
   (task 0 :type fixnum :read-only t)
   (form nil :read-only t)
-  (detail nil :read-only t))
+  (subject nil :read-only t)
+  (value nil :read-only t)
+  (agent nil :read-only t))
+(declaim-final trace-entry)
 
-(addition trace-entry-tick trace-entry-event trace-entry-task trace-entry-form trace-entry-detail)
-(loop for (reader text) in
-      '((trace-entry-tick "Return the tick of a trace entry.")
-        (trace-entry-event "Return what happened: :start, :wait, :wake, :succeed, :fail,
-:evaporate, :block or :unblock.")
-        (trace-entry-task "Return the serial number of the task that it happened to.")
-        (trace-entry-form "Return the plan's expression that the task was at.")
-        (trace-entry-detail "Return what the task waits for, or why it failed, as text, or NIL."))
-      do (setf (documentation reader 'function) text))
+(defstruct (issue (:constructor make-issue (name arguments task)) (:copier nil))
+  "That the task number TASK asked somebody outside of the plans for NAME, with ARGUMENTS."
+  (name nil :type symbol :read-only t)
+  (arguments '() :type list :read-only t)
+  (task 0 :type fixnum :read-only t))
 
-(defun make-trace ()
-  (make-array 64 :adjustable t :fill-pointer 0))
+(defstruct (answer (:constructor make-answer (issue error)) (:copier nil))
+  "What came of ISSUE: ERROR, or NIL if all went well."
+  (issue nil :type issue :read-only t)
+  (error nil :read-only t))
+
+(addition trace-entry-tick trace-entry-event trace-entry-task trace-entry-form trace-entry-value
+          trace-entry-detail)
+(document-functions
+  trace-entry-tick "Return the tick of a trace entry."
+  trace-entry-event "Return what happened: :start, :wait, :wake, :succeed, :fail, :evaporate,
+:failure (whatever becomes of it), :clean (a cleanup begins), :block or :unblock; :set or :pulse (a
+fluent), :command or :answer."
+  trace-entry-task "Return the number of the task that it happened to, or that did it; 0: none."
+  trace-entry-form "Return the plan's expression that the task was at."
+  trace-entry-subject "Return what it is about, an object that depends on the event."
+  trace-entry-agent "Return by whose doing it happened: a task's number, an answer, or an asker."
+  trace-entry-value "Return what a task succeeded with; the value that a fluent was given; the error
+code of an answer; for a command the expressions under way, a list for the task and each that it is
+part of; the number of the task that a task is part of when it starts."
+  issue-p "True of records that a command was issued."
+  issue-name "Return the plan function by which a command was issued."
+  issue-arguments "Return the list of what it was called with."
+  issue-task "Return the number of the task that issued the command."
+  answer-p "True of answers to commands."
+  answer-issue "Return the record of the command that an answer is for."
+  answer-error "Return the error code of an answer, or NIL.")
+
+(defun issue-text (issue)
+  (form-text (cons (issue-name issue) (issue-arguments issue))))
+
+(defmethod print-object ((issue issue) stream)
+  (print-unreadable-object (issue stream)
+    (format stream "~A of task ~D" (issue-text issue) (issue-task issue))))
+
+(defmethod print-object ((answer answer) stream)
+  (print-unreadable-object (answer stream)
+    (format stream "answer to ~A~@[: ~(~A~)~]" (issue-text (answer-issue answer))
+            (answer-error answer))))
+
+(defmethod asker-note ((answer answer))
+  (list "the answer to " (issue-text (answer-issue answer))))
+
+(defun agent-text (agent)
+  "Return in words who AGENT, of a trace entry, is."
+  (if (integerp agent)
+      (format nil "task ~D" agent)
+      (cut (one-line (note-text (if agent (asker-note agent) "a program or the REPL"))) 100)))
+
+(defun subject-text (subject)
+  "Return in words what a task waits for whose trace entry has SUBJECT."
+  (cond ((null subject) nil)
+        ((realp subject) (format nil "tick ~A" subject))
+        (t (awaited-text subject))))
+
+(addition trace-entry-detail)
+(defun trace-entry-detail (entry)
+  "Return what a trace entry is about as text, or NIL: what the task waits for, why it failed, what
+value a fluent was given and by whom, which command was issued or answered, and how."
+  (let ((subject (trace-entry-subject entry))
+        (value (trace-entry-value entry)))
+    (case (trace-entry-event entry)
+      ((:wait :wake) (subject-text subject))
+      ((:failure :fail) (failure-text subject))
+      ((:set :pulse) (format nil "~A = ~A, by ~A" (awaited-text subject) (form-text value 40)
+                             (agent-text (trace-entry-agent entry))))
+      (:command (issue-text subject))
+      (:answer (format nil "~A: ~(~A~)" (issue-text subject) (or value "done"))))))
+
+(defmethod print-object ((entry trace-entry) stream)
+  (print-unreadable-object (entry stream)
+    (format stream "tick ~A, task ~D: ~(~A~)~@[ ~A~]" (trace-entry-tick entry)
+            (trace-entry-task entry) (trace-entry-event entry) (trace-entry-detail entry))))
+
+;;; While plans run, an entry is four to six elements of a vector, which costs less than an object
+;;; would: tick; a number that tells event, task and what follows; form; subject; the value if
+;;; there is one; the agent if it is not the task itself. All vectors but the first are so long
+;;; that the collector leaves them where they are.
+
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defparameter *trace-events*
+    #(:start :wait :wake :succeed :fail :evaporate :failure :clean :block :unblock
+      :set :pulse :command :answer)
+    "All events of traces.")
+
+  (defun event-code (event)
+    "Return the number that stands for EVENT."
+    (or (position event *trace-events*)
+        (reject-name "event of traces" event (coerce *trace-events* 'list)))))
+
+(defun make-chunk (count)
+  (make-array count :initial-element 0))
+
+(defstruct (chronicle (:constructor make-trace ()) (:copier nil))
+  "A trace as it is kept: CHUNK, filled up to FILL, and the full ones before it, the newest first,
+each in a list with its own FILL."
+  (chunk (make-chunk 512) :type simple-vector)
+  (fill 0 :type (unsigned-byte 32))
+  (full '() :type list))
+(declaim-final chronicle)
+
+(defun begin-chunk (trace)
+  (push (list (chronicle-chunk trace) (chronicle-fill trace)) (chronicle-full trace))
+  (setf (chronicle-chunk trace) (make-chunk 65536)
+        (chronicle-fill trace) 0))
+
+(defun add-trace-entry (trace tick code task form subject value)
+  "Add an entry to TRACE, a chronicle, for the event of CODE: *ASKER* is its agent."
+  (declare #.*hot* (type chronicle trace) (type fixnum task) (type (unsigned-byte 4) code))
+  (when (> (+ 6 (chronicle-fill trace)) (length (chronicle-chunk trace))) (begin-chunk trace))
+  (let* ((chunk (chronicle-chunk trace))
+         (fill (chronicle-fill trace))
+         (asker *asker*)
+         (agent (if (task-p asker) (task-serial asker) asker))
+         (foreign (not (eql agent task))))
+    (setf (svref chunk fill) tick
+          (svref chunk (+ fill 1)) (logior (the fixnum (ash (ldb (byte 54 0) task) 6))
+                                           (the fixnum (ash code 2))
+                                           (if value 2 0)
+                                           (if foreign 1 0))
+          (svref chunk (+ fill 2)) form
+          (svref chunk (+ fill 3)) subject)
+    (incf fill 4)
+    (when value
+      (setf (svref chunk fill) value)
+      (incf fill))
+    (when foreign
+      (setf (svref chunk fill) agent)
+      (incf fill))
+    (setf (chronicle-fill trace) fill)))
+
+(defun chunk-entries (chunk fill)
+  "Return a list of the entries in CHUNK up to FILL."
+  (loop with place = 0
+        while (< place fill)
+        collect (flet ((next () (prog1 (svref chunk place) (incf place))))
+                  (let* ((tick (next)) (code (next)) (form (next)) (subject (next))
+                         (task (ash code -6)))
+                    (make-trace-entry tick (svref *trace-events* (ldb (byte 4 2) code)) task
+                                      form subject
+                                      (if (logbitp 1 code) (next) nil)
+                                      (if (logbitp 0 code) (next) task))))))
+
+(defun trace-entries (trace)
+  "Return the entries of TRACE, a chronicle, as a vector."
+  (let ((fill (chronicle-fill trace)))
+    (coerce (append (loop for (chunk fill) in (reverse (chronicle-full trace))
+                          append (chunk-entries chunk fill))
+                    (chunk-entries (chronicle-chunk trace) fill))
+            'simple-vector)))
 
 (defun write-trace-entry (entry stream)
   (format stream "~6@A ~(~9A~) ~5D ~A~@[  ; ~A~]~%"

@@ -16,7 +16,8 @@
 
 (defparameter *layers-of-nisp*
   '("ARS-MAGNA.NISP" "ARS-MAGNA.CANVAS" "ARS-MAGNA.RPL.FLUENTS" "ARS-MAGNA.RPL.TASKS"
-    "ARS-MAGNA.RPL.LANGUAGE" "ARS-MAGNA.RPL.CONSTRUCTS" "ARS-MAGNA.RPL-ROBOT")
+    "ARS-MAGNA.RPL.LANGUAGE" "ARS-MAGNA.RPL.CONSTRUCTS" "ARS-MAGNA.RPL.SEEING"
+    "ARS-MAGNA.RPL-ROBOT" "ARS-MAGNA.RPL-PICTURES")
   "The packages whose public names NISP shows, unless a mark says otherwise; ARS shows all others.")
 
 (defun face-of (symbol)

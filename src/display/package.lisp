@@ -21,6 +21,6 @@
   (:export #:draw-terrain #:draw-movers #:draw-world #:*picture-layers* #:+picture-layers+
            #:draw-display #:display-title #:+displays+)
   ;; picture, animation
-  (:export #:save-picture #:save-snapshot #:svg-picture #:save-animation)
+  (:export #:picture-kind #:save-svg #:save-picture #:save-snapshot #:svg-picture #:save-animation)
   ;; opening
   (:export #:open-display #:*display-opener* #:announce-display))

@@ -11,13 +11,14 @@
   (format t "~&~56A ~15,3F us~%" name (/ (* 1d6 seconds) count))
   (finish-output))
 
-(defun seconds-of (plan argument &optional (times 1))
-  "Return the median of the seconds that PLAN takes, when run TIMES times over."
+(defun seconds-of (plan argument &optional (times 1) trace)
+  "Return the median of the seconds that PLAN takes, when run TIMES times over, traced if TRACE."
   (flet ((run ()
            (loop repeat times
+                 for runner = (make-plan-runner :trace trace)
                  do (assert (eq :succeeded
-                                (nth-value 1 (run-plan-alone plan
-                                                             :arguments (list argument))))))))
+                                (nth-value 1 (run-plan-alone plan :arguments (list argument)
+                                                                  :runner runner)))))))
     (/ (median (loop repeat 5 collect (seconds-for #'run))) times)))
 
 ;;; Waiting tasks.
@@ -89,6 +90,13 @@
                                (many-failures "a failure handled" 1)
                                (many-calls "a call of a procedure" 10))
       do (say-time name (* per 300000) (seconds-of plan 300000)))
+
+;;; What a trace costs.
+
+(loop for (plan name) in '((many-pursuits "pursue, one branch waiting, traced")
+                           (many-pairs "par of two branches, traced")
+                           (many-policies "with-policy, the policy waiting, traced"))
+      do (say-time name 100000 (seconds-of plan 100000 1 t)))
 
 ;;; Switching between tasks.
 

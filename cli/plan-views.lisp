@@ -1,0 +1,48 @@
+;;;; plan-views.lisp -- PLAN-TREE, WHY and PLAN-TIMELINE: what plans do, and how they came to it.
+
+(in-package :ars-magna.cli)
+
+(defun plan-name-of (task)
+  "Return the name of the plan that TASK is part of."
+  (loop for each = task then (task-parent each)
+        unless (task-parent each) return (task-name each)))
+
+(defun tree-text (which)
+  "Return the whole stacks and variables of WHICH, a task or a plan runner with plans, as text."
+  (call-reading-plan (plan-name-of (if (task-p which) which (first (plans))))
+                     (lambda () (with-output-to-string (out) (print-tasks which out t)))))
+
+(defun tree-text-of-number (n)
+  "Return the text for the task number N, or for all tasks if it is NIL; NIL if there is none."
+  (call-with-plans-in-use
+   (lambda (runner)
+     (let ((which (cond ((null (plans)) nil)
+                        (n (task-numbered n runner))
+                        (t runner))))
+       (and which (tree-text which))))))
+
+(define-line "PLAN-TREE" (session (n count "the number of a task" :optional)) (:planning)
+    "Show the plans under way, or the task N of one with its parts, whole: each task with all that
+it is in the middle of, its variables, what it waits for and since when; and who has which valve."
+  (let ((text (tree-text-of-number n)))
+    (cond (text (write-string (visible text)))
+          ((null (plans)) (reject-line "No plan is under way."))
+          (t (reject-line "No task ~D is under way. PLANS shows which are." n)))))
+
+(define-line "WHY" (session (n count "the number of a task")) (:planning)
+    "Tell what brought the task N where it is, also one that is over: which fluent woke it, who had
+set that, and how it was started. Needs a trace: (setf *trace-plans* t) before the plan starts."
+  (write-string
+   (visible (call-reading-plan
+             (let ((plan (first (plans)))) (and plan (task-name plan)))
+             (lambda ()
+               (with-output-to-string (out)
+                 (call-with-plans-in-use
+                  (lambda (runner) (why n :runner runner :stream out)))))))))
+
+(define-line "PLAN-TIMELINE" (session (file :token "a name that ends in .svg or .png"))
+    (:planning)
+    "Save a picture of the plans that have run in FILE, replacing it: each task as a bar over
+ticks, with what it waited for and the commands that it gave. Needs a trace: (setf *trace-plans* t)
+before the plan starts."
+  (format t "~A~%" (native-name (save-plan-timeline (native-path file)))))

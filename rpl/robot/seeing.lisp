@@ -1,0 +1,36 @@
+;;;; seeing.lisp -- looking at the plans that drive a robot.
+
+(in-package :ars-magna.rpl-robot)
+
+(setf *runner-in-use* (lambda () (and *interface* (interface-runner *interface*))))
+
+(defun trace-if-wanted (task)
+  "Let the runner of TASK, a plan that starts, keep a trace if *TRACE-PLANS* says so."
+  (when *trace-plans* (start-trace (task-runner task))))
+
+(pushnew 'trace-if-wanted *plan-start-hooks*)
+
+(defun call-with-plans-in-use (function)
+  "Call FUNCTION with the runner of the plans in use, none of which goes on meanwhile, or with NIL."
+  (if *interface*
+      (with-plans (*interface*) (funcall function (interface-runner *interface*)))
+      (funcall function nil)))
+
+(setf *still* (lambda (function)
+                (call-with-plans-in-use (lambda (runner)
+                                          (declare (ignore runner))
+                                          (funcall function)))))
+
+(addition print-plans)
+(defun print-plans (&optional (stream *standard-output*) all)
+  "Print the plans under way to STREAM, each as a tree of tasks: what each does and waits for. If
+ALL is true, also the whole stack of each, its variables, and the valves: see PRINT-TASKS."
+  (if (usable-p *interface*)
+      (call-with-plans-in-use (lambda (runner) (print-tasks runner stream all)))
+      (format stream "No plans.~%")))
+
+(addition step-plan)
+(defun step-plan (plan &rest arguments)
+  "Do as RUN-PLAN, but stop before each expression of PLAN: see STEP-TASK."
+  (let ((*step-plans* t))
+    (apply #'run-plan plan arguments)))

@@ -1,0 +1,131 @@
+;;;; stepping.lisp -- going through a plan expression by expression.
+
+(in-package :ars-magna.rpl.seeing)
+
+;;; A runner with plans to be gone through has a STEPPER, which is called before each step of any
+;;; of its tasks (see WATCHED-STEP); without one this costs nothing. Only steps that begin an
+;;; expression count. Leaves have no steps of their own: one stops before those that are steps of a
+;;; body.
+
+(addition *step-plans*)
+(defvar *step-plans* nil
+  "When true, plans that are started are gone through expression by expression: see STEP-TASK.")
+
+(defstruct (course (:constructor make-course (task)) (:copier nil))
+  "How somebody goes through TASK. MODE is :run, :step (stop before any expression) or :over: run
+the task WITHIN until it comes back to the frame UNTIL; to any of its expressions, if that is
+:NEXT; until it is over, if that is NIL."
+  (task nil :type task :read-only t)
+  (mode :step :type (member :step :over :run))
+  (within nil :type (or null task))
+  (until nil :type (or null frame (eql :next))))
+
+(defgeneric next-form (node frame)
+  (:documentation "Return the expression that the coming step of FRAME, of NODE, begins, and whether
+that is a leaf; NIL if it begins none, or one that has a step of its own.")
+  (:method (node frame)
+    (if (and (zerop (frame-counter frame)) (null (frame-data frame)))
+        (values (node-form node) nil)
+        nil))
+  (:method ((node steps) frame)
+    (let* ((parts (steps-parts node))
+           (part (svref parts (min (frame-counter frame) (1- (length parts))))))
+      (if (leaf-p part)
+          (values (node-form part) t)
+          nil))))
+
+(defun inside-p (frame outer)
+  "True if FRAME is run on behalf of OUTER, another one."
+  (loop for each = (frame-up frame) then (frame-up each)
+        while each thereis (eq each outer)))
+
+(defun note-return (course task frame)
+  "Let COURSE know if TASK, about to take a step at FRAME, is back at the frame that it runs to."
+  (let ((until (course-until course)))
+    (when (and (frame-p until)
+               (eq task (course-within course))
+               (not (inside-p frame until)))
+      (setf (course-until course) :next))))
+
+(defun stops-p (course task)
+  "True if COURSE stops before an expression of TASK."
+  (ecase (course-mode course)
+    (:run nil)
+    (:step t)
+    (:over (or (task-over-p (course-within course))
+               (and (eq task (course-within course))
+                    (eq :next (course-until course)))))))
+
+(defun go-on (course mode &optional task until)
+  (setf (course-mode course) mode
+        (course-within course) task
+        (course-until course) until))
+
+(defun stop-at (course task frame form leaf-p)
+  "Let somebody see TASK of COURSE before FORM at FRAME, and say how far it is to go."
+  (restart-case
+      (progn (enter-break (make-condition 'plan-break
+                                          :task task :frame frame
+                                          :text (format nil "Next: ~A" (form-text form 70))))
+             (go-on course :run))       ; nobody was there
+    (continue ()
+      :report "Go on without stopping."
+      (go-on course :run))
+    (step ()
+      :report "Do this, and stop before the next expression."
+      (go-on course :step))
+    (next ()
+      :report "Do all of this, and stop before the next expression of this task."
+      (go-on course :over task (if leaf-p :next (frame-up frame))))
+    (out ()
+      :report "Finish what this is a part of, and stop after that."
+      (let ((outer (if leaf-p frame (frame-up frame))))
+        (go-on course :over task (and outer (frame-up outer)))))))
+
+(defun course-of (task courses)
+  "Return the one of COURSES that TASK is part of, or NIL."
+  (loop for each = task then (task-parent each)
+        while each
+        thereis (find each courses :key #'course-task)))
+
+(defun consider-stop (courses task frame)
+  "Stop TASK before its step at FRAME, if one of COURSES says so."
+  (let ((course (course-of task courses)))
+    (when course
+      (note-return course task frame)
+      (multiple-value-bind (form leaf-p) (next-form (frame-node frame) frame)
+        (when (and form (stops-p course task))
+          (stop-at course task frame form leaf-p))))))
+
+;;; Who is gone through.
+
+(defun courses-of (runner)
+  "Return the courses through tasks of RUNNER that are not over."
+  (and (runner-stepper runner)
+       (remove-if #'task-over-p (funcall (runner-stepper runner) nil nil) :key #'course-task)))
+
+(defun install-stepper (runner courses)
+  "Let tasks of RUNNER be gone through as COURSES say."
+  (setf (runner-stepper runner)
+        (and courses
+             (lambda (task frame)
+               (if task
+                   (consider-stop courses task frame)
+                   courses)))))
+
+(addition step-task)
+(defun step-task (task &optional (on t))
+  "From now on, stop before each expression of TASK and of the tasks that it consists of; no longer
+if ON is NIL. Stopping enters the debugger; its restarts STEP, NEXT, OUT and CONTINUE say how far
+to go on. Where nobody is there to answer, it is a message, and the task goes on. Returns nothing."
+  (check-argument step-task task (task-p task) "a task, as begin-plan returns")
+  (let* ((runner (task-runner task))
+         (others (remove task (courses-of runner) :key #'course-task)))
+    (install-stepper runner (if on (cons (make-course task) others) others))
+    (values)))
+
+(defun step-if-wanted (task)
+  "Let TASK, a plan that starts, be gone through if *STEP-PLANS* says so."
+  (when *step-plans* (step-task task)))
+
+(pushnew 'step-if-wanted *plan-start-hooks*)

@@ -1,0 +1,40 @@
+;;;; subjects.lisp -- which runner and which tasks somebody wants to see, and their valves.
+
+(in-package :ars-magna.rpl.seeing)
+
+(defvar *runner-in-use* (constantly nil)
+  "A function that returns the plan runner whose tasks are shown where nobody says which, or NIL.")
+
+(defvar *still* #'funcall
+  "A function that calls another while no plan in use goes on.")
+
+(defun runner-to-see (&optional subject)
+  "Return the plan runner of SUBJECT: itself, a task's, that of the plan that asks, or the one in
+use. Signals MISUSE if there is none."
+  (or (cond ((task-p subject) (task-runner subject))
+            ((typep subject 'plan-runner) subject)
+            (*runner*)
+            (t (funcall *runner-in-use*)))
+      (reject-use "No plans have run here. Give a task, or a plan runner.")))
+
+(defun all-tasks (which)
+  "Return the tasks of WHICH, a task or a runner, each before its parts."
+  (if (task-p which)
+      (cons which (mapcan #'all-tasks (task-children which)))
+      (mapcan #'all-tasks (plan-runner-tasks which))))
+
+(defun task-numbered (number which)
+  "Return the task with NUMBER of those of WHICH that are not over, or NIL."
+  (find number (all-tasks which) :key #'task-serial))
+
+(defun valves-of (task)
+  "Return the valves that TASK has or waits for."
+  (flet ((valves-in (object)
+           (if (claim-p object) (claim-valves object) '())))
+    (append (valves-in (task-awaiting task))
+            (loop for frame in (stack-frames task) append (valves-in (frame-data frame))))))
+
+(defun valves-in-use (which)
+  "Return the valves that the tasks of WHICH have or wait for."
+  (remove-duplicates (loop for task in (all-tasks which) append (valves-of task))
+                     :from-end t))

@@ -1,0 +1,41 @@
+;;;; tree.lisp -- the tree of tasks as text.
+
+(in-package :ars-magna.rpl.seeing)
+
+(defun write-variables (variables column stream)
+  (loop for (name value) in variables
+        do (format stream "~V@T~(~A~) = ~A~%" column name (form-text value 70))))
+
+(defun write-stack (task column stream)
+  "Write to STREAM the expressions that TASK is at, innermost first, and its variables."
+  (loop for (form . variables) in (stack-entries task)
+        for head = "at " then "in "
+        do (format stream "~V@T~A~A~%" column head (form-text form 70))
+           (write-variables variables (+ column 5) stream)))
+
+(defun write-whole-tree (task depth stream)
+  (write-task-line task depth stream)
+  (write-stack task (+ 4 (* 2 depth)) stream)
+  (dolist (child (task-children task))
+    (write-whole-tree child (1+ depth) stream)))
+
+(defun write-valve (valve stream)
+  "Write on a line to STREAM who has VALVE and who queues for it."
+  (format stream "valve ~(~A~): ~:[free~;~:*of task ~D~]~@[, wanted by ~{~D~^, ~}~]~%"
+          (form-text (valve-name valve) 40)
+          (and (valve-owner valve) (task-serial (valve-owner valve)))
+          (mapcar #'task-serial (valve-requests valve))))
+
+(addition print-tasks)
+(defun print-tasks (&optional which (stream *standard-output*) all)
+  "Write to STREAM the tree of tasks of WHICH, a task or a plan runner (all its tasks; NIL: the one
+in use): number, state, expression, what each waits for and since which tick. If ALL is true, also
+the whole stack of each, innermost expression first, with the variables of the plan and their
+values; and the valves that they have or want."
+  (let ((which (or which (runner-to-see))))
+    (dolist (task (if (task-p which) (list which) (plan-runner-tasks which)))
+      (if all
+          (write-whole-tree task 0 stream)
+          (write-task-tree task 0 stream)))
+    (when all
+      (dolist (valve (valves-in-use which)) (write-valve valve stream)))))

@@ -1,0 +1,205 @@
+;;;; why.lisp -- in sentences, what brought a task where it is.
+
+(in-package :ars-magna.rpl.seeing)
+
+;;; Effects follow their causes in the trace at once: a wake-up is due to the last change before it
+;;; of what was waited for, the end of a wait for parts to the last part that ended.
+
+(defparameter *longest-chain* 12 "How many steps of a task's history WHY tells at most.")
+
+(defun quoted (form) (form-text form 60))
+
+(defun earlier (trace index test)
+  "Return the last entry of TRACE before INDEX, in the same tick, of which TEST is true, or NIL."
+  (loop with tick = (trace-entry-tick (aref trace index))
+        for i from (1- index) downto 0
+        for entry = (aref trace i)
+        while (= tick (trace-entry-tick entry))
+        when (funcall test entry) return entry))
+
+(defun changed-p (entry fluent)
+  "True if ENTRY is of a change of FLUENT, or of what that is computed from."
+  (and (member (trace-entry-event entry) '(:set :pulse))
+       (depends-p fluent (trace-entry-subject entry))))
+
+(defun part-ended-p (entry number trace)
+  "True if ENTRY is the end of a part of the task NUMBER."
+  (and (member (trace-entry-event entry) '(:succeed :fail :evaporate))
+       (eql number (trace-entry-value (start-of (trace-entry-task entry) trace)))))
+
+;;; By whom.
+
+(defun issue-words (issue trace)
+  (let ((entry (find issue trace :key #'trace-entry-subject)))
+    (format nil "~A, which task ~D issued~@[ at tick ~A~]"
+            (quoted (cons (issue-name issue) (issue-arguments issue)))
+            (issue-task issue) (and entry (trace-entry-tick entry)))))
+
+(defun agent-words (agent trace)
+  "Return who AGENT, of an entry of TRACE, is."
+  (cond ((integerp agent)
+         (format nil "task ~D, ~A" agent (task-words agent trace)))
+        ((answer-p agent)
+         (format nil "the answer~@[ ~S~] to ~A" (answer-error agent)
+                 (issue-words (answer-issue agent) trace)))
+        (t (agent-text agent))))
+
+(defun task-words (number trace)
+  "Return what the task NUMBER is called: its name, or its expression."
+  (let ((start (start-of number trace)))
+    (if (trace-entry-subject start)
+        (format nil "~(~A~)" (trace-entry-subject start))
+        (quoted (trace-entry-form start)))))
+
+(defun change-words (entry trace)
+  (format nil "~A was ~:[pulsed~;set to ~:*~A~] by ~A~@[, at ~A~]"
+          (fluent-text (trace-entry-subject entry))
+          (and (eq :set (trace-entry-event entry)) (form-text (trace-entry-value entry) 40))
+          (agent-words (trace-entry-agent entry) trace)
+          (and (trace-entry-form entry) (quoted (trace-entry-form entry)))))
+
+;;; Because of what.
+
+(defun fluent-reason (fluent index trace)
+  (let ((change (earlier trace index (lambda (entry) (changed-p entry fluent)))))
+    (if change
+        (change-words change trace)
+        (format nil "~A came true" (fluent-text fluent)))))
+
+(defun part-words (end trace)
+  "Return in words what END, an entry of TRACE, says of a part that has ended."
+  (format nil "its part ~D, ~A, ~A" (trace-entry-task end)
+          (task-words (trace-entry-task end) trace)
+          (ecase (trace-entry-event end)
+            (:succeed "succeeded")
+            (:fail (format nil "failed (~A)" (cut (trace-entry-detail end) 100)))
+            (:evaporate "evaporated"))))
+
+(defun part-reason (number index trace)
+  (let ((end (earlier trace index (lambda (entry) (part-ended-p entry number trace)))))
+    (if end
+        (part-words end trace)
+        "its turn had come")))
+
+(defun wake-reason (entry index trace)
+  (let ((subject (trace-entry-subject entry)))
+    (cond ((null subject) (part-reason (trace-entry-task entry) index trace))
+          ((realp subject) (format nil "tick ~A had come" subject))
+          ((fluent-p subject) (fluent-reason subject index trace))
+          (t (format nil "it was given ~A by ~A" (trace-entry-detail entry)
+                     (agent-words (trace-entry-agent entry) trace))))))
+
+(defun end-reason (entry index trace)
+  "Return why ENTRY, that its task evaporated or began to clean up, happened."
+  (let* ((agent (trace-entry-agent entry))
+         (other (and (integerp agent) (/= agent (trace-entry-task entry))))
+         (end (and other
+                   (earlier trace index
+                            (lambda (entry)
+                              (and (= agent (trace-entry-task entry))
+                                   (member (trace-entry-event entry) '(:succeed :fail))))))))
+    (cond (end (format nil "~A ~:[failed~;succeeded~]" (agent-words agent trace)
+                       (eq :succeed (trace-entry-event end))))
+          (other (format nil "~A ended it" (agent-words agent trace)))
+          ((integerp agent) "it had cleaned up")
+          (t (format nil "~A ended it" (agent-words agent trace))))))
+
+;;; Sentences.
+
+(defun wait-words (entry)
+  (if (trace-entry-subject entry)
+      (format nil "began to wait for ~A at ~A" (trace-entry-detail entry)
+              (quoted (trace-entry-form entry)))
+      (format nil "began to wait for its parts, of ~A" (quoted (trace-entry-form entry)))))
+
+(defun event-words (entry index trace)
+  "Return what ENTRY, number INDEX of TRACE, says of its task, as the rest of a sentence; or NIL."
+  (let ((form (quoted (trace-entry-form entry))))
+    (case (trace-entry-event entry)
+      (:wait (wait-words entry))
+      (:wake (format nil "went on at ~A, because ~A" form (wake-reason entry index trace)))
+      (:succeed (format nil "succeeded with ~A" (form-text (trace-entry-value entry) 60)))
+      (:fail (format nil "ended by the failure: ~A" (cut (trace-entry-detail entry) 200)))
+      (:failure (format nil "failed at ~A: ~A" form (cut (trace-entry-detail entry) 200)))
+      (:evaporate (format nil "evaporated, because ~A" (end-reason entry index trace)))
+      (:clean (format nil "began to clean up at ~A, because ~A" form
+                      (if (eql (trace-entry-agent entry) (trace-entry-task entry))
+                          "it had come to that"
+                          (end-reason entry index trace))))
+      (:command (format nil "issued ~A" (trace-entry-detail entry)))
+      (:block (format nil "was blocked by ~A" (agent-words (trace-entry-agent entry) trace)))
+      (:unblock "was blocked no longer"))))
+
+(defun deciding-part (number start end trace)
+  "Return the entry of TRACE, between the indices START and END, for the first part of the task
+NUMBER that succeeded or failed, or NIL."
+  (find-if (lambda (entry)
+             (and (member (trace-entry-event entry) '(:succeed :fail))
+                  (part-ended-p entry number trace)))
+           trace :start start :end end))
+
+;; A construct that is decided while some parts are still to evaporate ends without a wake-up.
+(defun decision-sentence (entry start end trace)
+  "Return how it came that the wait for parts of ENTRY, number START of TRACE, was over before
+number END, if by no wake-up; or NIL."
+  (let ((part (deciding-part (trace-entry-task entry) start end trace)))
+    (and part
+         (format nil "At tick ~A it was done with ~A, because ~A." (trace-entry-tick part)
+                 (quoted (trace-entry-form entry)) (part-words part trace)))))
+
+(defun own-sentences (number trace)
+  "Return what happened to the task NUMBER of TRACE after its start, the newest first."
+  (let ((sentences '()) (parts-wait nil) (since 0))
+    (loop for entry across trace
+          for index from 0
+          for event = (trace-entry-event entry)
+          for words = (and (= number (trace-entry-task entry)) (event-words entry index trace))
+          when words
+            do (when (and parts-wait (not (member event '(:wake :evaporate :block :unblock))))
+                 (push (decision-sentence parts-wait since index trace) sentences))
+               (push (format nil "At tick ~A it ~A." (trace-entry-tick entry) words) sentences)
+               (unless (member event '(:block :unblock))
+                 (setf parts-wait (and (eq :wait event) (null (trace-entry-subject entry)) entry)
+                       since index)))
+    (remove nil sentences)))
+
+(defun start-sentence (number trace)
+  (let* ((start (start-of number trace))
+         (parent (trace-entry-value start)))
+    (if parent
+        (format nil "Task ~D, ~A, was started at tick ~A as a part of task ~D, ~A."
+                number (task-words number trace) (trace-entry-tick start) parent
+                (task-words parent trace))
+        (format nil "Task ~D is the plan ~A, started at tick ~A by ~A."
+                number (task-words number trace) (trace-entry-tick start)
+                (agent-words (trace-entry-agent start) trace)))))
+
+(defun start-sentences (number trace)
+  "Return how the task NUMBER, the one that it is part of and so on were started."
+  (loop for each = number then (trace-entry-value (start-of each trace))
+        while each
+        collect (start-sentence each trace)))
+
+(defun shortened (sentences)
+  (let ((more (- (length sentences) *longest-chain*)))
+    (if (plusp more)
+        (append (subseq sentences 0 *longest-chain*)
+                (list (format nil "Before that, ~D more things happened to it; ~
+                                   TASK-HISTORY has them."
+                              more)))
+        sentences)))
+
+(defun why-sentences (which runner)
+  (multiple-value-bind (trace number) (trace-to-read which runner)
+    (start-of number trace)             ; or there is none
+    (append (shortened (own-sentences number trace))
+            (start-sentences number trace))))
+
+(addition why)
+(defun why (task &key runner (stream *standard-output*))
+  "Write to STREAM, from the trace, what brought TASK, over or not, or the task of that number,
+where it is: what happened to it, the last first, which fluent woke it and who had set that, and
+how it and those that it is part of were started. Signals MISUSE if no trace was kept: see
+*TRACE-PLANS*."
+  (format stream "~{~A~%~}" (why-sentences task runner))
+  (values))

@@ -1,0 +1,119 @@
+;;;; tracing.lisp -- what a plan runner tells its trace, if it keeps one.
+
+(in-package :ars-magna.rpl.tasks)
+
+;;; By whose doing something happens is known by *ASKER*: the task at work, or whoever posted what
+;;; is being applied.
+
+;; Here to be known when calls are compiled.
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defun event-form (event)
+    "Return a form for the code of what EVENT, a form, says."
+    (if (keywordp event) (event-code event) `(event-code ,event))))
+
+(defmacro note-event (task event &optional subject value)
+  "Add to the trace, if one is kept, that EVENT happened to TASK. SUBJECT and VALUE, see
+TRACE-ENTRY, are evaluated only then."
+  (once-only (task)
+    `(when (runner-trace (the plan-runner (task-runner ,task)))
+       (trace-task ,task ,(event-form event) ,subject ,value))))
+
+;; Most frames that are noted have not begun: then one need not ask the node.
+(declaim (inline form-now))
+(defun form-now (task)
+  "Return the expression that TASK is at."
+  (let ((frame (task-frame task)))
+    (if (and frame (zerop (frame-counter frame)))
+        (node-form (frame-node frame))
+        (task-form task))))
+
+(defun trace-task (task code subject value)
+  (declare #.*hot* (type task task))    ; 40 ns
+  (let ((runner (task-runner task)))
+    (declare (type plan-runner runner))
+    (add-trace-entry (runner-trace runner) (runner-tick runner) code (task-serial task)
+                     (form-now task) subject value)))
+
+(defun trace-doing (runner code subject value)
+  "Add to the trace of RUNNER that the task at work, if any, did something: the event of CODE."
+  (let* ((asker *asker*)
+         (task (and (task-p asker) (eq runner (task-runner asker)) asker)))
+    (add-trace-entry (runner-trace runner) (runner-tick runner) code
+                     (if task (task-serial task) 0)
+                     (and task (task-form task))
+                     subject value)))
+
+(defun trace-changes (runner)
+  "Let the trace of RUNNER be told of every change of a fluent, and by whom."
+  (setf (runner-wrapper runner) #'on-behalf
+        (runner-on-change runner)
+        (lambda (kind fluent value)
+          (trace-doing runner (if (eq kind :set) #.(event-code :set) #.(event-code :pulse))
+                       fluent value))))
+
+(defun trace-start (task)
+  "Note the start of TASK, and of the tasks that it consists of."
+  (note-event task :start
+              (task-name task)
+              (and (task-parent task) (task-serial (task-parent task))))
+  (mapc #'trace-start (task-children task)))
+
+(defun start-trace (runner)
+  "Let RUNNER keep a trace from now on, in which tasks under way seem to start now. Nothing happens
+if it keeps one."
+  (unless (runner-trace runner)
+    (setf (runner-trace runner) (make-trace))
+    (trace-changes runner)
+    (mapc #'trace-start (plan-runner-tasks runner))))
+
+;;; What is posted.
+
+(defun on-behalf (entry)
+  "Return a function that applies ENTRY, which is posted, on behalf of who asks now."
+  (let ((asker *asker*))
+    (lambda ()
+      (let ((*asker* asker))
+        (if (functionp entry)
+            (funcall entry)
+            (apply-settings entry))))))
+
+;;; Commands: what tasks ask of others than plans.
+
+(defun stacks (task)
+  "Return for TASK and each that it is part of the expressions under way, innermost first."
+  (loop for each = task then (task-parent each)
+        while each
+        collect (loop for frame = (task-frame each) then (frame-up frame)
+                      while frame
+                      collect (current-form (frame-node frame) frame))))
+
+(defun note-command (name arguments)
+  "Note in the trace that the task at work calls the plan function NAME with ARGUMENTS. Return a
+record of that for WITH-ANSWER; NIL if no task is at work or no trace is kept."
+  (let ((task *asker*))
+    (when (and (task-p task) *runner* (runner-trace *runner*))
+      (let ((issue (make-issue name (mapcar #'fluent-value arguments) (task-serial task))))
+        (note-event task :command issue (stacks task))
+        issue))))
+
+(defun call-with-answer (issue error function)
+  "Call FUNCTION, which lets plans hear the answer to ISSUE, as NOTE-COMMAND returned it, with the
+error code ERROR; note that in the trace."
+  (let ((*asker* (if issue (make-answer issue error) *asker*)))
+    (when (and issue *runner* (runner-trace *runner*))
+      (trace-doing *runner* #.(event-code :answer) issue error))
+    (funcall function)))
+
+(defmacro with-answer ((issue error) &body body)
+  "Run BODY as CALL-WITH-ANSWER would a function."
+  `(call-with-answer ,issue ,error (lambda () ,@body)))
+
+(document-functions
+  runner-trace "Return the trace of the plan runner as it is kept, or NIL: see PLAN-TRACE."
+  runner-current "Return the task of the plan runner that runs, or ran last."
+  runner-stepper "Return the function, of task and frame, that is called before each step, or NIL."
+  frame-p "True of frames."
+  frame-node "Return the node that the frame runs."
+  node-names "Return the names of the variables that the node sees: a list for each level."
+  task-node "Return the node that the task was started to run."
+  task-doomed "True if the task is to evaporate.")

@@ -1,0 +1,160 @@
+;;;; rpl-timeline.lisp -- pictures of plans: bars, spans, rows, SVG files.
+
+(in-package :ars-magna.tests)
+(in-suite rpl)
+
+(defun bars-until (limit)
+  "Return the bars of SEEN-BOSS until tick LIMIT: the plan's, and those of its parts."
+  (let ((bar (first (rpl:bars (rpl:plan-trace (seen-until limit)) limit))))
+    (values bar (rpl:bar-parts bar))))
+
+(defun span-list (bar kind)
+  (loop for span in (rpl:bar-spans bar)
+        when (eq kind (rpl:span-kind span))
+          collect (list (rpl:span-start span) (rpl:span-end span) (rpl:span-text span))))
+
+(test bars.say-when-tasks-lived-waited-and-ended
+  (multiple-value-bind (bar parts) (bars-until 30)
+    (is (equal '(0 22 :succeeded)
+               (list (rpl:bar-start bar) (rpl:bar-end bar) (rpl:bar-outcome bar))))
+    (is (equal '(2 3 4 5 6) (mapcar #'rpl:bar-serial parts)))
+    (is (equal '((0 4 "door") (5 7 "tick 7")) (span-list (first parts) :waiting)))
+    (is (equal '((3 5 nil)) (span-list (first parts) :blocked)))
+    (is (equal '((0 7 "valve arm") (7 11 "tick 11")) (span-list (second parts) :waiting)))
+    (let ((cleaning (second (rpl:bar-parts (fourth parts)))))
+      (is (eq :evaporated (rpl:bar-outcome cleaning)))
+      (is (equal '((2 22 nil)) (span-list cleaning :cleaning))))))
+
+(test bars.of-tasks-under-way-go-on-until-now
+  (multiple-value-bind (bar parts) (bars-until 5)
+    (is (null (rpl:bar-outcome bar)))
+    (is (= 5 (rpl:bar-end bar)))
+    (is (= 5 (third (list 0 0 (rpl:bar-end (second parts))))))))
+
+(test bars.know-of-failures
+  (let* ((runner (rpl:make-plan-runner :trace t :on-end #'identity))
+         (bar (progn (rpl:run-plan-alone (rpl:make-plan '(rpl:seq (rpl:wait-time 2)
+                                                          (rpl:fail :class :slip)))
+                                         :runner runner)
+                     (first (rpl:bars (rpl:plan-trace runner))))))
+    (is (eq :failed (rpl:bar-outcome bar)))
+    (is (eq :slip (rpl:failure-class (rpl:bar-failure bar))))
+    (is (= 2 (rpl:bar-end bar)))))
+
+;;; Rows.
+
+(test rows.are-shared-by-turns-of-a-loop
+  (let* ((runner (seen-until 60 :plan (rpl:make-plan
+                                       '(rpl:n-times 20 (rpl:par (rpl:wait-time 2)
+                                                         (rpl:wait-time 1))))))
+         (bars (rpl:bars (rpl:plan-trace runner)))
+         (rows (ars-magna.rpl-pictures::rows bars)))
+    (is (= 41 (1+ (length (rpl:bar-parts (first bars))))))
+    (is (= 3 (length rows)))
+    (is (equal '(1 20 20)
+               (mapcar (lambda (row) (length (ars-magna.rpl-pictures::row-bars row))) rows)))))
+
+;;; Files.
+
+(defun timeline-text (runner &rest options)
+  (uiop:with-temporary-file (:pathname path :type "svg")
+    (apply #'ars-magna.rpl-pictures:save-plan-timeline path :runner runner options)
+    (uiop:read-file-string path)))
+
+(test timeline.shows-tasks-waits-ends-and-a-legend
+  (let ((text (timeline-text (seen-until 30))))
+    (is (eql 0 (search "<svg" text)))
+    (is-true (has-words-p text "1 seen-boss" "2 one" "valve arm" "cleans up" "is blocked"
+                          "command under way" "evaporated"))
+    (is (search "ticks 0 to 22, succeeded" text))))
+
+(test timeline.of-hundreds-of-tasks-is-cut-where-asked
+  (let ((runner (seen-until 3 :plan (rpl:make-plan
+                                     '(rpl:par-loop (i (loop for i below 300 collect i))
+                                       (rpl:wait-time 2))))))
+    (is-true (has-words-p (timeline-text runner) "300 (" "301 ("))
+    (is (search "281 more rows are left out" (timeline-text runner :most 20)))
+    (signals base:wrong-argument (timeline-text runner :most 0))))
+
+(test timeline.is-the-same-every-time
+  (is (string= (timeline-text (seen-until 30)) (timeline-text (seen-until 30)))))
+
+(test timeline.without-a-trace-is-misuse
+  (signals base:misuse (timeline-text (seen-until 3 :trace nil)))
+  (signals base:misuse (timeline-text (rpl:make-plan-runner :trace t)))
+  (signals base:wrong-argument
+    (ars-magna.rpl-pictures:save-plan-timeline "timeline.jpg" :runner (seen-until 3))))
+
+;;; On a robot.
+
+(rpl:def-interp-proc turn-and-tell (angle)
+  (driver:rpl-robot-turn angle)
+  (rpl:wait-for driver:robot-stopped*))
+
+(rpl:def-interp-proc turn-twice ()
+  (rpl:par (turn-and-tell 1) (rpl:wait-time 3))
+  (driver:rpl-storage-bin-open 0)
+  (rpl:wait-for (svref driver:storage-bin-moved* 0)))
+
+(defmacro with-traced-turns (() &body body)
+  "Run BODY in a simulation in which TURN-TWICE has run, and is traced."
+  `(run:with-simulation (ars-user::butler :clean t)
+     (let ((driver:*trace-plans* t))
+       (driver:run-plan 'turn-twice))
+     ,@body))
+
+(test task-commands.say-who-issued-them-for-what-and-what-came-of-it
+  (with-traced-turns ()
+    (let ((commands (rpl:task-commands nil)))
+      (is (equal '((driver:rpl-robot-turn 1) (driver:rpl-storage-bin-open 0))
+                 (mapcar (lambda (command) (getf command :command)) commands)))
+      (is (equal '(nil :bin-open) (mapcar (lambda (command) (getf command :error)) commands)))
+      (is (equal '(2 1) (mapcar (lambda (command) (getf command :task)) commands)))
+      (is (< (getf (first commands) :tick) (getf (first commands) :answered)))
+      (is (member '(turn-and-tell 1) (getf (first commands) :for) :test #'equal)))))
+
+(test why.names-the-command-whose-answer-woke-a-task
+  (with-traced-turns ()
+    (let ((text (with-output-to-string (out) (rpl:why 2 :stream out))))
+      (is-true (has-words-p text "robot-stopped* was pulsed by the answer to"
+                            "rpl-robot-turn 1), which task 2 issued at tick 0")))))
+
+(test timeline.has-commands-and-the-calls-they-were-issued-in
+  (with-traced-turns ()
+    (let ((text (timeline-text nil)))
+      (is-true (has-words-p text "rpl-storage-bin-open 0), ticks" ": bin-open"
+                            "(turn-and-tell 1)")))))
+
+(test trace-plans.takes-effect-at-the-next-plan
+  (run:with-simulation (ars-user::butler :clean t)
+    (driver:run-plan 'turn-twice)
+    (signals base:misuse (rpl:trace-of nil))
+    (let ((driver:*trace-plans* t))
+      (driver:run-plan 'turn-twice))
+    (is (plusp (length (rpl:trace-of nil))))
+    (is (null (set-difference '(:start :command :answer :succeed)
+                              (mapcar #'rpl:trace-entry-event (rpl:trace-of nil)))))))
+
+(test trace.answers-what-planners-ask
+  "Did it grasp a green thing; why did it drive there; which look failed?"
+  (run:with-simulation (ars-worlds:robbie :seed 1)
+    (let ((driver:*trace-plans* t))
+      (driver:run-plan 'ars-worlds:fetch-thing
+                       '((:color world:lightgreen) (:substance world:wood)) '((35.5 22.5))))
+    (let ((commands (rpl:task-commands nil)))
+      (flet ((issued (name)
+               (remove name commands :key (lambda (command) (first (getf command :command)))
+                                     :test-not #'eq))
+             (for-p (name command)
+               (find name (getf command :for) :key #'first)))
+        (let ((grasp (find nil (issued 'driver:rpl-hand-grasp-desig)
+                           :key (lambda (command) (getf command :error)))))
+          (is (equal '(:color world:lightgreen)
+                     (assoc :color (robot:designator-data (fourth (getf grasp :command))))))
+          (is (for-p 'ars-worlds:take-thing grasp)))
+        (is (every (lambda (drive) (or (for-p 'ars-worlds:travel-to drive)
+                                       (for-p 'ars-worlds:find-and-take drive)
+                                       (for-p 'ars-worlds:put-thing-down drive)))
+                   (issued 'driver:rpl-robot-go-forward)))
+        (let ((looks (issued 'driver:rpl-camera-get-all-object-designators)))
+          (is (< 0 (count-if (lambda (look) (getf look :error)) looks) (length looks))))))))
