@@ -102,8 +102,8 @@ such as (on ?a ?b): BODY, plan text, perhaps after a documentation string, in wh
 and b are what ?a and ?b stand for; ?x twice matches the same twice, and a pattern may end in a dot
 and ?x. BODY's value, or that of (succeed-with value), is the goal's. Of several patterns that
 match, the most specific is meant, or else the one defined first (ours; CRAM's is the first). A
-pattern that differs only in its variables replaces the definition. Signals MALFORMED-DEFINITION. (CRAM's; the
-variables are as in DEF-INTERP-MACRO.)"
+pattern that differs only in its variables replaces the definition. Signals MALFORMED-DEFINITION.
+(CRAM's; the variables are as in DEF-INTERP-MACRO.)"
   (let ((definition (format nil "def-goal (~(~A~) ...)" operator)))
     (expand-definition form environment
                        (lambda ()
