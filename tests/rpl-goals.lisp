@@ -23,7 +23,7 @@
 (rpl:def-goal (achieve (on ?a floor))
   (rpl:wait-time 1)
   (begin-to-believe (list 'on a 'floor))
-  (rpl:succeed a :dropped))
+  (rpl:succeed-with a :dropped))
 
 (rpl:def-goal (achieve (on ?a ?a))
   (rpl:wait-time 1)
@@ -167,8 +167,8 @@
 
 (test def-goal.of-two-none-more-specific-the-first-counts
   (base:with-own-definitions ()
-    (define-quietly '(rpl:def-goal (achieve (near ?x wall)) :first))
-    (define-quietly '(rpl:def-goal (achieve (near door ?x)) :second))
+    (define-quietly '(rpl:def-goal (achieve (near ?thing wall)) :first))
+    (define-quietly '(rpl:def-goal (achieve (near door ?thing)) :second))
     (is (eq :first (plan-value (rpl:achieve '(near door wall)))))
     (is (eq :second (plan-value (rpl:achieve '(near door door)))))
     (define-quietly '(rpl:def-goal (achieve (near door wall)) :third))
@@ -188,7 +188,7 @@
                   (rpl:def-goal (achieve on) t)
                   (rpl:def-goal achieve t)))
     (signals base:malformed-definition (macroexpand-1 form)))
-  (signals base:malformed-definition (rpl:make-plan '(rpl:succeed 1))))
+  (signals base:malformed-definition (rpl:make-plan '(rpl:succeed-with 1))))
 
 (test achieve.without-end-fails-as-deep-calls-do
   (base:with-own-definitions ()

@@ -91,7 +91,7 @@ if there is none."
   (multiple-value-bind (body text) (split-documentation body)
     (let ((variables (nth-value 1 (parse-pattern pattern))))
       `(install-goal ',(parsed-operator definition operator) ',pattern
-                     ,(macroexpand-1 `(interp-lambda ,variables (block succeed ,@body))
+                     ,(macroexpand-1 `(interp-lambda ,variables (block succeed-with ,@body))
                                      environment)
                      ,text))))
 
@@ -100,17 +100,18 @@ if there is none."
   "Define what OPERATOR, one of ACHIEVE, PERCEIVE and BELIEF, does for goals that PATTERN matches,
 such as (on ?a ?b): BODY, plan text, perhaps after a documentation string, in which the variables a
 and b are what ?a and ?b stand for; ?x twice matches the same twice, and a pattern may end in a dot
-and ?x. BODY's value, or that of (succeed value), is the goal's. Of several patterns that match, the
-most specific is meant, or else the one defined first (ours; CRAM's is the first). A pattern that
-differs only in its variables replaces the definition. Signals MALFORMED-DEFINITION. (CRAM's; the
-variables are as in DEF-INTERP-MACRO.)"
+and ?x. BODY's value, or that of (succeed-with value), is the goal's. Of several patterns that
+match, the most specific is meant, or else the one defined first (ours; CRAM's is the first). A
+pattern that differs only in its variables replaces the definition. Signals MALFORMED-DEFINITION.
+(CRAM's; the variables are as in DEF-INTERP-MACRO.)"
   (let ((definition (format nil "def-goal (~(~A~) ...)" operator)))
     (expand-definition form environment
                        (lambda ()
                          (list (goal-form definition operator pattern body environment))))))
 
-(define-construct succeed (&rest values)
-  "In the body of DEF-GOAL: end it well, with VALUES. (CRAM's.)"
-  (:code (if (assoc 'succeed (scope-blocks scope))
-             (plan-code (note-own-text `(return-from succeed (values ,@values))) scope)
-             (reject-clause "plan" form "succeed only in the body of a def-goal"))))
+(define-construct succeed-with (&rest values)
+  "In the body of DEF-GOAL: end it well, with VALUES. (CRAM's SUCCEED, a name
+that commands have here.)"
+  (:code (if (assoc 'succeed-with (scope-blocks scope))
+             (plan-code (note-own-text `(return-from succeed-with (values ,@values))) scope)
+             (reject-clause "plan" form "succeed-with only in the body of a def-goal"))))
