@@ -29,9 +29,9 @@
 (test at-location.goes-there-first
   (let ((robot (fluent :home)))
     (is (equal '(((:go :shop) 0) (:shop 3) ((:done :shop) 7) (:end 7))
-               (told (is (equal '(:done :shop) (plan-value (stay-at robot :shop 4)))))))
+               (tale (is (equal '(:done :shop) (plan-value (stay-at robot :shop 4)))))))
     (is (equal '((:shop 0) ((:done :shop) 1) (:end 1))
-               (told (plan-value (stay-at robot :shop 1)))))
+               (tale (plan-value (stay-at robot :shop 1)))))
     (is (null (fluents::fluent-first-watcher robot)))
     (is (null (fluents::fluent-first-link robot)))))
 
@@ -40,13 +40,13 @@
   (let ((robot (fluent :home)))
     (is (equal '(((:go :shop) 0) (:shop 3) (:push 5) (:end 5) ((:go :shop) 5) (:shop 8)
                  ((:done :shop) 12) (:end 12))
-               (told (plan-value (rpl:par (stay-at robot :shop 4) (push-away robot 5 1))))))))
+               (tale (plan-value (rpl:par (stay-at robot :shop 4) (push-away robot 5 1))))))))
 
 (test at-location.pushed-away-ten-times-and-once-more
   (flet ((outcome (times)
            (let ((robot (fluent :home)) (state nil))
              (list (count '(:go :shop)
-                          (told (multiple-value-bind (value how)
+                          (tale (multiple-value-bind (value how)
                                     (plan-outcome (rpl:par (push-away robot 5 times)
                                                            (stay-at robot :shop 6)))
                                   (setf state (if (eq how :failed) (type-of value) how))))
@@ -74,7 +74,7 @@
   (let ((robot (fluent :home)))
     (is (equal '(((:go :shop) 0) (:shop 3) (:shop 3) ((:done :shop) 5) (:end 5)
                  ((:done :shop) 9) (:end 9))
-               (told (plan-value (rpl:par (stay-at robot :shop 6) (stay-at robot :shop 2))))))))
+               (tale (plan-value (rpl:par (stay-at robot :shop 6) (stay-at robot :shop 2))))))))
 
 (test at-location.of-two-the-other-waits-for-the-first
   "And who comes behind it waits too, though its place fits still: else the other might never go."
@@ -82,7 +82,7 @@
     (is (equal '(((:go :shop) 0) (:shop 3) ((:done :shop) 9) (:end 9)
                  ((:go :bank) 9) (:bank 12) ((:done :bank) 14) (:end 14)
                  ((:go :shop) 14) (:shop 17) ((:done :shop) 18) (:end 18))
-               (told (plan-value (rpl:par (stay-at robot :shop 6)
+               (tale (plan-value (rpl:par (stay-at robot :shop 6)
                                           (stay-at robot :bank 2)
                                           (rpl:seq (rpl:wait-time 4) (stay-at robot :shop 1)))))))))
 
@@ -117,7 +117,7 @@
   (dotimes (tick 24)
     (dolist (places '((:shop :bank :shop) (:shop :shop :bank) (:bank :home :shop)))
       (let ((robot (fluent :home)) (free nil))
-        (told
+        (tale
           (plan-value
             (rpl:pursue (rpl:par (stay-at robot (first places) 4)
                                  (stay-at robot (second places) 3)

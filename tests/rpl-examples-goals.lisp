@@ -46,7 +46,7 @@
   "Let FITTER stow the ball, robbed THEFTS times. Return how that ended, how often it grasped, and
 where the ball is."
   (let ((*thefts* thefts) (*grasped* nil) (*believed* '()) (state nil) (place nil))
-    (let ((told (told (with-fitter (:clean t)
+    (let ((told (tale (with-fitter (:clean t)
                         (setf state (nth-value 1 (run-as-plan
                                                    (rpl:achieve '(loc world:green bin))))
                               place (world:thing-location (world:find-thing 'ball)))))))
@@ -66,7 +66,7 @@ where the ball is."
 
 (test examples.done-is-done
   (let ((*believed* '((loc green bin))))
-    (is (null (told (with-fitter (:clean t)
+    (is (null (tale (with-fitter (:clean t)
                       (is (eq :succeeded
                               (nth-value 1 (run-as-plan
                                              (rpl:achieve '(loc world:green bin))))))))))))
@@ -113,7 +113,7 @@ where the ball is."
   "The jar is straight ahead; a camera that sees one radian starts aside of it."
   (flet ((look (angle)
            (let ((state nil) (base:*message-queue* (base:make-message-queue)))
-             (list (length (told (with-fitter (:clean t)
+             (list (length (tale (with-fitter (:clean t)
                                    (setf state (nth-value
                                                 1 (run-as-plan
                                                     (turn-second-camera angle)
@@ -146,7 +146,7 @@ where the ball is."
 was begun and done."
   (let* ((state nil)
          (base:*message-queue* (base:make-message-queue))
-         (told (told (run:with-simulation (postman :clean t)
+         (told (tale (run:with-simulation (postman :clean t)
                        (driver:rpl-init-robot postman)
                        (setf state (nth-value
                                     1 (run-as-plan (rpl:par (work-at 12 8)

@@ -38,7 +38,7 @@
 
 (defmacro told-by-robot ((robot &rest arguments) &body body)
   "Run BODY as a plan of ROBOT in a clean world. Return what was told, in order."
-  `(told (run:with-simulation (,robot :clean t ,@arguments)
+  `(tale (run:with-simulation (,robot :clean t ,@arguments)
            (driver:rpl-init-robot ,robot)
            (is (eq :succeeded (nth-value 1 (run-as-plan ,@body)))))))
 

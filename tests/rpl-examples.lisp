@@ -24,7 +24,7 @@
 (defmacro with-blocks (&body body)
   "Run BODY with C on A, and A and B on the table; return what was told."
   `(let ((*blocks* '((a table) (b table) (c a))))
-     (told ,@body)))
+     (tale ,@body)))
 
 (test examples.stacking-in-order
   (is (equal '(((c table) 2) ((b c) 4) ((a b) 6))
@@ -189,7 +189,7 @@
         t))))
 
 (test examples.fetching-both-before-delivering
-  (flet ((errands () (mapcar #'first (told (plan-value (carry-two :cup :pen))))))
+  (flet ((errands () (mapcar #'first (tale (plan-value (carry-two :cup :pen))))))
     (is (equal '((:fetch :cup) (:deliver :cup) (:fetch :pen) (:deliver :pen)) (errands)))
     (unwind-protect
          (progn

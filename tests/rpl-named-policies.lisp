@@ -9,7 +9,7 @@
 
 (defun tell (item) (push (list item (rpl:plan-time)) *told*) item)
 
-(defmacro told (&body body)
+(defmacro tale (&body body)
   "Run BODY, and return what was told, in order."
   `(let ((*told* '()))
      ,@body
@@ -33,7 +33,7 @@
 (test with-named-policy.a-policy-that-holds
   (let ((f (fluent 1)))
     (is (equal '((:init 0) (:body 1) (:clean-up 4))
-               (told (is (eq :value (plan-value
+               (tale (is (eq :value (plan-value
                                       (rpl:with-named-policy 'told-policy (f)
                                         (tell :body)
                                         (rpl:wait-time 2)
@@ -42,7 +42,7 @@
 (test with-named-policy.one-that-does-not-evaporates-the-body-first
   (let ((f (fluent 1)) (failure nil))
     (is (equal '((:init 0) (:body 1) (:evaporating 3) (:recover 4) (:clean-up 7))
-               (told (setf failure
+               (tale (setf failure
                            (plan-failure-of
                              (rpl:with-named-policy told-policy (f)
                                (tell :body)
@@ -59,7 +59,7 @@
 (test with-named-policy.that-cannot-begin-does-nothing-else
   (let ((f (fluent 1)) (failure nil))
     (is (equal '((:init 0))
-               (told (setf failure (plan-failure-of
+               (tale (setf failure (plan-failure-of
                                      (rpl:with-named-policy 'told-policy (f :ready nil)
                                        (tell :body)))))))
     (is (typep failure 'rpl:policy-init-failed))))
@@ -67,22 +67,22 @@
 (test with-named-policy.met-from-the-start-keeps-the-body-from-starting
   (let ((f (fluent 9)))
     (is (equal '((:init 0) (:recover 1) (:clean-up 4))
-               (told (plan-failure-of (rpl:with-named-policy 'told-policy (f) (tell :body))))))))
+               (tale (plan-failure-of (rpl:with-named-policy 'told-policy (f) (tell :body))))))))
 
 (test with-named-policy.cleans-up-after-failure-return-and-evaporation
   (let ((f (fluent 1)))
     (is (equal '((:init 0) (:clean-up 2))
-               (told (is (eq :of-body
+               (tale (is (eq :of-body
                              (rpl:failure-class
                               (plan-failure-of (rpl:with-named-policy 'told-policy (f)
                                                  (rpl:fail :class :of-body)))))))))
     (is (equal '((:init 0) (:clean-up 2))
-               (told (is (eq :left (plan-value
+               (tale (is (eq :left (plan-value
                                      (block out
                                        (rpl:with-named-policy 'told-policy (f)
                                          (return-from out :left)))))))))
     (is (equal '((:init 0) (:clean-up 6))
-               (told (plan-value (rpl:pursue (rpl:with-named-policy 'told-policy (f)
+               (tale (plan-value (rpl:pursue (rpl:with-named-policy 'told-policy (f)
                                                (rpl:wait-time 100))
                                              (rpl:wait-time 5))))))))
 
@@ -114,22 +114,22 @@
                   (:clean-up (tell (rpl:policy-get 'looks))))))
     (dotimes (i 2)
       (is (equal '((3 14))
-                 (told (plan-failure-of (rpl:with-named-policy policy ()
+                 (tale (plan-failure-of (rpl:with-named-policy policy ()
                                           (rpl:wait-time 100)))))))
     (is (equal '((2 11))
-               (told (plan-value (rpl:with-named-policy policy () (rpl:wait-time 11))))))))
+               (tale (plan-value (rpl:with-named-policy policy () (rpl:wait-time 11))))))))
 
 (test with-policies.the-first-comes-first
   (let ((f (fluent 1)) (g (fluent 1)))
     (is (equal '((:init 0) (:init 1) (:body 2) (:recover 2) (:clean-up 5) (:clean-up 6))
-               (told (plan-failure-of
+               (tale (plan-failure-of
                        (rpl:with-policies ((told-policy (f)) ('told-policy (g)))
                          (tell :body)
                          (rpl:set-value g 7)
                          (tell :not-reached))))))
     (rpl:set-value g 1)
     (is (equal '((:init 0) (:init 1) (:body 2) (:clean-up 3) (:recover 3) (:clean-up 6))
-               (told (plan-failure-of
+               (tale (plan-failure-of
                        (rpl:with-named-policies ((told-policy (f)) ('told-policy (g)))
                          (tell :body)
                          (rpl:set-value f 7)

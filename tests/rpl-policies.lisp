@@ -248,7 +248,7 @@
     (plan-value (rpl:par (rpl:with-valve (hand) (rpl:wait-time 5))
                          (rpl:pursue (rpl:with-valve (hand) (rpl:fail))
                                      (rpl:wait-time 2))))
-    (is (null (constructs::valve-requests hand)))))
+    (is (null (rpl:valve-requests hand)))))
 
 (test with-valve.parts-of-the-owner-have-it
   (let ((hand (rpl:make-valve 'hand)))

@@ -66,7 +66,7 @@
                          (away))))))
     (dolist (tag '(local branch handler))
       (rpl:replace-task-code (list 'places tag) (list 'tell (list 'quote tag)))
-      (is (equal (list tag) (mapcar #'first (told (plan-value (rpl:call-plan 'places))))))
+      (is (equal (list tag) (mapcar #'first (tale (plan-value (rpl:call-plan 'places))))))
       (rpl:restore-task-code (list 'places tag)))))
 
 (test replace-task-code.is-forgotten-by-a-new-definition

@@ -253,6 +253,8 @@
       (let ((task (driver:begin-plan 'never-returning)))
         (awaiting (queued-text-p "never-returning has kept the plans' thread"))
         (is-false (rpl:task-over-p task))
+        (signals base:misuse (driver:print-plans (make-broadcast-stream)))
+        (signals base:misuse (driver:begin-plan 'turned 1))
         (driver:end-plan task)
         (awaiting (rpl:task-over-p task))
         (is (eq :evaporated (rpl:task-state task)))

@@ -5,7 +5,8 @@
 
 ;;; The model. A plan here is a list: (wait span), (fail span), (leave span), (seq plan...), (par
 ;;; plan...), (pursue plan...), (try-all plan...), (try plan...), (protect plan span), (handle plan
-;;; span), (police policy plan) or (around plan), which (leave span) leaves. OUTCOME is :ok, :fail
+;;; span), (police policy plan), (deadline plan span), (some count plan...), (again plan) or (around
+;;; plan), which (leave span) leaves. OUTCOME is :ok, :fail
 ;;; or :leave. Spans are so chosen that no two things happen at one instant.
 
 (defun child-ends (plans start)
@@ -22,6 +23,19 @@
     (if first
         (values-list first)
         (values (reduce #'max ends :key #'first) (if (eq kind 'par) :ok :fail)))))
+
+(defun nth-of-outcome (n outcome ends)
+  "Return the time of the Nth of ENDS, from 0, that are of OUTCOME, or NIL."
+  (first (nth n (sort (remove outcome ends :key #'second :test-not #'eq) #'< :key #'first))))
+
+(defun some-decision (count ends)
+  "Return when, and how, it is decided whether COUNT of those succeed whose ends are ENDS."
+  (let ((candidates (remove nil (list (list (nth-of-outcome (1- count) :ok ends) :ok)
+                                      (list (nth-of-outcome (- (length ends) count) :fail ends)
+                                            :fail)
+                                      (list (nth-of-outcome 0 :leave ends) :leave))
+                            :key #'first)))
+    (values-list (first (sort candidates #'< :key #'first)))))
 
 (defun killing (plans ends start at)
   "Return when those of PLANS that have not ended at AT are gone if they evaporate then."
@@ -54,6 +68,15 @@ last one run with its start."
                  (values (+ time (second parts)) outcome)))
       (handle (multiple-value-bind (time outcome) (ending (first parts) start)
                 (if (eq outcome :fail) (values (+ time (second parts)) :ok) (values time outcome))))
+      (again (ending (first parts) start))
+      (deadline (destructuring-bind (plan span) parts
+                  (multiple-value-bind (time outcome) (ending plan start)
+                    (if (< time (+ start span))
+                        (values time outcome)
+                        (values (gone plan start (+ start span)) :fail)))))
+      (some (let ((ends (child-ends (rest parts) start)))
+              (multiple-value-bind (time outcome) (some-decision (first parts) ends)
+                (values (killing (rest parts) ends start time) outcome))))
       ((par pursue try-all police)
        (let ((ends (child-ends parts start)))
          (multiple-value-bind (time outcome) (decision kind ends)
@@ -73,6 +96,13 @@ last one run with its start."
       (protect (let ((end (ending (first parts) start)))
                  (+ (second parts) (if (> end at) (gone (first parts) start at) end))))
       (handle (if (> (ending (first parts) start) at) (gone (first parts) start at) at))
+      (again (gone (first parts) start at))
+      (deadline (destructuring-bind (plan span) parts
+                  (gone plan start (min at (+ start span)))))
+      (some (let ((ends (child-ends (rest parts) start)))
+              (if (<= (some-decision (first parts) ends) at)
+                  (ending plan start)
+                  (killing (rest parts) ends start at))))
       ((par pursue try-all police)
        (let ((ends (child-ends parts start)))
          (if (<= (decision kind ends) at)
@@ -97,6 +127,9 @@ last one run with its start."
         (par `(rpl:par ,@(all)))
         (pursue `(rpl:pursue ,@(all)))
         (try-all `(rpl:try-all ,@(all)))
+        (again `(rpl:retry-after-suspension (rpl:on-suspension nil ,@(all))))
+        (deadline `(rpl:with-deadline (,(second parts)) ,(plan-text (first parts))))
+        (some `(rpl:par-at-least ,(first parts) ,@(mapcar #'plan-text (rest parts))))
         (police `(rpl:with-policy ,@(all)))))))
 
 (defun random-span (dice) (1+ (base:roll-index (expt 2 40) dice)))
@@ -107,7 +140,7 @@ last one run with its start."
          (span () (random-span dice)))
     (let ((kind (if (plusp depth)
                     (base:roll-element '(wait fail leave seq par pursue try-all try protect handle
-                                         police around seq par protect)
+                                         police around seq par protect deadline some again)
                                        dice)
                     (base:roll-element '(wait wait fail leave) dice))))
       (ecase kind
@@ -116,7 +149,10 @@ last one run with its start."
         ((seq par pursue try-all try)
          (cons kind (loop repeat (1+ (base:roll-index 3 dice)) collect (part))))
         (police (list 'police (part) (part)))
-        ((protect handle) (list kind (part) (span)))
+        ((protect handle deadline) (list kind (part) (span)))
+        (again (list 'again (part)))
+        (some (let ((parts (loop repeat (1+ (base:roll-index 3 dice)) collect (part))))
+                (list* 'some (1+ (base:roll-index (length parts) dice)) parts)))
         (around (list 'around (part t)))))))
 
 (defun run-random-plan (plan)
@@ -142,6 +178,24 @@ last one run with its start."
 ;;; Random plans over shared fluents and valves: nothing is left behind when they are stopped, and
 ;;; each run is the same as the one before.
 
+(defun random-control (part span dice)
+  "Return a random form in which one part of a plan keeps another from running, or waits for it."
+  (flet ((part () (funcall part)))
+    (let ((other (ecase (base:roll-index 5 dice)
+                   (0 `(rpl:seq (rpl:suspend part) ,(part) (rpl:wake-up part)))
+                   (1 `(rpl:seq (rpl:suspend part) ,(part)))
+                   (2 '(rpl:join-task part))
+                   (3 `(rpl:with-task-suspended part ,(part)))
+                   (4 '(rpl:seq (rpl:suspend (rpl:task-parent part)) (rpl:wake-up part))))))
+      (if (base:chance .3 dice)
+          `(rpl:partial-order ((:tag part ,(part))
+                               (:tag next ,(part) (:tag inner ,(part)))
+                               (rpl:seq (rpl:wait-time ,span) ,other))
+             (:order ,(base:roll-element '(part f) dice) ,(base:roll-element '(next inner) dice)))
+          `(rpl:with-tags (,(base:roll-element '(rpl:par rpl:pursue rpl:try-all) dice)
+                           (:tag part ,(part))
+                           (rpl:seq (rpl:wait-time ,span) ,other)))))))
+
 (defun random-form (depth dice)
   (flet ((part () (random-form (1- depth) dice))
          (parts () (loop repeat (1+ (base:roll-index 3 dice))
@@ -149,7 +203,7 @@ last one run with its start."
          (fluent () (base:roll-element '(f g h) dice))
          (span () (base:roll-index 6 dice)))
     (if (plusp depth)
-        (ecase (base:roll-index 14 dice)
+        (ecase (base:roll-index 26 dice)
           (0 `(rpl:par ,@(parts)))
           (1 `(rpl:pursue ,@(parts)))
           (2 `(rpl:try-all ,@(parts)))
@@ -166,7 +220,15 @@ last one run with its start."
           (11 `(rpl:with-tags (rpl:par (:tag part ,(part))
                                        (rpl:seq (rpl:wait-time ,(span)) (rpl:evaporate part)))))
           (12 `(block nil (rpl:par ,@(parts) (rpl:seq (rpl:wait-time ,(span)) (return)))))
-          (13 `(rpl:try-in-order ,@(parts))))
+          (13 `(rpl:try-in-order ,@(parts)))
+          ((14 15 16 17 18) (random-control #'part (span) dice))
+          (19 `(rpl:on-suspension (rpl:set-value ,(fluent) ,(span)) ,@(parts)))
+          (20 `(rpl:retry-after-suspension ,@(parts)))
+          (21 `(rpl:with-valves (v w :priority ,(span)) ,@(parts)))
+          (22 `(rpl:with-valve (,(base:roll-element '(v w) dice) :priority ,(span)) ,@(parts)))
+          (23 `(rpl:with-deadline (,(span)) ,@(parts)))
+          (24 `(rpl:par-at-least 2 ,(part) ,@(parts) ,(part)))
+          (25 `(rpl:with-task-variables ((*pace* ,(span))) ,@(parts))))
         (ecase (base:roll-index 7 dice)
           (0 `(rpl:pulse ,(fluent)))
           (1 `(rpl:set-value ,(fluent) (not (rpl:fluent-value ,(fluent)))))
@@ -200,7 +262,10 @@ last one run with its start."
                   (remove nil (mapcar #'fluents::fluent-first-watcher fluents))
                   (remove nil (mapcar #'fluents::fluent-first-link fluents))
                   (remove nil (mapcar #'rpl:valve-owner valves))
-                  (mapcan #'copy-list (mapcar #'constructs::valve-requests valves))))))
+                  (mapcan #'rpl:valve-losers valves)
+                  (mapcan #'rpl:valve-requests valves)
+                  (tasks::runner-held runner)
+                  (plusp (rpl:runner-blocks runner))))))
 
 (test stress.stopped-plans-leave-nothing-behind-and-repeat-exactly
   (let ((dice (base:make-dice 1992 "stopped plans")) (wrong '()))

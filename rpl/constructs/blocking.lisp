@@ -1,50 +1,47 @@
-;;;; blocking.lisp -- with-task-blocked: keeping another task from running.
+;;;; blocking.lisp -- with-task-blocked: keeping another task from running for a while.
 
 (in-package :ars-magna.rpl.constructs)
 
-;;; Blocking. A blocked task keeps its place: what it waits for still counts, and it runs again
-;;; when it is blocked no longer.
-
-(defun part-of-p (task whole)
-  (loop for each = task then (task-parent each)
-        while each thereis (eq each whole)))
-
-(defun block-task (task)
-  (incf (task-blocked task))
-  (incf (runner-blocks *runner*))
-  (note-event task :block)
-  (note-status task :blocked))
-
-(defun unblock-task (task)
-  (decf (task-blocked task))
-  (decf (runner-blocks *runner*))
-  (unless (or (task-over-p task) (plusp (task-blocked task)))
-    (note-event task :unblock)
-    (note-status task :running))
-  (release-held *runner*))
-
-(defun check-blockable (target task)
+(defun checked-target (target task)
+  "Return TARGET, which TASK wants to block. Signals WRONG-ARGUMENT and MISUSE."
   (check-argument with-task-blocked target (task-p target) "a task, such as the name of a :tag")
+  (check-together task target)
   (when (part-of-p task target)
-    (reject-use "~A would block itself: it is part of ~A." (task-label task) (task-label target))))
+    (reject-use "~A would block itself: it is part of ~A." (task-label task) (task-label target)))
+  target)
 
 (define-construct with-task-blocked (task &body body)
   "Run BODY in a plan while TASK, and what it consists of, does not run. What TASK waits for still
-counts; it goes on when BODY has ended, however that ended. An evaporating task is not kept."
+counts; it goes on when BODY has ended, however that ended. An evaporating task is not kept. Its
+status is :blocked meanwhile (CRAM's, of 2009)."
   (:parts (target function (value-lambda task scope))
           (body node (body-code body scope)))
   (:steps
    (begin
-    (let ((target (funcall target environment)))
-      (check-blockable target task)
-      (block-task target)
-      (setf memory target)
-      (next inside)
-      (enter body environment frame)))
+    (next inside)
+    (setf memory (checked-target (funcall target environment) task))
+    (block-task memory)
+    (enter body environment frame))
    (inside
     (unblock-task (shiftf memory nil))
     (values (frame-up frame) value)))
   (:unwind
-   (let ((target (shiftf memory nil)))
-     (when target (unblock-task target)))
+   (when memory (unblock-task (shiftf memory nil)))
+   nil))
+
+(define-construct with-task-suspended (task &body body)
+  "Do as WITH-TASK-BLOCKED; the status of TASK is :suspended meanwhile (CRAM's, of 2020)."
+  (:parts (target function (value-lambda task scope))
+          (body node (body-code body scope)))
+  (:steps
+   (begin
+    (next inside)
+    (setf memory (checked-target (funcall target environment) task))
+    (block-task memory t)
+    (enter body environment frame))
+   (inside
+    (unblock-task (shiftf memory nil) t)
+    (values (frame-up frame) value)))
+  (:unwind
+   (when memory (unblock-task (shiftf memory nil) t))
    nil))

@@ -2,23 +2,68 @@
 
 (in-package :ars-magna.rpl.constructs)
 
-(defun startable-p (index before states)
-  "True if branch INDEX is still :idle in STATES, and those that BEFORE names for it are :over."
-  (and (eq :idle (svref states index))
-       (every (lambda (other) (eq :over (svref states other))) (svref before index))))
+;;; All steps are started, but what comes later in an order has a gate, which is closed until what
+;;; comes earlier is over. The orders hold as long as the construct runs; then they are lifted.
 
-(defun start-possible (branches before states task environment)
-  "Start as parts of TASK those of BRANCHES that may start now."
-  (dotimes (index (length branches))
-    (when (startable-p index before states)
-      (setf (svref states index) :begun)
-      (start-branch (svref branches index) task environment index (task-level task)))))
+(defstruct (order (:constructor make-order (earlier later)) (:copier nil))
+  "That the task LATER starts only when EARLIER, a task or fluent, is over, or true. WATCHER hears
+of that."
+  (earlier nil :type (or task fluent) :read-only t)
+  (later nil :type task :read-only t)
+  (watcher nil :type (or null watcher)))
+
+(defmethod awaited-text ((order order))
+  (let ((earlier (order-earlier order)))
+    (if (task-p earlier)
+        (format nil "the end of ~A" (task-label earlier))
+        (awaited-text earlier))))
+
+(defmethod hinderers ((gate gate))
+  (let ((tasks (mapcar #'order-earlier (gate-holds gate))))
+    (and (every (lambda (task) (and (task-p task) (under-way-p task))) tasks)
+         tasks)))
+
+(defun lift-order (order)
+  "Let ORDER hold no more."
+  (when (order-watcher order)
+    (unwatch (shiftf (order-watcher order) nil))
+    (release-hold (order-later order) order)))
+
+(defun hear-earlier (watcher value trouble)
+  (declare (ignore value))
+  (destructuring-bind (order . task) (watcher-client watcher)
+    (cond ((null trouble) (lift-order order))
+          ((null (task-signal task))
+           (decide task (failure-of trouble task (task-frame task)))))))
+
+(defun order-fluent (order)
+  "Return the fluent that becomes true when ORDER allows its later task to start."
+  (let ((earlier (order-earlier order)))
+    (if (task-p earlier)
+        (fl-funcall 'over-p (task-status earlier))
+        earlier)))
+
+(defun keep-order (order task)
+  "Let ORDER hold, on behalf of TASK, unless it is met already."
+  (let ((fluent (order-fluent order)))
+    (unless (fluent-value fluent)
+      (hold-back (order-later order) order)
+      (setf (order-watcher order) (make-watcher fluent #'hear-earlier (cons order task)))
+      (watch (order-watcher order)))))
+
+(defun checked-orders (pairs task)
+  "Return the orders that TASK wants of PAIRS, conses (earlier . later). Signals WRONG-ARGUMENT and
+MISUSE."
+  (loop for (earlier . later) in pairs
+        do (check-argument partial-order earlier (or (task-p earlier) (fluent-p earlier))
+                           "a task, such as the name of a :tag, or a fluent")
+           (check-argument partial-order later (task-p later)
+                           "a task, such as the name of a :tag")
+           (when (task-p earlier) (check-together task earlier))
+           (check-together task later)
+        collect (make-order earlier later)))
 
 ;;; Reading the constraints.
-
-(defun step-name (step)
-  (and (typep step '(cons (eql :tag) (cons symbol t)))
-       (second step)))
 
 (defun constraint-list (constraints)
   "Return CONSTRAINTS, (:order a b) forms or lists of such, as one list."
@@ -27,59 +72,109 @@
           append constraint
         else collect constraint))
 
-(defun step-index (name steps form)
-  (or (position name steps :key #'step-name)
-      (reject-clause "plan" form (format nil "in :order only tags of the steps, not ~(~A~)" name))))
+(defun check-visible (form name steps scope)
+  "Signal MALFORMED-DEFINITION if NAME, in an :order of FORM, is a symbol that names nothing."
+  (unless (or (consp name)
+              (member name (tags-in steps))
+              (member name (scope-variables scope))
+              (known-variable-p name (scope-environment scope)))
+    (reject-clause "plan" form
+                   (format nil "in :order tags that are in scope, not ~(~A~)" name))))
 
-(defun predecessors (steps constraints form)
-  "Return for each of STEPS a list of the indices of those that CONSTRAINTS put before it."
-  (let ((before (make-array (length steps) :initial-element '())))
-    (dolist (constraint constraints before)
-      (unless (typep constraint '(cons (eql :order) (cons t (cons t t))))
-        (reject-clause "plan" constraint "(:order earlier later)"))
-      (destructuring-bind (earlier later &rest reason) (rest constraint)
-        (declare (ignore reason))
-        (pushnew (step-index earlier steps form)
-                 (svref before (step-index later steps form)))))))
+(defun read-orders (steps constraints form scope)
+  "Return a list of (earlier later), forms, for each of CONSTRAINTS of FORM."
+  (loop for constraint in (constraint-list constraints)
+        do (unless (typep constraint '(cons (eql :order) (cons t (cons t t))))
+             (reject-clause "plan" constraint "(:order earlier later)"))
+           (check-visible form (second constraint) steps scope)
+           (check-visible form (third constraint) steps scope)
+        collect (list (second constraint) (third constraint))))
 
-(defun check-orderable (before form)
-  "Signal MALFORMED-DEFINITION if BEFORE can never be satisfied."
-  (loop with waiting = (loop for i below (length before) collect i)
-        for startable = (remove-if (lambda (i) (intersection (svref before i) waiting)) waiting)
-        while startable
-        do (setf waiting (set-difference waiting startable))
-        finally (when waiting
-                  (reject-clause "plan" form
-                                 "constraints without a circle: some steps could never start"))))
+;;; Circles. A task starts before it ends, an order lets one end before another starts, and what is
+;;; tagged within a tagged form starts and ends within that.
 
-(defun checked-predecessors (steps constraints form)
-  "Do as PREDECESSORS. Signal MALFORMED-DEFINITION if they can never be satisfied."
-  (let ((before (predecessors steps (constraint-list constraints) form)))
-    (check-orderable before form)
-    before))
+(defun nested-tags (forms)
+  "Return a list of (outer inner), the names of tags in FORMS of which one is within the other."
+  (loop for form in forms
+        append (cond ((atom form) '())
+                     ((and (eq (first form) :tag) (typep (rest form) '(cons symbol t)))
+                      (append (loop for inner in (tags-in (cddr form))
+                                    collect (list (second form) inner))
+                              (nested-tags (cddr form))))
+                     ((null (tags-in (list form))) '())
+                     (t (nested-tags (loop for tail = form then (cdr tail)
+                                           while (consp tail) collect (car tail)))))))
+
+(defun precedences (orders nestings)
+  "Return a list of (earlier later), each (:start name) or (:end name)."
+  (append (loop for name in (remove-duplicates (mapcan #'copy-list (append orders nestings)))
+                collect (list (list :start name) (list :end name)))
+          (loop for (earlier later) in orders
+                collect (list (list :end earlier) (list :start later)))
+          (loop for (outer inner) in nestings
+                collect (list (list :start outer) (list :start inner))
+                collect (list (list :end inner) (list :end outer)))))
+
+(defun circular-p (precedences)
+  "True if PRECEDENCES, a list of (earlier later), can never all hold."
+  (loop for open = (remove-if-not (lambda (pair)
+                                    (find (first pair) precedences :key #'second :test #'equal))
+                                  precedences)
+        while precedences
+        do (when (= (length open) (length precedences)) (return t))
+           (setf precedences open)))
+
+(defun check-orders (orders steps form)
+  "Signal MALFORMED-DEFINITION if ORDERS of STEPS, where they are of names, can never be kept."
+  (when (circular-p (precedences (remove-if-not (lambda (order) (every #'symbolp order)) orders)
+                                 (nested-tags steps)))
+    (reject-clause "plan" form "constraints without a circle: some steps could never start")))
+
+(defun orders-lambda (steps constraints form scope)
+  "Return the lambda expression that returns the pairs that CONSTRAINTS of FORM put in order."
+  (let ((orders (read-orders steps constraints form scope)))
+    (check-orders orders steps form)
+    (value-lambda `(list ,@(loop for (earlier later) in orders
+                                 collect `(cons ,earlier ,later)))
+                  scope)))
+
+;;; The constructs. MEMORY is the value of the last step, and the orders.
+
+(defun end-orders (memory)
+  (when memory (mapc #'lift-order (shiftf (cdr memory) '()))))
 
 (define-construct partial-order (steps &body constraints)
-  "Run STEPS in a plan side by side, as PAR, under CONSTRAINTS: by (:order a b) the step tagged b
-does not start before the one tagged a is over. Steps are tagged by (:tag name form)."
+  "Run STEPS in a plan side by side, as PAR, under CONSTRAINTS: by (:order a b) the task b does not
+start before a is over, however that ends. Both are tags, (:tag name form), of STEPS or in them or
+around, or forms whose values are tasks; a may also be a fluent: b starts when it is true or has
+been pulsed since. Orders hold until the whole ends. What has started already cannot be b. Circles
+of orders of the tags in STEPS are errors when the plan is defined; what comes to wait in other
+circles is told as a deadlock. Return the value of the last step (CRAM's; the value is ours)."
   (:parts (branches simple-vector (branches-code steps scope))
-          ;; For each branch, the indices of those that must be over before it starts.
-          (before simple-vector (checked-predecessors steps constraints form)))
+          (pairs function (orders-lambda steps constraints form scope)))
   (:code (with-tags-code form (tags-in steps) scope #'build))
   (:steps
    (begin
-    (next inside)
-    (setf memory (make-array (length branches) :initial-element :idle))
-    (start-possible branches before memory task environment)
-    (if (plusp (length branches))
-        (await-parts task)
-        (values (frame-up frame) nil)))
-   (inside (values (frame-up frame) value)))
+    (next over)
+    (let ((orders (checked-orders (funcall pairs environment) task)))
+      (setf memory (cons nil orders))
+      (dolist (order orders) (keep-order order task))
+      (cond ((plusp (length branches)) (start-branches branches task environment))
+            (t (end-orders memory)
+               (values (frame-up frame) nil)))))
+   (over
+    (end-orders memory)
+    (values (frame-up frame) value)))
+  (:unwind
+   (end-orders memory)
+   nil)
   (:child-ended
    (unless (fail-or-escape task how result)
-     (setf (svref memory (task-index child)) :over)
-     (start-possible branches before memory task environment)
-     (complete-when-alone task nil))))
+     (when (= (1+ (task-index child)) (length branches))
+       (setf (car memory) result))
+     (complete-when-alone task (car memory)))))
 
 (define-construct plan (steps &body constraints)
-  "Do as PARTIAL-ORDER; CONSTRAINTS may also be one list of them, and give reasons after the names."
+  "Do as PARTIAL-ORDER; CONSTRAINTS may also be one list of them, and give reasons after the names
+(BMT's)."
   (:like partial-order))

@@ -18,4 +18,9 @@ DEFINE-CONSTRUCT, which also exports its name.")
   ;; at-location
   (:export #:location-lost #:lost-attempts #:lost-place)
   ;; valve
-  (:export #:make-valve #:valve #:valve-name #:valve-owner #:valve-p))
+  (:export #:claim-p #:claim-valves #:make-valve #:valve #:valve-losers #:valve-name #:valve-owner
+           #:valve-p #:valve-requests)
+  ;; task-variables
+  (:export #:define-task-variable)
+  ;; deadline
+  (:export #:deadline-missed #:deadline-missed-ticks))

@@ -2,114 +2,150 @@
 
 (in-package :ars-magna.rpl.constructs)
 
-;;; A valve has one owner. The tasks that want it queue by level, then first in first out. What an
-;;; owner's own parts ask for they have: it is for the owner to keep them apart.
+;;; A task claims one or several valves, all at once or none. CLAIMS of a valve are those granted:
+;;; the first is its owner's, the others were preempted by the one before, and have LOST it; their
+;;; tasks do not run meanwhile. The claims that wait for it queue by priority, by level, then first
+;;; in first out; one that wants several can be overtaken by such as can have what they want.
+;;; What an owner's own parts ask for they have: it is for the owner to keep them apart.
 
 (defstruct (valve (:constructor %make-valve (name)) (:copier nil))
   "What guarantees that one task at a time has a resource."
   (name nil :read-only t)
-  (owner nil :type (or null task))
-  (requests '() :type list))
+  (claims '() :type list)
+  (waiting '() :type list))
 
-(setf (documentation 'valve-name 'function) "Return the name that the valve was made with."
-      (documentation 'valve-owner 'function) "Return the task that has the valve, or NIL."
-      (documentation 'valve-p 'function) "True of valves.")
+(defstruct (claim (:constructor make-claim (task valves priority)) (:copier nil))
+  "That TASK wants or has VALVES. TAKEN are those that it did not have before, LOST those of them
+that have been taken from it."
+  (task nil :type task :read-only t)
+  (valves '() :type list :read-only t)
+  (priority 0 :type real :read-only t)
+  (taken '() :type list)
+  (lost '() :type list))
+
+(document-functions
+  claim-p "True of claims: what tasks that want or have valves wait for, or have in a frame."
+  claim-valves "Return the valves that the claim is to.")
 
 (addition make-valve)
 (defun make-valve (name)
   "Return a new valve called NAME, that nobody owns."
   (%make-valve name))
 
+(addition valve-p valve-name valve-owner valve-requests valve-losers)
+(document-functions
+  valve-p "True of valves."
+  valve-name "Return the name that the valve was made with.")
+
+(defun valve-owner (valve)
+  "Return the task that has VALVE, or NIL."
+  (and (valve-claims valve) (claim-task (first (valve-claims valve)))))
+
+(defun valve-requests (valve)
+  "Return the tasks that wait for VALVE, the next to have it first."
+  (mapcar #'claim-task (valve-waiting valve)))
+
+(defun valve-losers (valve)
+  "Return the tasks from which VALVE was taken and which are to have it back, the next first."
+  (mapcar #'claim-task (rest (valve-claims valve))))
+
 (defmethod print-object ((valve valve) stream)
   (print-unreadable-object (valve stream)
     (format stream "valve ~A~@[ of task ~D~]" (valve-name valve)
             (and (valve-owner valve) (task-serial (valve-owner valve))))))
 
-(defmethod awaited-text ((valve valve))
-  (format nil "valve ~(~A~)" (valve-name valve)))
+(defmethod awaited-text ((claim claim))
+  (format nil "~[~;valve~:;valves~] ~:*~*~{~(~A~)~^, ~}"
+          (min 2 (length (claim-valves claim)))
+          (mapcar #'valve-name (claim-valves claim))))
 
-(defmethod withdraw (task (valve valve))
-  (setf (valve-requests valve) (remove task (valve-requests valve))))
+;;; Who may have what.
 
-(defun add-request (task valve)
-  "Let TASK queue for VALVE: behind those of its level and above."
-  (setf (valve-requests valve)
-        (merge 'list (valve-requests valve) (list task) #'> :key #'task-level)))
+(defun had-p (valve task)
+  "True if TASK has VALVE as a part of its owner."
+  (let ((owner (valve-owner valve)))
+    (and owner (part-of-p task owner))))
 
-(defun grant-next (valve)
-  "Give VALVE to the next task that wants it."
-  (let ((task (pop (valve-requests valve))))
-    (setf (valve-owner valve) task)
-    (when task
-      (setf (frame-data (task-frame task)) valve)
-      (wake task nil))))
+(defun available-p (valve claim)
+  "True if CLAIM may take VALVE, from its owner if need be: one that evaporates keeps it."
+  (let ((owner (first (valve-claims valve))))
+    (or (null owner)
+        (had-p valve (claim-task claim))
+        (and (> (claim-priority claim) (claim-priority owner))
+             (not (evaporating-p (claim-task owner)))))))
 
-(defun give-back (frame)
-  (let ((valve (shiftf (frame-data frame) nil)))
-    (when valve (grant-next valve))))
+(defun grantable-p (claim)
+  (every (lambda (valve) (available-p valve claim)) (claim-valves claim)))
 
-(define-construct with-valve ((valve) &body body)
-  "Run BODY in a plan while the task owns VALVE, waiting for it first if another task has it. The
-valve is given back however BODY ends. If tasks wait for each other's valves, an error message says
-so (manual D)."
-  (:parts (valve function (value-lambda valve scope))
-          (body node (body-code body scope)))
-  (:steps
-   (begin
-    (let ((valve (fluent-value (funcall valve environment))))
-      (check-argument with-valve valve (valve-p valve) "a valve, made by make-valve")
-      (next granted)
-      (cond ((null (valve-owner valve))
-             (setf (valve-owner valve) task
-                   memory valve)
-             (values frame nil))
-            ((part-of-p task (valve-owner valve)) (values frame nil))
-            (t (add-request task valve)
-               (park task valve)
-               (report-circle task)
-               +parked+))))
-   (granted
-    (next inside)
-    (enter body environment frame))
-   (inside
-    (give-back frame)
-    (values (frame-up frame) value)))
-  (:unwind
-   (give-back frame)
-   nil))
+(defun lose (valve claim)
+  "Take VALVE from CLAIM, and keep its task from running."
+  (unless (member valve (claim-lost claim))
+    (push valve (claim-lost claim))
+    (block-task (claim-task claim) t)))
 
-;;; Circles. A task is stuck if it waits for a valve whose owner is stuck; a task with parts is
-;;; stuck if all of them are, policies, which only watch, not counted.
+(defun regain (valve claim)
+  (when (member valve (claim-lost claim))
+    (setf (claim-lost claim) (remove valve (claim-lost claim)))
+    (unblock-task (claim-task claim) t)))
 
-(defun working-parts (task)
-  "Return the innermost parts of TASK that are at its own level."
-  (let ((children (remove (task-level task) (task-children task) :key #'task-level :test #'<)))
-    (if children
-        (loop for child in children append (working-parts child))
-        (list task))))
+(defun grant (claim)
+  "Let CLAIM have its valves."
+  (dolist (valve (claim-valves claim))
+    (unless (had-p valve (claim-task claim))
+      (let ((owner (first (valve-claims valve))))
+        (when owner (lose valve owner)))
+      (push claim (valve-claims valve))
+      (push valve (claim-taken claim)))))
 
-(defun stuck-tasks (task)
-  "Return the tasks that wait for each other's valves with TASK, or NIL if some of them can go on."
-  (let ((stuck '()) (open (list task)))
-    (loop while open
-          do (let* ((next (pop open))
-                    (valve (task-awaiting next)))
-               (unless (valve-p valve) (return-from stuck-tasks '()))
-               (pushnew next stuck)
-               (dolist (part (working-parts (valve-owner valve)))
-                 (unless (or (member part stuck) (member part open))
-                   (push part open)))))
-    (reverse stuck)))
+;;; Queueing.
 
-(defun report-circle (task)
-  "Queue an error message if TASK, which waits for a valve, waits in a circle."
-  (let ((tasks (stuck-tasks task)))
-    (when tasks
-      (error-set "Deadlock at tick " (runner-tick (task-runner task)) ": "
-                 (format nil "~{~A~^; ~}"
-                         (loop for task in tasks
-                               for valve = (task-awaiting task)
-                               collect (format nil "~A waits for the ~A that ~A has"
-                                               (task-label task) (awaited-text valve)
-                                               (task-label (valve-owner valve)))))
-                 ". None can go on."))))
+(defun before-p (claim other)
+  "True if CLAIM goes before OTHER, which came first."
+  (or (> (claim-priority claim) (claim-priority other))
+      (and (= (claim-priority claim) (claim-priority other))
+           (> (task-level (claim-task claim)) (task-level (claim-task other))))))
+
+(defun queue-up (claim)
+  (dolist (valve (claim-valves claim))
+    (setf (valve-waiting valve)
+          (merge 'list (valve-waiting valve) (list claim) #'before-p))))
+
+(defun leave-queues (claim)
+  (dolist (valve (claim-valves claim))
+    (setf (valve-waiting valve) (remove claim (valve-waiting valve)))))
+
+(defmethod withdraw (task (claim claim))
+  (leave-queues claim))
+
+(defun grant-waiting (valve)
+  "Grant the claims that wait for VALVE and can be granted, and give it back to who lost it last."
+  (dolist (claim (valve-waiting valve))
+    (when (grantable-p claim)
+      (leave-queues claim)
+      (grant claim)
+      (wake (claim-task claim) nil)))
+  (when (valve-claims valve)
+    (regain valve (first (valve-claims valve)))))
+
+(defun give-back (claim)
+  "Let CLAIM have nothing any more."
+  (leave-queues claim)
+  (let ((valves (shiftf (claim-taken claim) '())))
+    (dolist (valve valves)
+      (setf (valve-claims valve) (remove claim (valve-claims valve)))
+      (regain valve claim))
+    (mapc #'grant-waiting valves)))
+
+;;; Circles.
+
+(defmethod hinderers ((claim claim))
+  (loop for valve in (claim-valves claim)
+        unless (available-p valve claim)
+          collect (valve-owner valve)))
+
+(defmethod hindrance-text ((claim claim))
+  (format nil "the ~A that ~{~A~^ and ~} has" (awaited-text claim)
+          (remove-duplicates (mapcar #'task-label (hinderers claim)) :test #'string=)))
+
+(defmethod taken-from (task (claim claim))
+  (mapcar #'valve-owner (claim-lost claim)))

@@ -37,11 +37,12 @@ SUSPENSION."
                    (format nil "(~A~{ ~A~})~@[, not ~A~]" (operator-text form) lambda-list
                            (slip-in-construct form lambda-list)))))
 
-(defun refuse-code (form scope)
-  "Return code for FORM, which plans cannot wait inside: a leaf, or an error if it would wait."
+(defun refuse-code (form scope &optional (container form))
+  "Return code for FORM, of CONTAINER, which plans cannot wait inside: a leaf, or an error if it
+would wait."
   (multiple-value-bind (suspends reason) (suspension form scope)
     (if (eq suspends :must)
-        (reject-suspension reason form)
+        (reject-suspension reason container)
         (leaf-code form scope))))
 
 (defun suspends-p (form scope)

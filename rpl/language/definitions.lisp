@@ -35,7 +35,7 @@
              (install-procedure ',name ',parameters ,documentation
                                 ,entry ,(procedure-body-code name form body scope)
                                 ,(stub-lambda name)
-                                ',(source-here))))))))
+                                ',(source-here) '(def-interp-proc ,@form))))))))
 
 (defun stub-lambda (name)
   "Return the lambda expression for what Lisp code gets that calls the plan procedure NAME."
@@ -61,8 +61,10 @@ the variables around it, but not blocks, tags and local plans. Run it by CALL-PL
     (with-own-text (form)
       (multiple-value-bind (scope entry) (procedure-parts parameters environment)
         `(anonymous-procedure ',parameters ,entry
-                              ,(procedure-body-code nil form body scope))))))
+                              ,(procedure-body-code nil form body scope)
+                              ',form)))))
 
+(addition make-plan)
 (defun make-plan (form &key compile)
   "Return a plan procedure without parameters that does FORM, plan text made by a program. Its Lisp
 code is interpreted, which costs little now and more when it runs, or compiled if COMPILE is true."

@@ -11,11 +11,12 @@ DEFINE-CONSTRUCT adds to it.")
   (:export #:misplaced #:misplaced-advice #:misplaced-container #:misplaced-form
            #:misplaced-suspension #:note-own-text)
   ;; scope
-  (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope)
+  (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope
+           #:scope-environment #:scope-variables)
   ;; leaf
   (:export #:condition-lambda #:value-lambda)
   ;; compiler
-  (:export #:define-plan-form #:hoisted-code #:plan-code #:suspends-p)
+  (:export #:define-plan-form #:hoisted-code #:plan-code #:refuse-code #:suspends-p)
   ;; steps
   (:export #:binding-body-code #:body-code)
   ;; leaving

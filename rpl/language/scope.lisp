@@ -25,6 +25,7 @@ builds the plan, that hold their nodes."
   (several nil :type boolean))
 
 (document-functions
+ scope-environment "Return the Lisp environment at the place."
  scope-blocks "Return an alist from the names of the blocks around to the variables of their nodes."
  scope-retry "Return the variable that holds the node to begin anew at (retry), NIL outside.")
 
@@ -51,8 +52,16 @@ builds the plan, that hold their nodes."
   "Return SCOPE for an expression all of whose values matter."
   (inner-scope scope :several t))
 
+(defun check-lexical (variables environment)
+  "Signal MALFORMED-DEFINITION if one of VARIABLES is a task variable."
+  (let ((variable (find-if (lambda (variable) (task-variable-p variable environment)) variables)))
+    (when variable
+      (reject-clause "plan" variable
+                     "the name of a lexical variable; bind this one by with-task-variables"))))
+
 (defun variable-scope (scope variables)
   "Return SCOPE with VARIABLES bound in an environment of their own."
+  (check-lexical variables (scope-environment scope))
   (let ((level (1+ (scope-level scope)))
         (special (find-if (lambda (variable)
                             (special-variable-p variable (scope-environment scope)))

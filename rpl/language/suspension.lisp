@@ -17,7 +17,7 @@ form and its scope and returns code that builds a node."
 (defvar *plan-forms* (make-hash-table :test 'equal)
   "The operators that plans have a meaning of their own for: names, and symbols of users.")
 
-(defparameter *stirring-functions* '("SET-VALUE" "PULSE")
+(defparameter *stirring-functions* '("SET-VALUE" "PULSE" "SUSPEND" "WAKE-UP")
   "Functions after which somebody else may be ready.")
 
 (defun find-plan-form (form environment)
@@ -39,8 +39,12 @@ form and its scope and returns code that builds a node."
              (assoc name (scope-tags scope))
              (assoc name (scope-blocks scope))))))
 
-(defun check-own-form (form)
-  "Signal MALFORMED-DEFINITION if FORM is an IF of the plan's text that is none of a plan's."
+(defun check-own-form (form environment)
+  "Signal MALFORMED-DEFINITION if FORM is an IF of the plan's text that is none of a plan's, or a
+LET that binds a task variable."
+  (when (and (own-text-p form) (operator-in-p form '("LET" "LET*")) (proper-list-p (second form)))
+    (check-lexical (mapcar (lambda (binding) (first (ensure-list binding))) (second form))
+                   environment))
   (when (and (own-text-p form) (operator-in-p form '("IF")))
     (unless (typep form '(cons t (cons t (cons t (or null (cons t null))))))
       (reject-clause (author) form "(if test then [else]): put several forms into (seq ...)"))))
@@ -83,7 +87,7 @@ form and its scope and returns code that builds a node."
              (visit (form environment)
                (cond ((or (atom form) (not (symbolp (first form)))) form)
                      ((plan-in-leaf-p form) (values form t))
-                     (t (check-own-form form)
+                     (t (check-own-form form environment)
                         (visit-call form environment (find-plan-form form environment)))))
              (visit-call (form environment plan-form)
                (let ((kind (or (and plan-form (plan-form-suspends plan-form))

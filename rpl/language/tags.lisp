@@ -34,7 +34,8 @@ BODY is the code of and of the node that it stands for: see replacing.lisp."
 (defun start-branch (branch task environment index level)
   "Start BRANCH as the part number INDEX of TASK; as the task of its tag, if it is tagged."
   (if (tagged-p branch)
-      (spawn task (tagged-body branch) environment index level (tag-task branch environment))
+      (spawn-gated task (tagged-body branch) environment index level
+                   (tag-task branch environment))
       (spawn task branch environment index level)))
 
 (define-plan-form ":TAG" :must (name &rest body) (form scope)
@@ -89,12 +90,10 @@ form: see TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. A procedure's body is a 
 
 (addition task-status)
 (defun task-status (task)
-  "Return a fluent that is :created, :running, :blocked, :succeeded, :failed or :evaporated, as TASK
-is."
+  "Return a fluent that is :created, :running, :blocked, :suspended, :succeeded, :failed or
+:evaporated, as TASK is. It is :blocked by WITH-TASK-BLOCKED, :suspended by SUSPEND, by
+WITH-TASK-SUSPENDED and by the loss of a valve (CRAM's words of 2009 and of 2020)."
   (or (task-status-fluent task)
       (setf (task-status-fluent task)
             (create-fluent (or (task-name task) 'task)
-                           (cond ((or (task-over-p task) (eq (task-state task) :created))
-                                  (task-state task))
-                                 ((plusp (task-blocked task)) :blocked)
-                                 (t :running))))))
+                           (status-word task (task-state task))))))

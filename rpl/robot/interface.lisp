@@ -28,6 +28,8 @@
   (thread nil :type t)
   (wake-up (make-semaphore "plans") :read-only t)
   (rests 0 :type atomic-count)
+  ;; What task keeps that thread by Lisp code that does not return.
+  (hog nil :type (or null task))
   ;; They are to go on with the next tick.
   (tick-wanted-p nil)
   ;; Plans that somebody wants to end.
@@ -66,8 +68,17 @@
   (unwind-protect (funcall function)
     (setf (interface-holder interface) nil)))
 
+(defun check-not-kept (interface)
+  "Signal MISUSE if a plan keeps the thread of those of INTERFACE, which is another than this."
+  (let ((task (interface-hog interface)))
+    (when (and task (not (eq (current-thread) (interface-thread interface))))
+      (reject-use "The plan ~A keeps the plans' thread, at ~A. (end-plan :all) ends it."
+                  (task-label (task-top task)) (form-text (task-form task))))))
+
 (defun call-with-plans (function interface)
-  "Call FUNCTION while nobody else touches the plans of INTERFACE."
+  "Call FUNCTION while nobody else touches the plans of INTERFACE. Signals MISUSE if one of them is
+known to be at Lisp code that does not return."
+  (check-not-kept interface)
   (if (holding-p interface)
       (funcall function)
       (let ((waiting-p t))

@@ -36,7 +36,8 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
   "How many characters a report of plans has at most.")
 
 (defun deadlocked-p (interface)
-  (with-plans (interface) (plan-deadlocked-p (interface-runner interface))))
+  (and (null (interface-hog interface))
+       (with-plans (interface) (plan-deadlocked-p (interface-runner interface)))))
 
 (defun ended-by-itself-p (task)
   "True if TASK is over, and nobody has made it evaporate."

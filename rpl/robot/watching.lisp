@@ -68,8 +68,10 @@ end, until the semaphore ENDED says that the thread has."
         do (let ((look (look-at interface thread)))
              (setf stuck (if (stuck-since-p look earlier) (1+ stuck) 1)
                    busy (if (busy-since-p look earlier) (1+ busy) 1)
-                   earlier look)
+                   earlier look
+                   (interface-hog interface) (and (<= 3 stuck) (look-task look)))
              (unless (user-calls-waiting-p calls)
                (when (= 3 stuck) (warn-of-plan (look-task look)))
                (when (and (<= 3 busy) (unwanted-p interface (look-task look)))
-                 (end-hog interface thread look (<= 3 stuck)))))))
+                 (end-hog interface thread look (<= 3 stuck)))))
+        finally (setf (interface-hog interface) nil)))

@@ -5,10 +5,23 @@
 ;;; What ends tells the construct that it is part of, which may then end too, and so on up. A task
 ;;; that is to evaporate does so at once, unless something in it has to be cleaned up first.
 
+(defun status-word (task state)
+  "Return what the status fluent of TASK, in STATE, is to say."
+  (cond ((member state '(:created :succeeded :failed :evaporated)) state)
+        ((task-gate task) :created)
+        ((plusp (task-suspensions task)) :suspended)
+        ((plusp (task-blocked task)) :blocked)
+        (t :running)))
+
 (defun note-status (task state)
-  "Let whoever looks at the status of TASK see STATE."
+  "Let the status fluent of TASK, which is in STATE, say so."
   (when (task-status-fluent task)
-    (set-value (task-status-fluent task) state)))
+    (set-value (task-status-fluent task) (status-word task state))))
+
+(defun forget-blocks (task)
+  "TASK, which was blocked, is over."
+  (decf (runner-blocks (task-runner task)) (task-blocked task))
+  (release-held (task-runner task)))
 
 (defun finish (task state result &optional (how state))
   "End TASK in STATE with RESULT. HOW says it to the construct that TASK is part of."
@@ -19,6 +32,7 @@
         (task-frame task) nil
         (task-value task) nil
         (task-signal task) nil)
+  (when (plusp (task-blocked task)) (forget-blocks task))
   (note-status task state)
   (let ((parent (task-parent task)))
     (cond (parent

@@ -19,7 +19,8 @@ plans nor a simulator.")
            #:task #:task-awaiting #:task-blocked #:task-children #:task-cleaning #:task-form
            #:task-frame #:task-index #:task-label #:task-level #:task-name #:task-newest-child
            #:task-over-p #:task-p #:task-parent #:task-path #:task-result #:task-runner
-           #:task-serial #:task-signal #:task-state #:task-status-fluent #:task-timer #:task-top)
+           #:task-serial #:task-signal #:task-state #:task-status-fluent #:task-timer #:task-top
+           #:evaporating-p #:part-of-p #:under-way-p)
   ;; trace
   (:export #:trace-entry #:trace-entry-detail #:trace-entry-event #:trace-entry-form
            #:trace-entry-task #:trace-entry-tick #:write-trace)
@@ -35,7 +36,7 @@ plans nor a simulator.")
            #:required-slot #:single-value #:wake)
   ;; ending
   (:export #:complete #:complete-when-alone #:decide #:evaporate #:fail-or-escape #:note-status
-           #:receive #:release-held #:stop-waiting #:unwind #:withdraw)
+           #:receive #:release-held #:status-word #:stop-waiting #:unwind #:withdraw)
   ;; shape
   (:export #:shape-of #:shape-fixed #:shape-keys #:shape-text #:keyword-slip #:misfit)
   ;; procedure
@@ -43,7 +44,7 @@ plans nor a simulator.")
            #:all-procedures #:anonymous-procedure #:declare-procedure #:defined-p
            #:ensure-procedure #:enter-plan #:find-procedure #:install-procedure #:make-procedure
            #:procedure #:procedure-body #:procedure-entry #:procedure-lambda-list
-           #:procedure-name #:procedure-name-p #:procedure-p)
+           #:procedure-name #:procedure-name-p #:procedure-p #:procedure-source)
   ;; blame
   (:export #:failure-of)
   ;; report
@@ -53,6 +54,17 @@ plans nor a simulator.")
   (:export #:advance-timers #:apply-next-batch #:close-runner #:digest-runner #:idle-p
            #:make-plan-runner #:next-wake-time #:plan-deadlocked-p #:post-batch #:post-call
            #:react #:react-to-all #:reseed-runner #:start-plan #:stop-plan)
+  ;; blocking
+  (:export #:block-task #:check-together #:make-heed #:suspend #:unblock-task #:wake-up)
+  ;; circles
+  (:export #:hinderers #:hindrance-text #:report-circle #:taken-from)
+  ;; gate
+  (:export #:gate #:gate-holds #:hold-back #:release-hold #:spawn-gated)
+  ;; variables
+  (:export #:*speaking-task* #:install-task-variable #:make-task-bindings #:task-variable
+           #:task-variable-p)
+  ;; places
+  (:export #:find-task #:task-place #:task-source)
   ;; alone
   (:export #:run-plan-alone)
   ;; stepping

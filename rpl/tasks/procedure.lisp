@@ -17,6 +17,7 @@ and MOST say how many arguments it takes, KEYS-P whether there are keywords amon
   (most most-positive-fixnum :type fixnum)
   (keys-p nil :type boolean)
   (entry nil :type (or null function))
+  (source nil :type list)
   (body nil :type (or null node))
   (stub nil :type (or null function)))
 (document-functions
@@ -24,10 +25,13 @@ and MOST say how many arguments it takes, KEYS-P whether there are keywords amon
  procedure-entry "Return the function of the arguments that returns an environment, or NIL."
  procedure-body "Return the node that the procedure runs, or NIL.")
 
-(addition procedure-p procedure-name procedure-lambda-list)
+(addition procedure-p procedure-name procedure-lambda-list procedure-source)
 (setf (documentation 'procedure-p 'function) "True of plan procedures."
       (documentation 'procedure-name 'function)
       "Return the name of a plan procedure, NIL for one made by INTERP-LAMBDA."
+      (documentation 'procedure-source 'function)
+      "Return the text of a plan procedure as data: (def-interp-proc name parameters form...), or
+(interp-lambda parameters form...)."
       (documentation 'procedure-lambda-list 'function)
       "Return the lambda list of a plan procedure.")
 
@@ -114,15 +118,17 @@ LAMBDA-LIST."
           (procedure-most procedure) (shape-most shape)
           (procedure-keys-p procedure) (not (eq :none (shape-keys shape))))))
 
-(defun install-procedure (name lambda-list documentation entry body stub &optional source)
-  "Make NAME a plan procedure, as SOURCE defines it. Calls from now on, also in running plans, mean
-this one."
+(defun install-procedure (name lambda-list documentation entry body stub
+                          &optional source text)
+  "Make NAME a plan procedure, as TEXT, from SOURCE, defines it. Calls from now on, also in running
+plans, mean this one."
   (let ((procedure (ensure-procedure name)))
     (declare-procedure name lambda-list)
     (set-lambda-list procedure lambda-list)
     (show-lambda-list name lambda-list stub)
     (setf (procedure-entry procedure) entry
           (procedure-body procedure) body
+          (procedure-source procedure) text
           (procedure-stub procedure) stub
           (documentation name 'function) documentation)
     (reinstate procedure)
@@ -140,12 +146,13 @@ this one."
   (remhash (procedure-name procedure) *declared-procedures*)
   (setf (procedure-entry procedure) nil))
 
-(defun anonymous-procedure (lambda-list entry body)
-  "Return a procedure without a name, of LAMBDA-LIST, ENTRY and BODY."
+(defun anonymous-procedure (lambda-list entry body text)
+  "Return a procedure without a name, of LAMBDA-LIST, ENTRY and BODY, which TEXT defines."
   (let ((procedure (make-procedure nil)))
     (set-lambda-list procedure lambda-list)
     (setf (procedure-entry procedure) entry
-          (procedure-body procedure) body)
+          (procedure-body procedure) body
+          (procedure-source procedure) text)
     procedure))
 
 ;;; Arguments.

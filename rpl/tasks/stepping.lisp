@@ -40,14 +40,15 @@ VALUE are what the last step returned; return what it should have."
   (let* ((runner (task-runner task))
          (mask (logandc2 (runner-mask runner) +interrupt+))
          (preempted (>= mask (ash 2 (task-level task))))
-         (spent (>= (runner-steps runner) (runner-pause runner))))
+         (spent (>= (runner-steps runner) (runner-pause runner)))
+         (kept (and (plusp (runner-blocks runner)) (blocked-p task))))
     (setf (runner-mask runner) mask)
     (cond ((task-signal task) (evaporate-self task frame))
-          ((or (null frame) (eq frame +parked+) (not (or preempted spent)))
+          ((or (null frame) (eq frame +parked+) (not (or preempted spent kept)))
            (values frame value))
           (t (setf (task-frame task) frame
                    (task-value task) value)
-             (if preempted (make-ready-first task) (make-ready task))
+             (if (and preempted (not kept)) (make-ready-first task) (make-ready task))
              +parked+))))
 
 (defun run-steps (task frame value)
@@ -105,9 +106,11 @@ Return it."
     (setf (task-runner task) runner
           (task-serial task) (incf (runner-serial runner))
           (task-level task) (min level (1- +levels+))
+          (task-node task) node
           (task-index task) index
           (task-frame task) (make-frame node environment nil))
     (when parent (link-child task parent))
+    (incf (runner-blocks runner) (task-blocked task))
     (note-event task :start)
     (note-status task :running)
     (make-ready task)

@@ -43,7 +43,9 @@ has no states."
 (defstruct (task (:constructor make-task (name node)) (:copier nil))
   "One incarnation of a plan's expression. FRAME and VALUE say how it will go on; SIGNAL, if any,
 what will happen to it instead. LEVEL 0 is the plan proper, a policy is one above what it guards.
-SLICE is how many steps it may still take in the ROUND of that number."
+SLICE is how many steps it may still take in the ROUND of that number. BLOCKED is how many keep it
+from running, SUSPENSIONS how many of these are so called, SUSPENDED whether SUSPEND is one. GATE is
+what it waits for before it starts, VARIABLES what it has set."
   (name nil)
   (node nil :type node)
   (runner nil)
@@ -64,6 +66,10 @@ SLICE is how many steps it may still take in the ROUND of that number."
   (result nil)
   (status-fluent nil :type (or null fluent))
   (parent nil :type (or null task))
+  (suspensions 0 :type fixnum)
+  (suspended nil :type boolean)
+  (gate nil)
+  (variables '() :type list)
   (newest-child nil :type (or null task))
   (older nil :type (or null task))
   (newer nil :type (or null task)))
@@ -121,6 +127,20 @@ over :succeeded, :failed or :evaporated.")
   (loop while (task-parent task)
         do (setf task (task-parent task)))
   task)
+
+(defun part-of-p (task whole)
+  "True if TASK is WHOLE or a part of it."
+  (loop for each = task then (task-parent each)
+        while each thereis (eq each whole)))
+
+(defun evaporating-p (task)
+  "True if TASK, or what it is part of, is evaporating."
+  (loop for each = task then (task-parent each)
+        while each thereis (task-doomed each)))
+
+(defun under-way-p (task)
+  "True if TASK has been started and is not over."
+  (not (or (task-over-p task) (eq (task-state task) :created))))
 
 (defgeneric current-form (node frame)
   (:documentation "Return the source of the expression of NODE that FRAME is at.")

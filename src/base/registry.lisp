@@ -233,7 +233,7 @@ BEFORE is an object of the registry to come directly before, instead of last. Re
 (addition undefine)
 (defun undefine (kind name)
   "Take back the definition of NAME, of KIND: MAP, PLACE-TYPE, ATTRIBUTE, SUBSTANCE, KICKER,
-MANIPULATION, ROBOT or PLAN, a symbol of any package. Its variable becomes unbound; worlds that are
+MANIPULATION, ROBOT, PLAN, POLICY or GOAL, a symbol of any package. Its variable becomes unbound; worlds that are
 under way keep what they have. Return NAME. Signals UNKNOWN-NAME, MISUSE for what is no user's
 to define, and WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
   (check-argument undefine kind (typep kind '(or symbol string)) "a kind of definition, as MAP")

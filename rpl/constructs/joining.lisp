@@ -1,0 +1,66 @@
+;;;; joining.lisp -- join-task: waiting for another task's end.
+
+(in-package :ars-magna.rpl.constructs)
+
+(defun over-p (status)
+  "True if STATUS, of a task, is one that lasts."
+  (and (member status '(:succeeded :failed :evaporated)) t))
+
+(defun checked-other (target task)
+  "Return TARGET, which TASK wants to wait for. Signals WRONG-ARGUMENT and MISUSE."
+  (check-argument join-task target (task-p target) "a task, such as the name of a :tag")
+  (check-together task target)
+  (when (part-of-p task target)
+    (reject-use "~A would wait for itself: it is part of ~A." (task-label task)
+                (task-label target)))
+  target)
+
+(defun pass-on-outcome (target task frame)
+  "Let TASK at FRAME go on as TARGET ended. Return what a step returns."
+  (let ((result (task-result target)))
+    (cond ((eq :failed (task-state target)) (unwind task (frame-up frame) result))
+          (t (values (frame-up frame)
+                     (and (eq :succeeded (task-state target)) (not (escape-p result)) result))))))
+
+(defstruct (joining (:constructor make-joining (target watcher)) (:copier nil))
+  "What a task waits for that joins TARGET; WATCHER watches its status."
+  (target nil :type task :read-only t)
+  (watcher nil :type watcher :read-only t))
+
+(defmethod awaited-text ((joining joining))
+  (format nil "the end of ~A" (task-label (joining-target joining))))
+
+(defmethod withdraw (task (joining joining))
+  (unwatch (joining-watcher joining)))
+
+(defmethod hinderers ((joining joining))
+  (let ((target (joining-target joining)))
+    (and (under-way-p target) (list target))))
+
+(defun hear-end (watcher value trouble)
+  "Let the task that WATCHER is for go on: what it joins is over."
+  (declare (ignore value trouble))
+  (unwatch watcher)
+  (wake (watcher-client watcher) nil))
+
+(defun await-end (target task)
+  "Let TASK wait until TARGET is over."
+  (let ((watcher (make-watcher (fl-funcall 'over-p (task-status target)) #'hear-end task)))
+    (watch watcher)
+    (park task (make-joining target watcher))
+    (report-circle task)))
+
+(define-construct join-task (task)
+  "Wait in a plan until TASK is over, not at all if it is, and return its value; fail as it failed.
+Of a task that evaporated or was left, return NIL (CRAM's; the last is ours)."
+  (:arguments task)
+  (:parts (target function (value-lambda task scope)))
+  (:steps
+   (begin
+    (let ((target (checked-other (funcall target environment) task)))
+      (cond ((task-over-p target) (pass-on-outcome target task frame))
+            (t (next over)
+               (setf memory target)
+               (await-end target task)
+               +parked+))))
+   (over (pass-on-outcome memory task frame))))

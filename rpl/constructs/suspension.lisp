@@ -1,0 +1,65 @@
+;;;; suspension.lisp -- what a task does about being kept from running: on-suspension and kin.
+
+(in-package :ars-magna.rpl.constructs)
+
+(defun do-reaction (reaction task frame)
+  "Run REACTION, a leaf, for TASK at FRAME: with the task variables that are bound there. What goes
+wrong in it becomes a message."
+  (let ((*speaking-task* task)
+        (*asker* task)
+        (innermost (shiftf (task-frame task) frame)))
+    (unwind-protect
+         (handler-case (call-user-code (leaf-function reaction) "an on-suspension"
+                                       (frame-environment frame))
+           (plan-failure (failure)
+             (error-set "An on-suspension failed in " (task-label task) ": "
+                        (failure-text failure))))
+      (setf (task-frame task) innermost))))
+
+(define-construct on-suspension (reaction &body body)
+  "Run BODY in a plan. Each time that the task is kept from running while it does, by SUSPEND,
+WITH-TASK-BLOCKED or a valve that is taken from it, do REACTION first, at once: a form that cannot
+wait, such as a command that stops the robot. Return the value of BODY. Trouble in REACTION is an
+error message and changes nothing else (CRAM's; that REACTION cannot wait is ours)."
+  (:parts (reaction node (refuse-code reaction scope form))
+          (body node (body-code body scope)))
+  (:steps
+   (begin
+    (next inside)
+    (let ((reaction reaction))
+      (setf memory (make-heed (lambda (task frame) (do-reaction reaction task frame)))))
+    (enter body environment frame))
+   (inside (values (frame-up frame) value))))
+
+(defun unwind-body (task frame)
+  "Evaporate the part of TASK that runs the body of FRAME, as it must not go on where it is."
+  (when (eq frame (task-frame task))
+    (setf (frame-data frame) nil)
+    (mapc #'evaporate (task-children task))))
+
+(define-construct retry-after-suspension (&body body)
+  "Run BODY in a plan as a task of its own. When it is kept from running, it evaporates, with its
+cleanups, and when it is so no longer it is run anew, from the start. Return its value (CRAM's)."
+  (:parts (body node (body-code body scope)))
+  (:steps
+   (begin
+    (next inside)
+    (setf memory (make-heed #'unwind-body))
+    (start-branch body task environment 0 (task-level task))
+    (await-parts task))
+   (inside (values (frame-up frame) value)))
+  (:child-ended
+   (cond ((fail-or-escape task how result))
+         ((and (eq how :evaporated) (null memory))
+          (next begin)
+          (wake task nil))
+         (t (complete task result)))))
+
+(define-construct without-scheduling (&body body)
+  "Run BODY in a plan as one step: nobody can suspend the task, end it, or run before it in between;
+what others want of it is heard at the end. BODY cannot wait, call plans or leave: that is an error
+when the plan is defined. Return its value. In ordinary Lisp, PROGN (CRAM's; that BODY cannot wait
+is ours, as nothing else could run meanwhile)."
+  (:waits :may)
+  (:in-lisp `(progn ,@body))
+  (:code (refuse-code (note-own-text `(progn ,@body)) scope form)))

@@ -1,0 +1,49 @@
+;;;; task-variables.lisp -- define-task-variable and with-task-variables.
+
+(in-package :ars-magna.rpl.constructs)
+
+(defun check-task-variable (name)
+  "Signal MALFORMED-DEFINITION if NAME cannot name a task variable."
+  (unless (or (task-variable-p name)
+              (and (symbolp name) (variable-name-p name)
+                   (not (eq :special (variable-kind name)))))
+    (reject-clause (title "define-task-variable" name) name
+                   "a symbol that is no variable yet and belongs to no locked package")))
+
+(addition define-task-variable)
+(define-user-macro define-task-variable (name value &optional documentation)
+  "Define NAME as a variable with a value for each task: what a task sets is seen by it and by what
+it starts, and by nobody else; WITH-TASK-VARIABLES binds it. Where no task says otherwise its value
+is VALUE, or what was set outside of plans. Special variables belong to the whole thread instead,
+and LET cannot bind them around what waits. Functions that plans call see it too, if they are
+compiled after it. Defining it anew sets that value, as DEFPARAMETER does (CRAM's; what becomes of
+it when a task sets it is ours)."
+  (check-task-variable name)
+  `(progn
+     (eval-when (:compile-toplevel :load-toplevel :execute)
+       (define-symbol-macro ,name (task-variable ',name)))
+     (install-task-variable ',name ,value ,documentation)))
+
+(defun checked-bindings (bindings form scope)
+  "Return BINDINGS, each (name value). Signals MALFORMED-DEFINITION."
+  (dolist (binding bindings bindings)
+    (unless (and (typep binding '(cons symbol (cons t null)))
+                 (task-variable-p (first binding) (scope-environment scope)))
+      (reject-clause "plan" form
+                     "bindings (name value) of variables defined by define-task-variable"))))
+
+(define-construct with-task-variables (bindings &body body)
+  "Run BODY in a plan with BINDINGS, each (name value), of task variables: they hold for the task
+that runs BODY and for what that starts, until BODY ends, however it ends. The values are had before
+any is bound. Return the value of BODY (ours, after CRAM's variables of tasks)."
+  (:arguments &rest (mapcar #'second (checked-bindings bindings form scope)))
+  (:parts (names list `',(mapcar #'first bindings))
+          (values-of function (value-lambda `(list ,@(mapcar #'second bindings)) scope))
+          (body node (body-code body scope)))
+  (:steps
+   (begin
+    (let ((cells (mapcar #'cons names (funcall values-of environment))))
+      (next inside)
+      (setf memory (make-task-bindings cells))
+      (enter body environment frame)))
+   (inside (values (frame-up frame) value))))

@@ -1,0 +1,80 @@
+;;;; with-valve.lisp -- with-valve and with-valves: running while one owns a resource (manual D).
+
+(in-package :ars-magna.rpl.constructs)
+
+(defun checked-claim (priority valves task)
+  "Return the claim of TASK to VALVES, or their fluents' values. Signals WRONG-ARGUMENT."
+  (let ((priority (or (fluent-value priority) 0))
+        (valves (remove-duplicates (mapcar (lambda (valve) (fluent-value valve)) valves))))
+    (dolist (valve valves)
+      (check-argument with-valve valve (valve-p valve) "a valve, made by make-valve"))
+    (check-argument with-valve priority (quantity-p priority) "a number from -1e15 to 1e15")
+    (make-claim task valves priority)))
+
+(defun press (claim task)
+  "Let TASK make CLAIM. True if it has it at once; otherwise it waits."
+  (cond ((grantable-p claim) (grant claim) t)
+        (t (queue-up claim)
+           (park task claim)
+           (report-circle task)
+           nil)))
+
+(defun claim-form (priority valves scope)
+  "Return the lambda expression that returns the values of PRIORITY and, as a list, of VALVES."
+  (value-lambda `(cons ,priority (list ,@valves)) scope))
+
+(define-construct with-valve ((valve &key priority) &body body)
+  "Run BODY in a plan while the task owns VALVE, waiting for it first if another task has it. Who
+waits queues by PRIORITY, a number, 0 if not given; policies before others of the same. Who has a
+higher PRIORITY than the owner takes VALVE from it: the owner is suspended, with all that it
+consists of, until it is given back; so never two of them run who own one resource. What the owner
+does about it ON-SUSPENSION and RETRY-AFTER-SUSPENSION say. The cleanups of an owner that evaporates
+are not disturbed. The valve is given back however BODY ends. If tasks wait for each other's valves,
+an error message says so (manual D; priorities ours)."
+  (:arguments valve priority)
+  (:parts (request function (claim-form priority (list valve) scope))
+          (body node (body-code body scope)))
+  (:steps
+   (begin
+    (next granted)
+    (destructuring-bind (priority . valves) (funcall request environment)
+      (setf memory (checked-claim priority valves task)))
+    (if (press memory task) (values frame nil) +parked+))
+   (granted
+    (next inside)
+    (enter body environment frame))
+   (inside
+    (give-back (shiftf memory nil))
+    (values (frame-up frame) value)))
+  (:unwind
+   (when memory (give-back (shiftf memory nil)))
+   nil))
+
+(defun split-valves (valves)
+  "Return those of VALVES that come before :priority, and the form after that."
+  (let ((rest (member :priority valves)))
+    (values (ldiff valves rest) (second rest))))
+
+(define-construct with-valves ((&rest valves) &body body)
+  "Run BODY in a plan while the task owns all of VALVES, which may end in :priority and a number.
+They are taken all at once when none is another's, and none before: so the order in which tasks want
+them does not matter. Else do as WITH-VALVE (ours)."
+  (:arguments &rest valves)
+  (:parts (request function (multiple-value-bind (valves priority) (split-valves valves)
+                              (claim-form priority valves scope)))
+          (body node (body-code body scope)))
+  (:steps
+   (begin
+    (next granted)
+    (destructuring-bind (priority . valves) (funcall request environment)
+      (setf memory (checked-claim priority valves task)))
+    (if (press memory task) (values frame nil) +parked+))
+   (granted
+    (next inside)
+    (enter body environment frame))
+   (inside
+    (give-back (shiftf memory nil))
+    (values (frame-up frame) value)))
+  (:unwind
+   (when memory (give-back (shiftf memory nil)))
+   nil))

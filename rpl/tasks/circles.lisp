@@ -1,0 +1,69 @@
+;;;; circles.lisp -- tasks that wait for each other, so that none can go on.
+
+(in-package :ars-magna.rpl.tasks)
+
+;;; A task is stuck if what it waits for can only come from tasks that are stuck. A task with parts
+;;; is stuck if all of them are, policies, which only watch, not counted. Where it is not known who
+;;; could help, somebody may: that is left to the report of deadlocks when nothing goes on any more.
+
+(defgeneric hinderers (awaited)
+  (:documentation "Return the tasks without which AWAITED cannot come; NIL if that is unknown.")
+  (:method (awaited)
+    (declare (ignore awaited))
+    '()))
+
+(defgeneric taken-from (task data)
+  (:documentation "Return the tasks that keep TASK from running by having what DATA, of one of its
+frames, is about.")
+  (:method (task data)
+    (declare (ignore task data))
+    '()))
+
+(defun those-who-took-from (task)
+  "Return the tasks that keep TASK, or what it is part of, from running by having what it needs."
+  (loop for each = task then (task-parent each)
+        while each
+        append (loop for frame = (task-frame each) then (frame-up frame)
+                     while frame
+                     append (taken-from each (frame-data frame)))))
+
+(defun working-parts (task)
+  "Return the innermost parts of TASK that are at its own level."
+  (let ((children (remove (task-level task) (task-children task) :key #'task-level :test #'<)))
+    (if children
+        (loop for child in children append (working-parts child))
+        (list task))))
+
+(defun stuck-tasks (task)
+  "Return TASK and the tasks that wait for each other with it, or NIL if some of them can go on."
+  (let ((stuck '()) (open (list task)))
+    (loop while open
+          do (let* ((next (pop open))
+                    (others (or (and (task-awaiting next) (hinderers (task-awaiting next)))
+                                (those-who-took-from next))))
+               (unless others (return-from stuck-tasks '()))
+               (pushnew next stuck)
+               (dolist (part (mapcan #'working-parts others))
+                 (unless (or (member part stuck) (member part open))
+                   (push part open)))))
+    (reverse stuck)))
+
+(defgeneric hindrance-text (awaited)
+  (:documentation "Return in words what a task that is stuck waits for.")
+  (:method (awaited) (awaited-text awaited)))
+
+(defun stuck-text (task)
+  "Return in words what TASK, which is stuck, waits for."
+  (let ((awaiting (task-awaiting task)))
+    (if (and awaiting (hinderers awaiting))
+        (format nil "~A waits for ~A" (task-label task) (hindrance-text awaiting))
+        (format nil "~A waits until ~{~A~^ and ~} gives back what it took"
+                (task-label task) (mapcar #'task-label (those-who-took-from task))))))
+
+(defun report-circle (task)
+  "Queue an error message if TASK, which has come to wait, waits in a circle."
+  (let ((tasks (stuck-tasks task)))
+    (when tasks
+      (error-set "Deadlock at tick " (runner-tick (task-runner task)) ": "
+                 (format nil "~{~A~^; ~}" (mapcar #'stuck-text tasks))
+                 ". None can go on."))))

@@ -1,0 +1,82 @@
+;;;; places.lisp -- where a task is in its plan, as data, and which task is there.
+
+(in-package :ars-magna.rpl.tasks)
+
+;;; A place is a list. First comes the plan: its name, its number, or (name number) if several plans
+;;; of that name are under way. Then, for each step inwards, which part: (:tag name), or the number
+;;; of the branch, from 0. It stays true when the task is over.
+
+(defun namesakes (task)
+  "Return the top-level tasks that are under way and called as TASK, one of them."
+  (remove (task-name task) (runner-roots (task-runner task))
+          :key #'task-name :test-not #'eq))
+
+(defun top-place (task)
+  (cond ((null (task-name task)) (task-serial task))
+        ((remove task (namesakes task)) (list (task-name task) (task-serial task)))
+        (t (task-name task))))
+
+(defun part-place (task)
+  "Return which part of its parent TASK is."
+  (let ((name (task-name task)))
+    (cond ((null name) (task-index task))
+          ((find name (remove task (task-children (task-parent task))) :key #'task-name)
+           (list :tag name (task-index task)))
+          (t (list :tag name)))))
+
+(addition task-place)
+(defun task-place (task)
+  "Return where TASK is in its plan, a list that can be printed, read, and given to FIND-TASK: the
+name or number of the plan, and for each step inwards (:tag name), or the number of the branch,
+from 0. Where tasks have the same name, their number comes after it. A task that has not started is
+nowhere: NIL (CRAM's paths go from the inside out, and have the operators' names)."
+  (unless (eq (task-state task) :created)
+    (loop with place = '()
+          for each = task then (task-parent each)
+          while (task-parent each) do (push (part-place each) place)
+          finally (return (cons (top-place each) place)))))
+
+(defun at-place-p (task step)
+  "True if TASK is what STEP, one of a place, names."
+  (typecase step
+    (integer (= step (if (task-parent task) (task-index task) (task-serial task))))
+    ((cons (eql :tag) (cons t list))
+     (and (at-place-p task (second step))
+          (or (null (cddr step)) (eql (third step) (task-index task)))))
+    ((cons symbol (cons integer null))
+     (and (at-place-p task (first step)) (= (second step) (task-serial task))))
+    ((or symbol string) (and step (task-name task) (same-name-p step (task-name task))))))
+
+(addition find-task)
+(defun find-task (place &optional (within *runner*))
+  "Return the task under way at PLACE, as TASK-PLACE returns, or whose number PLACE is; NIL if there
+is none. WITHIN is a plan runner, or a task, whose parts PLACE then starts with."
+  (check-argument find-task within (or (task-p within) (plan-runner-p within))
+                  "a plan runner, such as (rpl-runner), or a task")
+  (if (integerp place)
+      (find-numbered place within)
+      (loop with tasks = (parts-of within)
+            for (step . more) on place
+            for task = (find-if (lambda (task) (at-place-p task step)) tasks)
+            while (and task more) do (setf tasks (task-children task))
+            finally (return task))))
+
+(defun parts-of (within)
+  (if (task-p within) (task-children within) (plan-runner-tasks within)))
+
+(defun find-numbered (number within)
+  "Return the task of WITHIN that has NUMBER, or NIL."
+  (dolist (part (parts-of within))
+    (let ((found (if (= number (task-serial part)) part (find-numbered number part))))
+      (when found (return found)))))
+
+(addition task-source)
+(defun task-source (task)
+  "Return the source of all that TASK runs, as data: the form of a branch; of a top-level task the
+text of its plan, as PROCEDURE-SOURCE does, or, if it has no name or has been defined anew since, of
+that plan's body."
+  (let ((procedure (and (null (task-parent task))
+                        (find (task-node task) (all-procedures) :key #'procedure-body))))
+    (if procedure
+        (procedure-source procedure)
+        (node-form (task-node task)))))

@@ -1,0 +1,66 @@
+;;;; variables.lisp -- task variables: a value for each task, inherited by what it starts.
+
+(in-package :ars-magna.rpl.tasks)
+
+;;; Special variables belong to the thread, which all tasks share. A task variable is looked for
+;;; from the task that asks outwards: in its frames, of which those that bind variables have
+;;; TASK-BINDINGS as their DATA, in what it has set, in the frames of the task around it, and so on.
+;;; Nothing is left of a binding when its frame is gone.
+
+(defstruct (task-bindings (:constructor make-task-bindings (cells)) (:copier nil))
+  "What a frame binds: CELLS, conses (name . value)."
+  (cells '() :type list :read-only t))
+(declaim-final task-bindings)
+
+(document-functions
+  make-task-bindings "Return what a frame that binds the task variables of CELLS has as its data.")
+
+(defvar *defaults* (make-hash-table :test 'eq :synchronized t)
+  "The values of task variables where no task says otherwise.")
+
+(defvar *speaking-task* nil
+  "The task on whose behalf Lisp code runs, if it is not the running one.")
+
+(defun speaking-task ()
+  "Return the task on whose behalf the caller runs, or NIL outside of plans."
+  (or *speaking-task*
+      (let ((task (and *runner* (runner-current *runner*))))
+        (and task (eq (task-state task) :running) task))))
+
+(defun cell-in-frames (name task)
+  (loop for frame = (task-frame task) then (frame-up frame)
+        while frame
+        thereis (and (task-bindings-p (frame-data frame))
+                     (assoc name (task-bindings-cells (frame-data frame)) :test #'eq))))
+
+(defun own-cell (name task)
+  "Return the cell of the variable NAME that is TASK's own, or NIL."
+  (or (cell-in-frames name task)
+      (assoc name (task-variables task) :test #'eq)))
+
+(defun task-variable (name)
+  "Return the value that the task variable NAME has for the task that asks."
+  (let ((cell (loop for task = (speaking-task) then (task-parent task)
+                    while task thereis (own-cell name task))))
+    (if cell (cdr cell) (values (gethash name *defaults*)))))
+
+(defun (setf task-variable) (value name)
+  (let* ((task (speaking-task))
+         (cell (and task (own-cell name task))))
+    (cond (cell (setf (cdr cell) value))
+          (task (push (cons name value) (task-variables task)))
+          (t (setf (gethash name *defaults*) value)))
+    value))
+
+(defun task-variable-p (name &optional environment)
+  "True if the symbol NAME stands for a task variable in ENVIRONMENT."
+  (and (symbolp name)
+       (eq :symbol-macro (variable-kind name environment))
+       (let ((expansion (macroexpand-1 name environment)))
+         (and (consp expansion) (eq 'task-variable (first expansion))))))
+
+(defun install-task-variable (name value documentation)
+  "Let VALUE be the default of the task variable NAME."
+  (setf (gethash name *defaults*) value
+        (documentation name 'variable) documentation)
+  name)

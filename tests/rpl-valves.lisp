@@ -1,0 +1,161 @@
+;;;; rpl-valves.lisp -- valves: priorities, preemption, several at once.
+
+(in-package :ars-magna.tests)
+(in-suite rpl)
+
+(test valve.who-has-it-and-who-wants-it
+  (let ((hand (rpl:make-valve 'hand)) (seen '()))
+    (flet ((look () (push (list (rpl:task-name (rpl:valve-owner hand))
+                                (mapcar #'rpl:task-name (rpl:valve-requests hand))
+                                (mapcar #'rpl:task-name (rpl:valve-losers hand)))
+                          seen)))
+      (plan-value
+        (rpl:par (:tag a (rpl:with-valve (hand) (rpl:wait-time 5)))
+                 (:tag b (rpl:with-valve (hand) 1))
+                 (:tag c (rpl:with-valve (hand :priority -1) 1))
+                 (:tag d (rpl:wait-time 1) (rpl:with-valve (hand) 1))
+                 (:tag e (rpl:wait-time 2)
+                   (rpl:with-valve (hand :priority 1) (look) (rpl:wait-time 1)))
+                 (rpl:seq (rpl:wait-time 1) (rpl:wait-time 0) (look)))))
+    (is (equal '((a (b d c) ()) (e (b d c) (a))) (reverse seen)))
+    (is (null (rpl:valve-owner hand)))
+    (is (string= "#<valve HAND>" (princ-to-string hand)))))
+
+(test with-valve.a-higher-priority-takes-it
+  "The owner is suspended, with its parts, until it is given back; what it waits for counts."
+  (let ((hand (rpl:make-valve 'hand)))
+    (is (equal '((:stop 2) (:urgent 2) (:suspended 3) (:back 6) (:part 6) (:owner 6) (:next 6))
+               (with-log (note)
+                 (plan-value
+                   (rpl:par (:tag owner
+                              (rpl:with-valve (hand)
+                                (rpl:on-suspension (note :stop)
+                                  (rpl:par (rpl:seq (rpl:wait-time 5) (note :owner))
+                                           (rpl:seq (rpl:wait-time 4) (note :part))))))
+                            (rpl:seq (rpl:wait-time 1) (rpl:with-valve (hand) (note :next)))
+                            (rpl:seq (rpl:wait-time 2)
+                                     (rpl:with-valve (hand :priority 5)
+                                       (note :urgent)
+                                       (rpl:wait-time 4)
+                                       (note :back)))
+                            (rpl:seq (rpl:wait-time 3)
+                                     (note (rpl:fluent-value (rpl:task-status owner)))))))))))
+
+(test with-valve.the-owner-may-start-anew
+  (let ((hand (rpl:make-valve 'hand)))
+    (is (equal '((:begin 0) (:undone 2) (:begin 4) (:undone 7))
+               (with-log (note)
+                 (plan-value
+                   (rpl:par (rpl:with-valve (hand)
+                              (rpl:retry-after-suspension
+                                (note :begin)
+                                (rpl:evap-protect (rpl:wait-time 3) (note :undone))))
+                            (rpl:seq (rpl:wait-time 2)
+                                     (rpl:with-valve (hand :priority 1) (rpl:wait-time 2))))))))))
+
+(test with-valve.three-priorities
+  (let ((hand (rpl:make-valve 'hand)))
+    (is (equal '((:low 0) (:middle 1) (:high 2) (:high 3) (:middle 5) (:low 6))
+               (with-log (note)
+                 (plan-value
+                   (rpl:par-loop (job '((:low 0 6) (:middle 1 4) (:high 2 1)))
+                     (destructuring-bind (name priority span) job
+                       (rpl:wait-time priority)
+                       (rpl:with-valve (hand :priority priority)
+                         (note name)
+                         (rpl:wait-time span)
+                         (note name))))))))
+    (is (null (rpl:valve-owner hand)))))
+
+(test with-valve.who-is-preempted-and-killed-cleans-up
+  (let ((hand (rpl:make-valve 'hand)))
+    (is (equal '((:killed 2) (:cleaned 3) (:urgent 5) (:third 5))
+               (with-log (note)
+                 (plan-value
+                   (rpl:par (:tag owner
+                              (rpl:with-valve (hand)
+                                (rpl:evap-protect (rpl:wait-time 9)
+                                  (rpl:seq (rpl:wait-time 1) (note :cleaned)))))
+                            (rpl:seq (rpl:wait-time 1)
+                                     (rpl:with-valve (hand :priority 1)
+                                       (rpl:wait-time 4)
+                                       (note :urgent)))
+                            (rpl:seq (rpl:wait-time 2) (note :killed) (rpl:evaporate owner)
+                                     (rpl:with-valve (hand) (note :third))))))))
+    (is (null (rpl:valve-owner hand)))
+    (is (null (rpl:valve-losers hand)))))
+
+(test with-valve.cleanups-are-not-disturbed
+  (let ((hand (rpl:make-valve 'hand)))
+    (is (equal '((:cleaned 5) (:urgent 5))
+               (with-log (note)
+                 (plan-value
+                   (rpl:par (:tag owner
+                              (rpl:with-valve (hand)
+                                (rpl:evap-protect (rpl:wait-time 9)
+                                  (rpl:seq (rpl:wait-time 4) (note :cleaned)))))
+                            (rpl:seq (rpl:wait-time 1) (rpl:evaporate owner)
+                                     (rpl:wait-time 1)
+                                     (rpl:with-valve (hand :priority 1) (note :urgent))))))))))
+
+(test with-valve.a-circle-through-preemption-is-reported
+  (let ((base:*message-queue* (base:make-message-queue))
+        (hand (rpl:make-valve 'hand)) (camera (rpl:make-valve 'camera)))
+    (is (eq :deadlock
+            (nth-value 1 (rpl:run-plan-alone
+                          (rpl:interp-lambda ()
+                            (rpl:par (rpl:with-valves (hand camera :priority 1)
+                                       (rpl:wait-time 3))
+                                     (rpl:seq (rpl:wait-time 1)
+                                              (rpl:with-valve (hand :priority 2)
+                                                (rpl:with-valve (camera) 1)))))))))
+    (let ((texts (mapcar #'base:message-text (base:take-messages))))
+      (is (search "Deadlock at tick 1" (first texts)))
+      (is (search "camera" (first texts)))
+      (is (search "gives back" (first texts))))))
+
+(test with-valve.arguments
+  (signals-failure base:wrong-argument (rpl:with-valve (3) 1))
+  (signals-failure base:wrong-argument (rpl:with-valve ((rpl:make-valve 'v) :priority :high) 1))
+  (is (eq :yes (plan-value (let ((v (rpl:make-valve 'v)))
+                             (rpl:with-valve ((rpl:seq (rpl:wait-time 1) v)
+                                              :priority (rpl:seq (rpl:wait-time 1) 2))
+                               :yes))))))
+
+;;; Several at once.
+
+(test with-valves.all-or-none
+  (let ((a (rpl:make-valve 'a)) (b (rpl:make-valve 'b)))
+    (is (equal '((:b-free 1) (:got-b 1) (:both 5))
+               (with-log (note)
+                 (plan-value
+                   (rpl:par (rpl:with-valve (a) (rpl:wait-time 4))
+                            (rpl:seq (rpl:wait-time 1) (rpl:wait-time 0)
+                                     (unless (rpl:valve-owner b) (note :b-free))
+                                     (rpl:with-valve (b) (note :got-b) (rpl:wait-time 4)))
+                            (rpl:with-valves (b a) (note :both)))))))
+    (is (null (rpl:valve-owner a)))
+    (is (null (rpl:valve-requests b)))))
+
+(test with-valves.philosophers-do-not-starve-each-other
+  "Whatever the order in which they want their forks, all eat."
+  (let ((forks (coerce (loop for i below 5 collect (rpl:make-valve i)) 'vector)) (meals 0))
+    (plan-value
+      (rpl:par-loop (i '(0 1 2 3 4))
+        (rpl:n-times 20
+          (rpl:with-valves ((aref forks i) (aref forks (mod (1+ i) 5)))
+            (rpl:wait-time 1)
+            (incf meals)))))
+    (is (= 100 meals))
+    (is (every (lambda (fork) (null (rpl:valve-owner fork))) forks))))
+
+(test with-valves.none-the-same-twice-and-nested
+  (let ((a (rpl:make-valve 'a)) (b (rpl:make-valve 'b)))
+    (is (eq :none (plan-value (rpl:with-valves () :none))))
+    (is (eq :twice (plan-value (rpl:with-valves (a a) :twice))))
+    (is (eq :inner (plan-value (rpl:with-valve (a)
+                                 (rpl:par (rpl:with-valves (a b) (rpl:wait-time 1) :inner))))))
+    (is (eq :later (plan-value (rpl:with-valves ((rpl:seq (rpl:wait-time 1) a) b :priority 1)
+                                 :later))))
+    (is (null (rpl:valve-owner a)))
+    (is (null (rpl:valve-owner b)))))
