@@ -11,7 +11,7 @@
           (:tag outer
             (rpl:wait-time 1)
             (:tag inner (incf sum (twice 1)))
-            (:tag other (incf sum (thrice 0)))))))
+            (:tag beside (incf sum (thrice 0)))))))
     sum))
 
 (defmacro with-stepwise (&body body)
