@@ -8,10 +8,8 @@
 ;;; heard to be true is committed to waking: what happens to the fluent afterwards is no matter.
 
 (defvar *spreading* nil
-  "True while a change is being spread: networks must not set fluents.")
-
-(defvar *instants* '()
-  "The views that are true for the instant at which the change that is being spread happened.")
+  "While a change is being spread, when networks must not set fluents, a list of one element: the
+views that are true for the instant at which that change happened.")
 
 (defun backlog-now ()
   "Return the backlog of the plan runner at work, or one for this change alone."
@@ -94,22 +92,28 @@
 
 (defun note-instant (view)
   "Note that VIEW is true, which it is no longer when the change under way, if any, is spread."
-  (when *spreading* (push view *instants*)))
+  (when *spreading* (push view (first *spreading*))))
 
-(defun end-instants ()
-  "Let the views that were true for this instant be false again."
-  (when *instants*
-    (let ((backlog (backlog-now)))
-      (dolist (view (nreverse (shiftf *instants* '())))
-        (setf (fluent-now view) nil)
-        (enqueue-dependents view backlog))
-      (spread-by-height backlog))))
+(defun end-instants (instants)
+  "Let the views in the list that is the element of INSTANTS be false again."
+  (let ((backlog (backlog-now)))
+    (dolist (view (nreverse (shiftf (first instants) '())))
+      (setf (fluent-now view) nil)
+      (enqueue-dependents view backlog))
+    (spread-by-height backlog)))
+
+(defmacro spreading (&body body)
+  "Run BODY, which spreads a change."
+  `(let* ((instants (list nil))
+          (*spreading* instants))
+     (declare (dynamic-extent instants))
+     ,@body
+     (when (first instants) (end-instants instants))))
 
 (defun spread-to-dependents (fluent)
   "Compute what depends on FLUENT. As long as only one fluent does, no backlog is needed."
   (declare #.*hot*)
-  (let ((*spreading* t)
-        (*instants* '()))
+  (spreading
     (loop
       (let ((link (fluent-first-link fluent)))
         (cond ((null link) (return))
@@ -120,8 +124,7 @@
               (t (setf fluent (link-dependent link))
                  (if (recompute fluent)
                      (announce fluent)
-                     (return))))))
-    (end-instants)))
+                     (return))))))))
 
 (defun spread (fluent)
   "Let everybody concerned know that the base fluent FLUENT has changed."
@@ -133,13 +136,11 @@
   "Let everybody concerned know that the base FLUENTS have changed, all at one instant."
   (if (and fluents (null (rest fluents)))
       (spread (first fluents))
-      (let ((backlog (backlog-now))
-            (*spreading* t)
-            (*instants* '()))
-        (mapc #'announce fluents)
-        (dolist (fluent fluents) (enqueue-dependents fluent backlog))
-        (spread-by-height backlog)
-        (end-instants))))
+      (let ((backlog (backlog-now)))
+        (spreading
+          (mapc #'announce fluents)
+          (dolist (fluent fluents) (enqueue-dependents fluent backlog))
+          (spread-by-height backlog)))))
 
 (defun check-settable (operator fluent)
   (unless (and (fluent-p fluent) (not (derived-p fluent)))
@@ -157,13 +158,15 @@
   (let ((home (fluent-home fluent)))
     (and home (not (eq home *runner*)))))
 
-(defun send (home settings)
-  "Let SETTINGS be applied in HOME: now if no other thread has it, otherwise when that gets to it."
-  (cond ((and (not (posted-p home)) (take-home home))
-         (unwind-protect (let ((*runner* home)) (apply-settings settings))
-           (leave-home home))
-         (funcall (home-on-post home)))
-        (t (post home settings))))
+(defmacro where-it-is-heard ((home settings) &body body)
+  "Run BODY, which does what SETTINGS say, in HOME: now if no other thread has it; otherwise let
+SETTINGS be applied when that gets to it."
+  (once-only (home)
+    `(cond ((and (not (posted-p ,home)) (take-home ,home))
+            (unwind-protect (let ((*runner* ,home)) ,@body)
+              (leave-home ,home))
+            (funcall (home-on-post ,home)))
+           (t (post ,home ,settings)))))
 
 (defun set-now (fluent value)
   (unless (eql value (fluent-now fluent))
@@ -182,7 +185,8 @@ a pause (manual D.2)."
   (unless (elsewhere-p fluent) (set-now fluent value))
   ;; Perhaps somebody has just begun to wait for it, in another thread.
   (when (elsewhere-p fluent)
-    (send (fluent-home fluent) `((:set ,fluent ,value))))
+    (where-it-is-heard ((fluent-home fluent) `((:set ,fluent ,value)))
+      (set-now fluent value)))
   value)
 
 (defun (setf fluent-value) (value fluent)
@@ -206,10 +210,14 @@ a pause (manual D.2)."
 (defun spread-back (fluents)
   "Compute anew what depends on FLUENTS, which have their values of before a pulse again."
   (when (some #'fluent-first-link fluents)
-    (let ((backlog (backlog-now))
-          (*spreading* t))
-      (dolist (fluent fluents) (enqueue-dependents fluent backlog))
-      (spread-by-height backlog))))
+    (let ((backlog (backlog-now)))
+      (spreading
+        (dolist (fluent fluents) (enqueue-dependents fluent backlog))
+        (spread-by-height backlog)))))
+
+(defun pulse-now (fluent value)
+  (incf (fluent-pulses fluent))
+  (pulse-all (list fluent) (list value)))
 
 (public pulse)
 (defun pulse (fluent &optional (value t))
@@ -217,9 +225,10 @@ a pause (manual D.2)."
 for a network that is true at that instant, will wake. Return VALUE. From outside of plans, in any
 thread, it is heard as soon as the plans at work have come to a pause (manual C)."
   (check-settable 'pulse fluent)
-  (cond ((elsewhere-p fluent) (send (fluent-home fluent) `((:pulse ,fluent ,value))))
-        (t (incf (fluent-pulses fluent))
-           (pulse-all (list fluent) (list value))))
+  (if (elsewhere-p fluent)
+      (where-it-is-heard ((fluent-home fluent) `((:pulse ,fluent ,value)))
+        (pulse-now fluent value))
+      (pulse-now fluent value))
   value)
 
 (defun apply-settings (settings)
