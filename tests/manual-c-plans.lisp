@@ -296,3 +296,33 @@ whose fluents tell :INTERRUPT."
     (signals wrong-argument (rpl-storage-bin-open "0"))
     (signals wrong-argument (rpl-robot-turn 'left))
     (signals wrong-argument (rpl-camera-track 0 (create-fluent 'nothing)))))
+
+;;; What commands of plans end.
+
+(test manual-c-plans.a-wait-does-not-hear-an-older-command
+  "C, our RPL: a command that interrupts another tells that one first, so that a wait after it waits
+for the new one."
+  (in-pantry ()
+    (is (equal '(nil 1.0)
+               (planned (rpl-robot-goto-wall)
+                        (wait-time 7)
+                        (rpl-robot-turn 1)
+                        (wait-for robot-stopped*)
+                        (list (fluent-value robot-movement-error*)
+                              (/ (round (or (fluent-value robot-angle-diff*) 0) .01) 100.0)))))))
+
+(test manual-c-plans.a-plan-that-is-ended-takes-its-commands-along
+  "Our RPL: when a whole plan is ended its commands are interrupted."
+  (in-pantry ()
+    (let ((plan (begin-plan (interp-lambda () (rpl-robot-goto-wall) (wait-for robot-stopped*)))))
+      (run-ticks 8)
+      (end-plan plan)
+      (run-ticks 2)
+      (let ((x (robot-x cook)))
+        (run-ticks 10)
+        (is (= x (robot-x cook)))))))
+
+(test manual-c-plans.pulses-leave-the-value-that-was-there
+  "Our RPL: a pulse is T for an instant, then the value is that which was there before."
+  (let ((f (create-fluent 'f 5)))
+    (is (equal 5 (alone (pulse f) (fluent-value f))))))
