@@ -15,33 +15,24 @@
 counts; it goes on when BODY has ended, however that ended. An evaporating task is not kept. Its
 status is :blocked meanwhile (CRAM's, of 2009)."
   (:parts (target function (value-lambda task scope))
+          (status keyword :blocked)
           (body node (body-code body scope)))
   (:steps
    (begin
     (next inside)
     (setf memory (checked-target (funcall target environment) task))
-    (block-task memory)
+    (block-task memory (eq status :suspended))
     (enter body environment frame))
    (inside
-    (unblock-task (shiftf memory nil))
+    (unblock-task (shiftf memory nil) (eq status :suspended))
     (values (frame-up frame) value)))
   (:unwind
-   (when memory (unblock-task (shiftf memory nil)))
+   (when memory (unblock-task (shiftf memory nil) (eq status :suspended)))
    nil))
 
 (define-construct with-task-suspended (task &body body)
   "Do as WITH-TASK-BLOCKED; the status of TASK is :suspended meanwhile (CRAM's, of 2020)."
+  (:like with-task-blocked)
   (:parts (target function (value-lambda task scope))
-          (body node (body-code body scope)))
-  (:steps
-   (begin
-    (next inside)
-    (setf memory (checked-target (funcall target environment) task))
-    (block-task memory t)
-    (enter body environment frame))
-   (inside
-    (unblock-task (shiftf memory nil) t)
-    (values (frame-up frame) value)))
-  (:unwind
-   (when memory (unblock-task (shiftf memory nil) t))
-   nil))
+          (status keyword :suspended)
+          (body node (body-code body scope))))

@@ -59,22 +59,8 @@ an error message says so (manual D; priorities ours)."
   "Run BODY in a plan while the task owns all of VALVES, which may end in :priority and a number.
 They are taken all at once when none is another's, and none before: so the order in which tasks want
 them does not matter. Else do as WITH-VALVE (ours)."
+  (:like with-valve)
   (:arguments &rest valves)
   (:parts (request function (multiple-value-bind (valves priority) (split-valves valves)
                               (claim-form priority valves scope)))
-          (body node (body-code body scope)))
-  (:steps
-   (begin
-    (next granted)
-    (destructuring-bind (priority . valves) (funcall request environment)
-      (setf memory (checked-claim priority valves task)))
-    (if (press memory task) (values frame nil) +parked+))
-   (granted
-    (next inside)
-    (enter body environment frame))
-   (inside
-    (give-back (shiftf memory nil))
-    (values (frame-up frame) value)))
-  (:unwind
-   (when memory (give-back (shiftf memory nil)))
-   nil))
+          (body node (body-code body scope))))
