@@ -24,7 +24,8 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:plan-break-p #:why)
   (:import-from :ars-magna.rpl-robot
                 #:rpl-init-robot #:rpl-robot #:rpl-runner
-                #:begin-plan #:end-plan #:plans #:print-plans #:call-with-plans-in-use)
+                #:plan-ending-p #:begin-plan #:end-plan #:plans #:print-plans
+                #:call-with-plans-in-use)
   (:import-from :ars-magna.rpl-pictures #:save-plan-timeline)
   ;; trivial-gray-streams
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream

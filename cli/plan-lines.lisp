@@ -199,8 +199,7 @@ also where and why."
 
 (define-line "STOP-PLAN" (session (n count "the number of a plan under way" :optional))
     (:planning)
-    "End the plan N, or all that are under way. What the robot itself is doing goes on; STOP stops
-that."
+    "End the plan N, or all that are under way. What it has told the robot to do is interrupted."
   (cond ((null (plans)) (reject-line "No plan is under way."))
         (n (end-plan (plan-numbered n)))
         (t (end-plan :all))))

@@ -17,6 +17,8 @@
   (simulation nil :read-only t)
   (task nil)
   (stuck nil :type (or null string))
+  ;; What has been told last of that.
+  (told-stuck nil :type (or null string))
   (over (make-semaphore "plan over") :read-only t)
   (told (make-semaphore "plan's end told") :read-only t))
 
@@ -113,9 +115,13 @@
 (defun tell-stuck (errand)
   "Queue a message that says what the plan of ERRAND waits for in vain."
   (with-messages-to (errand)
-    (tell-failure errand "is in a deadlock: it ~A~:[. STOP-PLAN ends it~;; it was stopped~]."
-                  (plan-errand-stuck errand)
-                  (session-patient-p (plan-errand-session errand)))))
+    (let ((stuck (plan-errand-stuck errand)))
+      (if (session-patient-p (plan-errand-session errand))
+          (tell-failure errand "is in a deadlock: it ~A, which nothing can bring about; it was ~
+                                stopped." stuck)
+          (warning-set (string-downcase (plan-errand-name errand)) " " stuck
+                       ", which neither the robot nor time will bring about, but you may. "
+                       "STOP-PLAN ends it.")))))
 
 (defun close-errand (errand)
   "Count ERRAND, whose end has been told, as done."
@@ -138,7 +144,7 @@
 be called while no plan reacts."
   (when (and (not (task-over-p task)) (plan-deadlocked-p runner))
     (user-text (lambda (awaited)
-                 (format nil "waits for ~{~A~^, ~}, which nothing can bring about" awaited))
+                 (format nil "waits for ~{~A~^, ~}" awaited))
                (awaited-by task))))
 
 (defun note-if-stuck (errand runner)
@@ -151,15 +157,15 @@ be called while no plan reacts."
   (and (live-p (plan-errand-simulation errand))
        (eq runner (plan-runner-now))))
 
-(defun tell-if-stuck (errand runner known)
-  "Find out whether the plan of ERRAND is stuck; tell it, unless it is KNOWN. Return the answer to
-the last such question."
+(defun tell-if-stuck (errand runner)
+  "Find out whether the plan of ERRAND is stuck; tell it, unless that has been told last. Return the
+answer to the last such question."
   (let ((stuck (plan-errand-stuck errand)))
-    (cond ((null stuck))
-          (known)
-          (t (tell-stuck errand)
-             (when (session-patient-p (plan-errand-session errand))
-               (stop-plan runner (plan-errand-task errand)))))
+    (unless (or (null stuck) (equal stuck (plan-errand-told-stuck errand)))
+      (setf (plan-errand-told-stuck errand) stuck)
+      (tell-stuck errand)
+      (when (session-patient-p (plan-errand-session errand))
+        (stop-plan runner (plan-errand-task errand))))
     (post-call runner (lambda () (note-if-stuck errand runner)))
     stuck))
 
@@ -168,7 +174,7 @@ the last such question."
   (loop with stuck = nil
         until (plan-over-p errand)
         do (cond ((wait-on-semaphore (plan-errand-over errand) 0.2))
-                 ((driving-p errand runner) (setf stuck (tell-if-stuck errand runner stuck)))
+                 ((driving-p errand runner) (setf stuck (tell-if-stuck errand runner)))
                  (t (return)))
         finally (unless (and stuck (session-patient-p (plan-errand-session errand)))
                   (tell-end errand)))

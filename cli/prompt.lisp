@@ -106,7 +106,7 @@ simulator waiting is aborted, too."
   (when *simulation* (abort-hog *simulation*))
   (answered (session-console session))
   (format (session-console session) "~&Interrupted.~:[~; Plans go on; STOP-PLAN ends them.~]~%"
-          (plans)))
+          (notevery #'plan-ending-p (plans))))
 
 (defun do-next (session text)
   "Do what TEXT, a line, says, or let it answer the newest break, if a program waits for that."

@@ -290,3 +290,22 @@
       (is (= 1 (length texts)))
       (is (search "Deadlock at tick 0: b waits for the end of a; a waits for the end of b."
                   (first texts))))))
+
+;;; Tags that are run again, and side by side.
+
+(test task-status.of-a-tag-goes-on-with-its-next-run
+  (is (equal '((:done 2) (:done 4))
+             (with-log (note)
+               (plan-value
+                 (rpl:pursue (rpl:seq (rpl:n-times 2 (rpl:wait-time 1) (:tag w (rpl:wait-time 1)))
+                                      (rpl:wait-time 1))
+                             (rpl:whenever (eq (rpl:task-status w) :succeeded) (note :done))))))))
+
+(test par-loop.each-turn-has-tags-of-its-own
+  (is (equal '((1 1) (2 2) (3 2))
+             (sort (with-log (note)
+                     (plan-value
+                       (rpl:par-loop (n '(1 2 3))
+                         (rpl:par (rpl:seq (:tag job (rpl:wait-time 2)) (note n))
+                                  (when (= n 1) (rpl:seq (rpl:wait-time 1) (rpl:evaporate job)))))))
+                   #'< :key #'first))))

@@ -95,11 +95,22 @@
       (is (equal (loop for number from 1 to 200 collect number)
                  (loop for number across order when (plusp number) collect number))))))
 
-(test live.deadlock-is-reported
+(test live.a-plan-waits-on-for-what-somebody-may-bring-about
+  "A warning says what that is; who sets it lets the plan go on."
   (live (simulation)
-    (is (eq :deadlock (nth-value 1 (run-as-plan (rpl:wait-for driver:robot-stopped*)))))
-    (is (search "robot-stopped*" (with-output-to-string (stream) (base:error-display stream))))
-    (awaiting (null (driver:plans)))))
+    (let* ((go (rpl:create-fluent 'go-ahead)) (result nil)
+           (thread (base:start-thread
+                    (base:spread-specials
+                     (lambda ()
+                       (setf result (multiple-value-list (run-as-plan (rpl:wait-for go)))))
+                     'driver::*interface* 'time:*simulation* 'base:*message-queue*)
+                    "runner")))
+      (awaiting (find-if (lambda (text) (search "wait for what neither" text))
+                         (mapcar #'base:message-text (base:take-messages))))
+      (rpl:set-value go :ahead)
+      (base:join-thread thread)
+      (is (equal '(:ahead :succeeded) result))
+      (awaiting (null (driver:plans))))))
 
 (test live.a-stopped-simulator-ends-the-waiting
   (live (simulation)

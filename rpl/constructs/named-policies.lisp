@@ -129,7 +129,7 @@ clauses, perhaps after a documentation string, are plan text: they may wait.
                        the body: a fluent or network is waited for, else it is tested at each tick;
   (:recover form...)   is done if it does, when the body has evaporated; then the policy fails with
                        POLICY-CHECK-CONDITION-MET;
-  (:clean-up form...)  comes last, however it ends.
+  (:clean-up form...)  comes last, however it ends, even within :INIT; not if that returned false.
 In them POLICY-GET and POLICY-SETF remember. See WITH-NAMED-POLICY. Signals MALFORMED-DEFINITION.
 Return NAME. (CRAM's, which polls.)"
   (let ((definition (title "define-policy" name))
@@ -155,15 +155,17 @@ the variables around it. (CRAM's, where it takes a name.)"
 
 (defun policed-text (policy arguments body)
   "Return plan text that does BODY while POLICY with ARGUMENTS is in force, all of them forms."
-  (with-gensyms (use over met value)
+  (with-gensyms (use over met value refused)
     (flet ((clause (reader)
              `(if (,reader (use-policy ,use))
                   (apply-plan (,reader (use-policy ,use)) (clause-arguments ,use)))))
-      `(let ((,use (begin-use ,policy (list ,@arguments))) (,met nil) (,value nil))
-         (if (not ,(clause 'policy-init))
-             (fail 'policy-init-failed :policy (use-policy ,use)))
+      `(let ((,use (begin-use ,policy (list ,@arguments)))
+             (,met nil) (,value nil) (,refused nil))
          (evap-protect
-          (seq (block ,over
+          (seq (if (not ,(clause 'policy-init))
+                   (seq (setq ,refused t)
+                        (fail 'policy-init-failed :policy (use-policy ,use))))
+               (block ,over
                  (with-policy (if (policy-check (use-policy ,use))
                                   (seq (wait-until ,(clause 'policy-check))
                                        (setq ,met t)
@@ -173,7 +175,7 @@ the variables around it. (CRAM's, where it takes a name.)"
                    (seq ,(clause 'policy-recover)
                         (fail 'policy-check-condition-met :policy (use-policy ,use))))
                ,value)
-          ,(clause 'policy-clean-up))))))
+          (if (not ,refused) ,(clause 'policy-clean-up)))))))
 
 (defun policies-text (policies body form)
   (unless (proper-list-p policies)

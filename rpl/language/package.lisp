@@ -24,7 +24,7 @@ DEFINE-CONSTRUCT adds to it.")
   ;; repeating
   (:export #:each-body-code #:give-way)
   ;; tags
-  (:export #:start-branch #:tags-in #:task-status #:with-tags-code)
+  (:export #:start-branch #:tagged-scope #:tags-in #:task-status #:with-tags-code)
   ;; calling
   (:export #:*plan-depth-limit*)
   ;; applying

@@ -3,7 +3,8 @@
 (in-package :ars-magna.rpl.language)
 
 ;;; WITH-TAGS binds the name of each (:tag name form) in it to a task that is yet to start, so that
-;;; other branches can refer to it before. A second run of the same form gets a task of its own.
+;;; other branches can refer to it before. A second run of the same form gets a task of its own,
+;;; with the same status fluent.
 
 (define-expression tagged
   "BODY as a task of its own called NAME. PLACE returns the environment that holds the task and
@@ -27,9 +28,12 @@ BODY is the code of and of the node that it stands for: see replacing.lisp."
     (let ((task (and holder (svref holder index))))
       (if (and task (eq (task-state task) :created))
           task
-          (let ((task (make-task (tagged-name node) (tagged-body node))))
-            (when holder (setf (svref holder index) task))
-            task)))))
+          (let ((new (make-task (tagged-name node) (tagged-body node))))
+            ;; Who follows the status of the tag goes on to do so.
+            (when (and task (task-over-p task))
+              (setf (task-status-fluent new) (task-status-fluent task)))
+            (when holder (setf (svref holder index) new))
+            new)))))
 
 (defun start-branch (branch task environment index level)
   "Start BRANCH as the part number INDEX of TASK; as the task of its tag, if it is tagged."
@@ -50,7 +54,8 @@ BODY is the code of and of the node that it stands for: see replacing.lisp."
                   :replaced '())))
 
 (defun tags-in (forms)
-  "Return the names of the tags in FORMS, not counting those that belong to a WITH-TAGS in them."
+  "Return the names of the tags in FORMS, not counting those that belong to a WITH-TAGS, or to each
+turn of a PAR-LOOP, in them."
   (let ((names '()))
     (labels ((search-in (form)
                (cond ((atom form))
@@ -58,7 +63,7 @@ BODY is the code of and of the node that it stands for: see replacing.lisp."
                       (pushnew (second form) names)
                       (search-all (cddr form)))
                      ((or (eq (first form) 'quote)
-                          (operator-in-p form '("WITH-TAGS" "PARTIAL-ORDER" "PLAN"))))
+                          (operator-in-p form '("WITH-TAGS" "PAR-LOOP" "PARTIAL-ORDER" "PLAN"))))
                      (t (search-all form))))
              (search-all (forms)
                (loop for tail = forms then (cdr tail)
@@ -66,21 +71,24 @@ BODY is the code of and of the node that it stands for: see replacing.lisp."
       (search-all forms))
     (nreverse names)))
 
+(defun tagged-scope (scope names first)
+  "Return SCOPE, in whose innermost environment the variables NAMES, from the place FIRST on, are
+tags."
+  (inner-scope scope
+               :task-tags (append (loop for name in names
+                                        for index from first
+                                        collect (list name (scope-level scope) index))
+                                  (scope-task-tags scope))))
+
 (defun with-tags-code (form names scope coder)
   "Return the code that CODER returns for a scope in which NAMES are bound to tasks."
   (if names
-      (let* ((inner (variable-scope scope names))
-             (level (scope-level inner))
-             (tags (loop for name in names
-                         for index from 1
-                         collect (list name level index))))
-        `(make-binding
-          :form ',form
-          :fill (lambda (environment)
-                  (vector environment
-                          ,@(loop for name in names collect `(make-task ',name +nothing+))))
-          :body ,(funcall coder (inner-scope inner
-                                             :task-tags (append tags (scope-task-tags scope))))))
+      `(make-binding
+        :form ',form
+        :fill (lambda (environment)
+                (vector environment
+                        ,@(loop for name in names collect `(make-task ',name +nothing+))))
+        :body ,(funcall coder (tagged-scope (variable-scope scope names) names 1)))
       (funcall coder scope)))
 
 (define-construct with-tags (&body body)

@@ -3,7 +3,8 @@
 (defpackage :ars-magna.rpl-robot
   (:documentation "The rpl- commands, accessors and fluents, and running plans on a simulation.")
   (:use :cl :ars-magna.base :ars-magna.robot :ars-magna.command)
-  (:import-from :ars-magna.world #:world-map #:*world* #:remaining-capacity)
+  (:import-from :ars-magna.world
+                #:world-map #:*world* #:remaining-capacity)
   (:import-from :ars-magna.time
                 #:*simulation* #:seconds-now #:current-simulation #:asking #:live-p
                 #:grab-resource #:wake-owner #:timeline-inbox #:agenda-pending #:*hog-seconds*
@@ -22,41 +23,40 @@
                 #:stop-plan #:plan-runner #:plan-runner-tasks #:plan-runner-steps #:current-task
                 #:task #:task-p #:task-over-p #:task-state #:task-result #:task-top
                 #:task-parent #:task-path #:task-label #:task-serial #:task-form #:task-cleaning
-                #:form-text #:plan-deadlocked-p #:report-deadlock #:report-end #:reseed-runner
-                #:digest-runner #:print-tasks #:find-procedure #:plan-trace #:write-trace
-                #:valve #:make-valve #:note-command #:with-answer #:*runner-in-use* #:*still*
-                #:*step-plans* #:*plan-start-hooks* #:start-trace #:task-runner)
+                #:form-text #:plan-deadlocked-p #:report-deadlock #:report-stillness
+                #:task-doomed #:report-end #:reseed-runner #:digest-runner #:print-tasks
+                #:find-procedure #:plan-trace #:write-trace #:valve #:make-valve #:note-command
+                #:with-answer #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks*
+                #:start-trace #:task-runner)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
-           #:robot-place-input* #:robot-place*
-           #:camera-input* #:camera-views* #:camera-designators* #:camera-error*
-           #:camera-tracking* #:camera-tracking-error* #:camera-moved* #:camera-movement-error*
-           #:hand-moved* #:hand-error* #:hand-lost* #:hand-inside* #:hand-grasping* #:hand-input*
-           #:storage-bin-moved* #:storage-bin-error* #:storage-bin-jammer*)
+           #:robot-place-input* #:robot-place* #:camera-input* #:camera-views*
+           #:camera-designators* #:camera-error* #:camera-tracking* #:camera-tracking-error*
+           #:camera-moved* #:camera-movement-error* #:hand-moved* #:hand-error* #:hand-lost*
+           #:hand-inside* #:hand-grasping* #:hand-input* #:storage-bin-moved*
+           #:storage-bin-error* #:storage-bin-jammer*)
   (:export #:define-fluents #:define-outcome)
   ;; interface, accessors
   (:export #:rpl-init-robot #:rpl-robot #:rpl-robot-valve #:rpl-robot-part #:*trace-plans*
-           #:rpl-robot-speed #:rpl-robot-turn-angle #:rpl-robot-num-cameras
-           #:rpl-robot-num-hands #:rpl-robot-num-bins #:rpl-camera-field-of-view
-           #:rpl-camera-resolution #:rpl-camera-angle #:rpl-camera-last-view
-           #:rpl-hand-strength #:rpl-storage-bin-capacity #:rpl-storage-bin-real-capacity
-           #:rpl-storage-bin-closed? #:rpl-designator-data #:rpl-new-odometer
-           #:rpl-grab-robot #:rpl-grab-camera #:rpl-grab-hand #:rpl-grab-bin)
+           #:rpl-robot-speed #:rpl-robot-turn-angle #:rpl-robot-num-cameras #:rpl-robot-num-hands
+           #:rpl-robot-num-bins #:rpl-camera-field-of-view #:rpl-camera-resolution
+           #:rpl-camera-angle #:rpl-camera-last-view #:rpl-hand-strength
+           #:rpl-storage-bin-capacity #:rpl-storage-bin-real-capacity #:rpl-storage-bin-closed?
+           #:rpl-designator-data #:rpl-new-odometer #:rpl-grab-robot #:rpl-grab-camera
+           #:rpl-grab-hand #:rpl-grab-bin)
   ;; commands
   (:export #:rpl-robot-set-speed #:rpl-robot-set-turn-angle #:rpl-robot-turn
            #:rpl-robot-about-face #:rpl-robot-turn-left #:rpl-robot-turn-right
            #:rpl-robot-turn-corner #:rpl-robot-align-place #:rpl-robot-go-forward
            #:rpl-robot-goto-wall #:rpl-robot-follow-wall #:rpl-robot-goto-designator
-           #:rpl-robot-stop #:rpl-robot-place
-           #:rpl-camera-turn #:rpl-camera-align-place #:rpl-camera-align-robot
-           #:rpl-camera-view #:rpl-camera-get-object-designator
+           #:rpl-robot-stop #:rpl-robot-place #:rpl-camera-turn #:rpl-camera-align-place
+           #:rpl-camera-align-robot #:rpl-camera-view #:rpl-camera-get-object-designator
            #:rpl-camera-get-all-object-designators #:rpl-camera-get-place-designator
            #:rpl-camera-get-all-place-designators #:rpl-camera-track #:rpl-camera-untrack
-           #:rpl-camera-insert #:rpl-camera-remove
-           #:rpl-hand-insert #:rpl-hand-insert-bin #:rpl-hand-remove #:rpl-hand-grasp-desig
-           #:rpl-hand-ungrasp #:rpl-hand-grasp-check #:rpl-hand-track
-           #:rpl-storage-bin-open #:rpl-storage-bin-close)
+           #:rpl-camera-insert #:rpl-camera-remove #:rpl-hand-insert #:rpl-hand-insert-bin
+           #:rpl-hand-remove #:rpl-hand-grasp-desig #:rpl-hand-ungrasp #:rpl-hand-grasp-check
+           #:rpl-hand-track #:rpl-storage-bin-open #:rpl-storage-bin-close)
   ;; running
   (:export #:run-plan #:begin-plan #:end-plan #:plans #:*plan-limit* #:rpl-runner)
   ;; seeing
-  (:export #:call-with-plans-in-use #:print-plans #:step-plan))
+  (:export #:plan-ending-p #:call-with-plans-in-use #:print-plans #:step-plan))

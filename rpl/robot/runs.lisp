@@ -62,9 +62,11 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
       (run-ticks 1 simulation))))
 
 (defun await-over (interface task)
-  "Wait until TASK is over, live. Return its state, or how it came that it is not over."
+  "Wait until TASK is over, live. Return its state, or how it came that it is not over. If nothing
+but somebody outside can let plans go on, say so, once."
   (let ((over (make-semaphore "plan over"))
-        (simulation (interface-simulation interface)))
+        (simulation (interface-simulation interface))
+        (told nil))
     (flet ((look (simulation)
              (declare (ignore simulation))
              (when (task-over-p task) (signal-semaphore over))))
@@ -74,7 +76,9 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
                        ((not (and (live-p simulation) (interface-valid-p interface)))
                         (return :stopped))
                        ((task-over-p task) (return (task-state task)))
-                       ((deadlocked-p interface) (return :deadlock)))
+                       ((and (not told) (deadlocked-p interface))
+                        (setf told t)
+                        (with-plans (interface) (report-stillness (interface-runner interface)))))
                  (wait-on-semaphore over 0.2))
         (asking (simulation) (remove-observer #'look simulation))))))
 
@@ -112,8 +116,9 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
 (defun run-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or its name, with ARGUMENTS on the robot of RPL-INIT-ROBOT, or on
 the only one of the current simulation. Return what it returns, or the failure with which it failed,
-and how it ended: :succeeded, :failed, :evaporated, :deadlock (it waits for what can never
-come), :limit (*PLAN-LIMIT* ticks have passed, headless) or :stopped (the simulator was stopped or
+and how it ended: :succeeded, :failed, :evaporated, :deadlock (headless; it waits for what can never
+come; live somebody may still bring that about, and there is a warning), :limit (*PLAN-LIMIT* ticks
+have passed, headless) or :stopped (the simulator was stopped or
 started anew, or the robot defined anew). Failures, deadlocks and limits are reported. A plan that
 is not over when RUN-PLAN returns or is left, as by an abort, ends. Signals UNKNOWN-NAME and
 MISUSE."
@@ -139,6 +144,13 @@ MISUSE."
   (stop-plan (interface-runner interface) task)
   (unless (or (holding-p interface) (thread-of interface))
     (with-plans (interface) (react-fully interface))))
+
+(defun plan-ending-p (task)
+  "True if somebody has ended TASK, a plan, which may still be under way."
+  (let ((interface (usable-interface)))
+    (or (task-over-p task)
+        (task-doomed task)
+        (and interface (member task (interface-unwanted interface)) t))))
 
 (addition end-plan)
 (defun end-plan (task)

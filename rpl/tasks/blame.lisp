@@ -34,7 +34,7 @@ counts as many steps as one could take meanwhile, so that a plan that only fails
                      (make-condition 'lisp-failure :condition condition
                                                    :backtrace (lisp-backtrace)))))
     (unless (failure-task-path failure)
-      (incf (runner-steps (task-runner task)) (if (typep failure 'lisp-failure) 500 20))
+      (incf (runner-steps (task-runner task)) (if (typep failure 'lisp-failure) 5000 200))
       (setf (failure-task-path failure) (task-path task)
             (failure-tick failure) (runner-tick (task-runner task))
             (failure-plan-backtrace failure) (plan-backtrace task frame)

@@ -55,8 +55,8 @@ plans nor a simulator.")
   ;; blame
   (:export #:*failure-hook* #:failure-of #:plan-backtrace)
   ;; report
-  (:export #:*plan-end-hooks* #:report-deadlock #:report-end #:report-failure #:task-awaits
-           #:*plan-start-hooks* #:blocker-of #:task-state-text #:write-task-line
+  (:export #:*plan-end-hooks* #:report-deadlock #:report-stillness #:report-end #:report-failure
+           #:task-awaits #:*plan-start-hooks* #:blocker-of #:task-state-text #:write-task-line
            #:write-task-tree)
   ;; engine
   (:export #:advance-timers #:apply-next-batch #:close-runner #:digest-runner #:idle-p
