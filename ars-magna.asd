@@ -90,7 +90,7 @@
                  (:file "machine")
                  (:file "ending") (:file "stepping") (:file "blame") (:file "shape")
                  (:file "procedure")
-                 (:file "report") (:file "care") (:file "engine") (:file "circles")
+                 (:file "report") (:file "courtesy") (:file "care") (:file "engine") (:file "circles")
                  (:file "gate") (:file "blocking") (:file "variables") (:file "places")
                  (:file "alone")))
    (:module "rpl/language" :serial t

@@ -266,3 +266,10 @@
                                                 (when (< (incf n) 3) (go again)))
                                        (rpl:wait-time 1)))
                            (list n (rpl:plan-time)))))))
+
+(test evap-protect.a-cleanup-that-went-well-is-not-complained-about
+  (is (null (reported
+              (is (eq :handled
+                      (plan-value
+                        (rpl:handle-failure ((t () (return :handled)))
+                          (rpl:evap-protect (rpl:fail) (rpl:wait-time 1))))))))))

@@ -207,3 +207,14 @@
   (let ((rpl:*plan-depth-limit* 10))
     (is (eq :bottom (rpl:run-plan-alone 'down-by :arguments '(10))))
     (is (eq :failed (nth-value 1 (rpl:run-plan-alone 'down-by :arguments '(11)))))))
+
+(test pulse.from-outside-is-heard-after-who-is-ready-has-come-to-its-wait
+  (with-runner (runner)
+    (let* ((f (fluent)) (plan (rpl:interp-lambda () (rpl:wait-for f) :heard))
+           (first (rpl:start-plan runner plan)))
+      (rpl:react-to-all runner)
+      (let ((second (rpl:start-plan runner plan)))
+        (rpl:pulse f)
+        (rpl:react-to-all runner)
+        (is (eq :heard (rpl:task-result first)))
+        (is (eq :heard (rpl:task-result second)))))))

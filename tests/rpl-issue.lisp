@@ -261,3 +261,30 @@ warnings that speak of what is done for ever."
                            (rpl:n-times 50 (driver:rpl-robot-turn 1) (driver:rpl-grab-robot))))
     (is (<= 9 ticks 10))
     (is (null texts))))
+
+;;; Who has not come to its wait yet.
+
+(test issue.who-has-not-come-to-its-wait-hears-it-there
+  "The task that takes the robot goes on only when the one that loses it has heard so."
+  (with-fitter (:clean t)
+    (is (equal '(:interrupt nil)
+               (run-as-plan
+                 (let ((first nil) (second nil))
+                   (rpl:par (rpl:seq (driver:rpl-robot-turn 2)
+                                     (rpl:wait-for driver:robot-stopped*)
+                                     (setf first (value-in driver:robot-movement-error*)))
+                            (rpl:seq (driver:rpl-robot-turn 1)
+                                     (rpl:wait-for driver:robot-stopped*)
+                                     (setf second (value-in driver:robot-movement-error*))))
+                   (list first second)))))))
+
+(test issue.a-policy-that-takes-the-robot-lets-the-body-hear-it
+  (with-fitter (:clean t)
+    (is (eq :interrupt
+            (run-as-plan
+              (let ((alarm (rpl:create-fluent 'alarm)))
+                (rpl:with-policy (rpl:seq (rpl:wait-for alarm) (driver:rpl-robot-turn 1/2))
+                  (driver:rpl-robot-turn 2)
+                  (rpl:pulse alarm)
+                  (rpl:wait-for driver:robot-stopped*)
+                  (value-in driver:robot-movement-error*))))))))

@@ -54,7 +54,11 @@ of PROTECTED."
    (inside
     (next cleaning-up)
     (start-cleanup cleanup task frame (make-completion value)))
-   (cleaning-up (receive task frame (end-cleanup task frame))))
+   (cleaning-up
+    (let ((signal (end-cleanup task frame)))
+      (if (completion-p signal)
+          (receive task frame signal)
+          (unwind task (frame-up frame) signal)))))
   (:unwind
    (cond ((in-state-p inside)
           (next cleaning-up)

@@ -13,19 +13,23 @@
   (highest 0 :type fixnum))
 
 (defstruct (home (:constructor make-home ()) (:copier nil))
-  "Where changes are heard. HOLDER is the thread that has it, ON-POST is called after each post. For
-whoever keeps a trace, ON-CHANGE is called with :SET or :PULSE, a base fluent and its value, before
+  "Where changes are heard. HOLDER is the thread that has it, ON-POST is called after each post.
+ATTENDED-P says whether a thread is there that will hear what is posted. For whoever keeps a trace, ON-CHANGE is called with :SET or :PULSE, a base fluent and its value, before
 anybody hears of that, and WRAPPER with each entry: it returns what is posted instead."
   (holder nil :type t)
   (backlog (make-backlog) :type backlog :read-only t)
   (inbox '() :type t)
   (outbox '() :type list)
   (on-post #'list :type function)
+  (attended-p (constantly nil) :type function)
   (on-change nil :type (or null function))
   (wrapper nil :type (or null function)))
 
 (defvar *runner* nil
   "The plan runner that this thread has, while plans run.")
+
+(defvar *home-in-use* (constantly nil)
+  "A function that returns the home of fluents that have none yet, where no plan is at work; or NIL.")
 
 ;;; Having it.
 
@@ -82,6 +86,7 @@ anybody hears of that, and WRAPPER with each entry: it returns what is posted in
 (document-functions
   home-on-post "Return the function that is called after each post, in the posting thread."
   make-backlog "Return an empty backlog, which grows as needed."
+  home-attended-p "Return the function that says whether a thread will hear what is posted."
   home-on-change "Return the function that is told of changes, or NIL. Can be set."
   home-wrapper "Return the function that is given what is posted, or NIL. Can be set."
   home-backlog "Return the derived fluents that are still to be computed.")

@@ -21,7 +21,7 @@ no plan.")
   (:export #:base-fluents #:depends-p #:fluent-watchers #:fl-apply #:fl-funcall #:fluent-text
            #:fluent-value #:unwatch #:watch)
   ;; home
-  (:export #:*runner* #:home #:home-on-post #:home-on-change #:home-wrapper #:home-backlog
+  (:export #:*runner* #:*home-in-use* #:home #:home-on-post #:home-attended-p #:home-on-change #:home-wrapper #:home-backlog
            #:at-home #:call-at-home #:post #:next-entry #:posted-p)
   ;; known
   (:export #:declare-fluent-variable #:known-fluent-variable-p #:known-vector-variable-p

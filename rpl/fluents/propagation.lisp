@@ -153,20 +153,12 @@ views that are true for the instant at which that change happened.")
 ;;; What is not the business of the runner at work is posted to the runner that it is of, or done at
 ;;; once while nobody has that.
 
-(defun elsewhere-p (fluent)
-  "True if changes of FLUENT are to be heard in another place than this thread is in."
+(defun elsewhere (fluent)
+  "Return where changes of FLUENT are to be heard, if that is not where this thread is; else NIL."
   (let ((home (fluent-home fluent)))
-    (and home (not (eq home *runner*)))))
-
-(defmacro where-it-is-heard ((home settings) &body body)
-  "Run BODY, which does what SETTINGS say, in HOME: now if no other thread has it; otherwise let
-SETTINGS be applied when that gets to it."
-  (once-only (home)
-    `(cond ((and (not (posted-p ,home)) (take-home ,home))
-            (unwind-protect (let ((*runner* ,home)) ,@body)
-              (leave-home ,home))
-            (funcall (home-on-post ,home)))
-           (t (post ,home ,settings)))))
+    (cond ((null home) (and (null *runner*) (funcall (the function *home-in-use*))))
+          ((eq home *runner*) nil)
+          (t home))))
 
 (defun set-now (fluent value)
   (unless (eql value (fluent-now fluent))
@@ -175,6 +167,17 @@ SETTINGS be applied when that gets to it."
     (note-change :set fluent value)
     (spread fluent)))
 
+(defun set-elsewhere (home fluent value)
+  "Give FLUENT, of HOME, VALUE: now if nobody has HOME or attends to it, otherwise when that gets to
+it."
+  (cond ((and (not (posted-p home))
+              (not (funcall (home-attended-p home)))
+              (take-home home))
+         (unwind-protect (let ((*runner* home)) (set-now fluent value))
+           (leave-home home))
+         (funcall (home-on-post home)))
+        (t (post home `((:set ,fluent ,value))))))
+
 (public set-value)
 (defun set-value (fluent value)
   "Give FLUENT the value VALUE and return it. Those who wait for FLUENT, or for a network that it
@@ -182,11 +185,14 @@ is in, hear of it if that changed something (EQL) and the outcome is true. FLUEN
 network. From outside of plans, in any thread, it is heard as soon as the plans at work have come to
 a pause (manual D.2)."
   (check-settable 'set-value fluent)
-  (unless (elsewhere-p fluent) (set-now fluent value))
-  ;; Perhaps somebody has just begun to wait for it, in another thread.
-  (when (elsewhere-p fluent)
-    (where-it-is-heard ((fluent-home fluent) `((:set ,fluent ,value)))
-      (set-now fluent value)))
+  (let ((home (elsewhere fluent)))
+    (if home
+        (set-elsewhere home fluent value)
+        (set-now fluent value))
+    ;; Perhaps somebody has just begun to wait for it, in another thread.
+    (unless (or home *runner*)
+      (let ((home (elsewhere fluent)))
+        (when home (set-elsewhere home fluent value)))))
   value)
 
 (defun (setf fluent-value) (value fluent)
@@ -225,10 +231,10 @@ a pause (manual D.2)."
 for a network that is true at that instant, will wake. Return VALUE. From outside of plans, in any
 thread, it is heard as soon as the plans at work have come to a pause (manual C)."
   (check-settable 'pulse fluent)
-  (if (elsewhere-p fluent)
-      (where-it-is-heard ((fluent-home fluent) `((:pulse ,fluent ,value)))
-        (pulse-now fluent value))
-      (pulse-now fluent value))
+  (let ((home (elsewhere fluent)))
+    (if home
+        (post home `((:pulse ,fluent ,value)))
+        (pulse-now fluent value)))
   value)
 
 (defun apply-settings (settings)

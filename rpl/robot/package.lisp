@@ -18,8 +18,8 @@
                 #:participant-reseed #:participant-digest #:participant-end)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:fluent-value
-                #:apply-settings #:*runner* #:post-call #:react-to-all #:exhaust-reaction
-                #:close-runner #:advance-timers #:next-wake-time #:make-plan-runner #:start-plan
+                #:apply-settings #:*home-in-use* #:*runner* #:post-call #:react-to-all #:exhaust-reaction
+                #:close-runner #:tell-at-rest #:advance-timers #:next-wake-time #:make-plan-runner #:start-plan
                 #:stop-plan #:plan-runner #:plan-runner-tasks #:plan-runner-steps #:current-task
                 #:task #:task-p #:task-over-p #:task-state #:task-result #:task-top
                 #:task-parent #:task-path #:task-label #:task-serial #:task-form #:task-cleaning

@@ -102,4 +102,5 @@ not count: they tell plans nothing."
                       :clock (lambda () (seconds-when-live simulation))
                       :slow *hog-seconds*
                       :on-post (lambda () (wake interface))
+                      :attended-p (lambda () (thread-of interface))
                       :on-end (lambda (task) (note-end interface task)))))

@@ -2,7 +2,10 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(setf *runner-in-use* (lambda () (and *interface* (interface-runner *interface*))))
+(setf *runner-in-use* (lambda () (and *interface* (interface-runner *interface*)))
+      *home-in-use* (lambda ()
+                      (let ((interface (usable-interface)))
+                        (and interface (interface-runner interface)))))
 
 (defun trace-if-wanted (task)
   "Let the runner of TASK, a plan that starts, keep a trace if *TRACE-PLANS* says so."

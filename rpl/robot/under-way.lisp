@@ -113,18 +113,21 @@ somebody has done so before."
 ;;; Telling before the simulator does.
 
 (defun tell-interrupted (deed)
-  "Let plans hear that DEED was interrupted."
+  "Let plans hear that DEED was interrupted, as soon as who asked for it has come to its wait."
   (setf (deed-told-p deed) t)
-  (with-answer ((deed-issue deed) :interrupt)
-    (apply-settings (plain-settings (funcall (deed-outcome deed) (deed-resource deed)
-                                             :interrupt)))))
+  (tell-at-rest (deed-task deed)
+                (lambda ()
+                  (with-answer ((deed-issue deed) :interrupt)
+                    (apply-settings (plain-settings
+                                     (funcall (deed-outcome deed) (deed-resource deed)
+                                              :interrupt)))))))
 
 (defun hear-answers-on (resource interface except)
   "Let plans hear what has been answered on RESOURCE, but for answers to EXCEPT."
   (dolist (answer (interface-answers interface))
     (let ((deed (answer-deed answer)))
       (when (and (eq resource (deed-resource deed)) (not (eq deed except)))
-        (hear answer interface)))))
+        (tell-at-rest (deed-task deed) (lambda () (hear answer interface)))))))
 
 (defun ends-by-command-p (deed)
   "True if a new command on its resource interrupts DEED when it is issued: unless it takes no time,

@@ -9,11 +9,6 @@
 
 ;;; What happens to the task.
 
-(defun running-task (runner)
-  "Return the task of RUNNER whose step is under way, or NIL."
-  (let ((task (runner-current runner)))
-    (and task (eq (task-state task) :running) task)))
-
 (defun current-failure (runner condition)
   "Return the failure of the running task of RUNNER that CONDITION, which it met, means."
   (let ((task (runner-current runner)))

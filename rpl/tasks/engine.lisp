@@ -10,19 +10,21 @@
 ;;; thread at a time; any thread may post.
 
 (defun make-plan-runner (&key trace budget clock (slow 0.1d0) dice (ticks-per-second 20)
-                           (tick 0) (busy-p (constantly nil)) (on-post #'list) on-tick
+                           (tick 0) (busy-p (constantly nil)) (on-post #'list)
+                           (attended-p (constantly nil)) on-tick
                            (on-end #'report-end))
   "Return what runs plans, at TICK. TRACE says whether to keep a trace. BUDGET is how many steps a
 reaction may take before time passes (NIL: as many as it needs). CLOCK, a function that returns
 seconds, serves to warn of Lisp code that runs for more than SLOW seconds. DICE choose for TRY-ONE.
 BUSY-P says whether somebody else, such as a command under way, may still post. ON-POST is called
-after each post, in the posting thread, ON-TICK, if given, with the tick when time has passed,
-ON-END with each top-level task that ends; by default it reports failures."
+after each post, in the posting thread; ATTENDED-P says whether a thread will hear that anyway.
+ON-TICK, if given, is called with the tick when time has passed, ON-END with each top-level task that
+ends; by default it reports failures."
   (check-argument make-plan-runner budget (or (null budget) (whole-p budget 1))
                   "NIL or an integer from 1 to 1e9")
   (let ((runner (%make-plan-runner :trace (and trace (make-trace)) :budget budget :clock clock
                                    :slow slow :dice dice :ticks-per-second ticks-per-second
-                                   :tick tick :busy-p busy-p :on-post on-post
+                                   :tick tick :busy-p busy-p :on-post on-post :attended-p attended-p
                                    :on-tick (ensure-list on-tick) :on-end on-end)))
     (when trace (trace-changes runner))
     runner))
@@ -52,9 +54,11 @@ Return the task, which runs at the next reaction."
   (loop
     (when (runner-doomed runner) (end-doomed runner))
     (when (>= (runner-steps runner) (runner-limit runner)) (return :budget))
+    (when (runner-courtesies runner) (settle-courtesies runner))
     (let ((task (take-ready runner)))
-      (unless task (return :idle))
-      (run-task task))))
+      (cond (task (run-task task))
+            ((and (runner-courtesies runner) (settle-courtesies runner)))
+            (t (return :idle))))))
 
 (defun run-round (runner)
   "Run the ready tasks of RUNNER, whatever becomes of one. Return as RUN-READY does."

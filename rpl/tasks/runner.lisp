@@ -38,6 +38,7 @@ end. SPENT are the ready tasks that have used their slice in this ROUND, the las
   (round 0 :type fixnum)
   (spent '() :type list)
   (exhausted nil :type boolean)
+  (courtesies '() :type list)
   (doomed '() :type t)
   (budget nil :type (or null (integer 1)))
   (ticks-per-second 20 :type (real (0)))
@@ -84,6 +85,11 @@ end. SPENT are the ready tasks that have used their slice in this ROUND, the las
 (defun current-task ()
   "Return the task that asks."
   (runner-current *runner*))
+
+(defun running-task (runner)
+  "Return the task of RUNNER whose step is under way, or NIL."
+  (let ((task (runner-current runner)))
+    (and task (eq (task-state task) :running) task)))
 
 ;;; The ready queues.
 

@@ -54,8 +54,9 @@ VALUE are what the last step returned; return what it should have."
          (kept (and (plusp (runner-blocks runner)) (blocked-p task))))
     (setf (runner-mask runner) mask)
     (cond ((task-signal task) (evaporate-self task frame))
-          ((or (null frame) (eq frame +parked+) (not (or preempted spent kept)))
-           (values frame value))
+          ((or (null frame) (eq frame +parked+)) (values frame value))
+          ((and (runner-courtesies runner) (give-way-to-hearer task frame value)) +parked+)
+          ((not (or preempted spent kept)) (values frame value))
           (t (setf (task-frame task) frame
                    (task-value task) value)
              (if (and preempted (not kept)) (make-ready-first task) (make-ready task))

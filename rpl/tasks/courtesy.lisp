@@ -1,0 +1,62 @@
+;;;; courtesy.lisp -- letting another task hear something before one goes on.
+
+(in-package :ars-magna.rpl.tasks)
+
+;;; Who tells a task something by a pulse must not do so before that task has come to its wait. So it
+;;; gives way until the other has come to rest: until that waits, is over, is kept from running, or
+;;; has used its slice.
+
+(defstruct (courtesy (:constructor make-courtesy (hearer teller function)) (:copier nil))
+  "That the task TELLER does not go on before FUNCTION has been called, which is when the task HEARER
+has come to rest."
+  (hearer nil :type task :read-only t)
+  (teller nil :type task :read-only t)
+  (function nil :type function :read-only t))
+
+(defmethod awaited-text ((courtesy courtesy))
+  (format nil "task ~D to hear something" (task-serial (courtesy-hearer courtesy))))
+
+(defun at-rest-p (task runner)
+  "True if TASK of RUNNER does not go on for now."
+  (case (task-state task)
+    (:running nil)
+    (:ready (or (spent-p task runner) (blocked-p task)))
+    (t t)))
+
+(defun tell-at-rest (hearer function)
+  "Call FUNCTION, which lets the task HEARER hear something, now, if that is at rest or there is none.
+Otherwise do so as soon as it is, and let the task at work give way until then."
+  (let* ((runner *runner*)
+         (teller (running-task runner)))
+    (cond ((or (null hearer) (null teller) (eq hearer teller)
+               (not (eq runner (task-runner hearer)))
+               (at-rest-p hearer runner))
+           (funcall function))
+          (t (setf (runner-courtesies runner)
+                   (append (runner-courtesies runner)
+                           (list (make-courtesy hearer teller function)))
+                   (runner-mask runner) (logior +interrupt+ (runner-mask runner)))))))
+
+(defun give-way-to-hearer (task frame value)
+  "Let TASK wait, to go on with FRAME and VALUE, if it has somebody to tell something. True if so."
+  (let ((courtesy (find task (runner-courtesies (task-runner task)) :key #'courtesy-teller)))
+    (when courtesy
+      (park task courtesy)
+      (setf (task-frame task) frame
+            (task-value task) value))))
+
+(defun settle (courtesy)
+  "Do what COURTESY is for."
+  (let ((teller (courtesy-teller courtesy)))
+    (call-user-code (courtesy-function courtesy) "what a plan is told")
+    (when (eq courtesy (task-awaiting teller))
+      (wake teller (task-value teller)))))
+
+(defun settle-courtesies (runner)
+  "Let those tasks of RUNNER that have come to rest hear what they are to. True if there were such."
+  (let ((due (remove-if-not (lambda (courtesy) (at-rest-p (courtesy-hearer courtesy) runner))
+                            (runner-courtesies runner))))
+    (when due
+      (setf (runner-courtesies runner) (set-difference (runner-courtesies runner) due))
+      (mapc #'settle due)
+      t)))
