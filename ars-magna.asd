@@ -83,14 +83,14 @@
    (:module "rpl/fluents" :serial t
     :components ((:file "package") (:file "home") (:file "fluent") (:file "network")
                  (:file "known") (:file "propagation")
-                 (:file "views") (:file "operators")))
+                 (:file "views") (:file "repair") (:file "operators")))
    (:module "rpl/tasks" :serial t
     :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
                  (:file "task") (:file "trace") (:file "runner") (:file "tracing")
                  (:file "machine")
                  (:file "ending") (:file "stepping") (:file "blame") (:file "shape")
                  (:file "procedure")
-                 (:file "report") (:file "courtesy") (:file "care") (:file "engine") (:file "circles")
+                 (:file "report") (:file "courtesy") (:file "repair") (:file "care") (:file "engine") (:file "circles")
                  (:file "gate") (:file "blocking") (:file "variables") (:file "places")
                  (:file "alone")))
    (:module "rpl/language" :serial t

@@ -6,12 +6,17 @@
   "Let the task that WATCHER is for go on with VALUE, or fail of TROUBLE: it heard what it wanted."
   (let ((task (watcher-client watcher)))
     (unwatch watcher)
-    (when (task-timer task)
-      (cancel-timer (task-timer task) (runner-timers (task-runner task)))
-      (setf (task-timer task) nil))
-    (when trouble
-      (setf (task-signal task) (failure-of trouble task (task-frame task))))
-    (wake task value)))
+    (when (eq watcher (task-awaiting task))
+      (wake-from-wait task value trouble))))
+
+(defun wake-from-wait (task value trouble)
+  "Let TASK, which waits for a fluent, go on with VALUE, or fail of TROUBLE."
+  (when (task-timer task)
+    (cancel-timer (task-timer task) (runner-timers (task-runner task)))
+    (setf (task-timer task) nil))
+  (when trouble
+    (setf (task-signal task) (failure-of trouble task (task-frame task))))
+  (wake task value))
 
 (defun wait-until-heard (task condition)
   "Let TASK wait until CONDITION, a fluent that is false, changes. Another object never does."

@@ -14,7 +14,9 @@
 
 (defstruct (home (:constructor make-home ()) (:copier nil))
   "Where changes are heard. HOLDER is the thread that has it, ON-POST is called after each post.
-ATTENDED-P says whether a thread is there that will hear what is posted. For whoever keeps a trace, ON-CHANGE is called with :SET or :PULSE, a base fluent and its value, before
+ATTENDED-P says whether a thread is there that will hear what is posted. LEFT-P is true while a thread
+has it, and afterwards if that has left it in the middle of something: then REPAIRER is called with
+it before anything else is done. For whoever keeps a trace, ON-CHANGE is called with :SET or :PULSE, a base fluent and its value, before
 anybody hears of that, and WRAPPER with each entry: it returns what is posted instead."
   (holder nil :type t)
   (backlog (make-backlog) :type backlog :read-only t)
@@ -22,6 +24,8 @@ anybody hears of that, and WRAPPER with each entry: it returns what is posted in
   (outbox '() :type list)
   (on-post #'list :type function)
   (attended-p (constantly nil) :type function)
+  (left-p nil :type boolean)
+  (repairer #'identity :type function)
   (on-change nil :type (or null function))
   (wrapper nil :type (or null function)))
 
@@ -33,22 +37,49 @@ anybody hears of that, and WRAPPER with each entry: it returns what is posted in
 
 ;;; Having it.
 
+;; An interrupt may come even before a thread that leaves a home has said so. Bindings are undone
+;; all the same.
+(defvar *homes* '()
+  "The homes that this thread has.")
+
 (defun take-home (home)
   "Let this thread have HOME. True unless another one has it."
-  (swap-if (home-holder home) nil (current-thread)))
+  (or (swap-if (home-holder home) nil (current-thread))
+      (and (eq (home-holder home) (current-thread))
+           (not (member home *homes* :test #'eq)))))
 
 (defun leave-home (home)
-  (setf (home-holder home) nil))
+  "Let this thread no longer have HOME, if it does."
+  (swap-if (home-holder home) (current-thread) nil))
+
+(defun call-having (home take function)
+  "Call FUNCTION in HOME, and leave that, if TAKE, called with it, returns true. True if so. An
+interrupt may come at any point."
+  (declare (type function take function))
+  (unwind-protect
+       (when (funcall take home)
+         (let ((*runner* home) (*homes* (cons home *homes*)))
+           (when (home-left-p home) (funcall (home-repairer home) home))
+           (setf (home-left-p home) t)
+           (funcall function)
+           (setf (home-left-p home) nil)
+           t))
+    (leave-home home)))
+
+(defun wait-for-home (home)
+  (loop until (take-home home) do (yield-thread))
+  t)
 
 (defun call-at-home (home function)
   "Call FUNCTION while this thread has HOME. If another one has it wait until it is free."
   (declare (type function function))
   (cond ((eq home *runner*) (funcall function))
-        ((eq (home-holder home) (current-thread))
+        ((member home *homes* :test #'eq)
          (let ((*runner* home)) (funcall function)))
-        (t (loop until (take-home home) do (yield-thread))
-           (unwind-protect (let ((*runner* home)) (funcall function))
-             (leave-home home)))))
+        (t (let ((values '()))
+             (call-having home #'wait-for-home
+                          (lambda () (setf values (multiple-value-list (funcall function)))))
+             (values-list values)))))
 
 (defmacro at-home ((home) &body body)
   "Run BODY as CALL-AT-HOME would a function."

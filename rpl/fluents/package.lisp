@@ -15,7 +15,7 @@ no plan.")
   (:local-nicknames (:lifted :ars-magna.rpl.lifted))
   ;; fluent
   (:export #:create-fluent #:create-fluent-vector #:fluent #:fluent-name #:fluent-p
-           #:make-watcher #:state #:watcher #:watcher-client #:watcher-pending #:watcher-fluent
+           #:make-watcher #:state #:watcher #:watcher-client #:watcher-wake #:watcher-pending #:watcher-fluent
            #:watcher-p)
   ;; network
   (:export #:base-fluents #:depends-p #:fluent-watchers #:fl-apply #:fl-funcall #:fluent-text
@@ -27,7 +27,7 @@ no plan.")
   (:export #:declare-fluent-variable #:known-fluent-variable-p #:known-vector-variable-p
            #:one-fluent #:truth-value)
   ;; propagation
-  (:export #:apply-settings #:clear-backlog #:pulse #:set-value)
+  (:export #:apply-settings #:clear-backlog #:repair-fluents #:pulse #:set-value)
   ;; views
   (:export #:fl-pulsed #:fl-value-changed)
   ;; operators

@@ -170,13 +170,11 @@ views that are true for the instant at which that change happened.")
 (defun set-elsewhere (home fluent value)
   "Give FLUENT, of HOME, VALUE: now if nobody has HOME or attends to it, otherwise when that gets to
 it."
-  (cond ((and (not (posted-p home))
-              (not (funcall (home-attended-p home)))
-              (take-home home))
-         (unwind-protect (let ((*runner* home)) (set-now fluent value))
-           (leave-home home))
-         (funcall (home-on-post home)))
-        (t (post home `((:set ,fluent ,value))))))
+  (if (and (not (posted-p home))
+           (not (funcall (home-attended-p home)))
+           (call-having home #'take-home (lambda () (set-now fluent value))))
+      (funcall (home-on-post home))
+      (post home `((:set ,fluent ,value)))))
 
 (public set-value)
 (defun set-value (fluent value)

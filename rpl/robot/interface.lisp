@@ -60,14 +60,18 @@ SAVE-PLAN-TIMELINE.")
 
 ;;; Who touches the plans.
 
+(defvar *held* '()
+  "The interfaces whose plans this thread holds.")
+
 (defun holding-p (interface)
   "True if this thread is letting the plans of INTERFACE react, or looks at them."
-  (eq (interface-holder interface) (current-thread)))
+  (and (member interface *held* :test #'eq) t))
 
 (defun call-holding (function interface)
   "Call FUNCTION, holding the plans of INTERFACE, which this thread has locked."
-  (setf (interface-holder interface) (current-thread))
-  (unwind-protect (funcall function)
+  (unwind-protect (let ((*held* (cons interface *held*)))
+                    (setf (interface-holder interface) (current-thread))
+                    (funcall function))
     (setf (interface-holder interface) nil)))
 
 (defun check-not-kept (interface)

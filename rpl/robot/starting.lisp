@@ -54,8 +54,9 @@ and MISUSE if the robot is in another world than the current one."
     (when (and *interface* (ended-by-p *interface* simulation))
       (close-interface *interface*))
     (make-fluents robot)
-    (setf *interface* (make-interface robot simulation))
-    (attach *interface*)
+    (let ((interface (make-interface robot simulation)))
+      (attach interface)
+      (setf *interface* interface))
     robot))
 
 ;;; When a simulator starts.

@@ -21,16 +21,24 @@
     (setf (task-signal task) (current-failure runner trouble))
     (make-ready-first task)))
 
+(defun cleaner-around (task)
+  "Return the innermost of TASK and those that it is part of that is cleaning up, or NIL."
+  (loop for each = task then (task-parent each)
+        while each
+        when (task-cleaning each) return each))
+
+(defun end-plan-of (task)
+  "Evaporate the plan of TASK, which is ready; if that was cleaning up, not to the end."
+  (let ((cleaner (cleaner-around task)))
+    (evaporate (task-top task))
+    (when (and cleaner (not (task-over-p cleaner))) (give-up-cleanup cleaner))))
+
 (defun end-current (runner)
   "Evaporate the plan of the running task of RUNNER; if that was cleaning up, not to the end."
-  (let* ((task (runner-current runner))
-         (cleaner (loop for each = task then (task-parent each)
-                        while each
-                        when (task-cleaning each) return each)))
+  (let ((task (runner-current runner)))
     (setf (task-signal task) nil)
     (make-ready-first task)
-    (evaporate (task-top task))
-    (when cleaner (give-up-cleanup cleaner))))
+    (end-plan-of task)))
 
 (defun report-abort (runner)
   (let ((task (runner-current runner)))
@@ -38,8 +46,12 @@
 
 (defun put-in-order (runner)
   "Let RUNNER be fit to go on after a step has been left for good: the plan that took it ends."
-  (clear-backlog runner)
-  (when (running-task runner) (end-current runner)))
+  (let ((task (running-task runner)))
+    (when task
+      (setf (task-state task) :ready
+            (task-signal task) nil))
+    (repair runner)
+    (when (and task (not (task-over-p task))) (end-plan-of task))))
 
 ;;; Calling.
 
@@ -62,7 +74,7 @@
 (defun call-with-care (runner function)
   "Call FUNCTION with RUNNER and return its value; NIL if the step of a task met trouble, which that
 task has to bear."
-  (let ((fate nil) (trouble nil) (result nil))
+  (let ((fate nil) (trouble nil) (result nil) (anywhere nil))
     (unwind-protect
          (block call
            (labels ((bear (what) (setf fate what) (return-from call))
@@ -72,6 +84,10 @@ task has to bear."
                         (setf trouble (current-failure runner (or trouble (make-failure '())))))
                       (bear :fail))
                     (note (condition)
+                      ;; A limit to the time of more than this plan is for those who set it.
+                      (when (typep condition 'time-limit)
+                        (signal condition)
+                        (setf anywhere t))
                       (when (running-task runner)
                         (setf trouble condition)
                         (when (and *break-on-user-error* (typep condition 'error))
@@ -91,7 +107,8 @@ task has to bear."
                             (answering-debugger (#'answer)
                               (call-offering-ends runner function #'fail #'end)))
                    fate :done)))
-      (unless fate (put-in-order runner)))
+      (cond ((null fate) (put-in-order runner))
+            (anywhere (repair runner))))
     (ecase fate
       (:done)
       (:fail (fail-current runner trouble))

@@ -25,6 +25,7 @@ ends; by default it reports failures."
   (let ((runner (%make-plan-runner :trace (and trace (make-trace)) :budget budget :clock clock
                                    :slow slow :dice dice :ticks-per-second ticks-per-second
                                    :tick tick :busy-p busy-p :on-post on-post :attended-p attended-p
+                                   :repairer #'put-in-order
                                    :on-tick (ensure-list on-tick) :on-end on-end)))
     (when trace (trace-changes runner))
     runner))
