@@ -6,12 +6,9 @@
 ;;; when all has been read that is compiled or loaded together, as Lisp does with its functions.
 ;;; What Lisp code calls is for Lisp to see.
 
-(defun place-to-tell (form)
-  (and (not *compile-file-truename*) (clause-place form)))
-
 (defun warn-of-call (warn form control &rest arguments)
   "Let WARN, a function, say of FORM what is formatted from CONTROL and ARGUMENTS."
-  (funcall warn "~A~@[ (~A)~]: ~A" (author) (place-to-tell form)
+  (funcall warn "~A~@[ (~A)~]: ~A" (author) (clause-place form)
            (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
 
 (defun known-operators ()
