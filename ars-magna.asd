@@ -208,7 +208,7 @@
                  (:file "rpl-at-location") (:file "rpl-replacing") (:file "rpl-examples")
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-issue")
                  (:file "rpl-left") (:file "rpl-robot-live")
-                 (:file "rpl-text")
+                 (:file "rpl-text") (:file "rpl-text-places")
                  (:file "rpl-examples-robot") (:file "rpl-examples-goals")
                  (:file "plans") (:file "plans-killed")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")

@@ -63,6 +63,10 @@ a fluent: the stays under way."
   (check-argument at-location attempts (whole-p attempts 0) "an integer from 0 to 1e9")
   attempts)
 
+(defun given-p (key form)
+  "True if FORM, an AT-LOCATION, has KEY, be it only with NIL."
+  (and (get-properties (rest (second form)) (list key)) t))
+
 (defun at-location-text (place there go attempts body)
   "Return plan text that does BODY at PLACE, where GO leads and THERE is true."
   (with-gensyms (at most left here stay done again lost)
@@ -98,7 +102,7 @@ Of several at once in the plans of a robot, one whose place fits does not drive;
 in order of arrival, until nobody is at a place. (CRAM's; THERE and GO are ours, where CRAM asks its
 process modules.)"
   (:code (progn
-           (unless (and there go)
-             (reject-clause "plan" form "(at-location (place :there test :go form) form...)"))
+           (unless (and (given-p :there form) (given-p :go form))
+             (reject-clause (author) form "(at-location (place :there test :go form) form...)"))
            (plan-code (note-own-text (at-location-text place there go (or attempts 10) body))
                       scope))))

@@ -23,7 +23,7 @@
 
 (defun check-clause (clause form)
   (unless (typep clause '(cons t (cons list t)))
-    (reject-clause "plan" form "clauses such as (type (variable) form...)")))
+    (reject-clause (author) form "clauses such as (type (variable) form...)")))
 
 (define-construct with-failure-handling (clauses &body body)
   "Run BODY in a plan; a failure is handled by the first of CLAUSES, (type (variable) form...),
@@ -71,4 +71,4 @@ at the handler's end the failure goes on."
   (:code
    (if (scope-retry scope)
        `(make-leave :form ',form :target ,(scope-retry scope) :result +nothing+)
-       (reject-clause "plan" form "retry only in a handler of handle-failure"))))
+       (reject-clause (author) form "retry only in a handler of handle-failure"))))

@@ -51,8 +51,11 @@ an error message says so (manual D; priorities ours)."
    nil))
 
 (defun split-valves (valves)
-  "Return those of VALVES that come before :priority, and the form after that."
-  (let ((rest (member :priority valves)))
+  "Return those of VALVES that come before :priority, and the form after that. Signals
+MALFORMED-DEFINITION."
+  (let ((rest (member-if #'keywordp valves)))
+    (unless (typep rest '(or null (cons (eql :priority) (cons t null))))
+      (reject-clause (author) valves "(valve... [:priority number])"))
     (values (ldiff valves rest) (second rest))))
 
 (define-construct with-valves ((&rest valves) &body body)

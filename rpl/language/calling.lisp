@@ -58,7 +58,8 @@ class :TOO-DEEP: a number from 1. A plan that calls itself without end fails so 
   "Note how deep the call of FRAME is, or let TASK fail if that is too deep."
   (let ((depth (1+ (the fixnum (depth-around task (frame-up frame))))))
     (when (> depth *plan-depth-limit*)
-      (fail :class :too-deep :depth depth))
+      (fail :class :too-deep :depth depth :limit *plan-depth-limit*
+            :remedy "See to it that the plan ends, or set *plan-depth-limit*"))
     (setf (frame-data frame) depth)))
 
 ;;; Calling Lisp.
@@ -75,4 +76,5 @@ class :TOO-DEEP: a number from 1. A plan that calls itself without end fails so 
       (reject-use "There is no plan procedure or function ~S. Calls go by the very symbol: if the ~
                    plan ~:*~A of another package is meant, write ~S."
                   name (procedure-name namesake)))
-    (reject-name "plan procedure or function" name (mapcar #'procedure-name (all-procedures)))))
+    (reject-name "plan procedure or function" name (mapcar #'procedure-name (all-procedures))
+                 (known-operators (or (symbol-package name) *package*)))))

@@ -38,7 +38,13 @@ BODY is the code of and of the node that it stands for: see replacing.lisp."
                    (tag-task branch environment))
       (spawn task branch environment index level)))
 
+(defun tag-name-p (name)
+  "True if NAME, in (:tag name form...), can be bound to a task."
+  (and (symbolp name) (not (constantp name))))
+
 (define-plan-form ":TAG" :must (name &rest body) (form scope)
+  (unless (tag-name-p name)
+    (reject-clause (author) form "(:tag name form...), with a symbol as the name of the task"))
   (destructuring-bind (&optional level index) (cdr (assoc name (scope-task-tags scope)))
     `(make-tagged :form ',form :name ',name
                   :place ,(if level
@@ -54,7 +60,7 @@ BODY is the code of and of the node that it stands for: see replacing.lisp."
   (let ((names '()))
     (labels ((search-in (form)
                (cond ((atom form))
-                     ((and (eq (first form) :tag) (typep (rest form) '(cons symbol t)))
+                     ((and (eq (first form) :tag) (consp (rest form)) (tag-name-p (second form)))
                       (pushnew (second form) names)
                       (search-all (cddr form)))
                      ((or (eq (first form) 'quote)

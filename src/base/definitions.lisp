@@ -56,8 +56,8 @@ loaded; NIL if it was typed."
                 (or (line-in-text (source-file source) clause (place-in-text clause)) line))))))
 
 (defun reject-clause (definition clause expected &optional (place (clause-place clause)))
-  "Signal MALFORMED-DEFINITION about CLAUSE of DEFINITION (a string such as \"defmap watson\"), which
-stands at PLACE."
+  "Signal MALFORMED-DEFINITION about CLAUSE, at PLACE, of DEFINITION, a string such as \"defmap
+watson\"."
   (when *definition* (setf (defining-clause *definition*) clause))
   (error 'malformed-definition :definition definition :clause clause :expected expected
                                :place place))

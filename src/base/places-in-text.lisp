@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.base)
 
-;;; The compiler knows which element of which form a form is: see PLACE-IN-TEXT. The text is followed
-;;; down to that as far as it can be: a quoted form, for one, is no list in the text. In what has
-;;; been reached, the form is looked for.
+;;; The compiler knows which element of which form a form is: see PLACE-IN-TEXT. The text is
+;;; followed down to that as far as it can be: a quoted form, for one, is no list in the text. In
+;;; what has been reached, the form is looked for.
 
 (defun skip-blanks (text i)
   "Return where in TEXT, at I or after it, something begins that is neither blank nor a comment."
