@@ -185,3 +185,23 @@
                                     (rpl:wait-time x)))))
   (is (eq :left (plan-value (dolist (x '(1) (return :left)) (rpl:wait-time x)))))
   (is (null (plan-value (dolist (x '(1 2)) (rpl:wait-time x))))))
+
+;;; Several values.
+
+(defmacro both-values (form)
+  "Return the list of the first two values of FORM in a plan that waits."
+  `(plan-value (multiple-value-bind (a b) ,form (list a b))))
+
+(test values.all-of-what-the-task-itself-runs-and-one-of-another-task
+  (let ((valve (rpl:make-valve 'valve)))
+    (is (equal '(1 2) (both-values (rpl:with-valve (valve) (rpl:wait-time 1) (values 1 2)))))
+    (is (equal '(1 2) (both-values (rpl:evap-protect (seq-of-two) nil))))
+    (is (equal '(1 2) (both-values (rpl:handle-failure () (seq-of-two)))))
+    (is (equal '(1 2) (both-values (rpl:try-in-order (rpl:fail) (seq-of-two)))))
+    (is (equal '(1 2) (both-values (rpl:call-plan 'seq-of-two)))))
+  (is (equal '(1 nil) (both-values (rpl:par 0 (seq-of-two)))))
+  (is (equal '(1 nil) (both-values (:tag part (seq-of-two)))))
+  (is (equal '(1 nil) (both-values (rpl:with-deadline (5) (seq-of-two)))))
+  (is (equal '(1 nil) (both-values (rpl:with-policy (rpl:wait-time 9) (seq-of-two))))))
+
+(rpl:def-interp-proc seq-of-two () (rpl:wait-time 1) (values 1 2))

@@ -93,14 +93,14 @@ a fluent: the stays under way."
             (go ,again))))))
 
 (define-construct at-location ((place &key there go attempts) &body body)
-  "Run BODY in a plan at PLACE and return its value. THERE and GO are forms: THERE says whether the
-robot is at the place, and is watched as by WAIT-UNTIL; GO, plan text, brings it there, and is not
-done if it is there already. When the place is lost, BODY evaporates, GO is done again and BODY
-starts anew, ATTEMPTS times at most, 10 if that is not given; then it fails with LOCATION-LOST, a
-failure that names PLACE. If GO does not lead there, that counts too; its failures are the plan's.
-Of several at once in the plans of a robot, one whose place fits does not drive; any other waits,
-in order of arrival, until nobody is at a place. (CRAM's; THERE and GO are ours, where CRAM asks its
-process modules.)"
+  "Run BODY in a plan at PLACE and return its value, one. THERE and GO are forms: THERE says
+whether the robot is at the place, and is watched as by WAIT-UNTIL; GO, plan text, brings it
+there, and is not done if it is there already. When the place is lost, BODY evaporates, GO is done
+again and BODY starts anew, ATTEMPTS times at most, 10 if that is not given; then it fails with
+LOCATION-LOST, a failure that names PLACE. If GO does not lead there, that counts too; its
+failures are the plan's. Of several at once in the plans of a robot, one whose place fits does not
+drive; any other waits, in order of arrival, until nobody is at a place. (CRAM's; THERE and GO are
+ours, where CRAM asks its process modules.)"
   (:code (progn
            (unless (and (given-p :there form) (given-p :go form))
              (reject-clause (author) form "(at-location (place :there test :go form) form...)"))

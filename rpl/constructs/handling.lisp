@@ -29,7 +29,7 @@
   "Run BODY in a plan; a failure is handled by the first of CLAUSES, (type (variable) form...),
 whose type it matches: T, a class given to FAIL, a condition type of failures or of Lisp's, or
 (or ...). The handler may wait. (return value) ends the whole with VALUE and (retry) runs BODY anew;
-at the handler's end the failure goes on."
+at the handler's end the failure goes on. Return all values of BODY."
   (:parts (body node (scope-retry scope))
           (types list `',(mapcar #'first clauses))
           (handlers simple-vector `(vector ,@(loop for clause in clauses

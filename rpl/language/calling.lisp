@@ -25,7 +25,7 @@ was compiled."
 
 (define-construct call-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or the name of one, with ARGUMENTS as part of a plan; return its
-value."
+values."
   (:arguments plan &rest arguments)
   (:parts (entry function (value-lambda `(enter-plan ,plan ,@arguments) scope)))
   (:steps
@@ -41,7 +41,8 @@ value."
 (addition *plan-depth-limit*)
 (defparameter *plan-depth-limit* 2000
   "How deep calls of plans may be in each other, also across tasks, before the call fails with the
-class :TOO-DEEP: a number from 1. A plan that calls itself without end fails so (ours).")
+class :TOO-DEEP, whose data name it: a number from 1. A plan that calls itself without end fails
+so (ours).")
 
 (defun depth-around (task frame)
   "Return how deep the innermost call is that FRAME of TASK is part of, 0 if there is none."

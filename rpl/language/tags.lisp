@@ -90,8 +90,9 @@ BODY is the code of and of the node that it stands for: see replacing.lisp."
       (funcall coder scope)))
 
 (define-construct with-tags (&body body)
-  "Run BODY in a plan with the name of each (:tag name form) in it bound to the task that runs that
-form: see TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. A procedure's body is a WITH-TAGS too."
+  "Run BODY in a plan with the name of each (:tag name form) in it bound to the task that runs
+that form, and returns one value of it: see TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. A
+procedure's body is a WITH-TAGS too."
   (:code (with-tags-code form (tags-in body) scope (lambda (scope) (body-code body scope)))))
 
 (addition task-status)
