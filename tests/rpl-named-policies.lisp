@@ -143,7 +143,7 @@
                   (rpl:define-policy bad)
                   (rpl:make-policy () (:initially t))))
     (signals base:malformed-definition (macroexpand-1 form)))
-  (signals base:misuse (macroexpand-1 '(rpl:policy-get 'x)))
+  (signals base:malformed-definition (macroexpand-1 '(rpl:policy-get 'x)))
   (dolist (form '((rpl:with-policies (told-policy) 1)
                   (rpl:with-policies 5 1)
                   (rpl:with-named-policy)))

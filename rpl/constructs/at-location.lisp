@@ -63,6 +63,10 @@ a fluent: the stays under way."
   (check-argument at-location attempts (whole-p attempts 0) "an integer from 0 to 1e9")
   attempts)
 
+(defun given-p (key form)
+  "True if FORM, an AT-LOCATION, has KEY, be it only with NIL."
+  (and (get-properties (rest (second form)) (list key)) t))
+
 (defun at-location-text (place there go attempts body)
   "Return plan text that does BODY at PLACE, where GO leads and THERE is true."
   (with-gensyms (at most left here stay done again lost)
@@ -89,16 +93,16 @@ a fluent: the stays under way."
             (go ,again))))))
 
 (define-construct at-location ((place &key there go attempts) &body body)
-  "Run BODY in a plan at PLACE and return its value. THERE and GO are forms: THERE says whether the
-robot is at the place, and is watched as by WAIT-UNTIL; GO, plan text, brings it there, and is not
-done if it is there already. When the place is lost, BODY evaporates, GO is done again and BODY
-starts anew, ATTEMPTS times at most, 10 if that is not given; then it fails with LOCATION-LOST, a
-failure that names PLACE. If GO does not lead there, that counts too; its failures are the plan's.
-Of several at once in the plans of a robot, one whose place fits does not drive; any other waits,
-in order of arrival, until nobody is at a place. (CRAM's; THERE and GO are ours, where CRAM asks its
-process modules.)"
+  "Run BODY in a plan at PLACE and return its value, one. THERE and GO are forms: THERE says
+whether the robot is at the place, and is watched as by WAIT-UNTIL; GO, plan text, brings it
+there, and is not done if it is there already. When the place is lost, BODY evaporates, GO is done
+again and BODY starts anew, ATTEMPTS times at most, 10 if that is not given; then it fails with
+LOCATION-LOST, a failure that names PLACE. If GO does not lead there, that counts too; its
+failures are the plan's. Of several at once in the plans of a robot, one whose place fits does not
+drive; any other waits, in order of arrival, until nobody is at a place. (CRAM's; THERE and GO are
+ours, where CRAM asks its process modules.)"
   (:code (progn
-           (unless (and there go)
-             (reject-clause "plan" form "(at-location (place :there test :go form) form...)"))
+           (unless (and (given-p :there form) (given-p :go form))
+             (reject-clause (author) form "(at-location (place :there test :go form) form...)"))
            (plan-code (note-own-text (at-location-text place there go (or attempts 10) body))
                       scope))))

@@ -31,7 +31,7 @@
   (when memory (cancel-timer (cdr memory) (runner-timers (task-runner task)))))
 
 (define-construct with-deadline ((span &key unit) &body body)
-  "Run BODY in a plan as a task of its own and return its value; if it has not ended SPAN ticks
+  "Run BODY in a plan as a task of its own and return its value, one; if it has not ended SPAN ticks
 after its start, or seconds if UNIT is :seconds, it evaporates, and then the whole fails with a
 DEADLINE-MISSED. Its cleanups may take longer. Time goes on while it is suspended. SPAN is a number
 up to 1e15; with 0 or less there is time for what takes none (ours; CRAM's is a timeout-policy)."

@@ -114,4 +114,4 @@ pattern that differs only in its variables replaces the definition. Signals MALF
 that commands have here.)"
   (:code (if (assoc 'succeed-with (scope-blocks scope))
              (plan-code (note-own-text `(return-from succeed-with (values ,@values))) scope)
-             (reject-clause "plan" form "succeed-with only in the body of a def-goal"))))
+             (reject-clause (author) form "succeed-with only in the body of a def-goal"))))

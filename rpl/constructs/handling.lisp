@@ -23,13 +23,13 @@
 
 (defun check-clause (clause form)
   (unless (typep clause '(cons t (cons list t)))
-    (reject-clause "plan" form "clauses such as (type (variable) form...)")))
+    (reject-clause (author) form "clauses such as (type (variable) form...)")))
 
 (define-construct with-failure-handling (clauses &body body)
   "Run BODY in a plan; a failure is handled by the first of CLAUSES, (type (variable) form...),
 whose type it matches: T, a class given to FAIL, a condition type of failures or of Lisp's, or
 (or ...). The handler may wait. (return value) ends the whole with VALUE and (retry) runs BODY anew;
-at the handler's end the failure goes on."
+at the handler's end the failure goes on. Return all values of BODY."
   (:parts (body node (scope-retry scope))
           (types list `',(mapcar #'first clauses))
           (handlers simple-vector `(vector ,@(loop for clause in clauses
@@ -71,4 +71,4 @@ at the handler's end the failure goes on."
   (:code
    (if (scope-retry scope)
        `(make-leave :form ',form :target ,(scope-retry scope) :result +nothing+)
-       (reject-clause "plan" form "retry only in a handler of handle-failure"))))
+       (reject-clause (author) form "retry only in a handler of handle-failure"))))

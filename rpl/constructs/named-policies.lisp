@@ -75,23 +75,25 @@
 (define-global +use-variable+ (make-symbol "USE")
   "The variable of each clause of a policy that holds its use.")
 
-(defun check-in-clause (operator environment)
+(defun check-in-clause (form environment)
   (unless (local-variable-p +use-variable+ environment)
-    (reject-use "~(~A~) remembers within a policy. Write it in a clause of define-policy, outside ~
-                 of any other interp-lambda." operator)))
+    (reject-clause (author) form
+                   (format nil "~(~A~) only in a clause of define-policy or make-policy, where it ~
+                                remembers, and outside of any other interp-lambda there"
+                           (first form)))))
 
 (addition policy-get)
-(defmacro policy-get (name &environment environment)
+(defmacro policy-get (&whole form name &environment environment)
   "In a clause of a policy: return what was last kept under NAME, which is evaluated, since it came
 into force; NIL if nothing was. See POLICY-SETF (CRAM's)."
-  (check-in-clause 'policy-get environment)
+  (check-in-clause form environment)
   `(remembered ,+use-variable+ ,name))
 
 (addition policy-setf)
-(defmacro policy-setf (name value &environment environment)
+(defmacro policy-setf (&whole form name value &environment environment)
   "In a clause of a policy: keep VALUE under NAME, both evaluated, for the other clauses and as long
 as the policy is in force. Return VALUE (CRAM's)."
-  (check-in-clause 'policy-setf environment)
+  (check-in-clause form environment)
   `(remember ,+use-variable+ ,name ,value))
 
 ;;; Defining.
@@ -179,10 +181,10 @@ the variables around it. (CRAM's, where it takes a name.)"
 
 (defun policies-text (policies body form)
   (unless (proper-list-p policies)
-    (reject-clause "plan" form "(with-policies ((policy (argument...))...) form...)"))
+    (reject-clause (author) form "(with-policies ((policy (argument...))...) form...)"))
   (dolist (policy policies)
     (unless (typep policy '(cons t (cons list null)))
-      (reject-clause "plan" policy "(policy (argument...)) for each policy")))
+      (reject-clause (author) policy "(policy (argument...)) for each policy")))
   (loop with text = `(seq ,@body)
         for (policy arguments) in (reverse policies)
         do (setf text (policed-text policy arguments (list text)))

@@ -78,14 +78,14 @@ MISUSE."
               (member name (tags-in steps))
               (member name (scope-variables scope))
               (known-variable-p name (scope-environment scope)))
-    (reject-clause "plan" form
+    (reject-clause (author) form
                    (format nil "in :order tags that are in scope, not ~(~A~)" name))))
 
 (defun read-orders (steps constraints form scope)
   "Return a list of (earlier later), forms, for each of CONSTRAINTS of FORM."
   (loop for constraint in (constraint-list constraints)
         do (unless (typep constraint '(cons (eql :order) (cons t (cons t t))))
-             (reject-clause "plan" constraint "(:order earlier later)"))
+             (reject-clause (author) constraint "(:order earlier later)"))
            (check-visible form (second constraint) steps scope)
            (check-visible form (third constraint) steps scope)
         collect (list (second constraint) (third constraint))))
@@ -128,7 +128,7 @@ MISUSE."
   "Signal MALFORMED-DEFINITION if ORDERS of STEPS, where they are of names, can never be kept."
   (when (circular-p (precedences (remove-if-not (lambda (order) (every #'symbolp order)) orders)
                                  (nested-tags steps)))
-    (reject-clause "plan" form "constraints without a circle: some steps could never start")))
+    (reject-clause (author) form "constraints without a circle: some steps could never start")))
 
 (defun orders-lambda (steps constraints form scope)
   "Return the lambda expression that returns the pairs that CONSTRAINTS of FORM put in order."

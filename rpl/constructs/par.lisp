@@ -27,8 +27,8 @@
   +parked+)
 
 (define-construct par (&body branches)
-  "Run BRANCHES in a plan side by side. Succeed when all have, with the value of the last one; fail
-as soon as one fails, and evaporate the others (manual D.7)."
+  "Run BRANCHES in a plan side by side. Succeed when all have, with the value of the last one, one
+as of every task; fail as soon as one fails, and evaporate the others (manual D.7)."
   (:manual)
   (:parts (branches simple-vector (branches-code branches scope)))
   (:steps

@@ -8,7 +8,7 @@
 (define-construct with-policy (policy &body body)
   "Run BODY in a plan under POLICY, a form that runs beside it, starts before it and takes
 precedence over it. The end of BODY ends POLICY; if one of them fails, all fails. Return BODY's
-value (manual D.4; reading 186)."
+value, one as of every task (manual D.4; reading 186)."
   (:manual)
   (:parts (policy node (plan-code policy (single-scope scope)))
           (body node (body-code body (single-scope scope))))

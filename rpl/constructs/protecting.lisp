@@ -43,8 +43,8 @@
 (define-construct evap-protect (protected cleanup &key limit)
   "Run PROTECTED, a form, in a plan, and CLEANUP however that ends: well, by failure, by evaporation
 or by being left. CLEANUP may wait; if LIMIT, a number of ticks, is given and over first, it is
-given up, with a warning. A failure of CLEANUP counts only if PROTECTED ended well. Return the value
-of PROTECTED."
+given up, with a warning. A failure of CLEANUP counts only if PROTECTED ended well. Return all
+values of PROTECTED."
   (:parts (protected node (plan-code protected scope))
           (cleanup node (plan-code (cleanup-form cleanup limit) (single-scope scope))))
   (:steps

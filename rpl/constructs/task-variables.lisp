@@ -29,7 +29,7 @@ it when a task sets it is ours)."
   (dolist (binding bindings bindings)
     (unless (and (typep binding '(cons symbol (cons t null)))
                  (task-variable-p (first binding) (scope-environment scope)))
-      (reject-clause "plan" form
+      (reject-clause (author) form
                      "bindings (name value) of variables defined by define-task-variable"))))
 
 (define-construct with-task-variables (bindings &body body)

@@ -26,25 +26,38 @@
   +parked+)
 
 (defun answer-events (watcher missed)
-  "Note that the body will answer the events that WATCHER has heard: all, or one if MISSED is :all."
+  "Note that the body will answer the events that WATCHER has heard: all, or one if MISSED is :all.
+Signals WRONG-ARGUMENT."
+  (check-argument whenever missed (member missed '(:once :all)) ":once or :all")
   (if (eq missed :all)
       (decf (watcher-pending watcher))
       (setf (watcher-pending watcher) 0)))
 
-(defun split-condition (condition)
-  "Return a list of the fluent's form and the form for :missed in CONDITION, as WHENEVER has it."
-  (if (and (consp condition) (consp (cdr condition)) (eq (second condition) :missed))
-      (list (first condition) (third condition))
-      (list condition :once)))
+(defun fluent-with-options-p (condition environment)
+  "True if CONDITION, as WHENEVER has it, is a list of a form and keywords, and no call."
+  (and (typep condition '(cons t (cons keyword)))
+       (or (eq :missed (second condition))
+           (consp (first condition))
+           (known-variable-p (first condition) environment))))
+
+(defun split-condition (condition scope)
+  "Return a list of the fluent's form and the form for :missed in CONDITION, as WHENEVER has it in
+SCOPE. Signals MALFORMED-DEFINITION."
+  (cond ((not (fluent-with-options-p condition (scope-environment scope))) (list condition :once))
+        ((and (typep condition '(cons t (cons (eql :missed) (cons t null))))
+              (typep (third condition) '(or (member :once :all) (and symbol (not keyword)) cons)))
+         (list (first condition) (third condition)))
+        (t (reject-clause (author) condition "(fluent :missed :once) or (fluent :missed :all)"))))
 
 (define-construct whenever (fluent &body body)
   "Run BODY in a plan whenever FLUENT, or a network, becomes true or is pulsed, and at once if it is
-true. Several such events while BODY runs count as one; with (FLUENT :missed :all) as the first
-argument as many runs follow. Ends only by RETURN, failure or evaporation (manual D.4)."
+true. Several such events while BODY runs count as one, as (FLUENT :missed :once) says too; with
+(FLUENT :missed :all) as the first argument as many runs follow. Ends only by RETURN, failure or
+evaporation (manual D.4)."
   (:manual)
-  (:arguments (first (split-condition fluent)))
-  (:parts (condition function (condition-lambda (first (split-condition fluent)) scope))
-          (missed function (value-lambda (second (split-condition fluent)) scope))
+  (:arguments (first (split-condition fluent scope)))
+  (:parts (condition function (condition-lambda (first (split-condition fluent scope)) scope))
+          (missed function (value-lambda (second (split-condition fluent scope)) scope))
           (body node (body-code body (single-scope scope))))
   (:code (block-code nil form scope #'build))
   (:steps

@@ -28,9 +28,10 @@
 waits queues by PRIORITY, a number, 0 if not given; policies before others of the same. Who has a
 higher PRIORITY than the owner takes VALVE from it: the owner is suspended, with all that it
 consists of, until it is given back; so never two of them run who own one resource. What the owner
-does about it ON-SUSPENSION and RETRY-AFTER-SUSPENSION say. The cleanups of an owner that evaporates
-are not disturbed. The valve is given back however BODY ends. If tasks wait for each other's valves,
-an error message says so (manual D; priorities ours)."
+does about it ON-SUSPENSION and RETRY-AFTER-SUSPENSION say. The cleanups of an owner that
+evaporates are not disturbed. The valve is given back however BODY ends. Return all values of
+BODY. If tasks wait for each other's valves, an error message says so (manual D; priorities
+ours)."
   (:arguments valve priority)
   (:parts (request function (claim-form priority (list valve) scope))
           (body node (body-code body scope)))
@@ -51,8 +52,11 @@ an error message says so (manual D; priorities ours)."
    nil))
 
 (defun split-valves (valves)
-  "Return those of VALVES that come before :priority, and the form after that."
-  (let ((rest (member :priority valves)))
+  "Return those of VALVES that come before :priority, and the form after that. Signals
+MALFORMED-DEFINITION."
+  (let ((rest (member-if #'keywordp valves)))
+    (unless (typep rest '(or null (cons (eql :priority) (cons t null))))
+      (reject-clause (author) valves "(valve... [:priority number])"))
     (values (ldiff valves rest) (second rest))))
 
 (define-construct with-valves ((&rest valves) &body body)

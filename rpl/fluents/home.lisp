@@ -14,10 +14,11 @@
 
 (defstruct (home (:constructor make-home ()) (:copier nil))
   "Where changes are heard. HOLDER is the thread that has it, ON-POST is called after each post.
-ATTENDED-P says whether a thread is there that will hear what is posted. LEFT-P is true while a thread
-has it, and afterwards if that has left it in the middle of something: then REPAIRER is called with
-it before anything else is done. For whoever keeps a trace, ON-CHANGE is called with :SET or :PULSE, a base fluent and its value, before
-anybody hears of that, and WRAPPER with each entry: it returns what is posted instead."
+ATTENDED-P says whether a thread is there that will hear what is posted. LEFT-P is true while a
+thread has it, and afterwards if that has left it in the middle of something: then REPAIRER is
+called with it before anything else is done. For whoever keeps a trace, ON-CHANGE is called with
+:SET or :PULSE, a base fluent and its value, before anybody hears of that, and WRAPPER with each
+entry: it returns what is posted instead."
   (holder nil :type t)
   (backlog (make-backlog) :type backlog :read-only t)
   (inbox '() :type t)
@@ -33,7 +34,8 @@ anybody hears of that, and WRAPPER with each entry: it returns what is posted in
   "The plan runner that this thread has, while plans run.")
 
 (defvar *home-in-use* (constantly nil)
-  "A function that returns the home of fluents that have none yet, where no plan is at work; or NIL.")
+  "A function that returns the home of fluents that have none yet, where no plan is at work; or
+NIL.")
 
 ;;; Having it.
 

@@ -15,14 +15,14 @@ no plan.")
   (:local-nicknames (:lifted :ars-magna.rpl.lifted))
   ;; fluent
   (:export #:create-fluent #:create-fluent-vector #:fluent #:fluent-name #:fluent-p
-           #:make-watcher #:state #:watcher #:watcher-client #:watcher-wake #:watcher-pending #:watcher-fluent
-           #:watcher-p)
+           #:make-watcher #:state #:watcher #:watcher-client #:watcher-wake #:watcher-pending
+           #:watcher-fluent #:watcher-p)
   ;; network
   (:export #:base-fluents #:depends-p #:fluent-watchers #:fl-apply #:fl-funcall #:fluent-text
            #:fluent-value #:unwatch #:watch)
   ;; home
-  (:export #:*runner* #:*home-in-use* #:home #:home-on-post #:home-attended-p #:home-on-change #:home-wrapper #:home-backlog
-           #:at-home #:call-at-home #:post #:next-entry #:posted-p)
+  (:export #:*runner* #:*home-in-use* #:home #:home-on-post #:home-attended-p #:home-on-change
+           #:home-wrapper #:home-backlog #:at-home #:call-at-home #:post #:next-entry #:posted-p)
   ;; known
   (:export #:declare-fluent-variable #:known-fluent-variable-p #:known-vector-variable-p
            #:one-fluent #:truth-value)

@@ -49,8 +49,8 @@
     (setf (backlog-highest backlog) 0)))
 
 (defun repair-fluents (home watchers unwanted-p)
-  "Let WATCHERS, and those in the lists of their fluents for which UNWANTED-P is false, hear what they
-are to in HOME."
+  "Let WATCHERS, and those in the lists of their fluents for which UNWANTED-P is false, hear what
+they are to in HOME."
   (let* ((fluents (reachable-fluents watchers))
          (listed (remove-if unwanted-p (mapcan #'listed-watchers fluents)))
          (all (append listed (set-difference watchers listed))))

@@ -71,10 +71,11 @@ parts begun; its memory is the environment to be."
                        collect (if sequential
                                    (variable-scope single (subseq variables 0 i))
                                    single))))
-    (check-use variables (list* (and sequential values) body) form)
+    (unless sequential (check-distinct variables form))
     (cond ((null bindings) (binding-body-code body scope))
           ((binds-special-p variables body scope) (refuse-code form scope))
-          (t (let ((body-code (binding-body-code
+          (t (check-use variables (list* (and sequential values) body) form)
+             (let ((body-code (binding-body-code
                                body (binding-scope scope variables bindings body
                                               sequential))))
                (if (some #'suspends-p values scopes)
@@ -108,10 +109,11 @@ parts begun; its memory is the environment to be."
       (enter-last body inner frame)))))
 
 (define-plan-form "MULTIPLE-VALUE-BIND" nil (variables source &rest body) (form scope)
-  (check-use variables body form)
-  (if (binds-special-p variables body scope)
-      (refuse-code form scope)
-      `(make-value-binding :form ',form
-                           :count ,(length variables)
-                           :source ,(plan-code source (several-scope scope))
-                           :body ,(binding-body-code body (variable-scope scope variables)))))
+  (check-distinct variables form)
+  (cond ((binds-special-p variables body scope) (refuse-code form scope))
+        (t (check-use variables body form)
+           `(make-value-binding :form ',form
+                                :count ,(length variables)
+                                :source ,(plan-code source (several-scope scope))
+                                :body ,(binding-body-code body
+                                                          (variable-scope scope variables))))))

@@ -25,7 +25,7 @@ was compiled."
 
 (define-construct call-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or the name of one, with ARGUMENTS as part of a plan; return its
-value."
+values."
   (:arguments plan &rest arguments)
   (:parts (entry function (value-lambda `(enter-plan ,plan ,@arguments) scope)))
   (:steps
@@ -41,7 +41,8 @@ value."
 (addition *plan-depth-limit*)
 (defparameter *plan-depth-limit* 2000
   "How deep calls of plans may be in each other, also across tasks, before the call fails with the
-class :TOO-DEEP: a number from 1. A plan that calls itself without end fails so (ours).")
+class :TOO-DEEP, whose data name it: a number from 1. A plan that calls itself without end fails
+so (ours).")
 
 (defun depth-around (task frame)
   "Return how deep the innermost call is that FRAME of TASK is part of, 0 if there is none."
@@ -58,7 +59,8 @@ class :TOO-DEEP: a number from 1. A plan that calls itself without end fails so 
   "Note how deep the call of FRAME is, or let TASK fail if that is too deep."
   (let ((depth (1+ (the fixnum (depth-around task (frame-up frame))))))
     (when (> depth *plan-depth-limit*)
-      (fail :class :too-deep :depth depth))
+      (fail :class :too-deep :depth depth :limit *plan-depth-limit*
+            :remedy "See to it that the plan ends, or set *plan-depth-limit*"))
     (setf (frame-data frame) depth)))
 
 ;;; Calling Lisp.
@@ -75,4 +77,5 @@ class :TOO-DEEP: a number from 1. A plan that calls itself without end fails so 
       (reject-use "There is no plan procedure or function ~S. Calls go by the very symbol: if the ~
                    plan ~:*~A of another package is meant, write ~S."
                   name (procedure-name namesake)))
-    (reject-name "plan procedure or function" name (mapcar #'procedure-name (all-procedures)))))
+    (reject-name "plan procedure or function" name (mapcar #'procedure-name (all-procedures))
+                 (known-operators (or (symbol-package name) *package*)))))

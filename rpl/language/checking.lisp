@@ -6,20 +6,26 @@
 ;;; when all has been read that is compiled or loaded together, as Lisp does with its functions.
 ;;; What Lisp code calls is for Lisp to see.
 
-(defun place-to-tell (form)
-  (and (not *compile-file-truename*) (clause-place form)))
-
 (defun warn-of-call (warn form control &rest arguments)
   "Let WARN, a function, say of FORM what is formatted from CONTROL and ARGUMENTS."
-  (funcall warn "~A~@[ (~A)~]: ~A" (author) (place-to-tell form)
-           (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
+  (funcall warn "~A~@[ (~A)~]: ~A" (author) (clause-place form)
+           (let ((*print-case* :downcase) (*print-pretty* nil))
+             (apply #'format nil control arguments))))
 
-(defun known-operators ()
-  "Return the names that calls at hand could be meant for."
+(defun known-operators (&optional (package *package*))
+  "Return the names that calls in PACKAGE could be meant for. Those of one letter, such as ?, are
+like any other."
   (let ((names (declared-names)))
-    (do-symbols (symbol *package* names)
-      (when (and (fboundp symbol) (not (lisps-own-p symbol)))
+    (do-symbols (symbol package names)
+      (when (and (known-function-p symbol nil)
+                 (not (lisps-own-p symbol))
+                 (< 1 (length (symbol-name symbol))))
         (push symbol names)))))
+
+(defun nearest-operator (name)
+  "Return what that of the known operators is called which NAME may be meant for, or NIL."
+  (let ((nearest (nearest-name name (known-operators))))
+    (and nearest (plain-name nearest))))
 
 (defun check-fit (form lambda-list)
   "Warn if the call FORM does not fit LAMBDA-LIST, or that of the type of a function."
@@ -37,8 +43,8 @@
                        is meant, write ~S."
                       name (procedure-name namesake))
         (warn-of-call #'doubt-definition form
-                      "there is no plan procedure or function ~(~A~).~@[ Did you mean ~(~A~)?~]"
-                      name (nearest-name name (known-operators))))))
+                      "there is no plan procedure or function ~(~A~).~@[ Did you mean ~A?~]"
+                      name (nearest-operator name)))))
 
 (defun look-at-call (form)
   "Warn if the call FORM is not right, as far as anybody knows now."
@@ -100,3 +106,11 @@ mention: declarations count."
                                        "the variable ~(~A~) is never used. If that is meant, ~
                                         say (declare (ignore ~:*~(~A~)))."
                                        variable)))))))
+
+(defun check-distinct (variables form)
+  "Signal MALFORMED-DEFINITION if one of VARIABLES, bound by FORM at once, is there twice."
+  (let ((twice (loop for (variable . more) on variables
+                     when (member variable more) return variable)))
+    (when twice
+      (reject-clause (author) form
+                     (format nil "each variable once: ~(~A~) is bound twice" twice)))))

@@ -79,6 +79,10 @@
 (defun look-at-operands (form environment)
   "Warn if FORM, of the plan's text, gives a fluent to a function that cannot take it. Return NIL."
   (let ((name (first form)))
+    (when (and (operator-in-p form '("INCF" "DECF"))
+               (typep form '(cons t (cons t (or null (cons t null)))))
+               (known-fluent-p (second form) environment))
+      (warn-of-counting form))
     (when (and (proper-list-p form)
                (not (operator-in-p form *lifted-operators*))
                (not (local-function-p name environment))
@@ -89,6 +93,18 @@
             (when fluent (warn-of-fluent form fluent)))
           (look-later #'look-at-lisp-call form)))
     nil))
+
+(defun warn-of-counting (form)
+  "Warn that FORM, an INCF or DECF, has a fluent as its place."
+  (destructuring-bind (name fluent &optional (by 1)) form
+    (call-at-place
+     form
+     (lambda ()
+       (warn-of-call #'warn-of-definition form
+                     "~(~A~) cannot change ~S, which is a fluent. Write ~S."
+                     name fluent
+                     `(set-value ,fluent (,(if (same-name-p name 'incf) '+ '-)
+                                          (fluent-value ,fluent) ,by)))))))
 
 (defun warn-of-fluent (form fluent)
   (call-at-place
@@ -102,9 +118,9 @@
 ;;; Variables.
 
 (defparameter *assigning-operators*
-  '("SETQ" "SETF" "PSETQ" "PSETF" "PUSH" "PUSHNEW" "POP" "INCF" "DECF" "MULTIPLE-VALUE-SETQ"
-    "ROTATEF" "SHIFTF")
-  "Operators that give variables another value.")
+  '("SETQ" "SETF" "PSETQ" "PSETF" "PUSH" "PUSHNEW" "POP" "MULTIPLE-VALUE-SETQ" "ROTATEF"
+    "SHIFTF")
+  "Operators that give variables another value. INCF and DECF do so to numbers only.")
 
 (defun assigned-p (variable forms)
   "True if VARIABLE may get another value in FORMS."

@@ -70,8 +70,8 @@ a test made before each turn. COUNT is a number up to 1e15. Return NIL."
 
 (define-expression each
   "BODY for each element of the list that ITEMS of the environment returns, in an environment of
-that one. A frame remembers the elements left."
-  (:parts (items function) (body node))
+that one; then ENDING, in one of NIL. A frame remembers the elements left."
+  (:parts (items function) (body node) (ending node))
   (:steps
    (begin
     (setf memory (funcall items environment))
@@ -80,14 +80,14 @@ that one. A frame remembers the elements left."
     (cond ((or (null memory) (alone-p task)) (at-once between-turns))
           (t (next between-turns) (give-way task))))
    (between-turns
-    (cond ((endp memory) (values (frame-up frame) nil))
+    (cond ((endp memory) (enter-last ending (vector environment nil) frame))
           (t (next in-turn)
              (enter body (vector environment (pop memory)) frame))))))
 
 (define-expression each-number
-  "BODY for each number below what LIMIT of the environment returns. A frame remembers the next one
-and the limit, a cons."
-  (:parts (limit function) (body node))
+  "BODY for each number below what LIMIT of the environment returns, in an environment of that one;
+then ENDING, in one of how many there were. A frame remembers the next one and the limit, a cons."
+  (:parts (limit function) (body node) (ending node))
   (:steps
    (begin
     (setf memory (cons 0 (funcall limit environment)))
@@ -97,7 +97,8 @@ and the limit, a cons."
           (t (next between-turns) (give-way task))))
    (between-turns
     (let ((number (car memory)))
-      (cond ((>= number (cdr memory)) (values (frame-up frame) nil))
+      (cond ((>= number (cdr memory))
+             (enter-last ending (vector environment number) frame))
             (t (incf (car memory))
                (next in-turn)
                (enter body (vector environment number) frame)))))))
@@ -106,28 +107,21 @@ and the limit, a cons."
   "Return code for BODY, run in an environment in which VARIABLE is bound."
   (binding-body-code body (variable-scope (single-scope scope) (list variable))))
 
-(defun each-code (turns form source result scope)
-  "Return code for FORM, which begins with TURNS, a function of the scope that returns the code for
-that, and has the value of RESULT, a list of a form or empty."
-  (hoisting (source) form scope
-    (block-code nil form scope
-                (lambda (scope)
-                  (let ((turns (funcall turns scope)))
-                    (if result
-                        `(make-steps :form ',form
-                                     :parts (vector ,turns ,(plan-code (first result) scope)))
-                        turns))))))
+(defun each-code (maker form variable part result body scope)
+  "Return code for FORM, a DOLIST or DOTIMES over PART, (slot form), which binds VARIABLE around
+BODY and RESULT, both forms: a call of MAKER."
+  (destructuring-bind (slot source) part
+    (hoisting (source) form scope
+      (block-code nil form scope
+                  (lambda (scope)
+                    (let ((inner (variable-scope scope (list variable))))
+                      `(,maker :form ',form
+                               ,slot ,(value-lambda source scope)
+                               :body ,(each-body-code variable body scope)
+                               :ending ,(body-code (remove nil result) inner))))))))
 
-(define-plan-form "DOLIST" nil ((variable source &rest result) &rest body) (form scope)
-  (each-code (lambda (scope)
-               `(make-each :form ',form
-                           :items ,(value-lambda source scope)
-                           :body ,(each-body-code variable body scope)))
-             form source result scope))
+(define-plan-form "DOLIST" nil ((variable source &optional result) &rest body) (form scope)
+  (each-code 'make-each form variable (list :items source) (list result) body scope))
 
-(define-plan-form "DOTIMES" nil ((variable limit &rest result) &rest body) (form scope)
-  (each-code (lambda (scope)
-               `(make-each-number :form ',form
-                                  :limit ,(value-lambda limit scope)
-                                  :body ,(each-body-code variable body scope)))
-             form limit result scope))
+(define-plan-form "DOTIMES" nil ((variable limit &optional result) &rest body) (form scope)
+  (each-code 'make-each-number form variable (list :limit limit) (list result) body scope))

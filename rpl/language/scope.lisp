@@ -56,7 +56,7 @@ builds the plan, that hold their nodes."
   "Signal MALFORMED-DEFINITION if one of VARIABLES is a task variable."
   (let ((variable (find-if (lambda (variable) (task-variable-p variable environment)) variables)))
     (when variable
-      (reject-clause "plan" variable
+      (reject-clause (author) variable
                      "the name of a lexical variable; bind this one by with-task-variables"))))
 
 (defun variable-scope (scope variables)

@@ -42,7 +42,13 @@ BODY is the code of and of the node that it stands for: see replacing.lisp."
                    (tag-task branch environment))
       (spawn task branch environment index level)))
 
+(defun tag-name-p (name)
+  "True if NAME, in (:tag name form...), can be bound to a task."
+  (and (symbolp name) (not (constantp name))))
+
 (define-plan-form ":TAG" :must (name &rest body) (form scope)
+  (unless (tag-name-p name)
+    (reject-clause (author) form "(:tag name form...), with a symbol as the name of the task"))
   (destructuring-bind (&optional level index) (cdr (assoc name (scope-task-tags scope)))
     `(make-tagged :form ',form :name ',name
                   :place ,(if level
@@ -59,7 +65,7 @@ turn of a PAR-LOOP, in them."
   (let ((names '()))
     (labels ((search-in (form)
                (cond ((atom form))
-                     ((and (eq (first form) :tag) (typep (rest form) '(cons symbol t)))
+                     ((and (eq (first form) :tag) (consp (rest form)) (tag-name-p (second form)))
                       (pushnew (second form) names)
                       (search-all (cddr form)))
                      ((or (eq (first form) 'quote)
@@ -92,8 +98,9 @@ tags."
       (funcall coder scope)))
 
 (define-construct with-tags (&body body)
-  "Run BODY in a plan with the name of each (:tag name form) in it bound to the task that runs that
-form: see TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. A procedure's body is a WITH-TAGS too."
+  "Run BODY in a plan with the name of each (:tag name form) in it bound to the task that runs
+that form, and returns one value of it: see TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. A
+procedure's body is a WITH-TAGS too."
   (:code (with-tags-code form (tags-in body) scope (lambda (scope) (body-code body scope)))))
 
 (addition task-status)

@@ -18,16 +18,17 @@
                 #:participant-reseed #:participant-digest #:participant-end)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:fluent-value
-                #:apply-settings #:*home-in-use* #:*runner* #:post-call #:react-to-all #:exhaust-reaction
-                #:close-runner #:tell-at-rest #:advance-timers #:next-wake-time #:make-plan-runner #:start-plan
-                #:stop-plan #:plan-runner #:plan-runner-tasks #:plan-runner-steps #:current-task
-                #:task #:task-p #:task-over-p #:task-state #:task-result #:task-top
-                #:task-parent #:task-path #:task-label #:task-serial #:task-form #:task-cleaning
-                #:form-text #:plan-deadlocked-p #:report-deadlock #:report-stillness
-                #:task-doomed #:report-end #:reseed-runner #:digest-runner #:print-tasks
-                #:find-procedure #:plan-trace #:write-trace #:valve #:make-valve #:note-command
-                #:with-answer #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks*
-                #:start-trace #:task-runner)
+                #:apply-settings #:*home-in-use* #:*runner* #:post-call #:react-to-all
+                #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers
+                #:next-wake-time #:make-plan-runner #:start-plan #:stop-plan #:plan-runner
+                #:plan-runner-tasks #:plan-runner-steps #:current-task #:task #:task-p
+                #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
+                #:task-label #:task-serial #:task-form #:task-cleaning #:form-text
+                #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-doomed
+                #:report-end #:reseed-runner #:digest-runner #:print-tasks #:find-procedure
+                #:plan-trace #:write-trace #:valve #:make-valve #:note-command #:with-answer
+                #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks* #:start-trace
+                #:task-runner)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
            #:robot-place-input* #:robot-place* #:camera-input* #:camera-views*

@@ -2,13 +2,13 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-;;; Who tells a task something by a pulse must not do so before that task has come to its wait. So it
-;;; gives way until the other has come to rest: until that waits, is over, is kept from running, or
-;;; has used its slice.
+;;; Who tells a task something by a pulse must not do so before that task has come to its wait. So
+;;; it gives way until the other has come to rest: until that waits, is over, is kept from
+;;; running, or has used its slice.
 
 (defstruct (courtesy (:constructor make-courtesy (hearer teller function)) (:copier nil))
-  "That the task TELLER does not go on before FUNCTION has been called, which is when the task HEARER
-has come to rest."
+  "That the task TELLER does not go on before FUNCTION has been called, which is when the task
+HEARER has come to rest."
   (hearer nil :type task :read-only t)
   (teller nil :type task :read-only t)
   (function nil :type function :read-only t))
@@ -24,8 +24,8 @@ has come to rest."
     (t t)))
 
 (defun tell-at-rest (hearer function)
-  "Call FUNCTION, which lets the task HEARER hear something, now, if that is at rest or there is none.
-Otherwise do so as soon as it is, and let the task at work give way until then."
+  "Call FUNCTION, which lets the task HEARER hear something, now, if that is at rest or there is
+none. Otherwise do so as soon as it is, and let the task at work give way until then."
   (let* ((runner *runner*)
          (teller (running-task runner)))
     (cond ((or (null hearer) (null teller) (eq hearer teller)

@@ -18,8 +18,8 @@ reaction may take before time passes (NIL: as many as it needs). CLOCK, a functi
 seconds, serves to warn of Lisp code that runs for more than SLOW seconds. DICE choose for TRY-ONE.
 BUSY-P says whether somebody else, such as a command under way, may still post. ON-POST is called
 after each post, in the posting thread; ATTENDED-P says whether a thread will hear that anyway.
-ON-TICK, if given, is called with the tick when time has passed, ON-END with each top-level task that
-ends; by default it reports failures."
+ON-TICK, if given, is called with the tick when time has passed, ON-END with each top-level task
+that ends; by default it reports failures."
   (check-argument make-plan-runner budget (or (null budget) (whole-p budget 1))
                   "NIL or an integer from 1 to 1e9")
   (let ((runner (%make-plan-runner :trace (and trace (make-trace)) :budget budget :clock clock

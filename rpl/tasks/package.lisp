@@ -59,9 +59,9 @@ plans nor a simulator.")
            #:task-awaits #:*plan-start-hooks* #:blocker-of #:task-state-text #:write-task-line
            #:write-task-tree)
   ;; engine
-  (:export #:advance-timers #:apply-next-batch #:close-runner #:tell-at-rest #:digest-runner #:idle-p
-           #:make-plan-runner #:next-wake-time #:plan-deadlocked-p #:post-batch #:post-call
-           #:react #:react-to-all #:reseed-runner #:start-plan #:stop-plan)
+  (:export #:advance-timers #:apply-next-batch #:close-runner #:tell-at-rest #:digest-runner
+           #:idle-p #:make-plan-runner #:next-wake-time #:plan-deadlocked-p #:post-batch
+           #:post-call #:react #:react-to-all #:reseed-runner #:start-plan #:stop-plan)
   ;; blocking
   (:export #:block-task #:check-together #:make-heed #:suspend #:unblock-task #:wake-up)
   ;; circles

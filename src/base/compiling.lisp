@@ -57,6 +57,33 @@
         (progv (list (compiler-variable '#:*current-path*)) (list place) (funcall function))
         (funcall function))))
 
+;;; SBCL also remembers where each form at top level begins in the text.
+
+(defvar *kept-place* nil
+  "While something is done that waited until all had been read: a list of a form and, after it,
+where in the text that stands.")
+
+(defun value-if-bound (variable)
+  (and (boundp variable) (symbol-value variable)))
+
+(defun positions-of-forms ()
+  "Return the vector of the positions in the text after which the forms at top level begin, or NIL."
+  (let ((info (value-if-bound (compiler-variable '#:*source-info*))))
+    (and info
+         (funcall (compiler-function '#:file-info-positions)
+                  (funcall (compiler-function '#:source-info-file-info) info)))))
+
+(defun place-in-text (form)
+  "Return where FORM stands in the text that is being compiled or loaded: a list of the position
+after which the form at top level around it begins, and of numbers from 0, which element of that it
+is in, which element of this, and so on. Return NIL if that is not known."
+  (if (and *kept-place* (eq form (first *kept-place*)))
+      (rest *kept-place*)
+      (destructuring-bind (&optional top . numbers) (reverse (nthcdr 2 (place-of form)))
+        (let ((positions (positions-of-forms)))
+          (and top positions (< top (length positions))
+               (cons (aref positions top) numbers))))))
+
 ;;; What can be said only when all of a file has been read, or of all files of a system.
 ;;;
 ;;; Forms that are loaded belong together, and so do files that are compiled in one
@@ -64,8 +91,9 @@
 ;;; a unit of it too: what is to be said at its end is left to the unit around that.
 
 (defstruct (unit (:constructor make-unit (kind outer)) (:copier nil))
-  "What is compiled or loaded as a whole, of KIND :LOAD or :COMPILATION, within OUTER. TASKS are
-pairs of a function to call at its end and a place, by form."
+  "What is compiled or loaded as a whole, of KIND :LOAD or :COMPILATION, within OUTER. TASKS are,
+by form, lists of a function to call at its end and where the form stands, for the compiler and in
+the text."
   (kind :load :type (member :load :compilation) :read-only t)
   (outer nil :type (or null unit) :read-only t)
   (files-p nil :type boolean)
@@ -81,7 +109,8 @@ pairs of a function to call at its end and a place, by form."
   "Call FUNCTION when all has been read of what is compiled or loaded together with FORM, once. What
 it warns of the compiler takes to be about FORM. Without a compiler, do nothing."
   (when (and *unit* (not (gethash form (unit-tasks *unit*))))
-    (setf (gethash form (unit-tasks *unit*)) (cons function (context-of form)))))
+    (setf (gethash form (unit-tasks *unit*))
+          (list function (context-of form) (place-in-text form)))))
 
 (defun call-as-compiler (function)
   "Call FUNCTION. What it warns of is told as what the compiler warns of. Return whether there was a
@@ -104,8 +133,10 @@ warning, and whether it was more than a matter of style."
     (if (plusp (hash-table-count (unit-tasks unit)))
         (call-as-compiler
          (lambda ()
-           (loop for (function . place) being the hash-values of (unit-tasks unit)
-                 do (progv (list context) (list place) (funcall function)))))
+           (loop for form being the hash-keys of (unit-tasks unit)
+                   using (hash-value (function place in-text))
+                 do (let ((*kept-place* (cons form in-text)))
+                      (progv (list context) (list place) (funcall function))))))
         (values nil nil))))
 
 (defun leave-to-outer (unit)

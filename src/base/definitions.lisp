@@ -52,13 +52,15 @@ loaded; NIL if it was typed."
           (clause-line (source-file source)
                        (and *definition* (defining-form *definition*)) clause)
         (when *definition* (setf (defining-ordinal *definition*) ordinal))
-        (format nil "~A~@[, line ~D~]" (source-file source) line)))))
+        (format nil "~A~@[, line ~D~]" (source-file source)
+                (or (line-in-text (source-file source) clause (place-in-text clause)) line))))))
 
-(defun reject-clause (definition clause expected)
-  "Signal MALFORMED-DEFINITION about CLAUSE of DEFINITION (a string such as \"defmap watson\")."
+(defun reject-clause (definition clause expected &optional (place (clause-place clause)))
+  "Signal MALFORMED-DEFINITION about CLAUSE, at PLACE, of DEFINITION, a string such as \"defmap
+watson\"."
   (when *definition* (setf (defining-clause *definition*) clause))
   (error 'malformed-definition :definition definition :clause clause :expected expected
-                               :place (clause-place clause)))
+                               :place place))
 
 (defun check-function-name (definition name)
   "Signal MALFORMED-DEFINITION if NAME, of DEFINITION, belongs to a package whose names users cannot
@@ -180,9 +182,10 @@ the definition."
   (when *compile-file-truename*
     (call-at-place (malformed-definition-clause condition)
                    (lambda () (warn-of-definition "~A" condition))))
-  `(reject-clause ,(malformed-definition-definition condition)
+  `(reject-clause ',(malformed-definition-definition condition)
                   ',(malformed-definition-clause condition)
-                  ,(malformed-definition-expected condition)))
+                  ,(malformed-definition-expected condition)
+                  ,(malformed-definition-place condition)))
 
 (defun forms-or-rejection (function nested)
   "Return what FUNCTION returns. If it signals MALFORMED-DEFINITION and the form is NESTED in

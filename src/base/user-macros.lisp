@@ -11,7 +11,9 @@
 
 (defun reject-use-of (form expected &optional condition)
   "Signal MALFORMED-DEFINITION about FORM, the use of a macro, perhaps because of CONDITION."
-  (reject-clause (if (consp (rest form)) (title (first form) (second form)) (first form))
+  (reject-clause (if (consp (rest form))
+                     (title (first form) (second form))
+                     (string-downcase (first form)))
                  (abridged form)
                  (format nil "~A~@[ (~A)~]" expected
                          (and condition

@@ -1,0 +1,47 @@
+;;;; places-in-text.lisp -- the line of a form that the compiler has met, also if others are alike.
+
+(in-package :ars-magna.base)
+
+;;; The compiler knows which element of which form a form is: see PLACE-IN-TEXT. The text is
+;;; followed down to that as far as it can be: a quoted form, for one, is no list in the text. In
+;;; what has been reached, the form is looked for.
+
+(defun skip-blanks (text i)
+  "Return where in TEXT, at I or after it, something begins that is neither blank nor a comment."
+  (loop while (< i (length text))
+        do (cond ((blank-p (char text i)) (incf i))
+                 ((skip-comment text i) (setf i (skip-comment text i)))
+                 (t (return))))
+  i)
+
+(defun element-bounds (text start number)
+  "Return where in TEXT the element NUMBER, from 0, of the list that begins at START begins and
+ends; NIL if there is no list, or it cannot be read."
+  (with-words (text)
+    (flet ((end-of-form (position)
+             (let ((end (nth-value 1 (read-words position))))
+               (and (integerp end) end))))
+      (when (starts-at-p "(" text start)
+        (let ((begin nil) (end (1+ start)))
+          (loop repeat (1+ number)
+                do (setf begin (skip-blanks text end)
+                         end (or (end-of-form begin) (return-from element-bounds nil))))
+          (values begin end))))))
+
+(defun bounds-of-place (text place)
+  "Return where what stands at PLACE, see PLACE-IN-TEXT, or what is around it, begins and ends."
+  (destructuring-bind (position . numbers) place
+    (let ((start (skip-blanks text position)) (end (length text)))
+      (dolist (number numbers (values start end))
+        (multiple-value-bind (inner-start inner-end) (element-bounds text start number)
+          (unless inner-start (return (values start end)))
+          (setf start inner-start end inner-end))))))
+
+(defun line-in-text (file form place)
+  "Return the line in FILE on which FORM stands, which is at PLACE, see PLACE-IN-TEXT; NIL if PLACE
+is NIL or FILE cannot be read."
+  (and place
+       (ignore-errors
+         (let ((text (file-text file)))
+           (multiple-value-bind (start end) (bounds-of-place text place)
+             (line-number text (or (form-position text form start end) start)))))))
