@@ -57,6 +57,7 @@ watcher, the value, and NIL or the error met in computing it. PENDING counts eve
  make-watcher "Return somebody who is to be told of a fluent by a function, on behalf of a client."
  watcher-p "True of watchers."
  watcher-fluent "Return the fluent that the watcher watches."
+ watcher-wake "Return the function that is called when the fluent is heard to be true: see WATCHER."
  watcher-client "Return on whose behalf the watcher watches, such as a task."
  watcher-pending "Return how many events the watcher has been told of that nobody has answered.")
 
