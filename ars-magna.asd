@@ -94,7 +94,8 @@
                  (:file "gate") (:file "blocking") (:file "variables") (:file "places")
                  (:file "alone")))
    (:module "rpl/language" :serial t
-    :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
+    :components ((:file "package") (:file "source") (:file "names") (:file "items")
+                 (:file "scope") (:file "suspension")
                  (:file "checking") (:file "known-fluents") (:file "leaf")
                  (:file "compiler") (:file "expression") (:file "construct")
                  (:file "steps") (:file "binding") (:file "leaving") (:file "branching")
@@ -208,6 +209,7 @@
                  (:file "rpl-at-location") (:file "rpl-replacing") (:file "rpl-examples")
                  (:file "rpl-robot-answers") (:file "rpl-robot") (:file "rpl-issue")
                  (:file "rpl-left") (:file "rpl-robot-live")
+                 (:file "rpl-hostile")
                  (:file "rpl-text")
                  (:file "rpl-examples-robot") (:file "rpl-examples-goals")
                  (:file "plans") (:file "plans-killed")

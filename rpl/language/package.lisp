@@ -8,8 +8,10 @@ DEFINE-CONSTRUCT adds to it.")
                 #:untyped-bindings #:untyped-lambda-list #:lambda-list-variables
                 #:matchvar-p #:matchvar-name)
   ;; source
-  (:export #:misplaced #:misplaced-advice #:misplaced-container #:misplaced-form
+  (:export #:author #:misplaced #:misplaced-advice #:misplaced-container #:misplaced-form
            #:misplaced-suspension #:note-own-text)
+  ;; names, items
+  (:export #:check-variables #:plain-parameters #:item-list)
   ;; scope
   (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope
            #:scope-environment #:scope-variables)
