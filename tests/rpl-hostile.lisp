@@ -1,4 +1,4 @@
-;;;; rpl-hostile.lisp -- plans that make no sense are refused in our words, and leave nothing behind.
+;;;; rpl-hostile.lisp -- plans that make no sense are refused, in our words.
 
 (in-package :ars-magna.tests)
 (in-suite rpl)
@@ -18,7 +18,8 @@
 (defmacro refused-each (text &rest forms)
   "Check that each of FORMS is refused with TEXT."
   `(progn ,@(loop for form in forms
-                  collect `(is (refused-saying-p ,text ',form) "~S: ~A" ',form (refused-text ',form)))))
+                  collect `(is (refused-saying-p ,text ',form)
+                               "~S: ~A" ',form (refused-text ',form)))))
 
 ;;; Names.
 
@@ -61,7 +62,8 @@
              (is (refused-saying-p text form) "~S: ~A" form (refused-text form)))))
 
 (test hostile.lambda-lists-are-refused-once-where-they-stand
-  (let ((said (said-compiling (format nil "~%(def-interp-proc hostile~%  (a a)~%  (wait-time 1))"))))
+  (let ((said (said-compiling
+               (format nil "~%(def-interp-proc hostile~%  (a a)~%  (wait-time 1))"))))
     (is (= 1 (length said)) "~S" said)
     (is (search "def-interp-proc hostile" (cdr (first said))))
     (is (search "line 3" (cdr (first said))) "~S" said)
