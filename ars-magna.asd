@@ -86,7 +86,8 @@
                  (:file "gate") (:file "blocking") (:file "variables") (:file "places")
                  (:file "alone")))
    (:module "rpl/language" :serial t
-    :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
+    :components ((:file "package") (:file "source") (:file "names") (:file "items")
+                 (:file "scope") (:file "suspension")
                  (:file "checking") (:file "known-fluents") (:file "leaf") (:file "compiler")
                  (:file "expression") (:file "construct") (:file "steps") (:file "binding")
                  (:file "leaving") (:file "branching") (:file "repeating") (:file "tags")
@@ -188,7 +189,7 @@
                  (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-control")
                  (:file "rpl-orders") (:file "rpl-valves") (:file "rpl-stress")
                  (:file "rpl-constructs") (:file "rpl-fairness") (:file "rpl-care")
-                 (:file "rpl-kills") (:file "rpl-views") (:file "rpl-named-policies")
+                 (:file "rpl-kills") (:file "rpl-hostile") (:file "rpl-views") (:file "rpl-named-policies")
                  (:file "rpl-goals") (:file "rpl-at-location") (:file "rpl-replacing")
                  (:file "rpl-examples") (:file "rpl-robot-answers") (:file "rpl-robot")
                  (:file "rpl-issue") (:file "rpl-left") (:file "rpl-robot-live")

@@ -31,7 +31,7 @@
                ((world:new-thing lid . #2=((m 1 1) . #2#)) . "a form that ends")
                ((world:new-thing lid (m 1 1 . 2) ()) . "a location")
                ((robot:defrobot #3=(r . #3#)) . "a form that ends")
-               ((rpl:def-interp-proc p (a &optional "x") 1) . "forms that Lisp can compile")
+               ((rpl:def-interp-proc p (a &optional "x") 1) . "is no symbol")
                ((rpl:def-interp-proc p () (3 4)) . "(3 4)")
                ((rpl:def-interp-macro . #4=((m x) . #4#)) . "a form that ends")
                ((progn (rpl:def-interp-macro (m for x) ''x) (rpl:def-interp-proc p () (m for)))

@@ -36,7 +36,7 @@ after its start, or seconds if UNIT is :seconds, it evaporates, and then the who
 DEADLINE-MISSED. Its cleanups may take longer. Time goes on while it is suspended. SPAN is a number
 up to 1e15; with 0 or less there is time for what takes none (ours; CRAM's is a timeout-policy)."
   (:arguments span)
-  (:parts (span function (value-lambda `(ticks-of ,span (or ,unit :ticks)) scope))
+  (:parts (span function (span-lambda 'with-deadline span unit form scope))
           (body node (body-code body scope)))
   (:steps
    (begin

@@ -90,6 +90,7 @@ if there is none."
     (reject-clause definition pattern "a goal's pattern, such as (on ?a ?b)"))
   (multiple-value-bind (body text) (split-documentation body)
     (let ((variables (nth-value 1 (parse-pattern pattern))))
+      (check-variables variables environment pattern)
       `(install-goal ',(parsed-operator definition operator) ',pattern
                      ,(macroexpand-1 `(interp-lambda ,variables (block succeed-with ,@body))
                                      environment)

@@ -21,9 +21,26 @@
     (declare (ignore type))
     (binding-body-code body (variable-scope (single-scope scope) (list variable)))))
 
-(defun check-clause (clause form)
-  (unless (typep clause '(cons t (cons list t)))
-    (reject-clause (author) form "clauses such as (type (variable) form...)")))
+(defun failure-specifier-p (type)
+  "True if TYPE can be what a clause is for: a symbol, or (or TYPE...)."
+  (if (consp type)
+      (and (symbolp (first type)) (same-name-p 'or (first type))
+           (rest type) (proper-list-p type)
+           (every #'failure-specifier-p (rest type)))
+      (and type (symbolp type))))
+
+(defun check-clause (clause form scope)
+  "Signal MALFORMED-DEFINITION unless CLAUSE, of FORM, can handle a failure."
+  (unless (and (typep clause '(cons t (cons list t))) (proper-list-p clause)
+               (typep (second clause) '(or null (cons t null))))
+    (reject-clause (author) (if (consp clause) clause form)
+                   "clauses such as (type (variable) form...), with one variable or none"))
+  (unless (failure-specifier-p (first clause))
+    (reject-clause (author) clause
+                   (format nil "~A, or (or type...): ~(~S~) matches no failure"
+                           "t, the class of a failure or a condition type first"
+                           (abridged (first clause)))))
+  (check-variables (second clause) (scope-environment scope) clause))
 
 (define-construct with-failure-handling (clauses &body body)
   "Run BODY in a plan; a failure is handled by the first of CLAUSES, (type (variable) form...),
@@ -36,7 +53,9 @@ at the handler's end the failure goes on. Return all values of BODY."
                                                    collect (handler-code clause scope)))))
   (:code
    (progn
-     (dolist (clause clauses) (check-clause clause form))
+     (unless (proper-list-p clauses)
+       (reject-clause (author) form "a list of clauses such as (type (variable) form...)"))
+     (dolist (clause clauses) (check-clause clause form scope))
      (block-code nil form scope
                  (lambda (scope)
                    (with-gensyms (start)

@@ -61,8 +61,15 @@
   (memory '() :type list))
 
 (defun begin-use (policy arguments)
-  "Return a new use of POLICY, or what is called so, with ARGUMENTS."
-  (make-policy-use (find-policy policy) arguments))
+  "Return a new use of POLICY, or what is called so, with ARGUMENTS. Signals WRONG-ARGUMENT if it
+does not take these."
+  (let* ((policy (find-policy policy))
+         (parameters (policy-lambda-list policy))
+         (trouble (misfit (shape-of parameters) arguments :wrong-p (constantly t))))
+    (when trouble
+      (reject-argument (or (policy-name policy) 'make-policy) "argument list" arguments
+                       (format nil "~A, not ~A" (shape-text parameters) trouble)))
+    (make-policy-use policy arguments)))
 
 (defun clause-arguments (use)
   (cons use (use-arguments use)))
@@ -99,10 +106,11 @@ as the policy is in force. Return VALUE (CRAM's)."
 ;;; Defining.
 
 (defun check-policy-clauses (definition clauses)
+  (dolist (clause clauses)
+    (unless (and (consp clause) (member (first clause) '(:init :check :recover :clean-up)))
+      (reject-clause definition clause
+                     "a list that starts with :init, :check, :recover or :clean-up")))
   (loop for (clause . more) on clauses
-        unless (and (consp clause) (member (first clause) '(:init :check :recover :clean-up)))
-          do (reject-clause definition clause
-                            "a list that starts with :init, :check, :recover or :clean-up")
         when (assoc (first clause) more)
           do (reject-clause definition clause "each kind of clause once")))
 
@@ -117,9 +125,10 @@ an :INIT, which sees whether the arguments are right."
 (defun policy-code (definition name parameters clauses environment)
   "Return code that makes the policy NAME."
   (check-policy-clauses definition clauses)
-  `(%make-policy ',name ',parameters
-                 ,@(loop for kind in '(:init :check :recover :clean-up)
-                         collect (clause-code kind parameters clauses environment))))
+  (let ((parameters (plain-parameters parameters parameters environment definition)))
+    `(%make-policy ',name ',parameters
+                   ,@(loop for kind in '(:init :check :recover :clean-up)
+                           collect (clause-code kind parameters clauses environment)))))
 
 (addition define-policy)
 (define-user-macro define-policy (&whole form name (&rest parameters) &body clauses

@@ -77,9 +77,11 @@ MISUSE."
   (unless (or (consp name)
               (member name (tags-in steps))
               (member name (scope-variables scope))
-              (known-variable-p name (scope-environment scope)))
+              (and (symbolp name)
+                   (not (constantp name))
+                   (known-variable-p name (scope-environment scope))))
     (reject-clause (author) form
-                   (format nil "in :order tags that are in scope, not ~(~A~)" name))))
+                   (format nil "in :order tags that are in scope, not ~(~S~)" (abridged name)))))
 
 (defun read-orders (steps constraints form scope)
   "Return a list of (earlier later), forms, for each of CONSTRAINTS of FORM."

@@ -26,7 +26,7 @@ own tags; succeed and fail as PAR does."
   (:steps
    (begin
     (next inside)
-    (let ((items (coerce (funcall items environment) 'list)))
+    (let ((items (item-list 'par-loop (funcall items environment))))
       ;; The number of the last one, and its value.
       (setf memory (cons (1- (length items)) nil))
       (loop for item in items

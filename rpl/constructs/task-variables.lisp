@@ -19,6 +19,9 @@ and LET cannot bind them around what waits. Functions that plans call see it too
 compiled after it. Defining it anew sets that value, as DEFPARAMETER does (CRAM's; what becomes of
 it when a task sets it is ours)."
   (check-task-variable name)
+  (unless (typep documentation '(or null string))
+    (reject-clause (title "define-task-variable" name) documentation
+                   "(define-task-variable name value [documentation]), the last a string"))
   `(progn
      (eval-when (:compile-toplevel :load-toplevel :execute)
        (define-symbol-macro ,name (task-variable ',name)))

@@ -70,13 +70,15 @@ return its value. If it never does, fail with a composite failure."
   (:code (block-code nil form scope #'build))
   (:steps
    (begin
-    (setf memory (make-attempt-record (coerce (funcall items environment) 'list)))
+    (setf memory (make-attempt-record
+                  (item-list 'try-each-in-order (funcall items environment))))
     (at-once between-attempts))
    (trying (values (frame-up frame) value))
    (between-attempts
     (cond ((attempt-record-order memory)
-           (next trying)
-           (enter body (vector environment (pop (attempt-record-order memory))) frame))
+           (let ((inner (vector environment (pop (attempt-record-order memory)))))
+             (next trying)
+             (enter body inner frame)))
           (t (give-up memory task frame)))))
   (:unwind
    (when (and (in-state-p trying) (typep signal 'plan-failure))

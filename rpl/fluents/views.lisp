@@ -44,12 +44,20 @@ WRONG-ARGUMENT. (CRAM's; what a network's pulse is, is ours.)"
                    (when (< seen events)
                      (setf seen (if (eq handle-missed-pulses :always) (1+ seen) events))))))))
 
+(defun function-given-p (object)
+  "True if OBJECT is a function or the name of one that there is."
+  (or (functionp object)
+      (and (symbolp object) (fboundp object) (functionp (symbol-function object))
+           (not (macro-function object)) (not (special-operator-p object)))))
+
 (addition fl-value-changed)
 (defun fl-value-changed (fluent &key (test #'eql) (key #'identity))
   "Return a fluent that is true if KEY of the value of FLUENT is another, by TEST, than when one has
 read what is returned last, or than at the call; to read it, or to be woken by it, uses that up.
 Pulses alone are no change. Signals WRONG-ARGUMENT. (CRAM's.)"
   (check-argument fl-value-changed fluent (fluent-p fluent) "a fluent")
+  (check-argument fl-value-changed test (function-given-p test) "a function of two values")
+  (check-argument fl-value-changed key (function-given-p key) "a function of a value")
   (let* ((bases (base-fluents fluent))
          (sets (count-sets bases))
          (last (funcall key (fluent-value fluent))))

@@ -19,7 +19,8 @@
 (defun procedure-form (name parameters body environment)
   "Return the form that defines the plan procedure NAME in ENVIRONMENT."
   (let* ((definition (title "def-interp-proc" name))
-         (parameters (untyped-lambda-list parameters definition))
+         (parameters (plain-parameters parameters (list* name parameters body) environment
+                                       definition))
          (form (list* name parameters body)))
     (declare-procedure name parameters)
     (check-use (lambda-list-variables parameters)
@@ -43,20 +44,26 @@
      (declare (ignore arguments))
      (reject-lisp-call ',name)))
 
+(defun check-plan-name (definition name)
+  "Signal MALFORMED-DEFINITION unless NAME, of DEFINITION, is a symbol that users can define."
+  (unless (symbolp name) (reject-clause definition name "a symbol as the name"))
+  (check-function-name definition name))
+
 (public def-interp-proc)
 (define-user-macro def-interp-proc (&whole form name parameters &body body &environment environment)
   "Define NAME as a plan procedure with PARAMETERS, an ordinary lambda list in which a hyphen and a
 type may follow each variable; BODY is plan text and may start with a documentation string. The
 value is that of its last form. Defining it anew takes effect at the next call, also in running
 plans (manual D.2)."
-  (check-function-name (title "def-interp-proc" name) name)
+  (check-plan-name (title "def-interp-proc" name) name)
   (call-with-definition form (lambda () (procedure-form name parameters body environment))))
 
 (addition interp-lambda)
 (define-user-macro interp-lambda ((&rest parameters) &body body &environment environment)
   "Return a plan procedure without a name: PARAMETERS and BODY are as for DEF-INTERP-PROC. BODY sees
 the variables around it, but not blocks, tags and local plans. Run it by CALL-PLAN."
-  (let ((parameters (untyped-lambda-list parameters "interp-lambda"))
+  (let ((parameters (plain-parameters parameters (list* 'interp-lambda parameters body) environment
+                                      (if *definition* (author) "interp-lambda")))
         (form (list* 'interp-lambda parameters body)))
     (with-own-text (form)
       (multiple-value-bind (scope entry) (procedure-parts parameters environment)
@@ -127,7 +134,7 @@ than the compiler's stack can bear.")
 bound while TEMPLATE is evaluated; a pattern may end in a dot and ?x for all forms that are left.
 The value of TEMPLATE is the plan text to use. A documentation string may come before TEMPLATE
 (manual D.8)."
-  (check-function-name (title "def-interp-macro" name) name)
+  (check-plan-name (title "def-interp-macro" name) name)
   (check-pattern name pattern)
   (multiple-value-bind (parameters literals) (pattern-parameters pattern)
     (multiple-value-bind (body documentation) (split-documentation template)

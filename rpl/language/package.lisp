@@ -10,6 +10,8 @@ DEFINE-CONSTRUCT adds to it.")
   ;; source
   (:export #:author #:misplaced #:misplaced-advice #:misplaced-container #:misplaced-form
            #:misplaced-suspension #:note-own-text)
+  ;; names, items
+  (:export #:check-variables #:plain-parameters #:item-list)
   ;; scope
   (:export #:inner-scope #:scope #:scope-blocks #:scope-retry #:single-scope #:variable-scope
            #:scope-environment #:scope-variables)

@@ -74,7 +74,7 @@ that one; then ENDING, in one of NIL. A frame remembers the elements left."
   (:parts (items function) (body node) (ending node))
   (:steps
    (begin
-    (setf memory (funcall items environment))
+    (setf memory (whole-list 'dolist (funcall items environment)))
     (at-once between-turns))
    (in-turn
     (cond ((or (null memory) (alone-p task)) (at-once between-turns))

@@ -47,14 +47,14 @@
                  (procedure (ensure-list (local-body value))))))
 
 (defun tagged-in (node name)
-  "Return the tagged nodes called NAME in NODE, in order."
+  "Return the tagged nodes called NAME in NODE, in order; of those within each other the outermost."
   (let ((seen (make-hash-table :test 'eq)) (found '()))
     (labels ((visit (node)
                (unless (gethash node seen)
                  (setf (gethash node seen) t)
-                 (when (and (tagged-p node) (same-name-p name (tagged-name node)))
-                   (push node found))
-                 (mapc #'visit (inner-nodes node)))))
+                 (if (and (tagged-p node) (same-name-p name (tagged-name node)))
+                     (push node found)
+                     (mapc #'visit (inner-nodes node))))))
       (visit node))
     (nreverse found)))
 
@@ -88,8 +88,8 @@
 (defun task-code (path)
   "Return the plan text that the tasks at PATH, a list of a plan or its name and a tag in it, run
 from their next start on, and true if it replaces what is written there. If the tag stands in others
-of the plan, they may come before it. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if there is
-not just one such place. (Ours.)"
+of the plan, they may come before it; of places within each other the outermost is meant. Signals
+UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if there is not just one such place. (Ours.)"
   (let ((node (find-tagged 'task-code path)))
     (if (tagged-replaced node)
         (values (first (tagged-replaced node)) t)
@@ -100,12 +100,15 @@ not just one such place. (Ours.)"
   "Let the tasks at PATH, see TASK-CODE, run FORM, plan text, from their next start on; those under
 way go on as they are. FORM sees the variables that are visible at the tag, but not the blocks, tags
 and local plans there. Its Lisp code is interpreted, as by MAKE-PLAN; compiled if COMPILE is true.
-A definition of the plan anew forgets FORM. Return FORM. Signals as TASK-CODE does. (CRAM's, which
-takes a function.)"
+A definition of the plan anew forgets FORM. Return FORM. Signals as TASK-CODE does, and
+MALFORMED-DEFINITION. (CRAM's, which takes a function.)"
   (let* ((node (find-tagged 'replace-task-code path))
-         (body (with-own-text (form)
-                 (evaluate-form (plan-code form (scope-of (tagged-layers node)))
-                                :compile compile))))
+         (body (call-blaming-form
+                (lambda ()
+                  (with-own-text (form)
+                    (evaluate-form (plan-code form (scope-of (tagged-layers node)))
+                                   :compile compile)))
+                (list 'replace-task-code path form))))
     (setf (tagged-replaced node) (list form (or (second (tagged-replaced node))
                                                 (tagged-body node)))
           (tagged-body node) body)

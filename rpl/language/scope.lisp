@@ -61,6 +61,7 @@ builds the plan, that hold their nodes."
 
 (defun variable-scope (scope variables)
   "Return SCOPE with VARIABLES bound in an environment of their own."
+  (check-variables variables (scope-environment scope))
   (check-lexical variables (scope-environment scope))
   (let ((level (1+ (scope-level scope)))
         (special (find-if (lambda (variable)

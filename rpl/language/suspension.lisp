@@ -41,13 +41,20 @@ form and its scope and returns code that builds a node."
 
 (defun check-own-form (form environment)
   "Signal MALFORMED-DEFINITION if FORM is an IF of the plan's text that is none of a plan's, or a
-LET that binds a task variable."
+LET that binds a task variable; or if it binds what cannot be bound."
+  (when (own-text-p form) (check-names form environment))
   (when (and (own-text-p form) (operator-in-p form '("LET" "LET*")) (proper-list-p (second form)))
     (check-lexical (mapcar (lambda (binding) (first (ensure-list binding))) (second form))
                    environment))
   (when (and (own-text-p form) (operator-in-p form '("IF")))
     (unless (typep form '(cons t (cons t (cons t (or null (cons t null))))))
       (reject-clause (author) form "(if test then [else]): put several forms into (seq ...)"))))
+
+(defun check-operator (form)
+  "Signal MALFORMED-DEFINITION if FORM, of the plan's text, starts with neither a symbol nor a
+LAMBDA."
+  (unless (or (typep (first form) '(cons (eql lambda))) (not (own-text-p form)))
+    (reject-clause (author) form "an operator first of all: data is written '(...) or (list ...)")))
 
 (defun call-suspends (form scope environment)
   "Return :MUST, :MAY or NIL for FORM, a call or special form, its parts left aside."
@@ -85,7 +92,8 @@ LET that binds a task variable."
                (let ((*inner-exits* (append exits *inner-exits*)))
                  (dolist (form forms) (walk-form form environment #'visit))))
              (visit (form environment)
-               (cond ((or (atom form) (not (symbolp (first form)))) form)
+               (cond ((atom form) form)
+                     ((not (symbolp (first form))) (check-operator form) form)
                      ((plan-in-leaf-p form) (values form t))
                      (t (check-own-form form environment)
                         (visit-call form environment (find-plan-form form environment)))))

@@ -24,7 +24,10 @@ past tick LIMIT."
   "Run PLAN, a plan procedure or the name of one, with the list ARGUMENTS by RUNNER in virtual time:
 when no task is ready the next tick at which one wakes comes at once. Return the plan's value, its
 failure if it failed, and as a second value :succeeded, :failed, :evaporated, :deadlock (reported as
-an error message) or :limit (tick LIMIT came first)."
+an error message) or :limit (tick LIMIT came first). Signals WRONG-ARGUMENT."
+  (check-argument run-plan-alone arguments (proper-list-p arguments) "a list of arguments")
+  (check-argument run-plan-alone limit (or (null limit) (quantity-p limit))
+                  "a tick, a number up to 1e15, or NIL")
   (let* ((task (apply #'start-plan runner plan arguments))
          (state (run-until-over runner task limit)))
     (when (eq state :deadlock) (report-deadlock runner))

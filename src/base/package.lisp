@@ -8,11 +8,13 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
                 #:clamp #:ensure-list #:once-only #:parse-body #:removef #:when-let #:if-let
                 #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
                 #:read-file-into-string #:starts-with-subseq #:ends-with
-                #:ends-with-subseq #:define-constant #:proper-list-p)
+                #:ends-with-subseq #:define-constant #:proper-list-p
+                #:parse-ordinary-lambda-list)
   ;; alexandria
   (:export #:clamp #:ensure-list #:once-only #:parse-body #:removef #:when-let #:if-let
            #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
-           #:read-file-into-string #:starts-with-subseq #:define-constant #:proper-list-p)
+           #:read-file-into-string #:starts-with-subseq #:define-constant #:proper-list-p
+           #:parse-ordinary-lambda-list)
   ;; policy
   (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:cell-index
            #:tick-count #:document-functions)
@@ -80,7 +82,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:check-function-name #:other-definition-p #:in-file-p #:missing-name #:read-value
            #:clause-place #:skip-definition #:skip-clause #:read-again)
   ;; user-macros
-  (:export #:define-user-macro #:user-macro-form)
+  (:export #:define-user-macro #:user-macro-form #:call-blaming-form)
   ;; registry
   (:export #:registry #:define-registry #:registry-objects #:register #:seal-definitions
            #:lookup-entry #:from-this-file-p #:entry-name #:entry-object #:entry-source

@@ -1,0 +1,91 @@
+;;;; names.lisp -- which names plans can bind, and the lists that these stand in.
+
+(in-package :ars-magna.rpl.language)
+
+(defun variable-trouble (name environment)
+  "Return in words why NAME cannot be a lexical variable in ENVIRONMENT, or NIL. That it is special
+is another matter."
+  (cond ((not (symbolp name)) "is no symbol")
+        ((or (null name) (keywordp name)) "is a constant")
+        ((member name lambda-list-keywords) "is a word of lambda lists")
+        (t (case (variable-kind name environment)
+             (:constant "is a constant")
+             (:global "is a global variable")))))
+
+(defun check-variables (variables environment &optional (form nil form-p))
+  "Signal MALFORMED-DEFINITION, about FORM if that is given, unless all of VARIABLES can be lexical
+variables in ENVIRONMENT."
+  (dolist (variable variables)
+    (let ((trouble (variable-trouble variable environment)))
+      (when trouble
+        (reject-clause (author) (if form-p form variable)
+                       (format nil "the name of a lexical variable; ~(~S~) ~A"
+                               (abridged variable) trouble))))))
+
+;;; Lambda lists.
+
+(defun parameters-trouble (parameters environment)
+  "Return in words why PARAMETERS, without types, are no ordinary lambda list, or NIL."
+  (handler-case (parse-ordinary-lambda-list parameters :normalize nil)
+    (error () (return-from parameters-trouble
+                (or (loop for parameter in parameters
+                          for trouble = (and (not (member parameter lambda-list-keywords))
+                                             (atom parameter)
+                                             (variable-trouble parameter environment))
+                          when trouble return (format nil "~(~S~) ~A" parameter trouble))
+                    "this is none"))))
+  (let* ((variables (lambda-list-variables parameters))
+         (twice (find-if (lambda (variable) (< 1 (count variable variables))) variables)))
+    (cond (twice (format nil "~(~S~) is there twice" twice))
+          ((equal '(&rest) (last parameters)) "a variable comes after &rest")
+          (t (loop for variable in variables
+                   for trouble = (variable-trouble variable environment)
+                   when trouble return (format nil "~(~S~) ~A" variable trouble))))))
+
+(defun plain-parameters (parameters form environment &optional (definition (author)))
+  "Return PARAMETERS, of FORM in DEFINITION, without types. Signals MALFORMED-DEFINITION unless they
+are a lambda list."
+  (flet ((reject (trouble)
+           (reject-clause definition (if (consp parameters) parameters form)
+                          (format nil "an ordinary lambda list, such as (a &optional b &key c); ~A"
+                                  trouble))))
+    (unless (proper-list-p parameters) (reject "this is no list that ends"))
+    (let* ((plain (untyped-lambda-list parameters definition))
+           (trouble (parameters-trouble plain environment)))
+      (when trouble (reject trouble))
+      plain)))
+
+;;; Forms that bind, also where they are Lisp's to run.
+
+(defun check-bindings (form environment)
+  "Signal MALFORMED-DEFINITION unless Lisp can read the bindings of FORM, a LET."
+  (let ((bindings (second form)))
+    (unless (proper-list-p bindings)
+      (reject-clause (author) form "(variable value) for each variable, in a list that ends"))
+    (dolist (binding (untyped-bindings bindings (author)))
+      (unless (typep binding '(or symbol (cons t (or null (cons t null)))))
+        (reject-clause (author) (if (consp binding) binding form)
+                       "(variable value) for each variable"))
+      (check-variables (list (first (ensure-list (or binding '(nil))))) environment form))))
+
+(defun check-local-functions (form environment)
+  "Signal MALFORMED-DEFINITION unless Lisp can read the definitions of FORM, an FLET or LABELS."
+  (unless (proper-list-p (second form))
+    (reject-clause (author) form "(name parameters form...) for each, in a list that ends"))
+  (dolist (definition (second form))
+    (unless (and (typep definition '(cons t (cons list t))) (proper-list-p definition))
+      (reject-clause (author) (if (consp definition) definition form)
+                     "(name parameters form...) for each"))
+    (plain-parameters (second definition) definition environment)))
+
+(defun check-names (form environment)
+  "Signal MALFORMED-DEFINITION if FORM, of the plan's text, binds what cannot be bound."
+  (flet ((is (&rest names) (operator-in-p form names)))
+    (cond ((is "LET" "LET*") (check-bindings form environment))
+          ((is "FLET" "LABELS") (check-local-functions form environment))
+          ((is "MULTIPLE-VALUE-BIND")
+           (when (proper-list-p (second form))
+             (check-variables (second form) environment form)))
+          ((is "DOLIST" "DOTIMES" "PAR-LOOP" "TRY-EACH-IN-ORDER")
+           (when (typep (second form) '(cons t cons))
+             (check-variables (list (first (second form))) environment form))))))
