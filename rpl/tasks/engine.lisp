@@ -10,19 +10,20 @@
 ;;; thread at a time; any thread may post.
 
 (defun make-plan-runner (&key trace budget clock (slow 0.1d0) dice (ticks-per-second 20)
-                           (tick 0) (busy-p (constantly nil)) (on-post #'list) on-tick
+                           (tick 0) client (busy-p (constantly nil)) (on-post #'list) on-tick
                            (on-end #'report-end))
   "Return what runs plans, at TICK. TRACE says whether to keep a trace. BUDGET is how many steps a
 reaction may take before time passes (NIL: as many as it needs). CLOCK, a function that returns
 seconds, serves to warn of Lisp code that runs for more than SLOW seconds. DICE choose for TRY-ONE.
 BUSY-P says whether somebody else, such as a command under way, may still post. ON-POST is called
 after each post, in the posting thread, ON-TICK, if given, with the tick when time has passed,
-ON-END with each top-level task that ends; by default it reports failures."
+ON-END with each top-level task that ends; by default it reports failures. CLIENT, any object, is on
+whose behalf it does all this."
   (check-argument make-plan-runner budget (or (null budget) (whole-p budget 1))
                   "NIL or an integer from 1 to 1e9")
   (let ((runner (%make-plan-runner :trace (and trace (make-trace)) :budget budget :clock clock
                                    :slow slow :dice dice :ticks-per-second ticks-per-second
-                                   :tick tick :busy-p busy-p :on-post on-post
+                                   :tick tick :client client :busy-p busy-p :on-post on-post
                                    :on-tick (ensure-list on-tick) :on-end on-end)))
     (when trace (trace-changes runner))
     runner))
@@ -31,6 +32,10 @@ ON-END with each top-level task that ends; by default it reports failures."
   (print-unreadable-object (runner stream :type t)
     (format stream "tick ~A, ~D task~:P" (runner-tick runner) (length (runner-roots runner)))))
 
+(defconstant +start+ 100
+  "How many steps of a reaction it counts as to start a plan: what starts plans without end is to
+meet the end of the reaction before that of the room.")
+
 (defun start-plan (runner plan &rest arguments)
   "Start PLAN, a plan procedure or the name of one, with ARGUMENTS as a top-level task of RUNNER.
 Return the task, which runs at the next reaction."
@@ -38,6 +43,7 @@ Return the task, which runs at the next reaction."
     (let ((name (if (procedure-p plan) (procedure-name plan) plan)))
       (at-home (runner)
         (let ((task (spawn nil body environment 0 0 (make-task name body))))
+          (incf (runner-steps runner) +start+)
           (push task (runner-roots runner))
           (dolist (hook *plan-start-hooks*) (funcall hook task))
           task)))))
