@@ -132,7 +132,10 @@ again."
     (and (usable-p interface) interface)))
 
 (defun the-interface ()
+  "Return the interface that can be used here. If plans react here whose robot is gone, the plan at
+work ends. Signals MISUSE if there is none."
   (or (usable-interface)
+      (and *reacting* (not (interface-valid-p *reacting*)) (leave-plan))
       (reject-use "No robot to drive. Call (rpl-init-robot ROBOT) first; after a simulator has ~
                    been started anew, or the robot defined anew, call it again.")))
 
