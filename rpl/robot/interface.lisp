@@ -41,7 +41,7 @@ SAVE-PLAN-TIMELINE.")
   (deeds '() :type list)
   (answers '() :type list)
   (deeds-lock (make-lock "commands of plans") :read-only t)
-  ;; How often plans have taken which resource in a tick, and what was said of that.
+  ;; How often plans have taken which resource in a tick, and what was said of that at which tick.
   (takeovers '() :type list)
   (takeover-tick nil)
   (warned '() :type list))
