@@ -10,8 +10,8 @@
   "How often plans may take one part of the robot from each other before time has to pass.")
 
 (defconstant +takeover-warning-ticks+ 5
-  "After how many ticks plans that go on so are named again. Meanwhile each takeover may be a message,
-and the queue of these forgets the oldest.")
+  "After how many ticks plans that go on so are named again. Meanwhile each takeover may be a
+message, and the queue of these forgets the oldest.")
 
 (defun takeover-count (interface resource)
   "Return a cons of RESOURCE and how often it has been taken over in this tick."

@@ -62,8 +62,8 @@
     (when restart (invoke-restart restart))))
 
 (defun call-offering-ends (runner function fail end leave)
-  "Call FUNCTION with RUNNER and the restarts FAIL-TASK, LEAVE-PLAN and ABORT, which call FAIL, LEAVE
-and END."
+  "Call FUNCTION with RUNNER and the restarts FAIL-TASK, LEAVE-PLAN and ABORT, which call FAIL,
+LEAVE and END."
   (declare (type function function fail end leave))
   (flet ((in-step-p (condition)
            (declare (ignore condition))
