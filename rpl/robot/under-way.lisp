@@ -163,8 +163,8 @@ has been ended by the plan that is at work, if one is."
         thereis (task-cleaning each)))
 
 (defun call-on-robot (interface function)
-  "Call FUNCTION, which does something with the robot of INTERFACE. Should that be gone just now, the
-plan at work ends; an error says no more than that."
+  "Call FUNCTION, which does something with the robot of INTERFACE. Should that be gone just now,
+the plan at work ends; an error says no more than that."
   (handler-bind ((error (lambda (condition)
                           (declare (ignore condition))
                           (unless (interface-valid-p interface) (leave-plan)))))
