@@ -68,8 +68,9 @@
 (defun reason-text (failure)
   "Return in words why a plan failed."
   (if (eq (type-of failure) 'plan-failure)
-      (format nil "~:[no reason given~;~:*~S~]~{ ~S~}"
-              (failure-class failure) (failure-data failure))
+      (format nil "~:[no reason given~;~:*~A~]~{ ~A~}"
+              (and (failure-class failure) (safe-text (failure-class failure)))
+              (mapcar #'safe-text (failure-data failure)))
       (condition-text failure)))
 
 (defstruct (verdict (:constructor make-verdict (text)) (:copier nil))
@@ -105,7 +106,7 @@
         (result (task-result (plan-errand-task errand))))
     (with-messages-to (errand)
       (case (task-state (plan-errand-task errand))
-        (:succeeded (message-set name " succeeded: " (user-text #'prin1-to-string result)))
+        (:succeeded (message-set name " succeeded: " (user-text #'safe-text result)))
         (:failed (setf (session-failure (plan-errand-session errand))
                        (list result (plan-errand-name errand)))
                  (tell-failure errand "failed: ~A. PLANS tells more."

@@ -127,6 +127,26 @@
   (is (equal '("plan fetch 1" "plan b")
              (cli::plan-lines (cli::parse-options '("--plan" "fetch 1" "--plan=b"))))))
 
+(rpl:def-interp-proc ars-user::mumble (fail-p)
+  "Fail, or return, with what cannot be printed."
+  (if fail-p
+      (rpl:fail :class :mumbled :words (make-speechless))
+      (make-speechless)))
+
+(rpl:def-interp-proc ars-user::careful (x)
+  (rpl:handle-failure ((error () (return :handled)))
+    (rpl:wait-time 1)
+    (car x)
+    (rpl:wait-time 1)))
+
+(test plan.what-cannot-be-printed-is-no-trouble
+  (is-true (has-words-p (complaint "plan mumble t") "mumble failed" ":MUMBLED :WORDS what cannot"))
+  (is (equal '("mumble succeeded: what cannot be printed") (type-batch "plan mumble nil"))))
+
+(test plan.handles-its-own-errors-where-nobody-answers-a-debugger
+  (let ((base:*break-on-user-error* t))
+    (is (equal '("careful succeeded: :HANDLED") (type-batch "plan careful 5")))))
+
 ;;; Live. The prompt in these tests is in this thread; it waits for facts.
 
 (defun type-live (lines &rest options)

@@ -160,3 +160,19 @@ atom."
       (is (equal '(driver:rpl-robot-turn rpl:wait-for rpl:fluent-value)
                  (mapcar #'operator-in texts)))
       (is (eq :succeeded (second values))))))
+
+(test break.nobody-is-nobody-inside-of-others-code-too
+  "A plan that handles its own Lisp errors does so where nobody answers a debugger."
+  (let ((base:*message-queue* (base:make-message-queue))
+        (base:*break-on-user-error* t))
+    (with-nobody-there ()
+      (is (eq :handled
+              (base:call-user-code
+               (lambda ()
+                 (rpl:run-plan-alone (rpl:interp-lambda ()
+                                       (rpl:handle-failure ((error () (return :handled)))
+                                         (parse-integer "x")))))
+               "a test")))
+      (base:call-user-code (lambda () (is-false (base:debugger-p))) "a test"))
+    (base:with-debugger-hook ((lambda (condition hook) (declare (ignore condition hook))))
+      (base:call-user-code (lambda () (is-true (base:debugger-p))) "a test"))))

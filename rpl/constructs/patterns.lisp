@@ -58,4 +58,4 @@ what is in the holes."
                    ((and pattern (symbolp pattern)) (make-symbol (plain-name pattern)))
                    (t pattern))))
     (let ((*print-gensym* nil) (*print-pretty* nil))
-      (princ-to-string (abridged (plain pattern))))))
+      (safe-text (plain pattern) :escape nil))))

@@ -49,15 +49,19 @@ that have been taken from it."
   "Return the tasks from which VALVE was taken and which are to have it back, the next first."
   (mapcar #'claim-task (rest (valve-claims valve))))
 
+(defun valve-text (valve)
+  "Return the name of VALVE as text."
+  (safe-text (valve-name valve) :escape nil))
+
 (defmethod print-object ((valve valve) stream)
   (print-unreadable-object (valve stream)
-    (format stream "valve ~A~@[ of task ~D~]" (valve-name valve)
+    (format stream "valve ~A~@[ of task ~D~]" (valve-text valve)
             (and (valve-owner valve) (task-serial (valve-owner valve))))))
 
 (defmethod awaited-text ((claim claim))
   (format nil "~[~;valve~:;valves~] ~:*~*~{~(~A~)~^, ~}"
           (min 2 (length (claim-valves claim)))
-          (mapcar #'valve-name (claim-valves claim))))
+          (mapcar #'valve-text (claim-valves claim))))
 
 ;;; Who may have what.
 

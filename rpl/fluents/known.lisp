@@ -29,7 +29,7 @@ for each part, or T if a fluent.")
 
 (defun reject-vector (vector)
   "Signal MISUSE: VECTOR, of fluents, stands where a fluent should."
-  (let* ((name (princ-to-string (fluent-name (svref vector 0))))
+  (let* ((name (safe-text (fluent-name (svref vector 0)) :escape nil))
          (variable (subseq name 0 (position #\Space name :from-end t))))
     (reject-use "~A is a vector of fluents: a condition needs one of them. Write (vref ~:*~A ~A)."
                 variable

@@ -163,23 +163,40 @@ ARGUMENTS, call FUNCTION at once."
 
 ;;; Printing.
 
+(defconstant +most-fluents+ 100 "How many fluents the text of a network shows at most.")
+
 (defun write-network (fluent stream)
-  "Write FLUENT as the expression that it was made by."
-  (if (derived-p fluent)
-      (format stream "(~A~{ ~A~})" (fluent-name fluent)
-              (loop for source in (derived-sources fluent)
-                    collect (if (fluent-p source)
-                                (with-output-to-string (out) (write-network source out))
-                                (prin1-to-string source))))
-      (format stream "~A" (fluent-name fluent))))
+  "Write FLUENT as the expression that it was made by; of a large one, its beginning."
+  (let ((left +most-fluents+))
+    (labels ((name (fluent) (write-string (safe-text (fluent-name fluent) :escape nil) stream))
+             (visit (object)
+               (cond ((not (fluent-p object)) (write-string (safe-text object) stream))
+                     ((minusp (decf left)) (write-string "..." stream))
+                     ((derived-p object)
+                      (write-char #\( stream)
+                      (name object)
+                      (dolist (source (derived-sources object))
+                        (write-char #\Space stream)
+                        (visit source))
+                      (write-char #\) stream))
+                     (t (name object)))))
+      (visit fluent))))
 
 (defun fluent-text (fluent)
   "Return what FLUENT is called, in lower case: its name or its network."
   (let ((*print-case* :downcase) (*print-length* 5) (*print-level* 4))
     (with-output-to-string (stream) (write-network fluent stream))))
 
+(defvar *inside-fluent* nil
+  "True while the value of a fluent is printed, when others are printed by name only: they may be
+each other's values.")
+
+(defun value-text (fluent)
+  "Return the value of FLUENT as text; in words what hinders that."
+  (handler-case (let ((*inside-fluent* t)) (safe-text (current-value fluent)))
+    (error (condition) (format nil "error: ~A" (type-of condition)))))
+
 (defmethod print-object ((fluent fluent) stream)
   (print-unreadable-object (fluent stream)
-    (format stream "fluent ~A = " (fluent-text fluent))
-    (handler-case (prin1 (current-value fluent) stream)
-      (error (condition) (format stream "error: ~A" (type-of condition))))))
+    (format stream "fluent ~A~@[ = ~A~]" (fluent-text fluent)
+            (unless *inside-fluent* (value-text fluent)))))

@@ -41,7 +41,7 @@ SAVE-PLAN-TIMELINE.")
   (deeds '() :type list)
   (answers '() :type list)
   (deeds-lock (make-lock "commands of plans") :read-only t)
-  ;; How often plans have taken which resource in a tick, and what was said of that.
+  ;; How often plans have taken which resource in a tick, and what was said of that at which tick.
   (takeovers '() :type list)
   (takeover-tick nil)
   (warned '() :type list))
@@ -136,7 +136,10 @@ again."
     (and (usable-p interface) interface)))
 
 (defun the-interface ()
+  "Return the interface that can be used here. If plans react here whose robot is gone, the plan at
+work ends. Signals MISUSE if there is none."
   (or (usable-interface)
+      (and *reacting* (not (interface-valid-p *reacting*)) (leave-plan))
       (reject-use "No robot to drive. Call (rpl-init-robot ROBOT) first; after a simulator has ~
                    been started anew, or the robot defined anew, call it again.")))
 

@@ -28,7 +28,7 @@
                 #:report-end #:reseed-runner #:digest-runner #:print-tasks #:find-procedure
                 #:plan-trace #:write-trace #:valve #:make-valve #:note-command #:with-answer
                 #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks* #:start-trace
-                #:task-runner)
+                #:task-runner #:leave-plan #:runner-client)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
            #:robot-place-input* #:robot-place* #:camera-input* #:camera-views*

@@ -98,6 +98,7 @@ not count: they tell plans nothing."
     (make-plan-runner :trace *trace-plans*
                       :dice (make-dice (simulation-seed simulation) :plans)
                       :tick (simulation-tick simulation)
+                      :client interface
                       :busy-p (lambda () (busy-p interface))
                       :clock (lambda () (seconds-when-live simulation))
                       :slow *hog-seconds*

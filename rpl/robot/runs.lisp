@@ -137,11 +137,15 @@ MISUSE."
   (let ((interface (usable-interface)))
     (and interface (tasks-of interface))))
 
-(defun end-in (interface task)
-  "Let TASK of INTERFACE, or all if it is NIL, evaporate: now, or when their thread gets to it."
+(defun want-end (interface task)
+  "Let TASK of INTERFACE, or all if it is NIL, evaporate when its runner gets to that."
   (dolist (task (if task (list task) (tasks-of interface)))
     (unless (task-over-p task) (atomic-push task (interface-unwanted interface))))
-  (stop-plan (interface-runner interface) task)
+  (stop-plan (interface-runner interface) task))
+
+(defun end-in (interface task)
+  "Let TASK of INTERFACE, or all if it is NIL, evaporate: now, or when their thread gets to it."
+  (want-end interface task)
   (unless (or (holding-p interface) (thread-of interface))
     (with-plans (interface) (react-fully interface))))
 
@@ -152,12 +156,24 @@ MISUSE."
         (task-doomed task)
         (and interface (member task (interface-unwanted interface)) t))))
 
+(defun end-task (task)
+  "Let TASK evaporate, whoever runs it: now if it is of the plans of here."
+  (let ((interface (and (task-runner task) (runner-client (task-runner task)))))
+    (cond ((or (null (task-runner task)) (task-over-p task)))
+          ((null interface) (stop-plan (task-runner task) task))
+          ((eq interface (interface-here)) (end-in interface task))
+          (t (want-end interface task)))))
+
 (addition end-plan)
 (defun end-plan (task)
   "Let the plan TASK, or all plans if it is :ALL, evaporate. Commands of theirs that are under way
 are interrupted, but for what they asked for to clean up. Lisp code of a live plan that keeps the
-plans' thread is aborted. Returns nothing. Signals WRONG-ARGUMENT."
+plans' thread is aborted. A TASK can be ended anywhere; one of a simulation that we are not in hears
+of it when that goes on. One that is over stays as it is. Returns nothing. Signals WRONG-ARGUMENT,
+and MISUSE if there is no robot whose plans :ALL could be."
   (check-argument end-plan task (or (eq task :all) (task-p task))
                   "a task, as begin-plan returns, or :ALL")
-  (end-in (the-interface) (if (eq task :all) nil task))
+  (if (eq task :all)
+      (end-in (the-interface) nil)
+      (end-task task))
   (values))

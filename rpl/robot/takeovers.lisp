@@ -9,6 +9,10 @@
 (defparameter *most-takeovers* 100
   "How often plans may take one part of the robot from each other before time has to pass.")
 
+(defconstant +takeover-warning-ticks+ 5
+  "After how many ticks plans that go on so are named again. Meanwhile each takeover may be a
+message, and the queue of these forgets the oldest.")
+
 (defun takeover-count (interface resource)
   "Return a cons of RESOURCE and how often it has been taken over in this tick."
   (let ((tick (simulation-tick (interface-simulation interface))))
@@ -38,11 +42,14 @@ the same words whichever of them it is that takes it."
               (taker-text older) (taker-text newer) resource)))
 
 (defun warn-of-takeovers (interface text)
-  "Queue the warning TEXT, once."
-  (unless (member text (interface-warned interface) :test #'string=)
-    (push text (interface-warned interface))
-    (warning-set text ". They go on with the ticks. Let one at a time have it: see "
-                 "RPL-ROBOT-VALVE.")))
+  "Queue the warning TEXT, unless that was done just before."
+  (let ((tick (simulation-tick (interface-simulation interface)))
+        (said (assoc text (interface-warned interface) :test #'string=)))
+    (unless (and said (< tick (+ (cdr said) +takeover-warning-ticks+)))
+      (setf (interface-warned interface)
+            (acons text tick (remove said (interface-warned interface))))
+      (warning-set text ". They go on with the ticks. Let one at a time have it: see "
+                   "RPL-ROBOT-VALVE."))))
 
 (defun count-takeover (interface resource older newer)
   "Note that the task NEWER has taken over RESOURCE from OLDER (NIL: no task), and let time pass if

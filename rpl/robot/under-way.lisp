@@ -165,6 +165,14 @@ has been ended by the plan that is at work, if one is."
         while each
         thereis (task-cleaning each)))
 
+(defun call-on-robot (interface function)
+  "Call FUNCTION, which does something with the robot of INTERFACE. Should that be gone just now,
+the plan at work ends; an error says no more than that."
+  (handler-bind ((error (lambda (condition)
+                          (declare (ignore condition))
+                          (unless (interface-valid-p interface) (leave-plan)))))
+    (funcall function)))
+
 (defun issue-deed (interface command resource arguments outcome issue)
   "Issue COMMAND on RESOURCE with ARGUMENTS; OUTCOME says what plans hear of its end. ISSUE is what
 the trace knows of it."
@@ -174,15 +182,18 @@ the trace knows of it."
                          interface))
          (issued-p nil))
     (unwind-protect
-         (progn (apply (command-name command) resource
-                       (append arguments (list (answering interface deed))))
+         (progn (call-on-robot interface
+                               (lambda ()
+                                 (apply (command-name command) resource
+                                        (append arguments (list (answering interface deed))))))
                 (setf issued-p t))
       (unless issued-p (forget-deed deed interface)))
     (take-over interface resource :except deed)))
 
 (defun grab (interface resource)
   "Interrupt whatever goes on on RESOURCE, also what takes no time and in the background."
-  (grab-resource resource (interface-simulation interface))
+  (call-on-robot interface
+                 (lambda () (grab-resource resource (interface-simulation interface))))
   (take-over interface resource :test (constantly t)))
 
 ;;; When a plan ends.

@@ -13,7 +13,7 @@
 (defun outcome-text (task)
   (case (task-state task)
     (:succeeded (form-text (task-result task) 70))
-    (:failed (cut (one-line (princ-to-string (task-result task))) 200))))
+    (:failed (cut (one-line (failure-text (task-result task))) 200))))
 
 (defmethod describe-object ((task task) stream)
   (head task stream)

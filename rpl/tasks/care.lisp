@@ -18,8 +18,12 @@
   "Let TROUBLE, a failure or that there was no room, be the failure of the running task of RUNNER."
   (let ((task (runner-current runner)))
     (when (typep trouble 'storage-condition) (regain-room trouble))
-    (setf (task-signal task) (current-failure runner trouble))
-    (make-ready-first task)))
+    (let ((failure (current-failure runner trouble)))
+      (cond ((task-newest-child task)   ; The step was starting parts.
+             (setf (task-state task) :waiting)
+             (decide task failure))
+            (t (setf (task-signal task) failure)
+               (make-ready-first task))))))
 
 (defun cleaner-around (task)
   "Return the innermost of TASK and those that it is part of that is cleaning up, or NIL."
@@ -57,16 +61,25 @@
 
 (defun offer-failing (stream) (write-string "Let the task fail." stream))
 (defun offer-ending (stream) (write-string "End the plan." stream))
+(defun offer-leaving (stream) (write-string "End the plan without a word." stream))
 
-(defun call-offering-ends (runner function fail end)
-  "Call FUNCTION with RUNNER and the restarts FAIL-TASK and ABORT, which call FAIL and END."
-  (declare (type function function fail end))
+(defun leave-plan ()
+  "In a plan's Lisp code: end the plan, and report nothing. Elsewhere return."
+  (let ((restart (find-restart 'leave-plan)))
+    (when restart (invoke-restart restart))))
+
+(defun call-offering-ends (runner function fail end leave)
+  "Call FUNCTION with RUNNER and the restarts FAIL-TASK, LEAVE-PLAN and ABORT, which call FAIL,
+LEAVE and END."
+  (declare (type function function fail end leave))
   (flet ((in-step-p (condition)
            (declare (ignore condition))
            (running-task runner)))
     (declare (dynamic-extent #'in-step-p))
     (restart-bind ((fail-task fail :report-function #'offer-failing
                                    :test-function #'in-step-p)
+                   (leave-plan leave :report-function #'offer-leaving
+                                     :test-function #'in-step-p)
                    (abort end :report-function #'offer-ending
                               :test-function #'in-step-p))
       (funcall function runner))))
@@ -79,6 +92,7 @@ task has to bear."
          (block call
            (labels ((bear (what) (setf fate what) (return-from call))
                     (end () (bear :end))
+                    (leave () (bear :leave))
                     (fail ()
                       (unless (typep trouble '(or plan-failure storage-condition))
                         (setf trouble (current-failure runner (or trouble (make-failure '())))))
@@ -102,15 +116,16 @@ task has to bear."
                             (t (report-break condition (list (task-label (runner-current runner))))
                                (continue-inside condition)
                                (end)))))
-             (declare (dynamic-extent #'end #'fail #'note #'answer))
+             (declare (dynamic-extent #'end #'leave #'fail #'note #'answer))
              (setf result (handler-bind (((or error plan-failure storage-condition) #'note))
                             (answering-debugger (#'answer)
-                              (call-offering-ends runner function #'fail #'end)))
+                              (call-offering-ends runner function #'fail #'end #'leave)))
                    fate :done)))
       (cond ((null fate) (put-in-order runner))
             (anywhere (repair runner))))
     (ecase fate
       (:done)
       (:fail (fail-current runner trouble))
-      (:end (report-abort runner) (end-current runner)))
+      (:end (report-abort runner) (end-current runner))
+      (:leave (end-current runner)))
     result))

@@ -33,6 +33,7 @@
         (task-frame task) nil
         (task-value task) nil
         (task-signal task) nil)
+  (decf (runner-alive (the plan-runner (task-runner task))))
   (when (plusp (task-blocked task)) (forget-blocks task))
   (note-status task state)
   (let ((parent (task-parent task)))

@@ -10,7 +10,7 @@
 ;;; thread at a time; any thread may post.
 
 (defun make-plan-runner (&key trace budget clock (slow 0.1d0) dice (ticks-per-second 20)
-                           (tick 0) (busy-p (constantly nil)) (on-post #'list)
+                           (tick 0) client (busy-p (constantly nil)) (on-post #'list)
                            (attended-p (constantly nil)) on-tick
                            (on-end #'report-end))
   "Return what runs plans, at TICK. TRACE says whether to keep a trace. BUDGET is how many steps a
@@ -19,13 +19,13 @@ seconds, serves to warn of Lisp code that runs for more than SLOW seconds. DICE 
 BUSY-P says whether somebody else, such as a command under way, may still post. ON-POST is called
 after each post, in the posting thread; ATTENDED-P says whether a thread will hear that anyway.
 ON-TICK, if given, is called with the tick when time has passed, ON-END with each top-level task
-that ends; by default it reports failures."
+that ends; by default it reports failures. CLIENT, any object, is on whose behalf it does all this."
   (check-argument make-plan-runner budget (or (null budget) (whole-p budget 1))
                   "NIL or an integer from 1 to 1e9")
   (let ((runner (%make-plan-runner :trace (and trace (make-trace)) :budget budget :clock clock
                                    :slow slow :dice dice :ticks-per-second ticks-per-second
-                                   :tick tick :busy-p busy-p :on-post on-post :attended-p attended-p
-                                   :repairer #'put-in-order
+                                   :tick tick :client client :busy-p busy-p :on-post on-post
+                                   :attended-p attended-p :repairer #'put-in-order
                                    :on-tick (ensure-list on-tick) :on-end on-end)))
     (when trace (trace-changes runner))
     runner))
@@ -34,6 +34,10 @@ that ends; by default it reports failures."
   (print-unreadable-object (runner stream :type t)
     (format stream "tick ~A, ~D task~:P" (runner-tick runner) (length (runner-roots runner)))))
 
+(defconstant +start+ 100
+  "How many steps of a reaction it counts as to start a plan: what starts plans without end is to
+meet the end of the reaction before that of the room.")
+
 (defun start-plan (runner plan &rest arguments)
   "Start PLAN, a plan procedure or the name of one, with ARGUMENTS as a top-level task of RUNNER.
 Return the task, which runs at the next reaction."
@@ -41,6 +45,7 @@ Return the task, which runs at the next reaction."
     (let ((name (if (procedure-p plan) (procedure-name plan) plan)))
       (at-home (runner)
         (let ((task (spawn nil body environment 0 0 (make-task name body))))
+          (incf (runner-steps runner) +start+)
           (push task (runner-roots runner))
           (dolist (hook *plan-start-hooks*) (funcall hook task))
           task)))))

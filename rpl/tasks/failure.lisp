@@ -16,7 +16,7 @@
    (cause :initarg :cause :initform nil :accessor failure-cause)
    (suppressed :initform '() :accessor failure-suppressed)
    (expressions :initform '() :accessor failure-plan-backtrace))
-  (:report (lambda (failure stream) (write-failure failure stream)))
+  (:report (lambda (failure stream) (write-string (report-of failure) stream)))
   (:documentation "A plan could not do what it is for. Conditions of a user's own may inherit from
 this; (fail :class name ...) makes one of them, or a plain one of class NAME."))
 
@@ -52,18 +52,32 @@ innermost first.")
 (defgeneric write-failure (failure stream)
   (:documentation "Write on one line to STREAM what FAILURE is.")
   (:method ((failure plan-failure) stream)
-    (format stream "Plan failure~@[ ~S~]~{ ~S~}" (failure-class failure)
-            (mapcar #'abridged (failure-data failure))))
+    (format stream "Plan failure~@[ ~A~]~{ ~A~}"
+            (and (failure-class failure) (safe-text (failure-class failure)))
+            (mapcar #'safe-text (failure-data failure))))
   (:method ((failure composite-failure) stream)
     (format stream "All ~D attempts failed: ~{~A~^; ~}" (length (composite-failures failure))
             (mapcar #'failure-text (composite-failures failure))))
   (:method ((failure lisp-failure) stream)
     (format stream "Lisp error in a plan: ~A" (failure-text (lisp-failure-condition failure)))))
 
+(defconstant +longest-failure+ 2000 "How many characters the text of a failure has at most.")
+
+(defmacro reporting ((condition) form)
+  "Return the beginning of the text that FORM returns; if it cannot, what CONDITION is."
+  `(handler-case (cut ,form +longest-failure+)
+     ((or error storage-condition) ()
+       (format nil "~S, whose report fails" (type-of ,condition)))))
+
+(defun report-of (failure)
+  "Return what WRITE-FAILURE writes of FAILURE."
+  (reporting (failure)
+    (with-output-to-string (stream) (write-failure failure stream))))
+
 (defun failure-text (failure)
-  "Return what FAILURE, or another condition, reports; its type if that signals an error."
-  (handler-case (princ-to-string failure)
-    (error () (format nil "~S, whose report fails" (type-of failure)))))
+  "Return what FAILURE, or another condition, reports: of what is deep, long or circular a part; its
+type if that signals an error."
+  (reporting (failure) (format-briefly nil "~A" failure)))
 
 (defun failure-type-p (object)
   (and (symbolp object)

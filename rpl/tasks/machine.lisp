@@ -100,7 +100,7 @@ the value. A leaf takes no frame of its own."
 
 (defgeneric awaited-text (awaited)
   (:documentation "Return in words what a task that waits for AWAITED waits for.")
-  (:method (awaited) (princ-to-string awaited))
+  (:method (awaited) (safe-text awaited :escape nil))
   (:method ((fluent fluent)) (fluent-text fluent))
   (:method ((watcher watcher)) (fluent-text (watcher-fluent watcher)))
   (:method ((timer timer))

@@ -34,7 +34,7 @@ plans nor a simulator.")
            #:note-event #:plan-runner #:plan-runner-steps #:plan-runner-tasks #:plan-runner-tick
            #:plan-time #:plan-trace #:runner-blocks #:runner-dice #:runner-tick
            #:runner-ticks-per-second #:runner-timers #:runner-current #:runner-stepper
-           #:runner-trace)
+           #:runner-trace #:runner-client #:*plan-task-limit*)
   ;; machine
   (:export #:+nothing+ #:+parked+ #:awaited-text #:bundle-p #:bundle-values #:call-leaf
            #:completion-p #:enter #:escape-p #:escape-target #:escape-value #:leaf-function
@@ -66,6 +66,8 @@ plans nor a simulator.")
   (:export #:block-task #:check-together #:make-heed #:suspend #:unblock-task #:wake-up)
   ;; circles
   (:export #:hinderers #:hindrance-text #:report-circle #:taken-from)
+  ;; care
+  (:export #:leave-plan)
   ;; gate
   (:export #:gate #:gate-holds #:hold-back #:release-hold #:spawn-gated)
   ;; variables

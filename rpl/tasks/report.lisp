@@ -31,7 +31,7 @@ waits for its own parts."
   "Write on a line to STREAM which task TASK is, how it is, and what it waits for and since when."
   (format stream "~V@T~D ~A: ~:[~;~:*~(~A~) ~]~A~@[ waits for ~A~]~@[ since tick ~A~]~%"
           (* 2 depth) (task-serial task) (task-state-text task)
-          (task-name task) (form-text (task-form task)) (task-awaits task)
+          (and (task-name task) (task-label task)) (form-text (task-form task)) (task-awaits task)
           (and (task-awaits task) (task-since task))))
 
 (defun write-task-tree (task depth stream)

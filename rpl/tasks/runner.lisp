@@ -16,11 +16,17 @@ tenth of the steps of a reaction if that is less.")
 (defparameter *runaway-limit* 1000000
   "How many steps a reaction without a budget takes before time passes all the same.")
 
+(addition *plan-task-limit*)
+(defparameter *plan-task-limit* 200000
+  "How many tasks of a robot's plans, or of another plan runner, may be under way at once. To start
+one more fails with class :TOO-MANY-TASKS.")
+
 (defstruct (plan-runner (:include home) (:constructor %make-plan-runner) (:copier nil)
                         (:conc-name runner-))
   "What runs plans: knows the tasks, the tick, the timers, and what was posted from outside. PAUSE
 is the number of steps at which the running task is to pause, LIMIT that at which the reaction is to
-end. SPENT are the ready tasks that have used their slice in this ROUND, the last one first."
+end. SPENT are the ready tasks that have used their slice in this ROUND, the last one first.
+ALIVE is how many tasks are not over. CLIENT is on whose behalf all this is."
   (rings (coerce (loop repeat +levels+ collect (make-ring)) 'simple-vector)
    :type (simple-vector 8) :read-only t)
   (mask 0 :type fixnum)
@@ -31,6 +37,8 @@ end. SPENT are the ready tasks that have used their slice in this ROUND, the las
   (tick 0 :type real)
   (timers (make-timers) :type timers :read-only t)
   (serial 0 :type fixnum)
+  (alive 0 :type fixnum)
+  (client nil :read-only t)
   (steps 0 :type (unsigned-byte 62))
   (pause 0 :type (unsigned-byte 62))
   (limit 0 :type (unsigned-byte 62))
@@ -56,6 +64,7 @@ end. SPENT are the ready tasks that have used their slice in this ROUND, the las
  runner-tick "Return the tick that it is for the plan runner."
  runner-timers "Return the timers of the plan runner."
  runner-blocks "Return how many blocks of tasks of the plan runner there are."
+ runner-client "Return on whose behalf the plan runner runs plans, as MAKE-PLAN-RUNNER was told."
  runner-dice "Return the dice by which the plan runner's tasks choose, or NIL."
  runner-ticks-per-second "Return how many ticks are a second for the plan runner's tasks.")
 

@@ -110,10 +110,20 @@ VALUE are what the last step returned; return what it should have."
       (run-steps task frame value))
     (decf (task-slice task) (- (runner-steps runner) start))))
 
+(defun check-room (runner)
+  "Fail if as many tasks of RUNNER as may be are under way."
+  (unless (< (runner-alive runner) *plan-task-limit*)
+    (if (running-task runner)
+        (fail :class :too-many-tasks :limit *plan-task-limit*)
+        (reject-use "There are ~D tasks of plans under way; see *PLAN-TASK-LIMIT*."
+                    (runner-alive runner)))))
+
 (defun spawn (parent node environment index level &optional (task (make-task nil node)))
   "Start TASK, the part number INDEX of PARENT (NIL: a top-level task), to run NODE in ENVIRONMENT.
 Return it."
   (let ((runner (if parent (task-runner parent) *runner*)))
+    (check-room runner)
+    (incf (runner-alive runner))
     (setf (task-runner task) runner
           (task-serial task) (incf (runner-serial runner))
           (task-level task) (min level (1- +levels+))

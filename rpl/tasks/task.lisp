@@ -184,7 +184,9 @@ over :succeeded, :failed or :evaporated.")
 
 (defun task-label (task)
   "Return a short text that says which task TASK is."
-  (format nil "~:[~A~;~:*~(~A~)~*~]" (task-name task) (form-text (node-form (task-node task)) 40)))
+  (if (task-name task)
+      (string-downcase (safe-text (task-name task) :escape nil))
+      (form-text (node-form (task-node task)) 40)))
 
 (addition task-path)
 (defun task-path (task)

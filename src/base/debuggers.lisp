@@ -11,7 +11,19 @@
   "True if HOOK is the one by which SBCL has no debugger, as in scripts."
   (and (symbolp hook) (string= hook "DEBUGGER-DISABLED-HOOK")))
 
-(defun debugger-p (&optional (hook sb-ext:*invoke-debugger-hook*))
+;; A hook of ours, around which there may be others of ours, says nothing of who is there.
+(defvar *answerer* nil
+  "The hook that CALL-ANSWERING-DEBUGGER has set last, consed to the one that somebody else had set
+before; or NIL.")
+
+(defun foreign-hook ()
+  "Return the debugger's hook, or, if that is ours, the one that somebody else had set before."
+  (let ((hook sb-ext:*invoke-debugger-hook*))
+    (if (and hook (eq hook (first *answerer*)))
+        (rest *answerer*)
+        hook)))
+
+(defun debugger-p (&optional (hook (foreign-hook)))
   "True if a debugger that is entered has somebody to talk to: a terminal, or the program, such as
 an editor, that has set HOOK or *DEBUGGER-HOOK*."
   (cond (*debugger-hook* t)
@@ -22,14 +34,18 @@ an editor, that has set HOOK or *DEBUGGER-HOOK*."
   "Call FUNCTION and return its values. If it enters a debugger, call ANSWER with the condition, and
 whether somebody is there to talk to the debugger. If nobody is, it is not to return."
   (declare (type function function answer))
-  (let ((hook sb-ext:*invoke-debugger-hook*))
+  (let ((hook sb-ext:*invoke-debugger-hook*)
+        (foreign (foreign-hook)))
     (flet ((decide (condition this-hook)
              (declare (ignore this-hook))
-             (funcall answer condition (debugger-p hook))
+             (funcall answer condition (debugger-p foreign))
              (when (and hook (not (disabled-p hook)))
                (funcall hook condition hook))))
       (declare (dynamic-extent #'decide))
-      (let ((sb-ext:*invoke-debugger-hook* #'decide))
+      (let* ((answerer (cons #'decide foreign))
+             (*answerer* answerer)
+             (sb-ext:*invoke-debugger-hook* #'decide))
+        (declare (dynamic-extent answerer))
         (funcall function)))))
 
 (defmacro answering-debugger ((answer) &body body)

@@ -65,7 +65,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:regain-room #:debugger-p #:answering-debugger #:calls-under-way
            #:debugger-hook #:with-debugger-hook)
   ;; telling
-  (:export #:format-briefly #:blank-p #:one-line #:cut #:own-text #:reading-trouble
+  (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:reading-trouble
            #:text-of-condition)
   ;; dice
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
