@@ -170,7 +170,7 @@ ARGUMENTS, call FUNCTION at once."
               (loop for source in (derived-sources fluent)
                     collect (if (fluent-p source)
                                 (with-output-to-string (out) (write-network source out))
-                                (prin1-to-string source))))
+                                (unqualified-text source))))
       (format stream "~A" (fluent-name fluent))))
 
 (defun fluent-text (fluent)

@@ -81,7 +81,7 @@ TRACE-OF."
           collect (list :tick (trace-entry-tick entry)
                         :command (cons (issue-name issue) (issue-arguments issue))
                         :task (trace-entry-task entry)
-                        :for (without-repetition (apply #'append (trace-entry-value entry)))
+                        :for (apply #'append (trace-entry-value entry))
                         :answered (and answer (trace-entry-tick answer))
                         :error (and answer (trace-entry-value answer))))))
 

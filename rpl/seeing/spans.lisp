@@ -106,7 +106,7 @@ first."
                             (and (consp form)
                                  (symbolp (first form))
                                  (procedure-name-p (first form))))
-                          (without-repetition stack))))
+                          stack)))
 
 (defun begin-command (bar entry commands)
   (let ((span (make-span :command (trace-entry-tick entry) (trace-entry-detail entry))))

@@ -46,7 +46,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:show-lambda-list #:nested-p #:keep-place #:in-source-p #:call-at-place #:at-end-of-unit
            #:call-as-unit)
   ;; abridging
-  (:export #:abridged #:+more+)
+  (:export #:abridged #:unqualified-text #:+more+)
   ;; conditions
   (:export #:ars-magna-error #:wrong-argument #:check-argument #:reject-argument
            #:malformed-definition
