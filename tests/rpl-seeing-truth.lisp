@@ -63,3 +63,59 @@
       (is (= 2 (count-of "(- k 1)" (described task))))
       (loop for k below 3
             do (is (= 1 (count-of (format nil "k = ~D" k) text)) "~A" text)))))
+
+;;; Why.
+
+(test why.of-no-task-is-a-clear-error
+  (let ((runner (seen-until 0)))
+    (dolist (object '(nil foo "1" 0))
+      (signals base:wrong-argument (rpl:why object :runner runner)))
+    (dolist (function (list 'rpl:evaporate 'rpl:task-status 'rpl:task-children 'rpl:task-top
+                            'rpl:task-form 'rpl:task-place 'rpl:task-source 'rpl:valve-owner
+                            'rpl:task-stack 'rpl:task-variables))
+      (signals base:wrong-argument (funcall function nil)))
+    (signals base:wrong-argument (rpl:print-tasks 5))))
+
+(defun why-at (tick form number)
+  (why-text number (nth-value 1 (seen-at tick form))))
+
+(test why.names-deadlines-and-limits
+  (is-true (has-words-p (why-at 5 '(rpl:with-deadline (3) (rpl:wait-time 9)) 2)
+                        "evaporated, because the deadline of 3 ticks of task 1 ended it")))
+
+(test why.says-what-was-blocked
+  (let ((text (why-at 9 '(rpl:par (:tag a (rpl:wait-time 4))
+                          (rpl:seq (rpl:wait-time 3)
+                                   (rpl:suspend a)
+                                   (rpl:wait-time 5)
+                                   (rpl:wake-up a)))
+                      2)))
+    (is-true (has-words-p text
+                          "At tick 4 it could have gone on at (wait-time 4), but was blocked"
+                          "At tick 8 it was blocked no longer"))))
+
+(test why.tells-of-orders
+  (let ((text (why-at 9 '(rpl:partial-order ((:tag a (rpl:wait-time 2))
+                                             (:tag b (rpl:wait-time 1)))
+                          (:order a b))
+                      3)))
+    (is-true (has-words-p text "At tick 2 it went on, because what it had to come after was over"
+                          "At tick 0 it began to wait for the end of a."))))
+
+(test why.names-who-ended-a-plan
+  (let* ((runner (rpl:make-plan-runner :trace t))
+         (task (rpl:start-plan runner (rpl:interp-lambda () (rpl:wait-time 9)))))
+    (rpl:react runner)
+    (let ((base:*asker* "the prompt")) (rpl:evaporate task))
+    (let ((base:*asker* "running plans")) (rpl:react runner))
+    (is-true (has-words-p (why-text task runner) "evaporated, because the prompt ended it"))))
+
+;;; Valves.
+
+(test valves.are-told-of-once-and-on-a-line
+  (let* ((form '(let ((valve (rpl:make-valve (format nil "two~%lines"))))
+                  (rpl:par (rpl:with-valve (valve) (rpl:wait-time 5))
+                           (rpl:with-valve (valve) (rpl:wait-time 5)))))
+         (task (seen-at 0 form)))
+    (is (= 1 (count-of "valve \"two lines" (described (part task 0)))))
+    (is (= 3 (length (lines-of (tree-text task)))))))

@@ -198,7 +198,7 @@
     (is (equal "Task 1 is the plan seen-boss, started at tick 0 by a program or the REPL."
                (first (last lines))))
     (is (find-if (lambda (line)
-                   (and (search "went on at (wait-for door)" line)
+                   (and (search "could have gone on at (wait-for door)" line)
                         (search "because door was set to :open by task 4" line)
                         (search "at (set-value door :open)" line)
                         (eql 0 (search "At tick 4" line))))

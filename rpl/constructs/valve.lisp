@@ -39,6 +39,7 @@ that have been taken from it."
 
 (defun valve-owner (valve)
   "Return the task that has VALVE, or NIL."
+  (check-argument valve-owner valve (valve-p valve) "a valve, as make-valve returns")
   (and (valve-claims valve) (claim-task (first (valve-claims valve)))))
 
 (defun valve-requests (valve)
@@ -57,7 +58,8 @@ that have been taken from it."
 (defmethod awaited-text ((claim claim))
   (format nil "~[~;valve~:;valves~] ~:*~*~{~(~A~)~^, ~}"
           (min 2 (length (claim-valves claim)))
-          (mapcar #'valve-name (claim-valves claim))))
+          (loop for valve in (claim-valves claim)
+                collect (one-line (princ-to-string (valve-name valve))))))
 
 ;;; Who may have what.
 

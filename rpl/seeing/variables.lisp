@@ -35,8 +35,8 @@ tasks that it is part of. Each call of a plan has one of its own. () when it is 
         thereis (node-names (frame-node each))))
 
 (defun level-variables (environment names)
-  "Return the variables of one level, a list of lists (name value). Of those called the same, as LET*
-may bind, the last is in force."
+  "Return the variables of one level, a list of lists (name value). Of those called the same, as by
+LET*, the last is in force."
   (loop for (name . later) on names
         for index from 1 below (length environment)
         when (and (symbol-package name) (not (member name later)))

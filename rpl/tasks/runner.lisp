@@ -46,6 +46,8 @@ end. SPENT are the ready tasks that have used their slice in this ROUND, the las
   (clock nil :type (or null function))
   (stepper nil :type (or null function))
   (slow 0.1d0 :type real)
+  ;; Whether somebody has sat at a debugger in the step under way.
+  (looked-at nil :type boolean)
   (warned '() :type list)
   (busy-p (constantly nil) :type function)
   (on-tick '() :type list)

@@ -121,6 +121,7 @@ over :succeeded, :failed or :evaporated.")
 (addition task-children)
 (defun task-children (task)
   "Return the tasks that TASK consists of now, oldest first."
+  (check-argument task-children task (task-p task) "a task, as begin-plan returns")
   (loop with children = '()
         for child = (task-newest-child task) then (task-older child)
         while child do (push child children)
@@ -129,6 +130,7 @@ over :succeeded, :failed or :evaporated.")
 (addition task-top)
 (defun task-top (task)
   "Return the top-level task that TASK is part of, perhaps itself."
+  (check-argument task-top task (task-p task) "a task, as begin-plan returns")
   (loop while (task-parent task)
         do (setf task (task-parent task)))
   task)
@@ -179,6 +181,7 @@ first."
 (addition task-form)
 (defun task-form (task)
   "Return the source of the expression that TASK is at."
+  (check-argument task-form task (task-p task) "a task, as begin-plan returns")
   (let ((frame (task-frame task)))
     (if frame
         (current-form (frame-node frame) frame)

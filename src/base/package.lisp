@@ -55,6 +55,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:unknown-name #:plain-name #:misuse #:reject-use)
   ;; threads
   (:export #:make-lock #:with-lock #:make-semaphore #:signal-semaphore #:wait-on-semaphore
+           #:*while-waiting* #:wait-a-while
            #:start-thread #:join-thread #:interrupt-thread #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; interrupts, debuggers
