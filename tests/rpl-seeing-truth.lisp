@@ -119,3 +119,15 @@
          (task (seen-at 0 form)))
     (is (= 1 (count-of "valve \"two lines" (described (part task 0)))))
     (is (= 3 (length (lines-of (tree-text task)))))))
+
+;;; Pictures.
+
+(test timeline.marks-failures-that-are-handled-where-they-happen
+  (let ((runner (seen-until 3 :plan (rpl:make-plan
+                                     '(rpl:seq (rpl:handle-failure ((:slip () nil))
+                                                 (rpl:wait-time 1)
+                                                 (rpl:fail :class :slip))
+                                               (rpl:wait-time 1))))))
+    (is (equal '((1 1 "Plan failure :SLIP"))
+               (span-list (first (rpl:bars (rpl:plan-trace runner))) :failure)))
+    (is (search "failed at tick 1: Plan failure :SLIP" (timeline-text runner)))))
