@@ -200,6 +200,7 @@
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
+                 (:file "rpl-seeing-truth")
                  (:file "kinds") (:file "digests") (:file "runs") (:file "outliving")
                  (:file "outliving-live") (:file "users-parts") (:file "user-package")
                  (:file "definitions") (:file "definitions-names")

@@ -175,6 +175,19 @@ user's."
     (removef (session-breaks session) breakage)
     (signal-semaphore (breakage-done breakage))))
 
+;; A line may wait for what has broken elsewhere, as RUN-PLAN does for a plan.
+(defun answer-breaks ()
+  "If this thread has the prompt, and carries out a line, read lines for what has broken in other
+threads, until that goes on."
+  (let ((session *session*))
+    (when (and session (eq (session-thread session) (current-thread)) (not *showing-p*))
+      (loop for breakage = (first (session-breaks session))
+            while breakage
+            do (when (session-over-p session) (invoke-restart 'end-line))
+               (call-complaining session (lambda () (read-debug-line session breakage)))))))
+
+(setf *while-waiting* 'answer-breaks)
+
 (defun give-up (condition)
   "Leave what CONDITION has come up in, by the innermost restart that does."
   (invoke-restart (or (find-if (lambda (restart)

@@ -39,7 +39,7 @@
       (asking (simulation)
         (add-observer #'look simulation)
         (look simulation))
-      (unwind-protect (loop until (or (wait-on-semaphore true 0.2)
+      (unwind-protect (loop until (or (wait-a-while true 0.2)
                                       (simulation-over simulation)))
         (asking (simulation) (remove-observer #'look simulation)))))
   (funcall test))

@@ -151,6 +151,21 @@
                       written))
     (is-true (written-p "5" written))))
 
+(defun break-elsewhere-and-wait ()
+  "Let another thread break, and wait until it has gone on, as RUN-PLAN does for a plan."
+  (break-elsewhere)
+  (loop with never = (base:make-semaphore "never")
+        repeat 100
+        until *went-on*
+        do (base:wait-a-while never 0.01)))
+
+(test break.of-another-thread-is-answered-in-a-line-that-waits-for-it
+  (let ((written (type-at-terminal "(ars-magna.tests::break-elsewhere-and-wait)" "nonsense" "turn"
+                                   "(+ 2 (length ars-magna.tests::*went-on*))")))
+    (is (equal '(:turned-back) *went-on*))
+    (is-true (written-p "*ERROR* -> nonsense is no way to go on" written))
+    (is-true (written-p "3" written))))
+
 (test break.in-a-break-of-another-thread-is-a-message
   (let ((written (type-at-terminal "(ars-magna.tests::break-elsewhere)" "(break \"inner\")"
                                    "(error \"no\")" "(invoke-debugger (make-condition 'error))"

@@ -115,16 +115,16 @@ atom."
   (read-from-string text t nil :start (1+ (or (position #\( text) 5))))
 
 (test step.stops-before-each-expression
-  (is (equal '(push stepped-inner rpl:wait-time list push rpl:par
-               rpl:wait-time rpl:wait-time rpl:wait-time push :done)
+  (is (equal '(push stepped-inner wait-time list push par
+               wait-time wait-time wait-time push :done)
              (stops (make-list 30 :initial-element "STEP")))))
 
 (test next.leaves-out-what-is-inside
-  (is (equal '(push stepped-inner push rpl:par push :done)
+  (is (equal '(push stepped-inner push par push :done)
              (stops (make-list 30 :initial-element "NEXT")))))
 
 (test out.stops-after-what-the-expression-is-part-of
-  (is (equal '(push stepped-inner rpl:wait-time push)
+  (is (equal '(push stepped-inner wait-time push)
              (stops '("STEP" "STEP" "OUT" "CONTINUE")))))
 
 (test continue.stops-no-more
@@ -157,7 +157,7 @@ atom."
   (run:with-simulation (ars-user::butler :clean t)
     (multiple-value-bind (texts values)
         (call-answering (lambda () (driver:step-plan 'ars-user::stroll 1/2)) '("STEP" "STEP"))
-      (is (equal '(driver:rpl-robot-turn rpl:wait-for rpl:fluent-value)
+      (is (equal '(rpl-robot-turn wait-for fluent-value)
                  (mapcar #'operator-in texts)))
       (is (eq :succeeded (second values))))))
 

@@ -225,7 +225,7 @@
     (is (search "Deadlock at tick 2" text))
     (is (search "waits for (and robot-stopped* arrived*)" text))
     (is (search "waits for arrived*" text))
-    (is (search "(constructs:par" text))))
+    (is (search "(par" text))))
 
 (test plan-deadlocked-p.not-while-something-may-still-come
   (let ((busy t))
@@ -251,8 +251,8 @@
       (rpl:react runner)
       (let ((lines (with-output-to-string (stream) (rpl:print-tasks runner stream))))
         (is (= 3 (count #\Newline lines)))
-        (is (search "  2 waiting: door-watch (constructs:wait-for f) waits for door-open" lines))
-        (is (search "  3 waiting: (constructs:wait-time 4) waits for tick 4" lines))
+        (is (search "  2 waiting: door-watch (wait-for f) waits for door-open" lines))
+        (is (search "  3 waiting: (wait-time 4) waits for tick 4" lines))
         (let ((task (first (rpl:task-children (first (rpl:plan-runner-tasks runner))))))
           (is (eq 'door-watch (rpl:task-name task)))
           (is (= 2 (rpl:task-serial task)))

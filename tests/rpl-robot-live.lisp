@@ -287,8 +287,8 @@
   (with-quick-watch ()
     (live (simulation)
       (driver:begin-plan 'never-returning)
-      (command:robot-turn fitter 30)
       (let ((tick (run:simulation-tick simulation)))
+        (command:robot-turn fitter 30)
         (awaiting (> (run:simulation-tick simulation) (+ 20 tick)))))))
 
 (test live.an-abort-in-a-leaf-ends-that-plan-only

@@ -198,9 +198,9 @@
     (is (equal "Task 1 is the plan seen-boss, started at tick 0 by a program or the REPL."
                (first (last lines))))
     (is (find-if (lambda (line)
-                   (and (search "went on at (constructs:wait-for door)" line)
+                   (and (search "could have gone on at (wait-for door)" line)
                         (search "because door was set to :open by task 4" line)
-                        (search "at (fluents:set-value door :open)" line)
+                        (search "at (set-value door :open)" line)
                         (eql 0 (search "At tick 4" line))))
                  lines)
         "~S" lines)
@@ -210,7 +210,7 @@
   (let ((runner (seen-until 30)))
     (is-true (has-words-p (why-text 5 runner) "At tick 22 it succeeded"
                           "it was done with"
-                          "because its part 7, (constructs:wait-time 2), succeeded"))
+                          "because its part 7, (wait-time 2), succeeded"))
     (is-true (has-words-p (why-text 8 runner) "evaporated" "began to clean up" "because task 7"
                           "as a part of task 5"))
     (is-true (has-words-p (why-text 6 runner) "failed at" ":SLIP"))

@@ -16,7 +16,9 @@
 (defun miss-deadline (timer)
   "Let the task that TIMER is for fail, unless it is ending."
   (let* ((task (timer-client timer))
-         (frame (task-frame task)))
+         (frame (task-frame task))
+         (*asker* (list "the deadline of " (car (frame-data frame)) " ticks of task "
+                        (task-serial task))))
     (unless (task-signal task)
       (decide task (failure-of (make-condition 'deadline-missed :ticks (car (frame-data frame)))
                                task frame)))))

@@ -39,6 +39,7 @@ that have been taken from it."
 
 (defun valve-owner (valve)
   "Return the task that has VALVE, or NIL."
+  (check-argument valve-owner valve (valve-p valve) "a valve, as make-valve returns")
   (and (valve-claims valve) (claim-task (first (valve-claims valve)))))
 
 (defun valve-requests (valve)
@@ -51,7 +52,7 @@ that have been taken from it."
 
 (defun valve-text (valve)
   "Return the name of VALVE as text."
-  (safe-text (valve-name valve) :escape nil))
+  (one-line (safe-text (valve-name valve) :escape nil)))
 
 (defmethod print-object ((valve valve) stream)
   (print-unreadable-object (valve stream)

@@ -108,6 +108,7 @@ procedure's body is a WITH-TAGS too."
   "Return a fluent that is :created, :running, :blocked, :suspended, :succeeded, :failed or
 :evaporated, as TASK is. It is :blocked by WITH-TASK-BLOCKED, :suspended by SUSPEND, by
 WITH-TASK-SUSPENDED and by the loss of a valve (CRAM's words of 2009 and of 2020)."
+  (check-argument task-status task (task-p task) "a task, as begin-plan returns")
   (or (task-status-fluent task)
       (setf (task-status-fluent task)
             (create-fluent (or (task-name task) 'task)

@@ -11,6 +11,7 @@
   '((:parts #x9DB9DC "runs its parts") (:call #xDDD3EF "commands in a call")
     (:waiting #xE6ECF5 "waits")
     (:blocked #x8C8C94 "is blocked") (:cleaning #xF2BE6A "cleans up")
+    (:failure #xF08C78 "a failure happened")
     (:command #x3C68FF "command under way") (:trouble #xE0301E "command with an error"))
   "Lists (kind color text): what the parts of a bar look like, and what the legend says.")
 
@@ -78,6 +79,12 @@ of ten."
                                   (span-start span) (span-end span) (span-error span)))
       (box canvas (look (if (span-error span) :trouble :command)) x (+ y 11) width 4))))
 
+;; Also of failures that are handled where they happen.
+(defun draw-failure (canvas span y scale)
+  (with-subject (canvas (format nil "failed at tick ~A: ~A" (span-start span)
+                                (cut (one-line (span-text span)) 200)))
+    (box canvas (look :failure) (- (place (span-start span) scale) 2) y 4 6)))
+
 (defun draw-mark (canvas outcome x y)
   "Draw how a task ended: a line, and a cross if it failed or was ended. NIL: it goes on."
   (let ((color (second (assoc outcome *end-looks*))))
@@ -103,4 +110,6 @@ of ten."
       (dolist (kind '(:waiting :cleaning :blocked))
         (dolist (span (bar-spans bar))
           (when (eq kind (span-kind span)) (draw-span canvas span y scale)))))
+    (dolist (span (bar-spans bar))
+      (when (eq :failure (span-kind span)) (draw-failure canvas span y scale)))
     (dolist (span (bar-commands bar)) (draw-command canvas span y scale))))

@@ -76,10 +76,13 @@ but somebody outside can let plans go on, say so, once."
                        ((not (and (live-p simulation) (interface-valid-p interface)))
                         (return :stopped))
                        ((task-over-p task) (return (task-state task)))
-                       ((and (not told) (deadlocked-p interface))
+                       ;; Who is at a break holds the plans until it is answered, perhaps here.
+                       ((and (not told)
+                             (null (interface-holder interface))
+                             (deadlocked-p interface))
                         (setf told t)
                         (with-plans (interface) (report-stillness (interface-runner interface)))))
-                 (wait-on-semaphore over 0.2))
+                 (wait-a-while over 0.2))
         (asking (simulation) (remove-observer #'look simulation))))))
 
 (defun check-outside (interface)

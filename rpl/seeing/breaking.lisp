@@ -25,8 +25,7 @@ step."))
 (defparameter *longest-stack* 12 "How many expressions of a plan a break shows at most.")
 
 (defun write-break-variables (break stream)
-  (loop for (name value) in (remove-duplicates (frame-variables (plan-break-frame break) '())
-                                               :key #'first :from-end t)
+  (loop for (name value) in (frame-variables (plan-break-frame break))
         repeat *longest-stack*
         do (format stream "~%    ~(~A~) = ~A" name (form-text value 70))))
 
@@ -35,7 +34,7 @@ step."))
   (let ((task (plan-break-task break)))
     (format stream "~A~%  in task ~{~A~^ > ~}, at tick ~A"
             (plan-break-text break) (task-path task) (runner-tick (task-runner task)))
-    (loop for form in (without-repetition (plan-backtrace task (plan-break-frame break)))
+    (loop for form in (plan-backtrace task (plan-break-frame break))
           repeat *longest-stack*
           do (format stream "~%    ~A" (form-text form 70)))
     (write-break-variables break stream)))

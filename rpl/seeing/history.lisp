@@ -7,6 +7,8 @@
 
 (defun trace-to-read (which runner)
   "Return the trace that tells of WHICH, a task or a number, and that number."
+  (check-argument trace-of which (typep which '(or null task (integer 1)))
+                  "a task, as begin-plan returns, or the number of one")
   (let ((runner (or runner (runner-to-see which))))
     (values (or (funcall *still* (lambda () (plan-trace runner)))
                 (reject-use "No trace was kept of these plans. Set *trace-plans* to true before ~
@@ -81,7 +83,7 @@ TRACE-OF."
           collect (list :tick (trace-entry-tick entry)
                         :command (cons (issue-name issue) (issue-arguments issue))
                         :task (trace-entry-task entry)
-                        :for (without-repetition (apply #'append (trace-entry-value entry)))
+                        :for (apply #'append (trace-entry-value entry))
                         :answered (and answer (trace-entry-tick answer))
                         :error (and answer (trace-entry-value answer))))))
 

@@ -4,8 +4,9 @@
 
 (defstruct (span (:constructor make-span (kind start text &optional end)) (:copier nil))
   "From tick START to END of a task: KIND is :waiting (for what TEXT says), :parts (waiting for
-them), :blocked, :cleaning or :command (TEXT was under way; ERROR is what it was answered with,
-CALLS the calls of procedures that it was issued in, outermost first)."
+them), :blocked, :cleaning, :failure (TEXT says which; it takes no time) or :command (TEXT was under
+way; ERROR is what it was answered with, CALLS the calls of procedures that it was issued in,
+outermost first)."
   (kind :waiting :type keyword :read-only t)
   (start 0 :type real :read-only t)
   (text nil :read-only t)
@@ -32,7 +33,8 @@ of a procedure within the task, as far as commands were issued in it."
   (call-p nil :type boolean))
 
 (document-functions
-  span-kind "Return what a span is of: :waiting, :parts, :blocked, :cleaning or :command."
+  span-kind "Return what a span is of: :waiting, :parts, :blocked, :cleaning, :failure or
+:command."
   span-start "Return the tick at which a span begins."
   span-end "Return the tick at which a span ends."
   span-text "Return what was waited for, or the command that was under way, as text."
@@ -83,6 +85,7 @@ of a procedure within the task, as far as commands were issued in it."
     (case (trace-entry-event entry)
       (:wait (begin-wait bar entry))
       (:wake (close-spans bar '(:waiting :parts) tick))
+      (:failure (push (make-span :failure tick (trace-entry-detail entry) tick) (bar-spans bar)))
       (:block (open-span bar :blocked entry))
       (:unblock (close-spans bar '(:blocked) tick))
       (:clean (close-spans bar '(:waiting :parts) tick)
@@ -106,7 +109,7 @@ first."
                             (and (consp form)
                                  (symbolp (first form))
                                  (procedure-name-p (first form))))
-                          (without-repetition stack))))
+                          stack)))
 
 (defun begin-command (bar entry commands)
   (let ((span (make-span :command (trace-entry-tick entry) (trace-entry-detail entry))))

@@ -31,8 +31,10 @@ use. Signals MISUSE if there is none."
   "Return the valves that TASK has or waits for."
   (flet ((valves-in (object)
            (if (claim-p object) (claim-valves object) '())))
-    (append (valves-in (task-awaiting task))
-            (loop for frame in (stack-frames task) append (valves-in (frame-data frame))))))
+    (remove-duplicates
+     (append (valves-in (task-awaiting task))
+             (loop for frame in (stack-frames task) append (valves-in (frame-data frame))))
+     :from-end t)))
 
 (defun valves-in-use (which)
   "Return the valves that the tasks of WHICH have or wait for."

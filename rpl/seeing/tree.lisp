@@ -32,6 +32,8 @@
 in use): number, state, expression, what each waits for and since which tick. If ALL is true, also
 the whole stack of each, innermost expression first, with the variables of the plan and their
 values; and the valves that they have or want."
+  (check-argument print-tasks which (typep which '(or null task plan-runner))
+                  "a task, as begin-plan returns, or a plan runner")
   (let ((which (or which (runner-to-see))))
     (dolist (task (if (task-p which) (list which) (plan-runner-tasks which)))
       (if all

@@ -10,19 +10,12 @@
   (loop for frame = (task-frame task) then (frame-up frame)
         while frame collect frame))
 
-(defun without-repetition (forms)
-  "Return FORMS; of those that follow each other and are the same, only the first."
-  (loop for (form . more) on forms
-        unless (and more (eq form (first more))) collect form))
-
-(defun frame-form (frame)
-  (current-form (frame-node frame) frame))
-
 (addition task-stack)
 (defun task-stack (task)
   "Return the expressions that TASK is at, as lists, innermost first: only its own, not those of the
-tasks that it is part of. () when it is over."
-  (without-repetition (mapcar #'frame-form (stack-frames task))))
+tasks that it is part of. Each call of a plan has one of its own. () when it is over."
+  (check-argument task-stack task (task-p task) "a task, as begin-plan returns")
+  (forms-under-way (task-frame task)))
 
 ;;; Variables.
 
@@ -42,18 +35,26 @@ tasks that it is part of. () when it is over."
         thereis (node-names (frame-node each))))
 
 (defun level-variables (environment names)
-  "Return the variables of one level, a list of lists (name value)."
-  (loop for name in names
+  "Return the variables of one level, a list of lists (name value). Of those called the same, as by
+LET*, the last is in force."
+  (loop for (name . later) on names
         for index from 1 below (length environment)
-        when (symbol-package name)
+        when (and (symbol-package name) (not (member name later)))
           collect (list name (svref environment index))))
 
-(defun frame-variables (frame known)
-  "Return the variables that FRAME sees, innermost first, but for those of the environments KNOWN."
+(defun visible-levels (frame)
+  "Return what FRAME sees, innermost first: lists (environment variable...), each variable a list
+(name value)."
   (loop for environment in (environments (frame-environment frame))
         for names in (frame-names frame)
-        until (member environment known :test #'eq)
-        append (level-variables environment names)))
+        collect (cons environment
+                      (remove-if (lambda (variable) (member (first variable) shadowed))
+                                 (level-variables environment names)))
+        append names into shadowed))
+
+(defun frame-variables (frame)
+  "Return the variables that FRAME sees, innermost first: a list of lists (name value)."
+  (mapcan #'rest (visible-levels frame)))
 
 (defun known-environments (task)
   "Return the environments that TASK has from the task that it is part of."
@@ -61,23 +62,33 @@ tasks that it is part of. () when it is over."
          (frame (and parent (task-frame parent))))
     (and frame (environments (frame-environment frame)))))
 
+(defun visible-variables (frames)
+  "Return a table: for each environment of FRAMES, the innermost first, the variables in it that are
+in force where the innermost frame is that sees it."
+  (let ((table (make-hash-table :test 'eq)))
+    (dolist (frame frames table)
+      (loop for (environment . variables) in (visible-levels frame)
+            unless (nth-value 1 (gethash environment table))
+              do (setf (gethash environment table) variables)))))
+
 (defun stack-entries (task)
   "Return what TASK is at, innermost first: a list of lists (form variable...), each variable, a
 list (name value), with the outermost expression that sees it."
-  (let ((known (known-environments task)) (entries '()))
-    (dolist (frame (reverse (stack-frames task)))
-      (let ((form (frame-form frame))
-            (variables (frame-variables frame known)))
-        (setf known (append (environments (frame-environment frame)) known))
-        (if (and entries (eq form (first (first entries))))
-            (setf (rest (first entries)) (append (rest (first entries)) variables))
-            (push (cons form variables) entries))))
-    entries))
+  (let ((visible (visible-variables (stack-frames task)))
+        (known (known-environments task))
+        (entries '()))
+    (dolist (frames (reverse (frame-runs (task-frame task))) entries)
+      (let ((new (set-difference (environments (frame-environment (first frames))) known)))
+        (setf known (append new known))
+        (push (cons (current-form (frame-node (first frames)) (first frames))
+                    (loop for environment in (environments (frame-environment (first frames)))
+                          when (member environment new)
+                            append (gethash environment visible)))
+              entries)))))
 
 (addition task-variables)
 (defun task-variables (task)
   "Return the variables of the plan that TASK sees where it is, as a list of lists (name value),
-innermost first. () when it is over."
-  (let ((frame (task-frame task)))
-    (and frame
-         (remove-duplicates (frame-variables frame '()) :key #'first :from-end t))))
+innermost first, but for those that others of the same name hide. () when it is over."
+  (check-argument task-variables task (task-p task) "a task, as begin-plan returns")
+  (and (task-frame task) (frame-variables (task-frame task))))

@@ -9,6 +9,23 @@
 
 (defun quoted (form) (form-text form 60))
 
+(defun at-words (entry)
+  "Return where the task of ENTRY was, as words to follow others; none if it had not begun."
+  (if (trace-entry-form entry)
+      (format nil " at ~A" (quoted (trace-entry-form entry)))
+      ""))
+
+(defun blocked-then-p (number index trace)
+  "True if the task NUMBER, or one that it is part of, was blocked at entry INDEX of TRACE."
+  (loop for each = number then (trace-entry-value (start-of each trace))
+        while each
+        thereis (let ((last (find-if (lambda (entry)
+                                       (and (= each (trace-entry-task entry))
+                                            (member (trace-entry-event entry)
+                                                    '(:block :unblock))))
+                                     trace :from-end t :end index)))
+                  (and last (eq :block (trace-entry-event last))))))
+
 (defun earlier (trace index test)
   "Return the last entry of TRACE before INDEX, in the same tick, of which TEST is true, or NIL."
   (loop with tick = (trace-entry-tick (aref trace index))
@@ -86,6 +103,7 @@
     (cond ((null subject) (part-reason (trace-entry-task entry) index trace))
           ((realp subject) (format nil "tick ~A had come" subject))
           ((fluent-p subject) (fluent-reason subject index trace))
+          ((equal "" subject) "what it had to come after was over")
           (t (format nil "it was given ~A by ~A" (trace-entry-detail entry)
                      (agent-words (trace-entry-agent entry) trace))))))
 
@@ -108,8 +126,7 @@
 
 (defun wait-words (entry)
   (if (trace-entry-subject entry)
-      (format nil "began to wait for ~A at ~A" (trace-entry-detail entry)
-              (quoted (trace-entry-form entry)))
+      (format nil "began to wait for ~A~A" (trace-entry-detail entry) (at-words entry))
       (format nil "began to wait for its parts, of ~A" (quoted (trace-entry-form entry)))))
 
 (defun event-words (entry index trace)
@@ -117,7 +134,10 @@
   (let ((form (quoted (trace-entry-form entry))))
     (case (trace-entry-event entry)
       (:wait (wait-words entry))
-      (:wake (format nil "went on at ~A, because ~A" form (wake-reason entry index trace)))
+      (:wake (format nil "~:[went on~;could have gone on~]~A, ~2:*~:[~;but was blocked, ~]~*~
+                          because ~A"
+                     (blocked-then-p (trace-entry-task entry) index trace) (at-words entry)
+                     (wake-reason entry index trace)))
       (:succeed (format nil "succeeded with ~A" (form-text (trace-entry-value entry) 60)))
       (:fail (format nil "ended by the failure: ~A" (cut (trace-entry-detail entry) 200)))
       (:failure (format nil "failed at ~A: ~A" form (cut (trace-entry-detail entry) 200)))
@@ -190,6 +210,8 @@ number END, if by no wake-up; or NIL."
         sentences)))
 
 (defun why-sentences (which runner)
+  (check-argument why which (typep which '(or task (integer 1)))
+                  "a task, as begin-plan returns, or the number of one")
   (multiple-value-bind (trace number) (trace-to-read which runner)
     (start-of number trace)             ; or there is none
     (append (shortened (own-sentences number trace))

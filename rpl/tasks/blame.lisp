@@ -4,14 +4,10 @@
 
 (defun plan-backtrace (task frame)
   "Return the expressions under way in TASK at FRAME and around it, innermost first."
-  (loop with forms = '()
-        for each = task then (task-parent each)
+  (loop for each = task then (task-parent each)
         for innermost = frame then (and each (task-frame each))
         while each
-        do (loop for frame = innermost then (frame-up frame)
-                 while frame
-                 do (push (current-form (frame-node frame) frame) forms))
-        finally (return (nreverse forms))))
+        append (forms-under-way innermost)))
 
 (defun handled-failure (task frame)
   "Return the failure that TASK at FRAME, or a task around it, is handling or cleaning up after."

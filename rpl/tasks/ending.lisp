@@ -155,7 +155,9 @@ none does and TASK has ended, +PARKED+."
 (defun evaporate (task)
   "End TASK, because it is no longer needed, with all that it consists of, newest first. What it
 has protected by EVAP-PROTECT is done first and may take time. A task that has not started, is over
-or evaporates already is left alone. From outside of its plan it is heard before that goes on."
+or evaporates already is left alone. From outside of its plan it is heard before that goes on.
+Signals WRONG-ARGUMENT."
+  (check-argument evaporate task (task-p task) "a task, as begin-plan returns")
   (cond ((or (task-over-p task) (task-doomed task) (eq (task-state task) :created)))
         ((not (eq *runner* (task-runner task))) (doom task))
         (t (setf (task-doomed task) t)
@@ -182,14 +184,15 @@ or evaporates already is left alone. From outside of its plan it is heard before
 (defun doom (task)
   "Let TASK evaporate as soon as its runner hears of it."
   (let ((runner (task-runner task)))
-    (atomic-push task (runner-doomed runner))
+    (atomic-push (cons task *asker*) (runner-doomed runner))
     (funcall (runner-on-post runner))))
 
 (defun end-doomed (runner)
   "Evaporate the tasks that other threads, or code outside of plans, want to end."
-  (loop for tasks = (runner-doomed runner)
-        until (swap-if (runner-doomed runner) tasks '())
-        finally (mapc #'evaporate (reverse tasks))))
+  (loop for doomed = (runner-doomed runner)
+        until (swap-if (runner-doomed runner) doomed '())
+        finally (loop for (task . asker) in (reverse doomed)
+                      do (let ((*asker* asker)) (evaporate task)))))
 
 (defun cleaning-part (task)
   "Return an innermost part of TASK, or itself, that is cleaning up; or NIL."
@@ -201,5 +204,6 @@ or evaporates already is left alone. From outside of its plan it is heard before
   (warning-set "The cleanup " (form-text (task-form task)) " in " (task-label task)
                " was given up at tick " (runner-tick (task-runner task)) ".")
   (setf (task-doomed task) t)
-  (stop-waiting task)
-  (end-parts task))
+  (let ((*asker* "the limit of its cleanup"))
+    (stop-waiting task)
+    (end-parts task)))

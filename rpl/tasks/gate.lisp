@@ -33,6 +33,10 @@
 (defmethod current-form ((node gate-node) frame)
   (node-form (frame-node (frame-up frame))))
 
+;; What holds it is lifted one by one.
+(defmethod traced-subject ((gate gate))
+  (awaited-text gate))
+
 (defmethod awaited-text ((gate gate))
   (format nil "~{~A~^ and ~}" (mapcar #'awaited-text (reverse (gate-holds gate)))))
 

@@ -30,6 +30,7 @@
 name or number of the plan, and for each step inwards (:tag name), or the number of the branch,
 from 0. Where tasks have the same name, their number comes after it. A task that has not started is
 nowhere: NIL (CRAM's paths go from the inside out, and have the operators' names)."
+  (check-argument task-place task (task-p task) "a task, as begin-plan returns")
   (unless (eq (task-state task) :created)
     (loop with place = '()
           for each = task then (task-parent each)
@@ -75,6 +76,7 @@ is none. WITHIN is a plan runner, or a task, whose parts PLACE then starts with.
   "Return the source of all that TASK runs, as data: the form of a branch; of a top-level task the
 text of its plan, as PROCEDURE-SOURCE does, or, if it has no name or has been defined anew since, of
 that plan's body."
+  (check-argument task-source task (task-p task) "a task, as begin-plan returns")
   (let ((procedure (and (null (task-parent task))
                         (find (task-node task) (all-procedures) :key #'procedure-body))))
     (if procedure

@@ -55,6 +55,8 @@ ALIVE is how many tasks are not over. CLIENT is on whose behalf all this is."
   (clock nil :type (or null function))
   (stepper nil :type (or null function))
   (slow 0.1d0 :type real)
+  ;; Whether somebody has sat at a debugger in the step under way.
+  (looked-at nil :type boolean)
   (warned '() :type list)
   (busy-p (constantly nil) :type function)
   (on-tick '() :type list)

@@ -16,10 +16,11 @@
 (defun timed-step (clock node task frame value)
   "Do the step of NODE; warn if it took long by CLOCK."
   (declare (type function clock))
-  (let ((start (funcall clock)))
+  (let ((start (funcall clock)) (runner (task-runner task)))
+    (setf (runner-looked-at runner) nil)
     (multiple-value-prog1 (funcall (node-step node) node task frame value)
       (let ((seconds (- (funcall clock) start)))
-        (when (> seconds (runner-slow (task-runner task)))
+        (when (and (> seconds (runner-slow runner)) (not (runner-looked-at runner)))
           (warn-of-slow-step task frame seconds))))))
 
 (defun watched-step (node task frame value)

@@ -121,6 +121,7 @@ over :succeeded, :failed or :evaporated.")
 (addition task-children)
 (defun task-children (task)
   "Return the tasks that TASK consists of now, oldest first."
+  (check-argument task-children task (task-p task) "a task, as begin-plan returns")
   (loop with children = '()
         for child = (task-newest-child task) then (task-older child)
         while child do (push child children)
@@ -129,6 +130,7 @@ over :succeeded, :failed or :evaporated.")
 (addition task-top)
 (defun task-top (task)
   "Return the top-level task that TASK is part of, perhaps itself."
+  (check-argument task-top task (task-p task) "a task, as begin-plan returns")
   (loop while (task-parent task)
         do (setf task (task-parent task)))
   task)
@@ -153,24 +155,51 @@ over :succeeded, :failed or :evaporated.")
     (declare (ignore frame))
     (node-form node)))
 
+;; A body is at the expression that one of its steps runs; a call that the body of another is at
+;; runs that body anew.
+(defun frame-runs (frame)
+  "Return FRAME and those that it is run on behalf of, innermost first, as a list of lists: the
+frames of one list run one expression."
+  (let ((runs '()) (last-form nil))
+    (loop for each = frame then (frame-up each)
+          while each
+          do (let ((form (current-form (frame-node each) each)))
+               (if (and runs
+                        (eq form last-form)
+                        (not (find (frame-node each) (first runs) :key #'frame-node)))
+                   (push each (first runs))
+                   (push (list each) runs))
+               (setf last-form form)))
+    (nreverse (mapcar #'nreverse runs))))
+
+(defun forms-under-way (frame)
+  "Return the expressions that FRAME, and those that it is run on behalf of, are at, innermost
+first."
+  (loop for (each) in (frame-runs frame)
+        collect (current-form (frame-node each) each)))
+
 (addition task-form)
 (defun task-form (task)
   "Return the source of the expression that TASK is at."
+  (check-argument task-form task (task-p task) "a task, as begin-plan returns")
   (let ((frame (task-frame task)))
     (if frame
         (current-form (frame-node frame) frame)
         (node-form (task-node task)))))
 
-(defun brief (object)
-  "Return OBJECT, or what stands for it if it is data that takes long to print."
-  (if (typep object '(or cons string bit-vector number symbol)) (abridged object) object))
+(defun written (object)
+  "Return how OBJECT is written; in part, if it is data that takes long to print."
+  (if (typep object '(or cons string bit-vector number symbol))
+      (unqualified-text object)
+      (prin1-to-string object)))
 
 (defun form-text (form &optional (width 60))
-  "Return FORM, or any other object, on one line of at most WIDTH characters."
+  "Return FORM, or any other object, on one line of at most WIDTH characters, and symbols without
+their packages."
   (let ((*print-case* :downcase) (*print-pretty* nil) (*print-readably* nil)
         (*print-length* 8) (*print-level* 4))
     (cut (substitute #\Space #\Newline
-                     (handler-case (prin1-to-string (brief form))
+                     (handler-case (written form)
                        ((or error storage-condition) () "what cannot be printed")))
          width)))
 

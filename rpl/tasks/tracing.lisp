@@ -83,9 +83,7 @@ if it keeps one."
   "Return for TASK and each that it is part of the expressions under way, innermost first."
   (loop for each = task then (task-parent each)
         while each
-        collect (loop for frame = (task-frame each) then (frame-up frame)
-                      while frame
-                      collect (current-form (frame-node frame) frame))))
+        collect (forms-under-way (task-frame each))))
 
 (defun note-command (name arguments)
   "Note in the trace that the task at work calls the plan function NAME with ARGUMENTS. Return a

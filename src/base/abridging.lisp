@@ -67,3 +67,17 @@
                      ((consp tail) (list +more+))
                      (t (abridged-atom tail)))))
       (visit datum))))
+
+(defun without-packages (datum)
+  "Return DATUM, which is abridged, with symbols of the same names, but of no package, in it."
+  (typecase datum
+    (cons (cons (without-packages (car datum))
+                (and (cdr datum) (without-packages (cdr datum)))))
+    (keyword datum)
+    (symbol (make-symbol (symbol-name datum)))
+    (t datum)))
+
+(defun unqualified-text (datum)
+  "Return how DATUM, abridged, is written, but for the packages of its symbols."
+  (let ((*print-gensym* nil))
+    (prin1-to-string (without-packages (abridged datum)))))

@@ -48,7 +48,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:show-lambda-list #:nested-p #:keep-place #:in-source-p #:call-at-place #:at-end-of-unit
            #:call-as-unit)
   ;; abridging
-  (:export #:abridged #:+more+)
+  (:export #:abridged #:unqualified-text #:+more+)
   ;; conditions
   (:export #:ars-magna-error #:wrong-argument #:check-argument #:reject-argument
            #:malformed-definition
@@ -57,6 +57,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:unknown-name #:plain-name #:misuse #:reject-use)
   ;; threads
   (:export #:make-lock #:with-lock #:make-semaphore #:signal-semaphore #:wait-on-semaphore
+           #:*while-waiting* #:wait-a-while
            #:start-thread #:join-thread #:interrupt-thread #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; interrupts, debuggers

@@ -32,13 +32,15 @@
 
 (defun safe-text (object &key (escape t) (length 500))
   "Return what PRIN1, or PRINC unless ESCAPE is true, writes of OBJECT: of what is deep, long or
-circular a part, at most LENGTH characters; words that say so if it cannot be printed."
+circular a part, at most LENGTH characters, but for the packages of symbols; words that say so if it
+cannot be printed."
   (handler-case
       (let ((*print-circle* t) (*print-pretty* nil) (*print-readably* nil) (*print-escape* escape)
             (*print-length* (or *print-length* 100))
-            (*print-level* (or *print-level* 20)))
+            (*print-level* (or *print-level* 20))
+            (*print-gensym* nil))
         (cut (write-to-string (if (typep object '(or cons string bit-vector number symbol))
-                                  (abridged object)
+                                  (without-packages (abridged object))
                                   object))
              length))
     ((or error storage-condition) () "what cannot be printed")))

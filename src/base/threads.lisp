@@ -27,6 +27,14 @@
       (bordeaux-threads:wait-on-semaphore semaphore :timeout seconds)
       (bordeaux-threads:wait-on-semaphore semaphore)))
 
+(defvar *while-waiting* (constantly nil)
+  "A function called now and then by a thread that waits for what another is to do.")
+
+(defun wait-a-while (semaphore seconds)
+  "Wait on SEMAPHORE for SECONDS at most, as one of many times; true if that succeeded."
+  (funcall *while-waiting*)
+  (wait-on-semaphore semaphore seconds))
+
 (defun start-thread (function name)
   "Call FUNCTION in a new thread called NAME; return the thread."
   (bordeaux-threads:make-thread function :name name))
