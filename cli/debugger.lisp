@@ -24,7 +24,8 @@
   "Return the restarts for CONDITION up to the one that ends the line, of each name the innermost."
   (let* ((all (remove nil (compute-restarts condition) :key #'restart-name))
          (last (position 'end-line all :key #'restart-name)))
-    (remove-duplicates (subseq all 0 (and last (1+ last))) :key #'restart-name :from-end t)))
+    (remove-duplicates (subseq all 0 (and last (1+ last))) :test #'string=
+                       :key #'restart-name :from-end t)))
 
 (defun rank (restart condition)
   "Return a number for RESTART, a lower one the more likely it is what the user wants."

@@ -151,6 +151,18 @@ value...), one after the other."
                           (if (< (incf tries) 3) (error "not yet") :fine)))))
     (is (= 3 tries))))
 
+(test debugger.what-is-no-step-of-its-own-can-be-done-again
+  "The values that a binding, a condition or a wait needs."
+  (let ((tries 0))
+    (flet ((late (value) (if (oddp (incf tries)) (error "not yet") value)))
+      (is (equal '((1 2) :succeeded)
+                 (answered ((tasks::retry) (tasks::retry) (tasks::retry))
+                   (rpl:seq (rpl:wait-time (late 0))
+                            (let ((x (late 1)))
+                              (rpl:wait-time 0)
+                              (if (late t) (rpl:seq (rpl:wait-time 0) (list x 2)) 3))))))
+      (is (= 6 tries)))))
+
 (test debugger.a-leaf-can-return-a-value
   (is (equal '(5 :succeeded)
              (answered ((use-value 4))

@@ -23,15 +23,33 @@
         (when (and (> seconds (runner-slow runner)) (not (runner-looked-at runner)))
           (warn-of-slow-step task frame seconds))))))
 
+(defun call-offering-again (frame function)
+  "Call FUNCTION, which takes a step at FRAME, with the restart RETRY, which takes it again."
+  (let ((counter (frame-counter frame))
+        (data (frame-data frame)))
+    (loop
+      (restart-case (return (funcall function))
+        (retry ()
+          :report (lambda (stream)
+                    (format stream "Do ~A again."
+                            (form-text (current-form (frame-node frame) frame))))
+          (setf (frame-counter frame) counter
+                (frame-data frame) data))))))
+
 (defun watched-step (node task frame value)
-  "Do the step of NODE as RUN-STEPS would, for whoever measures or goes through plans step by step."
+  "Do the step of NODE as RUN-STEPS would, for whoever measures, goes through plans step by step, or
+may look into errors."
   (let* ((runner (task-runner task))
          (stepper (runner-stepper runner))
          (clock (runner-clock runner)))
-    (when stepper (funcall stepper task frame))
-    (if clock
-        (timed-step clock node task frame value)
-        (funcall (node-step node) node task frame value))))
+    (flet ((take ()
+             (if clock
+                 (timed-step clock node task frame value)
+                 (funcall (node-step node) node task frame value))))
+      (when stepper (funcall stepper task frame))
+      (if *leaves-offer-restarts*
+          (call-offering-again frame #'take)
+          (take)))))
 
 (defun evaporate-self (task frame)
   "Let TASK, which has asked for its own end in the step that returned FRAME, evaporate."
@@ -67,7 +85,7 @@ VALUE are what the last step returned; return what it should have."
   "Let TASK go on from FRAME with VALUE until it waits, gives way or ends."
   (declare #.*hot* (type task task))    ; 15 ns a step beyond what the step does
   (let* ((runner (task-runner task))
-         (watched (or (runner-clock runner) (runner-stepper runner)))
+         (watched (or (runner-clock runner) (runner-stepper runner) *leaves-offer-restarts*))
          (higher (ash 2 (task-level task))))
     (declare (type plan-runner runner))
     (loop
