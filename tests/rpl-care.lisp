@@ -36,24 +36,23 @@
       (is (eq :heard (rpl:task-result other))))))
 
 (test left.a-throw-out-of-a-network-leaves-the-others-right
+  "Who waits for a network that cannot be computed fails; the others hear what they wait for."
   (with-runner (runner)
     (let* ((f (fluent 0)) (armed nil)
-           (task (rpl:start-plan
-                  runner
-                  (rpl:interp-lambda ()
-                    (rpl:par (rpl:wait-for (rpl:fl-funcall (lambda (x)
-                                                             (if (and armed (= x 1))
-                                                                 (throw 'out nil)
-                                                                 (= x 9)))
-                                                           f))
-                             (rpl:wait-for (= f 2)))))))
+           (bad (rpl:start-plan
+                 runner
+                 (rpl:interp-lambda ()
+                   (rpl:wait-for (rpl:fl-funcall (lambda (x)
+                                                   (if (and armed (= x 1)) (throw 'out nil) (= x 9)))
+                                                 f)))))
+           (other (rpl:start-plan runner (rpl:interp-lambda () (rpl:wait-for (= f 2)) :heard))))
       (rpl:react-to-all runner)
       (setf armed t)
       (catch 'out (rpl:set-value f 1))
       (rpl:set-value f 2)
-      (rpl:set-value f 9)
-      (rpl:react-to-all runner)
-      (is (eq :succeeded (rpl:task-state task))))))
+      (finish runner)
+      (is (eq :failed (rpl:task-state bad)))
+      (is (eq :heard (rpl:task-result other))))))
 
 (test abort.ends-the-plan-not-the-runner
   (with-runner (runner)
@@ -196,3 +195,19 @@ value...), one after the other."
           (rpl:react-to-all runner)))
       (is (eq :failed (rpl:task-result task)))
       (is (= 1 (length (base:take-messages)))))))
+
+(test abort.in-a-network-fails-who-waits-for-it-and-no-other-is-deaf
+  (with-runner (runner)
+    (let* ((f (fluent 1))
+           (bad (rpl:start-plan runner (rpl:interp-lambda ()
+                                         (rpl:wait-for (rpl:fl-funcall
+                                                        (lambda (value)
+                                                          (if (eql value 2) (abort) nil))
+                                                        f)))))
+           (other (rpl:start-plan runner (rpl:interp-lambda () (rpl:wait-for (eql f 2)) :heard))))
+      (finish runner)
+      (rpl:start-plan runner (rpl:interp-lambda () (rpl:set-value f 2)))
+      (let ((base:*message-queue* (base:make-message-queue)))
+        (rpl:react-to-all runner))
+      (is (eq :failed (rpl:task-state bad)))
+      (is (eq :heard (rpl:task-result other))))))

@@ -48,6 +48,17 @@
     (fill (backlog-tails backlog) nil)
     (setf (backlog-highest backlog) 0)))
 
+(defun acquire-in-any-case (fluent)
+  "Note one more user of FLUENT. If its function aborts, that is an error of FLUENT."
+  (restart-case (acquire fluent)
+    (abort ()
+      :report "Let the fluent be in error."
+      (when (derived-p fluent)
+        (setf (derived-trouble fluent)
+              (make-condition 'simple-error
+                              :format-control "The function of ~A was aborted."
+                              :format-arguments (list (fluent-text fluent))))))))
+
 (defun repair-fluents (home watchers unwanted-p)
   "Let WATCHERS, and those in the lists of their fluents for which UNWANTED-P is false, hear what
 they are to in HOME."
@@ -59,5 +70,5 @@ they are to in HOME."
     (dolist (watcher all)
       (setf (watcher-previous watcher) nil
             (watcher-next watcher) nil)
-      (acquire (watcher-fluent watcher))
+      (acquire-in-any-case (watcher-fluent watcher))
       (join-watchers watcher))))

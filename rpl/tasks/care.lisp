@@ -123,7 +123,7 @@ task has to bear."
                               (call-offering-ends runner function #'fail #'end #'leave)))
                    fate :done)))
       (cond ((null fate) (put-in-order runner))
-            (anywhere (repair runner))))
+            ((or anywhere (eq fate :end)) (repair runner))))
     (ecase fate
       (:done)
       (:fail (fail-current runner trouble))

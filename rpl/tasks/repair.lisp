@@ -75,8 +75,9 @@ know each other."
   (dolist (task tasks)
     (let ((watcher (task-awaiting task)))
       (when (and (watcher-p watcher) (eq :waiting (task-state task)))
-        (let ((value (ignore-errors (fluent-value (watcher-fluent watcher)))))
-          (when value (funcall (watcher-wake watcher) watcher value nil)))))))
+        (handler-case (fluent-value (watcher-fluent watcher))
+          (error (trouble) (funcall (watcher-wake watcher) watcher nil trouble))
+          (:no-error (value) (when value (funcall (watcher-wake watcher) watcher value nil))))))))
 
 (defun finish-ending (task)
   "Let TASK, which was about to evaporate or to end otherwise when its parts have, do so."
