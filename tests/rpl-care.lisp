@@ -43,7 +43,9 @@
                  runner
                  (rpl:interp-lambda ()
                    (rpl:wait-for (rpl:fl-funcall (lambda (x)
-                                                   (if (and armed (= x 1)) (throw 'out nil) (= x 9)))
+                                                   (if (and armed (= x 1))
+                                                       (throw 'out nil)
+                                                       (= x 9)))
                                                  f)))))
            (other (rpl:start-plan runner (rpl:interp-lambda () (rpl:wait-for (= f 2)) :heard))))
       (rpl:react-to-all runner)
