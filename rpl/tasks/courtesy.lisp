@@ -21,7 +21,7 @@ HEARER has come to rest."
   (case (task-state task)
     (:running nil)
     (:ready (or (spent-p task runner) (blocked-p task)))
-    (t t)))
+    (t (not (courtesy-p (task-awaiting task))))))
 
 (defun tell-at-rest (hearer function)
   "Call FUNCTION, which lets the task HEARER hear something, now, if that is at rest or there is
@@ -30,9 +30,14 @@ none. Otherwise do so as soon as it is, and let the task at work give way until 
          (teller (running-task runner)))
     (cond ((or (null hearer) (null teller) (eq hearer teller)
                (not (eq runner (task-runner hearer)))
+               ;; Live, answers come in meanwhile, and who gives way could miss its own.
+               (funcall (runner-attended-p runner))
                (at-rest-p hearer runner))
            (funcall function))
-          (t (setf (runner-courtesies runner)
+          (t (settle-all (remove teller (runner-courtesies runner)
+                                 :key #'courtesy-hearer :test-not #'eq)
+                         runner)
+             (setf (runner-courtesies runner)
                    (append (runner-courtesies runner)
                            (list (make-courtesy hearer teller function)))
                    (runner-mask runner) (logior +interrupt+ (runner-mask runner)))))))
@@ -52,11 +57,16 @@ none. Otherwise do so as soon as it is, and let the task at work give way until 
     (when (eq courtesy (task-awaiting teller))
       (wake teller (task-value teller)))))
 
+(defun settle-all (courtesies runner)
+  "Do what COURTESIES of RUNNER are for. True if there are any."
+  (when courtesies
+    (setf (runner-courtesies runner)
+          (remove-if (lambda (courtesy) (member courtesy courtesies)) (runner-courtesies runner)))
+    (mapc #'settle courtesies)
+    t))
+
 (defun settle-courtesies (runner)
   "Let those tasks of RUNNER that have come to rest hear what they are to. True if there were such."
-  (let ((due (remove-if-not (lambda (courtesy) (at-rest-p (courtesy-hearer courtesy) runner))
-                            (runner-courtesies runner))))
-    (when due
-      (setf (runner-courtesies runner) (set-difference (runner-courtesies runner) due))
-      (mapc #'settle due)
-      t)))
+  (settle-all (remove-if-not (lambda (courtesy) (at-rest-p (courtesy-hearer courtesy) runner))
+                             (runner-courtesies runner))
+              runner))
