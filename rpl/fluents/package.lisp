@@ -27,7 +27,7 @@ no plan.")
   (:export #:declare-fluent-variable #:known-fluent-variable-p #:known-vector-variable-p
            #:one-fluent #:truth-value)
   ;; propagation
-  (:export #:apply-settings #:clear-backlog #:repair-fluents #:pulse #:set-value)
+  (:export #:apply-settings #:repair-fluents #:pulse #:set-value)
   ;; views
   (:export #:fl-pulsed #:fl-value-changed)
   ;; operators

@@ -52,16 +52,6 @@ views that are true for the instant at which that change happened.")
         (unless successor (setf (svref (backlog-tails backlog) height) nil))
         derived))))
 
-(defun clear-backlog (home)
-  "Compute what a change that was left halfway has left in the backlog of HOME, and tell nobody."
-  (loop with backlog = (home-backlog home)
-        for height from 1 to (backlog-highest backlog)
-        do (loop for derived = (dequeue height backlog)
-                 while derived
-                 do (when (plusp (derived-users derived)) (recompute derived))
-                    (enqueue-dependents derived backlog))
-        finally (setf (backlog-highest backlog) 0)))
-
 (defun announce (fluent)
   "Tell the watchers of FLUENT, whose value has changed, if it is true now."
   (let ((value (fluent-now fluent))

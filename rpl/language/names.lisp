@@ -62,11 +62,11 @@ are a lambda list."
   (let ((bindings (second form)))
     (unless (proper-list-p bindings)
       (reject-clause (author) form "(variable value) for each variable, in a list that ends"))
-    (dolist (binding (untyped-bindings bindings (author)))
-      (unless (typep binding '(or symbol (cons t (or null (cons t null)))))
-        (reject-clause (author) (if (consp binding) binding form)
+    (dolist (entry (untyped-bindings bindings (author)))
+      (unless (typep entry '(or symbol (cons t (or null (cons t null)))))
+        (reject-clause (author) (if (consp entry) entry form)
                        "(variable value) for each variable"))
-      (check-variables (list (first (ensure-list (or binding '(nil))))) environment form))))
+      (check-variables (list (first (ensure-list (or entry '(nil))))) environment form))))
 
 (defun check-local-functions (form environment)
   "Signal MALFORMED-DEFINITION unless Lisp can read the definitions of FORM, an FLET or LABELS."
