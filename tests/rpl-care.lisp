@@ -213,3 +213,44 @@ value...), one after the other."
         (rpl:react-to-all runner))
       (is (eq :failed (rpl:task-state bad)))
       (is (eq :heard (rpl:task-result other))))))
+
+;;; Left in the middle of anything.
+
+(defun left-at-change (nth)
+  "Run a plan whose change number NTH of a fluent is left halfway by a throw; then end all. Return
+what is wrong, NIL if nothing is."
+  (with-runner (runner)
+    (let* ((f (fluent 0)) (valve (rpl:make-valve 'door)) (changes 0) (cleaned 0)
+           (other (rpl:start-plan runner (rpl:interp-lambda () (rpl:wait-for (= f -1)) :heard))))
+      (rpl:start-plan runner
+                      (rpl:interp-lambda ()
+                        (rpl:with-valve (valve)
+                          (rpl:evap-protect
+                           (rpl:par (rpl:whenever (> f 2) (rpl:wait-time 1))
+                                    (rpl:n-times 4
+                                      (rpl:wait-time 1)
+                                      (rpl:set-value f (+ 1 (rpl:fluent-value f)))
+                                      (rpl:pursue (rpl:wait-for (> f 9)) (rpl:pulse f 10))))
+                           (incf cleaned)))))
+      (setf (fluents:home-on-change runner)
+            (lambda (kind fluent value)
+              (declare (ignore kind fluent value))
+              (when (= nth (incf changes)) (throw 'out nil))))
+      (loop for tick from 0 to 8
+            do (rpl:advance-timers runner tick)
+               (catch 'out (rpl:react-to-all runner))
+               (rpl:react-to-all runner))
+      (rpl:set-value f -1)
+      (finish runner)
+      (rpl:close-runner runner)
+      (remove nil (list (and (< changes nth) :never-left)
+                        (and (/= 1 cleaned) :not-cleaned)
+                        (and (rpl:valve-owner valve) :valve-kept)
+                        (and (not (eq :heard (rpl:task-result other))) :deaf)
+                        (and (fluents::fluent-first-watcher f) :watched)
+                        (and (rpl:next-wake-time runner) :timer)
+                        (rpl:plan-runner-tasks runner))))))
+
+(test left.in-the-middle-of-any-change-nothing-is-poisoned
+  (loop for nth from 1 to 8
+        do (is (null (left-at-change nth)) "change ~D" nth)))
