@@ -4,17 +4,17 @@
   :description "An abstract robot simulator for people who build reactive planners."
   :version "1.0.0"
   :license "MIT"
-  :depends-on ("alexandria" "bordeaux-threads" "closer-mop" "named-readtables"
-               "sb-cltl2" "sb-posix")
+  :depends-on ("alexandria" "bordeaux-threads" "closer-mop" "cl-csv" "lparallel"
+               "named-readtables" "sb-cltl2" "sb-introspect" "sb-posix")
   :serial t
   :components
   ((:module "src/base" :serial t
     :components ((:file "package") (:file "policy") (:file "public") (:file "floats")
                  (:file "numbers") (:file "globals") (:file "tables") (:file "atomic")
-                 (:file "classes") (:file "packages") (:file "files") (:file "processes")
-                 (:file "environments") (:file "compiling") (:file "interrupts")
+                 (:file "classes") (:file "packages") (:file "files") (:file "code")
+                 (:file "processes") (:file "environments") (:file "compiling") (:file "interrupts")
                  (:file "stacks") (:file "debuggers") (:file "abridging") (:file "conditions")
-                 (:file "telling") (:file "threads") (:file "dice") (:file "names")
+                 (:file "telling") (:file "threads") (:file "dice") (:file "random") (:file "names")
                  (:file "digest") (:file "sources") (:file "places-in-text")
                  (:file "variables") (:file "definitions") (:file "user-macros")
                  (:file "registry") (:file "own-definitions") (:file "messages")
@@ -116,6 +116,14 @@
    (:module "rpl/pictures" :serial t
     :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")
                  (:file "saving")))
+   (:module "src/experiment" :serial t
+    :components ((:file "package") (:file "values") (:file "csv") (:file "condition")
+                 (:file "experiment") (:file "clauses") (:file "defexperiment")
+                 (:file "outcome") (:file "trial") (:file "version") (:file "reaching")
+                 (:file "fingerprint") (:file "row") (:file "lines")
+                 (:file "directory") (:file "workers") (:file "progress") (:file "rounds")
+                 (:file "temporary") (:file "stopping") (:file "results") (:file "description")
+                 (:file "running") (:file "merging")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.

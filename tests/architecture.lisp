@@ -78,6 +78,7 @@
                                    (named-readtables "named-readtables")
                                    (lparallel "lparallel")
                                    (closer-mop "closer-mop")
+                                   (cl-csv "cl-csv")
                                    (trivial-gray-streams "trivial-gray-streams"))
         for files = (files-mentioning words '("src/" "rpl/" "cli/" "worlds/"))
         do (is (<= (length files) 1) "~A is named in ~S" library files))
@@ -90,7 +91,8 @@
 (defparameter *sb-ext-doors*
   '("src/base/policy.lisp" "src/base/floats.lisp" "src/base/globals.lisp" "src/base/atomic.lisp"
     "src/base/packages.lisp" "src/base/environments.lisp" "src/base/interrupts.lisp"
-    "src/base/debuggers.lisp" "src/base/files.lisp" "src/base/tables.lisp")
+    "src/base/debuggers.lisp" "src/base/files.lisp" "src/base/tables.lisp"
+    "src/base/random.lisp")
   "The files that may name SB-EXT.")
 
 (defparameter *before-the-doors*
