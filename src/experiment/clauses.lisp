@@ -26,10 +26,14 @@
 (defun clause-key (definition clause)
   "Return the keyword of CLAUSE. Signals MALFORMED-DEFINITION."
   (unless (and (proper-list-p clause) (assoc (first clause) *clauses*))
-    (reject-clause definition clause
-                   (format nil "a clause ~{~(~S~)~^, ~} or ~(~S~)"
-                           (butlast (mapcar #'first *clauses*))
-                           (first (first (last *clauses*))))))
+    (let* ((keys (mapcar #'first *clauses*))
+           (word (and (consp clause) (symbolp (first clause)) (first clause)))
+           (nearest (and word (nearest-name word keys))))
+      (reject-clause definition clause
+                     (format nil "~@[the clause ~(~S~); or one of the others, ~]a list that ~
+                                  begins with ~{~(~S~)~^, ~} or ~(~S~)"
+                             (and nearest (find nearest keys :test #'same-name-p))
+                             (butlast keys) (first (last keys))))))
   (first clause))
 
 (defun check-clauses (definition clauses)

@@ -132,7 +132,13 @@ not. See RUN-EXPERIMENT for what is kept. Signals MALFORMED-DEFINITION. Return N
     (unless (find-blueprint name nil)
       (reject-clause definition part
                      (format nil "robots that are defined; ~(~A~) is none. Known: ~{~(~A~)~^, ~}"
-                             name (mapcar #'blueprint-name (all-blueprints)))))))
+                             name (mapcar #'blueprint-name (all-blueprints))))))
+  (let ((maps (remove-duplicates (mapcar (lambda (name) (blueprint-map (find-blueprint name)))
+                                         names)
+                                 :test #'same-name-p)))
+    (when (rest maps)
+      (reject-clause definition part
+                     (format nil "robots of one map, not of ~{~(~A~)~^ and ~}" maps)))))
 
 (defun factor-from (definition part values)
   (unless (and (proper-list-p values) values)

@@ -5,7 +5,7 @@
 on with, on as many cores and machines as there are. Names cl-csv and lparallel.")
   (:use :cl :ars-magna.base :ars-magna.run)
   (:import-from :ars-magna.time #:current-simulation)
-  (:import-from :ars-magna.robot #:find-blueprint #:all-blueprints #:blueprint-name)
+  (:import-from :ars-magna.robot #:find-blueprint #:all-blueprints #:blueprint-name #:blueprint-map)
   (:import-from :ars-magna.rpl.tasks
                 #:procedure #:procedure-p #:procedure-source
                 #:plan-failure #:failure-class #:failure-text
