@@ -24,6 +24,11 @@
    (:module "src/geometry" :serial t
     :components ((:file "package") (:file "types") (:file "operands") (:file "points")
                  (:file "intervals") (:file "angles")))
+   (:module "src/statistics" :serial t
+    :components ((:file "package") (:file "arguments") (:file "fractions") (:file "gamma")
+                 (:file "normal") (:file "beta") (:file "samples") (:file "proportions")
+                 (:file "means") (:file "bootstrap") (:file "pairs") (:file "permutation")
+                 (:file "several") (:file "survival") (:file "sequential")))
    (:module "src/nisp" :serial t
     :components ((:file "package") (:file "control") (:file "typed-lists") (:file "binding")
                  (:file "types") (:file "slots") (:file "values") (:file "matching")
