@@ -127,7 +127,7 @@
                  (:file "outcome") (:file "trial") (:file "version") (:file "reaching")
                  (:file "fingerprint") (:file "row") (:file "lines")
                  (:file "directory") (:file "workers") (:file "progress") (:file "rounds")
-                 (:file "temporary") (:file "stopping") (:file "results") (:file "description")
+                 (:file "stopping") (:file "results") (:file "description")
                  (:file "running") (:file "merging")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
@@ -239,7 +239,7 @@
                  (:file "manual-c") (:file "manual-c-plans") (:file "manual-d")
                  (:file "manual-e") (:file "hostile-numbers") (:file "ownership")
                  (:file "users-hands") (:file "src-readme") (:file "rpl-readme")
-                 (:file "tests-readme") (:file "architecture") (:file "isolation")
+                 (:file "tests-readme") (:file "architecture") (:file "experiments") (:file "experiments-tables") (:file "isolation")
                  (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
