@@ -12,6 +12,8 @@
   (default nil :read-only t)
   (unit "" :type string :read-only t)
   (type t :read-only t)
+  ;; True of the values that are of the type.
+  (test (constantly t) :type function :read-only t)
   (kind :limit :type (member :noise :delay :limit :setting) :read-only t)
   (clean nil :read-only t)
   (group "" :type string :read-only t)
@@ -73,13 +75,14 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
      (register
       *parameters* ',symbol
       (make-parameter :symbol ',symbol :default ,default :unit ,unit :type ',type
+                      :test (lambda (value) (typep value ',type))
                       :kind ,kind :clean ,clean :group ,group :sentence ,sentence))
      ',symbol))
 
 (defun check-parameter-value (parameter value)
   ;; Of a number that is none not even the type can be asked.
   (unless (and (or (not (realp value)) (finite-p value))
-               (typep value (parameter-type parameter)))
+               (funcall (parameter-test parameter) value))
     (error 'wrong-argument :operator "set parameter" :name (parameter-name parameter)
                            :value value
                            :expected (describe-type (parameter-type parameter)))))
