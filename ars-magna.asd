@@ -19,6 +19,7 @@
                  (:file "variables") (:file "definitions") (:file "user-macros")
                  (:file "registry") (:file "own-definitions") (:file "messages")
                  (:file "askers") (:file "user-code") (:file "parameters") (:file "physics")
+                 (:file "parameters-of-runs")
                  (:file "kinds") (:file "digesting") (:file "copying") (:file "given")
                  (:file "argument-types") (:file "operators")))
    (:module "src/geometry" :serial t

@@ -50,10 +50,19 @@
   (declare #.*hot*)
   (characters-word (string text) #'char-code))
 
+(declaim (inline upper-code))
+(defun upper-code (char)
+  "Return the code of CHAR in upper case."
+  (let ((code (char-code char)))
+    ;; CHAR-UPCASE, which need not be asked of most, takes its time.
+    (cond ((<= (char-code #\a) code (char-code #\z)) (- code 32))
+          ((< code 128) code)
+          (t (char-code (char-upcase char))))))
+
 (defun name-word (name)
   "Return a 64-bit word that depends on what NAME, a string designator, is called, in whatever case."
   (declare #.*hot*)
-  (characters-word (string name) (lambda (char) (char-code (char-upcase char)))))
+  (characters-word (string name) #'upper-code))
 
 (defun make-dice (seed &optional (purpose ""))
   "Return dice for PURPOSE (a string designator) that depend on it and on the integer SEED only."

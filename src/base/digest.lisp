@@ -40,6 +40,8 @@ their elements, functions as such, other objects by what tells them apart. Retur
            finally (digest-add digest tail)))
     ((simple-array (unsigned-byte 8) (*)) (digest-word digest (length datum))
      (loop for octet across datum do (digest-word digest octet)))
+    (simple-vector (digest-word digest (length datum))
+     (loop for element across datum do (digest-add digest element)))
     (vector (digest-word digest (length datum))
      (loop for element across datum do (digest-add digest element)))
     (function (digest-word digest 1))
