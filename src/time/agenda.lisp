@@ -3,7 +3,7 @@
 (in-package :ars-magna.time)
 
 ;;; A hierarchical timing wheel. The near wheel has a bucket for each tick of the current page of
-;;; 1024 ticks, the far wheel one for each page of the current volume of 1024 pages; what lies
+;;; 256 ticks, the far wheel one for each page of the current volume of 256 pages; what lies
 ;;; beyond waits in one list. Turning a page moves its far bucket into the near wheel. Queueing
 ;;; and running an event cost the same however many wait.
 ;;;
@@ -12,7 +12,7 @@
 ;;; equal ones in that order; a resource has at most one pending event; cancelled events stay in
 ;;; their bucket and are dropped when it comes up. Manual 3.8.
 
-(defconstant +page-bits+ 10)
+(defconstant +page-bits+ 8)
 (defconstant +page-size+ (ash 1 +page-bits+))
 (defconstant +page-mask+ (1- +page-size+))
 
@@ -62,7 +62,8 @@
 (defun behind (last event)
   "Put EVENT behind LAST, which a bucket holds; return EVENT, which the bucket is to hold now."
   (setf (event-queued-p event) t
-        (event-next event) (if last (shiftf (event-next last) event) event)))
+        (event-next event) (if last (shiftf (event-next last) event) event))
+  event)
 
 (define-modify-macro append-event (event) behind)
 
