@@ -134,7 +134,7 @@
   ((:module "worlds" :serial t
     :components ((:file "package") (:file "prototypes") (:file "kickers")
                  (:file "manipulations") (:file "watson") (:file "office") (:file "hall")
-                 (:file "tiny") (:file "wayfinding") (:file "plans-reckoning")
+                 (:file "tiny") (:file "charts") (:file "wayfinding") (:file "plans-reckoning")
                  (:file "plans-moving") (:file "plans-looking") (:file "plans-handling")
                  (:file "plans-errands") (:file "errand")))))
 

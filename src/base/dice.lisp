@@ -60,7 +60,7 @@
           (t (char-code (char-upcase char))))))
 
 (defun name-word (name)
-  "Return a 64-bit word that depends on what NAME, a string designator, is called, in whatever case."
+  "Return a 64-bit word that depends on what NAME, a string designator, is called in upper case."
   (declare #.*hot*)
   (characters-word (string name) #'upper-code))
 
