@@ -127,7 +127,7 @@
                  (:file "experiment") (:file "clauses") (:file "defexperiment")
                  (:file "outcome") (:file "trial") (:file "version") (:file "reaching")
                  (:file "fingerprint") (:file "row") (:file "lines")
-                 (:file "directory") (:file "workers") (:file "progress") (:file "rounds")
+                 (:file "directory") (:file "workers") (:file "stopwatch") (:file "progress") (:file "rounds")
                  (:file "stopping") (:file "results") (:file "description")
                  (:file "running") (:file "merging")))
    (:module "src" :serial t

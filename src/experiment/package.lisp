@@ -15,7 +15,7 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
-           #:find-condition)
+           #:find-condition #:trial-values)
   ;; results
   (:export #:results-p #:results-samples #:results-directory #:results-factors #:results-measures
            #:read-results #:sample-p #:sample-experiment #:sample-condition #:sample-texts

@@ -29,7 +29,7 @@ of the probability of A successes and B failures (Loader 2000). A and B are 0 or
   (+ (log-binomial-density a b x y) (log (/ (* a b) (+ a b)))))
 
 (defun beta-fraction (a b x y)
-  "Return I_X(A, B) divided by X^A Y^B / beta(A, B), for X up to about A/(A+B) (the continued fraction
+  "Return I_X(A, B) divided by X^A Y^B / beta(A, B), for X up to about A/(A+B) (continued fraction
 of Didonato and Morris 1992, all of whose terms are above 0 there)."
   (declare (type double-float a b x y) #.*hot*)
   (flet ((lower-part (m)

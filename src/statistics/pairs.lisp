@@ -1,4 +1,4 @@
-;;;; pairs.lisp -- two ways of doing the same trials: which succeeds more often?
+;;;; pairs.lisp -- which of two ways of doing the same trials succeeds more often.
 
 (in-package :ars-magna.statistics)
 
