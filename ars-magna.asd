@@ -135,7 +135,7 @@
                  (:file "manipulations") (:file "watson") (:file "office") (:file "hall")
                  (:file "tiny") (:file "wayfinding") (:file "plans-reckoning")
                  (:file "plans-moving") (:file "plans-looking") (:file "plans-handling")
-                 (:file "plans-errands") (:file "errand")))))
+                 (:file "plans-errands") (:file "plans-searching") (:file "errand")))))
 
 (defsystem "ars-magna/cli"
   :description "The prompt Robot>."

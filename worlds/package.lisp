@@ -35,6 +35,9 @@ and programs for the robots there. Written as users write theirs.")
            #:withdraw-camera #:put-thing-down #:free-hand #:stowed-p)
   ;; plans: errands
   (:export #:find-and-take #:fetch-thing #:tidy-once #:tidy-room)
+  ;; plans: searching
+  (:export #:watson-lookouts* #:hide-thing #:beside-p #:search-by-chance #:search-nearest
+           #:search-watchfully)
   ;; an errand with continuations
   (:export #:run-errand))
 
