@@ -1,15 +1,14 @@
 ;;;; plans-searching.lisp -- three ways of searching for a thing when nobody knows where it is.
 
 ;;; Good for comparing plans: what is it worth to remember where one has looked, and what to keep
-;;; one's eyes open on the way? A robot knows its map and points from which, together, it overlooks
-;;; the floor. HIDE-THING puts the thing there, anywhere:
+;;; one's eyes open on the way? A robot knows its map, and points of it from which, together, it
+;;; overlooks the floor. HIDE-THING puts the thing anywhere there:
 ;;;
-;;;   (with-simulation (ars-worlds:robbie :seed 1)
-;;;     (ars-worlds:hide-thing 'vase '((:size 1) (:color violet) (:substance glass)))
-;;;     (run-plan 'search-nearest '((:color violet) (:substance glass)) ars-worlds:watson-lookouts*))
+;;;   (with-simulation (robbie :seed 1)
+;;;     (hide-thing 'vase '((:size 1) (:color violet) (:substance glass)))
+;;;     (run-plan 'search-nearest '((:color violet) (:substance glass)) watson-lookouts*))
 ;;;
-;;; Chance has dice of its own here, which depend on the world's seed: all ways search for the same
-;;; thing at the same place, and what moves by itself does not care who searches how.
+;;; Where chance decides, all ways have the same dice, of their own: trials.lisp says why.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
@@ -18,38 +17,6 @@
   '((12.5 5.5) (20.5 6) (26 9.5) (34 7) (10 14.5) (29 14.5) (6 22.5) (16 22.5) (25.5 22.5)
     (35.5 22.5))
   "Points of WATSON, a list of lists (x y), from which, together, all its floor is overlooked.")
-
-(defun dice-for (purpose)
-  "Return new dice for PURPOSE, a symbol, which depend on it and on the seed of the world only."
-  (ars-magna.base:make-dice (world-seed *world*) purpose))
-
-;;; Hiding.
-
-(defun in-the-open-p (map x y)
-  "True if neither walls of MAP nor things that block robots are in the cell at (X,Y) or next to it."
-  (loop for dx from -1 to 1
-        always (loop for dy from -1 to 1
-                     always (and (free-p map (+ x dx) (+ y dy))
-                                 (notany #'thing-obsmove-p
-                                         (things-at *world* (+ x dx) (+ y dy)))))))
-
-(defun hide-thing (name descriptor)
-  "Put a new thing NAME with the attributes of DESCRIPTOR on the floor of the world that is being run,
-in the open, and return it. NAME and the world's seed decide where."
-  (let ((map (ars-magna.world:world-map *world*))
-        (dice (dice-for name)))
-    (loop repeat 10000
-          for x = (+ .5 (roll-index (map-width map) dice))
-          for y = (+ .5 (roll-index (map-height map) dice))
-          when (in-the-open-p map x y)
-            return (make-new-thing name (list *world* x y) descriptor)
-          finally (error "No place to hide ~A: walls and things leave no cell open." name))))
-
-(defun beside-p (robot thing)
-  "True if THING lies on the floor and is local to ROBOT."
-  (multiple-value-bind (x y) (thing-position thing)
-    (and (eq :floor (thing-location thing))
-         (ars-magna.robot:within-reach-p robot x y))))
 
 ;;; Where to go next: of PLACES, those LEFT have not been looked at in this round.
 
@@ -124,8 +91,9 @@ to be something else, to another, up to CANDIDATES. True if it was found."
       nil))
 
 (def-interp-proc travel-watching (me place camera description)
-  "Let the robot of ME travel to PLACE, led by another camera, while CAMERA looks ahead for what fits
-DESCRIPTION. Where it sees such a thing the robot stops: return a designator of that, or NIL."
+  "Let the robot of ME travel to PLACE, led by another camera, while CAMERA looks ahead for what
+fits DESCRIPTION. Where it sees such a thing the robot stops: return a designator of that, or NIL.
+Fails with :ONLY-ONE-CAMERA if there is no other."
   (let ((seen nil)
         (guide (or (other-camera camera) (fail :class :only-one-camera))))
     (outcome (rpl-camera-align-robot camera)
@@ -149,7 +117,7 @@ not get to what it sees. True if it found the thing."
 
 (def-interp-proc search-places (description places choose visit rounds start camera)
   "Let the robot do VISIT, the name of a plan, to one of PLACES after the other, as the function
-CHOOSE says, until that finds what fits DESCRIPTION: as many times as there are PLACES, times ROUNDS.
+CHOOSE says, until that finds what fits DESCRIPTION: ROUNDS times as often as there are PLACES.
 Return how far it drove, in metres, as it believes. Fails with :NOT-FOUND."
   (with-valve ((rpl-robot-valve))
     (let ((me (begin-reckoning (or start (here (rpl-robot)))))
@@ -168,10 +136,10 @@ Return how far it drove, in metres, as it believes. Fails with :NOT-FOUND."
 
 (def-interp-proc search-by-chance (description places
                                    &key (rounds 10) start (camera (widest-camera)))
-  "Let the robot look round for what fits DESCRIPTION from any of PLACES, points of its map, then from
-any again, as chance will have it, and go to what it sees. It visits ROUNDS times as many as there
-are. START is where it is, a list (x y heading); by default it finds that out. Return how far it
-drove, in metres, as it believes; it stands next to the thing then. Fails with :NOT-FOUND."
+  "Let the robot look round for what fits DESCRIPTION from any of PLACES, points of its map, then
+from any again, as chance will have it, and go to what it sees. It visits ROUNDS times as many as
+there are. START is where it is, a list (x y heading); by default it finds that out. Return how far
+it drove, in metres, as it believes; it stands next to the thing then. Fails with :NOT-FOUND."
   (search-places description places #'draw-place 'go-and-look rounds start camera))
 
 (def-interp-proc search-nearest (description places
