@@ -149,7 +149,8 @@
                  (:file "manipulations") (:file "watson") (:file "office") (:file "hall")
                  (:file "tiny") (:file "charts") (:file "wayfinding") (:file "plans-reckoning")
                  (:file "plans-moving") (:file "plans-looking") (:file "plans-handling")
-                 (:file "plans-errands") (:file "errand")))))
+                 (:file "plans-errands") (:file "trials") (:file "plans-searching")
+                 (:file "errand")))))
 
 (defsystem "ars-magna/cli"
   :description "The prompt Robot>."
@@ -210,6 +211,7 @@
                  (:file "rpl-left") (:file "rpl-robot-live") (:file "rpl-gone")
                  (:file "rpl-text") (:file "rpl-text-places") (:file "rpl-examples-robot")
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
+                 (:file "worlds-searching")
                  (:file "display") (:file "display-files") (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "cli-files") (:file "cli-plan-tree")
