@@ -74,11 +74,11 @@
                  (:file "replaced-maps") (:file "journal-text") (:file "replay")))
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "gcontext") (:file "canvas")
-                 (:file "drawing") (:file "svg") (:file "package") (:file "text-map")
-                 (:file "history") (:file "snapshot") (:file "subjects") (:file "contents")
-                 (:file "terrain") (:file "place-marks") (:file "world-display")
-                 (:file "details") (:file "displays") (:file "picture") (:file "animation")
-                 (:file "opening")))
+                 (:file "drawing") (:file "text") (:file "svg") (:file "package")
+                 (:file "text-map") (:file "history") (:file "snapshot") (:file "subjects")
+                 (:file "contents") (:file "terrain") (:file "place-marks")
+                 (:file "world-display") (:file "details") (:file "displays")
+                 (:file "picture") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
     :components ((:file "package") (:file "home") (:file "fluent") (:file "network")
                  (:file "known") (:file "propagation") (:file "views") (:file "repair")
@@ -122,13 +122,19 @@
    (:module "rpl/pictures" :serial t
     :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")
                  (:file "saving")))
+   (:module "src/plots" :serial t
+    :components ((:file "package") (:file "figures") (:file "axis") (:file "looks")
+                 (:file "words") (:file "page") (:file "series") (:file "legend")
+                 (:file "labels") (:file "plane") (:file "line-chart") (:file "curves")
+                 (:file "survival-chart") (:file "rows") (:file "difference-chart")
+                 (:file "measure-chart") (:file "saving")))
    (:module "src/experiment" :serial t
     :components ((:file "package") (:file "values") (:file "csv") (:file "condition")
                  (:file "experiment") (:file "clauses") (:file "defexperiment")
                  (:file "outcome") (:file "trial") (:file "version") (:file "reaching")
                  (:file "fingerprint") (:file "row") (:file "lines")
-                 (:file "directory") (:file "workers") (:file "stopwatch") (:file "progress") (:file "rounds")
-                 (:file "stopping") (:file "results") (:file "description")
+                 (:file "directory") (:file "workers") (:file "stopwatch") (:file "progress")
+                 (:file "rounds") (:file "stopping") (:file "results") (:file "description")
                  (:file "running") (:file "merging")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
@@ -212,7 +218,8 @@
                  (:file "rpl-text") (:file "rpl-text-places") (:file "rpl-examples-robot")
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
                  (:file "worlds-searching")
-                 (:file "display") (:file "display-files") (:file "clim") (:file "cli")
+                 (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
+                 (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")

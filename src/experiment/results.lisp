@@ -28,7 +28,8 @@
   (directory nil :type (or null pathname)))
 
 (addition results-p results-samples results-directory
-          sample-p sample-experiment sample-condition sample-texts sample-trials sample-outcomes sample-reasons sample-ticks sample-errors)
+          sample-p sample-experiment sample-condition sample-texts sample-trials
+          sample-outcomes sample-reasons sample-ticks sample-errors)
 (document-functions
   results-p "True of what came of an experiment."
   results-samples "Return a list of what came of the trials of each condition."
