@@ -156,7 +156,7 @@
                  (:file "tiny") (:file "charts") (:file "wayfinding") (:file "plans-reckoning")
                  (:file "plans-moving") (:file "plans-looking") (:file "plans-handling")
                  (:file "plans-errands") (:file "trials") (:file "plans-searching")
-                 (:file "errand")))))
+                 (:file "errand") (:file "experiments")))))
 
 (defsystem "ars-magna/cli"
   :description "The prompt Robot>."
