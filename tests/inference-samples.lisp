@@ -149,6 +149,7 @@
 (test samples.are-checked-at-the-door
   (dolist (numbers (list 7 '(1 . 2) '(1 :two) #(1 nil) (list 1d16) "ab"))
     (signals-wrong-argument stats:mean (stats:mean numbers))
+    (signals-wrong-argument stats:median (stats:median numbers))
     (signals-wrong-argument stats:variance (stats:variance numbers))
     (signals-wrong-argument stats:quantile (stats:quantile numbers .5))
     (signals-wrong-argument stats:student-interval (stats:student-interval numbers))

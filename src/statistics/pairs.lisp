@@ -1,4 +1,4 @@
-;;;; pairs.lisp -- two ways of doing the same trials: which succeeds more often?
+;;;; pairs.lisp -- which of two ways of doing the same trials succeeds more often.
 
 (in-package :ars-magna.statistics)
 
@@ -8,7 +8,7 @@
 FIRST succeeded one way only, SECOND the other way only; those with the same outcome both ways say
 nothing. The test is exact, and its size never above what it says (McNemar 1947; Fagerland,
 Lydersen and Laake 2013, \"The McNemar test for binary matched-pairs data\"). The second value is
-the mid-p of the same page, less careful and as a rule nearer to the truth. Both are 1 of no
+the mid-p of the same paper, less careful and as a rule nearer to the truth. Both are 1 of no
 trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
   (check-count mcnemar-test first)
   (check-count mcnemar-test second)

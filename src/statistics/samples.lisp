@@ -102,4 +102,5 @@ these are numbers from -1e15 to 1e15."
 (defun median (numbers)
   "Return the median of NUMBERS, a list or vector; NIL if there are none. Signals WRONG-ARGUMENT
 unless they are numbers from -1e15 to 1e15."
-  (quantile numbers 1/2))
+  (let ((sample (sample 'median 'numbers numbers)))
+    (when (plusp (length sample)) (sorted-quantile (sorted sample) .5d0))))
