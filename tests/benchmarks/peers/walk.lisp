@@ -86,4 +86,5 @@
          (successes (results-of-threads cores))
          (seconds (/ (- (get-internal-real-time) start) internal-time-units-per-second 1.0)))
     (format t "~&~{~A~^|~}~%"
-            (list* "ARS MAGNA" cores seconds (loop for count in successes collect (/ count 1000.0))))))
+            (list* "ARS MAGNA" cores seconds
+                   (loop for count in successes collect (/ count 1000.0))))))
