@@ -134,8 +134,9 @@
                  (:file "outcome") (:file "trial") (:file "version") (:file "reaching")
                  (:file "fingerprint") (:file "row") (:file "lines")
                  (:file "directory") (:file "workers") (:file "stopwatch") (:file "progress")
-                 (:file "rounds") (:file "stopping") (:file "results") (:file "description")
-                 (:file "running") (:file "merging")))
+                 (:file "rounds") (:file "stopping") (:file "description") (:file "results")
+                 (:file "running") (:file "merging") (:file "estimates") (:file "summary")
+                 (:file "text-table") (:file "remarks") (:file "report")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.

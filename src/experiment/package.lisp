@@ -3,7 +3,8 @@
 (defpackage :ars-magna.experiment
   (:documentation "Controlled experiments: conditions, trials, tables that can be repeated and gone
 on with, on as many cores and machines as there are. Names cl-csv and lparallel.")
-  (:use :cl :ars-magna.base :ars-magna.run)
+  (:use :cl :ars-magna.base :ars-magna.statistics :ars-magna.run)
+  (:import-from :ars-magna.plots #:figure-text)
   (:import-from :ars-magna.time #:current-simulation)
   (:import-from :ars-magna.robot #:find-blueprint #:all-blueprints #:blueprint-name #:blueprint-map)
   (:import-from :ars-magna.rpl.tasks
@@ -11,7 +12,6 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
   (:import-from :ars-magna.rpl-robot #:*plan-limit*)
-  (:import-from :ars-magna.statistics #:sequential-level #:wilson-interval)
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
@@ -22,4 +22,10 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:sample-trials #:sample-outcomes #:sample-reasons #:sample-ticks #:sample-errors
            #:sample-measure)
   ;; lines, running, merging, workers
-  (:export #:damaged-table #:run-experiment #:merge-results #:processors))
+  (:export #:damaged-table #:run-experiment #:merge-results #:processors)
+  ;; estimates, summary, report
+  (:export #:estimate-p #:estimate-name #:estimate-kind #:estimate-count #:estimate-value
+           #:estimate-low #:estimate-high #:estimate-left-out #:estimate-texts
+           #:summary-p #:summary-condition #:summary-texts #:summary-trials #:summary-failures
+           #:summary-limits #:summary-errors #:summary-confidence #:summary-success #:summary-ticks
+           #:summary-measures #:summary-reasons #:summarize-results #:print-results))
