@@ -68,11 +68,11 @@
                  (:file "replaced-maps") (:file "journal-text") (:file "replay")))
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "gcontext") (:file "canvas")
-                 (:file "drawing") (:file "svg") (:file "package") (:file "text-map")
-                 (:file "history") (:file "snapshot") (:file "subjects") (:file "contents")
-                 (:file "terrain") (:file "place-marks") (:file "world-display")
-                 (:file "details") (:file "displays") (:file "picture") (:file "animation")
-                 (:file "opening")))
+                 (:file "drawing") (:file "text") (:file "svg") (:file "package")
+                 (:file "text-map") (:file "history") (:file "snapshot") (:file "subjects")
+                 (:file "contents") (:file "terrain") (:file "place-marks")
+                 (:file "world-display") (:file "details") (:file "displays")
+                 (:file "picture") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
     :components ((:file "package") (:file "home") (:file "fluent") (:file "network")
                  (:file "known") (:file "propagation") (:file "views") (:file "repair")
@@ -116,6 +116,11 @@
    (:module "rpl/pictures" :serial t
     :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")
                  (:file "saving")))
+   (:module "src/plots" :serial t
+    :components ((:file "package") (:file "figures") (:file "axis") (:file "looks")
+                 (:file "words") (:file "series") (:file "legend") (:file "labels")
+                 (:file "plane") (:file "line-chart") (:file "survival-chart") (:file "rows")
+                 (:file "difference-chart") (:file "measure-chart") (:file "saving")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.

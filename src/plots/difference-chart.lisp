@@ -1,0 +1,3 @@
+;;;; difference-chart.lisp -- to come.
+
+(in-package :ars-magna.plots)

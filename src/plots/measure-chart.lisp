@@ -1,0 +1,3 @@
+;;;; measure-chart.lisp -- to come.
+
+(in-package :ars-magna.plots)

@@ -1,0 +1,3 @@
+;;;; rows.lisp -- to come.
+
+(in-package :ars-magna.plots)

@@ -1,0 +1,3 @@
+;;;; survival-chart.lisp -- to come.
+
+(in-package :ars-magna.plots)
