@@ -118,9 +118,10 @@
                  (:file "saving")))
    (:module "src/plots" :serial t
     :components ((:file "package") (:file "figures") (:file "axis") (:file "looks")
-                 (:file "words") (:file "series") (:file "legend") (:file "labels")
-                 (:file "plane") (:file "line-chart") (:file "survival-chart") (:file "rows")
-                 (:file "difference-chart") (:file "measure-chart") (:file "saving")))
+                 (:file "words") (:file "page") (:file "series") (:file "legend")
+                 (:file "labels") (:file "plane") (:file "line-chart") (:file "curves")
+                 (:file "survival-chart") (:file "rows") (:file "difference-chart")
+                 (:file "measure-chart") (:file "saving")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.
@@ -201,7 +202,8 @@
                  (:file "rpl-left") (:file "rpl-robot-live") (:file "rpl-gone")
                  (:file "rpl-text") (:file "rpl-text-places") (:file "rpl-examples-robot")
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
-                 (:file "display") (:file "display-files") (:file "clim") (:file "cli")
+                 (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
+                 (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")

@@ -9,7 +9,8 @@
            #:lightgreen* #:lightblue* #:lightviolet* #:shade #:color-called)
   ;; gcontext
   (:export #:gcontext #:gcontext-p #:create-gcontext #:gcontext-foreground
-           #:gcontext-background #:gcontext-line-width #:gcontext-line-style #:gcontext-dashes #:with-gcontext
+           #:gcontext-background #:gcontext-line-width #:gcontext-line-style
+           #:gcontext-dashes #:with-gcontext
            #:draw-gcontext* #:graphics-scale* #:in-color* #:with-color #:with-lines)
   ;; canvas
   (:export #:canvas #:canvas-p #:canvas-color-p #:paint-rectangles #:paint-arc #:paint-path

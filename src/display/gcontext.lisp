@@ -47,7 +47,7 @@ default 4, or a list (dash gap ...). Can be set. A canvas may have dashes of its
 (defvar in-color* t
   "True while drawing on a display that has colours, false on a monochrome one (manual B.1).")
 
-(defun check-pen (foreground line-width line-style dashes)
+(defun check-pen (foreground line-width line-style &optional dashes)
   (check-argument with-color foreground (typep foreground '(or null color))
                   "a colour, such as (vref red* 9)")
   (check-argument with-lines line-width (or (null line-width)

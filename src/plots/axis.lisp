@@ -3,8 +3,8 @@
 (in-package :ars-magna.plots)
 
 (defstruct (axis (:copier nil))
-  "The numbers from LOW to HIGH (their logarithms if LOG-P) between the pixels FROM and TO. MARKS is a
-list of (value line...), lines of text, which run upward if UPWARD-P."
+  "The numbers from LOW to HIGH (their logarithms if LOG-P) between the pixels FROM and TO. MARKS
+is a list of (value line...), lines of text, which run upward if UPWARD-P."
   (low 0 :type real)
   (high 1 :type real)
   (from 0 :type real)
@@ -14,8 +14,17 @@ list of (value line...), lines of text, which run upward if UPWARD-P."
   (upward-p nil :type boolean))
 
 (defun spot-of (value log-p)
-  "Return where VALUE is along an axis."
-  (if log-p (rational (log (double value) 10d0)) value))
+  "Return where VALUE is along an axis: VALUE, or its logarithm if LOG-P."
+  (cond ((not log-p) value)
+        (t (check-argument chart value (plusp value)
+                           "more than 0 on a logarithmic axis; leave :log-x out, or make it a word")
+           (let ((power (power-of-ten value)))
+             (+ power (rational (log (double (/ value (expt 10 power))) 10d0)))))))
+
+(defun antilogarithm (spot)
+  "Return the number whose logarithm is SPOT, about."
+  (multiple-value-bind (power rest) (floor spot)
+    (* (expt 10 power) (rational (expt 10d0 (double rest))))))
 
 (defun place (value axis)
   "Return the pixel of VALUE."
@@ -35,9 +44,12 @@ are none."
           ((zerop low) (values 0 1))
           (t (values (- low (/ (abs low) 10)) (+ high (/ (abs high) 10)))))))
 
-(defun widened (low high)
-  "Return LOW and HIGH, a little further apart, so that what is drawn there is clear of the ends."
-  (let ((margin (/ (- high low) 25)))
+(defun widened (low high from to inset)
+  "Return the ends of an axis between the pixels FROM and TO on which LOW and HIGH are INSET from
+these, but no more than a sixth of it."
+  (let* ((span (- to from))
+         (inset (min inset (/ span 6)))
+         (margin (* (- high low) (/ inset (- span (* 2 inset))))))
     (values (- low margin) (+ high margin))))
 
 ;;; Do the marks fit?
@@ -74,11 +86,11 @@ are none."
         collect (let ((step (round-step (- high low) most)))
                   (lambda () (step-marks step start end percent)))))
 
-(defun linear-axis (values from to &key percent (least 0))
+(defun linear-axis (values from to &key percent (least 0) (inset 16))
   "Return an axis for VALUES from the pixel FROM to TO, with as many marks as fit, at least LEAST
-pixels wide."
+pixels wide. The least and greatest of VALUES are INSET pixels from the ends."
   (multiple-value-bind (low high) (limits values)
-    (multiple-value-bind (start end) (widened low high)
+    (multiple-value-bind (start end) (widened low high from to inset)
       (fit-marks (make-axis :low start :high end :from from :to to)
                  (step-candidates low high low high percent)
                  least))))
@@ -92,35 +104,28 @@ pixels wide."
                        when (<= low (spot-of value t) high)
                          collect (list value (plain-text value 4)))))
 
-(defun check-positive (values)
-  (dolist (value values)
-    (check-argument chart value (<= 1/1000000000000 value)
-                    "at least 1e-12 on a logarithmic axis; leave :log-x out, or make it a word")))
-
 (defun logarithmic-candidates (low high percent)
   "Return functions that return marks for the logarithms from LOW to HIGH, most marks first."
   (if (< (- high low) 1)
-      (let ((least (rational (expt 10d0 low))) (most (rational (expt 10d0 high))))
+      (let ((least (antilogarithm low)) (most (antilogarithm high)))
         (step-candidates least most least most percent))
       (loop for (every . factors) in '((1 1 2 3 4 5 6 7 8 9) (1 1 2 5) (1 1 3) (1 1) (2 1) (3 1)
                                        (5 1) (10 1) (50 1) (200 1))
             collect (let ((factors factors) (every every))
                       (lambda () (decade-marks low high factors every))))))
 
-(defun logarithmic-axis (values from to &key percent (least 0))
+(defun logarithmic-axis (values from to &key percent (least 0) (inset 16))
   "Return an axis for the logarithms of VALUES as LINEAR-AXIS does for these."
-  (check-positive values)
   (multiple-value-bind (low high)
-      (multiple-value-call #'widened
-        (limits (mapcar (lambda (value) (spot-of value t)) (or values '(1 10)))))
-    (fit-marks (make-axis :low low :high high :from from :to to :log-p t)
-               (logarithmic-candidates low high percent)
-               least)))
+      (limits (mapcar (lambda (value) (spot-of value t)) (or values '(1 10))))
+    (multiple-value-bind (start end) (widened low high from to inset)
+      (fit-marks (make-axis :low start :high end :from from :to to :log-p t)
+                 (logarithmic-candidates start end percent)
+                 least))))
 
-(defun axis-across (values from to log-p &key percent (least 0))
-  "Return an axis for VALUES as LINEAR-AXIS does, logarithmic if LOG-P."
-  (funcall (if log-p #'logarithmic-axis #'linear-axis) values from to
-           :percent percent :least least))
+(defun axis-across (values from to log-p &rest options)
+  "Return an axis for VALUES as LINEAR-AXIS does with OPTIONS, logarithmic if LOG-P."
+  (apply (if log-p #'logarithmic-axis #'linear-axis) values from to options))
 
 ;;; The axis upward. Its ends are marks.
 
@@ -129,6 +134,6 @@ pixels wide."
   (multiple-value-bind (low high) (limits (append range values))
     (let* ((low (if (<= 0 low (/ high 2)) 0 low))
            (step (round-step (- high low) 6))
-           (low (* step (floor low step)))
-           (high (* step (ceiling high step))))
+           (low (multiple-below step low))
+           (high (multiple-above step high)))
       (make-axis :low low :high high :marks (step-marks step low high percent)))))

@@ -2,14 +2,15 @@
 
 (in-package :ars-magna.plots)
 
-;;; Inside, all numbers are rationals: nothing overflows, whatever their size, and the same data make
-;;; the same picture to the last byte.
+;;; Inside, all numbers are rationals: nothing overflows, whatever their size, and the same data
+;;; make the same picture to the last byte.
 
 (defun exact (value)
-  "Return VALUE, a finite number, as a rational; NIL if it is NIL. Signals WRONG-ARGUMENT."
+  "Return VALUE, a finite number, as a rational, 0.1 as 1/10; NIL if it is NIL. Signals
+WRONG-ARGUMENT."
   (check-argument chart value (or (null value) (finite-p value))
                   "a number that is not infinite, or NIL if there is none")
-  (and value (rational value)))
+  (and value (rationalize value)))
 
 (defun power-of-ten (value)
   "Return the greatest integer N for which 10^N is at most the size of VALUE, not 0."
@@ -51,8 +52,8 @@
                 power))))
 
 (defun figure-text (value &key (percent nil) (digits 4))
-  "Return VALUE, a number, as text of so many significant DIGITS, as per cent if PERCENT: 0.3, 12.5 %,
-1.5e9. NIL is a dash. Signals WRONG-ARGUMENT."
+  "Return VALUE, a number, as text of so many significant DIGITS, as per cent if PERCENT: 0.3,
+12.5 %, 1.5e9. NIL is a dash. Signals WRONG-ARGUMENT."
   (let ((value (exact value)))
     (cond ((null value) "-")
           (percent (format nil "~A %" (plain-text (* 100 value) digits)))
@@ -68,9 +69,21 @@
                         for step = (* factor (expt 10 power))
                         when (<= least step) return step))))
 
+(defconstant +slack+ 1/1000000000
+  "By how much of a step a float may miss a round number that is meant.")
+
+(defun multiple-below (step value)
+  "Return the last multiple of STEP up to VALUE."
+  (* step (floor (+ (/ value step) +slack+))))
+
+(defun multiple-above (step value)
+  "Return the first multiple of STEP from VALUE on."
+  (* step (ceiling (- (/ value step) +slack+))))
+
 (defun multiples (step low high)
   "Return the multiples of STEP from LOW to HIGH."
-  (loop for value from (* step (ceiling low step)) to high by step collect value))
+  (loop for value from (multiple-above step low) to (multiple-below step high) by step
+        collect value))
 
 (defun step-text (value step largest percent)
   "Return the text of VALUE, one of some STEP apart up to LARGEST; each has as many decimals."

@@ -58,7 +58,9 @@
 
 (defun draw-series (canvas all plane words percent connect)
   "Draw ALL series: lines, above them intervals, above them markers."
-  (let ((shifts (sideways all (mapcar (lambda (x) (place x (plane-across plane))) (all-x all)))))
+  (let ((shifts (sideways all
+                          (mapcar (lambda (x) (place x (plane-across plane))) (all-x all))
+                          (axis-from (plane-across plane)))))
     (flet ((each (function)
              (dolist (series all)
                (funcall function series (funcall shifts (series-index series))))))
@@ -66,6 +68,19 @@
         (each (lambda (series shift) (draw-connections canvas series plane shift))))
       (each (lambda (series shift) (draw-intervals canvas series plane shift)))
       (each (lambda (series shift) (draw-spots canvas series plane shift words percent))))))
+
+(defun series-entry (series)
+  (legend-name (series-name series) (some #'spot-y (series-spots series))))
+
+(defun plan-line-chart (all words values log-x upward options)
+  "Return the plane for ALL series, whose X are VALUES, in the order of WORDS if there are any."
+  (apply #'plan-plane
+         (lambda (from to)
+           (if words
+               (word-axis words from to)
+               (axis-across values from to log-x
+                            :inset (room-beside all values from to log-x))))
+         upward (mapcar #'series-entry all) options))
 
 (defun line-chart (series &rest options &key percent range log-x (connect nil connect-given-p)
                                           title subtitle x-label y-label width height)
@@ -77,23 +92,17 @@ join the points, by default if X are numbers. TITLE, SUBTITLE, X-LABEL and Y-LAB
 NIL; WIDTH and HEIGHT are pixels, by default 720 and 440, and grow where the text needs it. A series
 without a name, NIL, does without a legend. Signals WRONG-ARGUMENT."
   (declare (ignore title subtitle x-label y-label width height))
-  (multiple-value-bind (all words-p) (checked-series series)
-    (let* ((words (and words-p (all-x all)))
-           (all (if words-p (numbered all words) all))
+  (check-argument line-chart range (typep range '(or null (cons real (cons real null))))
+                  "a list of two numbers, or NIL")
+  (multiple-value-bind (given words-p) (checked-series series)
+    (let* ((values (all-x given))
+           (words (and words-p values))
+           (all (if words-p (numbered given words) given))
            (connect (if connect-given-p connect (not words-p)))
            (upward (axis-upward (all-y all) percent
                                 (mapcar #'exact (or range (and percent '(0 1))))))
-           (plane (apply #'plan-plane
-                         (lambda (from to)
-                           (if words-p
-                               (word-axis words from to)
-                               (axis-across (all-x all) from to log-x)))
-                         upward (mapcar #'series-name all)
-                         :connect connect options)))
-      (page-svg (lambda (canvas)
-                  (draw-plane canvas plane)
-                  (if (all-y all)
-                      (draw-series canvas all plane words percent connect)
-                      (draw-no-data canvas (plane-left plane) (plane-top plane)
-                                    (plane-right plane) (plane-bottom plane))))
-                (plane-width plane) (plane-height plane)))))
+           (plane (plan-line-chart all words values log-x upward
+                                   (list* :connect connect options))))
+      (plane-svg plane (all-y all)
+                 (lambda (canvas)
+                   (draw-series canvas all plane words percent connect))))))

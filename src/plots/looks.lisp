@@ -11,8 +11,8 @@
 (defconstant +line-ink+ #x404040 "The colour of axes.")
 (defconstant +grid-ink+ #xDEDEDE "The colour of the lines behind the data.")
 
-(defparameter *colors* #(#x0072B2 #xD55E00 #x009E73 #xCC79A7 #x000000 #xE69F00 #x56B4E9)
-  "Blue, vermilion, green, purple, black, orange, sky blue.")
+(defparameter *colors* #(#x0072B2 #xD55E00 #x009E73 #x000000 #xE69F00 #x56B4E9 #xCC79A7)
+  "Blue, vermilion, green, black, orange, sky blue, purple.")
 
 (defparameter *dashes* #(nil (7 3) (2 3) (9 3 2 3) (4 2) (12 3 2 3 2 3))
   "Lengths of dashes and gaps, in pixels; NIL is a solid line.")

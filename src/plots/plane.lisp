@@ -1,42 +1,15 @@
-;;;; plane.lisp -- a page with title, two axes and a legend: where all goes, so that nothing overlaps.
+;;;; plane.lisp -- a page with title, two axes and a legend, laid out so that nothing overlaps.
 
 (in-package :ars-magna.plots)
 
-(defconstant +margin+ 16 "How much is left free around a chart, in pixels.")
 (defconstant +least-height+ 170 "How high the place for the data is at least, in pixels.")
 (defconstant +least-width+ 200 "How wide the place for the data is at least, in pixels.")
-
-;;; Title and subtitle.
-
-(defstruct (heading (:constructor make-heading (title subtitle)) (:copier nil))
-  "Lines of text above a chart."
-  (title '() :type list)
-  (subtitle '() :type list))
-
-(defun plan-heading (title subtitle width)
-  "Return the heading for a page WIDTH pixels wide."
-  (let ((room (- width (* 2 +margin+))))
-    (make-heading (wrapped title room :size 15 :bold-p t) (wrapped subtitle room))))
-
-(defun heading-bottom (heading)
-  (+ +margin+ (* 19 (length (heading-title heading))) (lines-height (heading-subtitle heading))))
-
-(defun draw-heading (canvas heading)
-  (let ((y (write-lines canvas +margin+ (+ +margin+ 13) (heading-title heading)
-                        :size 15 :step 19 :bold-p t)))
-    (write-lines canvas +margin+ (- y 2) (heading-subtitle heading) :color +faint-ink+)))
-
-;;; The plane.
 
 (defstruct (plane (:copier nil))
   "A page. What is across and upward are axes, LEFT to BOTTOM the box that they enclose, all in
 pixels. BELOW is where what a chart adds below begins."
   heading across upward legend x-lines y-lines
   (left 0) (right 0) (top 0) (bottom 0) (below 0) (width 0) (height 0))
-
-(defun check-size (width height)
-  (check-argument chart width (whole-p width 300 10000) "an integer from 300 to 10000, in pixels")
-  (check-argument chart height (whole-p height 200 10000) "an integer from 200 to 10000, in pixels"))
 
 (defun plan-plane (make-across upward names
                    &key title subtitle x-label y-label (width 720) (height 440) (connect t)
@@ -49,7 +22,7 @@ LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT w
   (let* ((heading (plan-heading title subtitle width))
          (legend (plan-legend names (* 4/10 width) connect))
          (y-lines (wrapped y-label (- width (* 2 +margin+))))
-         (top (+ (heading-bottom heading) 10 (lines-height y-lines) (if y-lines 8 0)))
+         (top (+ (heading-bottom heading) 14 (lines-height y-lines) (if y-lines 8 0)))
          (left (max least-left (+ +margin+ (marks-width upward) 8)))
          (right (- width +margin+ (max 16 (legend-width legend))))
          (across (funcall make-across left (max right (+ left +least-width+))))
@@ -99,10 +72,13 @@ LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT w
                  (plane-x-lines plane) :anchor :middle)
     (draw-legend canvas (plane-legend plane) right top)))
 
-(defun page-svg (draw width height)
-  "Return what the function DRAW draws on a canvas as an SVG document, as a string."
-  (with-output-to-string (stream)
-    (with-svg (canvas stream :font +text-font+)
-      (with-canvas (canvas)
-        (funcall draw canvas)
-        (values width height)))))
+(defun plane-svg (plane data-p draw-data)
+  "Return PLANE as an SVG document, with what DRAW-DATA draws on the canvas it is given, or a word
+that there is nothing unless DATA-P."
+  (page-svg (lambda (canvas)
+              (draw-plane canvas plane)
+              (if data-p
+                  (funcall draw-data canvas)
+                  (draw-no-data canvas (plane-left plane) (plane-top plane)
+                                (plane-right plane) (plane-bottom plane))))
+            (plane-width plane) (plane-height plane)))

@@ -3,7 +3,7 @@
 (in-package :ars-magna.plots)
 
 (defstruct (spot (:constructor make-spot (x y low high)) (:copier nil))
-  "A point of a series: Y at X, between LOW and HIGH. All but X may be NIL. X is a number or a text."
+  "A point of a series: Y at X, between LOW and HIGH. X is a number or a text; all else may be NIL."
   (x nil :read-only t)
   (y nil :read-only t)
   (low nil :read-only t)
@@ -64,9 +64,31 @@
           minimize (- next place) into gap
           finally (return (if (rest sorted) gap 60)))))
 
-(defun sideways (series places)
-  "Return a function from an index of SERIES to how many pixels that stands to the right of PLACES."
-  (let* ((count (length series))
-         (step (min 8 (/ (* 6/10 (least-gap places)) (max 1 count))))
-         (middle (/ (1- count) 2)))
+(defconstant +most-sideways+ 8 "How far series stand beside each other at most, in pixels.")
+
+(defun step-sideways (count gap)
+  "Return how far COUNT series stand beside each other, for places that are GAP pixels apart."
+  (min +most-sideways+ (/ (* 6/10 gap) (max 1 count))))
+
+(defun room-beside (series values from to log-p)
+  "Return how far VALUES should be from the ends of an axis between the pixels FROM and TO, so that
+all SERIES find room beside them."
+  (let* ((spots (mapcar (lambda (value) (spot-of value log-p)) values))
+         (span (if spots (- (reduce #'max spots) (reduce #'min spots)) 0))
+         (gap (if (zerop span) 60 (* (- to from) (/ (least-gap spots) span)))))
+    (+ 14 (* 1/2 (length series) (step-sideways (length series) gap)))))
+
+(defun sideways (series places from)
+  "Return a function from an index of SERIES to how many pixels that stands to the right of PLACES,
+on an axis that begins at FROM."
+  (let* ((middle (/ (1- (length series)) 2))
+         (room (if places (- (reduce #'min places) from 7) 0))
+         (step (min (step-sideways (length series) (least-gap places))
+                    (/ room (max 1 middle)))))
     (lambda (index) (* step (- index middle)))))
+
+(defun legend-name (name known-p)
+  "Return what the legend says of what is called NAME, if something of it is KNOWN-P or not."
+  (if (or known-p (string= "" name))
+      name
+      (concatenate 'string name " (no data)")))
