@@ -73,11 +73,11 @@
                  (:file "replaced-maps") (:file "journal-text") (:file "replay")))
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "gcontext") (:file "canvas")
-                 (:file "drawing") (:file "svg") (:file "package") (:file "text-map")
-                 (:file "history") (:file "snapshot") (:file "subjects") (:file "contents")
-                 (:file "terrain") (:file "place-marks") (:file "world-display")
-                 (:file "details") (:file "displays") (:file "picture") (:file "animation")
-                 (:file "opening")))
+                 (:file "drawing") (:file "text") (:file "svg") (:file "package")
+                 (:file "text-map") (:file "history") (:file "snapshot") (:file "subjects")
+                 (:file "contents") (:file "terrain") (:file "place-marks")
+                 (:file "world-display") (:file "details") (:file "displays")
+                 (:file "picture") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
     :components ((:file "package") (:file "home") (:file "fluent") (:file "network")
                  (:file "known") (:file "propagation") (:file "views") (:file "repair")
@@ -121,6 +121,12 @@
    (:module "rpl/pictures" :serial t
     :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")
                  (:file "saving")))
+   (:module "src/plots" :serial t
+    :components ((:file "package") (:file "figures") (:file "axis") (:file "looks")
+                 (:file "words") (:file "page") (:file "series") (:file "legend")
+                 (:file "labels") (:file "plane") (:file "line-chart") (:file "curves")
+                 (:file "survival-chart") (:file "rows") (:file "difference-chart")
+                 (:file "measure-chart") (:file "saving")))
    (:module "src/experiment" :serial t
     :components ((:file "package") (:file "values") (:file "csv") (:file "condition")
                  (:file "experiment") (:file "clauses") (:file "defexperiment")
@@ -209,7 +215,8 @@
                  (:file "rpl-left") (:file "rpl-robot-live") (:file "rpl-gone")
                  (:file "rpl-text") (:file "rpl-text-places") (:file "rpl-examples-robot")
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
-                 (:file "display") (:file "display-files") (:file "clim") (:file "cli")
+                 (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
+                 (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
