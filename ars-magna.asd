@@ -133,8 +133,10 @@
                  (:file "outcome") (:file "trial") (:file "version") (:file "reaching")
                  (:file "fingerprint") (:file "row") (:file "lines")
                  (:file "directory") (:file "workers") (:file "progress") (:file "rounds")
-                 (:file "temporary") (:file "stopping") (:file "results") (:file "description")
-                 (:file "running") (:file "merging")))
+                 (:file "stopping") (:file "results") (:file "description")
+                 (:file "running") (:file "merging") (:file "differences") (:file "contrasts")
+                 (:file "verdicts") (:file "comparing") (:file "comparing-versions")
+                 (:file "comparison-picture")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.

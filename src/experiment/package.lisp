@@ -3,7 +3,8 @@
 (defpackage :ars-magna.experiment
   (:documentation "Controlled experiments: conditions, trials, tables that can be repeated and gone
 on with, on as many cores and machines as there are. Names cl-csv and lparallel.")
-  (:use :cl :ars-magna.base :ars-magna.run)
+  (:use :cl :ars-magna.base :ars-magna.statistics :ars-magna.run)
+  (:import-from :ars-magna.plots #:difference-chart #:save-chart)
   (:import-from :ars-magna.time #:current-simulation)
   (:import-from :ars-magna.robot #:find-blueprint #:all-blueprints #:blueprint-name #:blueprint-map)
   (:import-from :ars-magna.rpl.tasks
@@ -20,5 +21,13 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:read-results #:sample-p #:sample-experiment #:sample-condition #:sample-texts
            #:sample-trials #:sample-outcomes #:sample-reasons #:sample-ticks #:sample-errors
            #:sample-measure)
+  ;; differences, contrasts, verdicts, comparing, comparing-versions, comparison-picture
+  (:export #:paired-difference-p #:paired-measure #:paired-trials #:paired-first #:paired-second
+           #:paired-estimate #:paired-low #:paired-high #:paired-p #:paired-adjusted-p
+           #:paired-table
+           #:contrast-p #:contrast-first #:contrast-second #:contrast-where #:contrast-trials
+           #:contrast-same #:contrast-differences
+           #:comparison-p #:comparison-contrasts #:comparison-verdicts #:print-comparison
+           #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture)
   ;; lines, running, merging, workers
   (:export #:damaged-table #:run-experiment #:merge-results #:processors))
