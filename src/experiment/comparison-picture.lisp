@@ -34,7 +34,7 @@
                                           (picture-row contrast measure comparison))
                                         (all-contrasts comparison)))
                     :title (comparison-title comparison)
-                    :subtitle "Differences with 95 % intervals; p after Holm's correction"
+                    :subtitle "First less second, with 95 % intervals; p after Holm's correction"
                     :x-label (format nil "difference in ~A~:[~;, in points of 100~]"
                                      (string-downcase measure)
                                      (rate-compared-p measure comparison))))
