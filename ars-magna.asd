@@ -19,6 +19,7 @@
                  (:file "variables") (:file "definitions") (:file "user-macros")
                  (:file "registry") (:file "own-definitions") (:file "messages")
                  (:file "askers") (:file "user-code") (:file "parameters") (:file "physics")
+                 (:file "parameters-of-runs")
                  (:file "kinds") (:file "digesting") (:file "copying") (:file "given")
                  (:file "argument-types") (:file "operators")))
    (:module "src/geometry" :serial t
@@ -154,7 +155,7 @@
   ((:module "worlds" :serial t
     :components ((:file "package") (:file "prototypes") (:file "kickers")
                  (:file "manipulations") (:file "watson") (:file "office") (:file "hall")
-                 (:file "tiny") (:file "wayfinding") (:file "plans-reckoning")
+                 (:file "tiny") (:file "charts") (:file "wayfinding") (:file "plans-reckoning")
                  (:file "plans-moving") (:file "plans-looking") (:file "plans-handling")
                  (:file "plans-errands") (:file "errand")))))
 
@@ -248,7 +249,7 @@
                  (:file "manual-c") (:file "manual-c-plans") (:file "manual-d")
                  (:file "manual-e") (:file "hostile-numbers") (:file "ownership")
                  (:file "users-hands") (:file "src-readme") (:file "rpl-readme")
-                 (:file "tests-readme") (:file "architecture") (:file "isolation")
+                 (:file "tests-readme") (:file "architecture") (:file "experiments") (:file "experiments-tables") (:file "isolation")
                  (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))

@@ -15,8 +15,8 @@ and programs for the robots there. Written as users write theirs.")
   (:export #:lock #:unlock #:switch-on #:switch-off)
   ;; worlds and their robots
   (:export #:watson #:robbie #:office #:marvin #:gofer #:hall #:porter #:tiny #:dot)
-  ;; wayfinding
-  (:export #:chart #:make-chart #:find-way #:next-step)
+  ;; charts, wayfinding
+  (:export #:chart #:make-chart #:chart-of #:find-way #:next-step)
   ;; plans: reckoning
   (:export #:reckoning #:here #:begin-reckoning #:reckon #:distance-left #:angle-towards
            #:point-ahead)

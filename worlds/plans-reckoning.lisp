@@ -25,7 +25,7 @@
 (defun begin-reckoning (start)
   "Return a reckoning of the plans' robot, which is at START, a list (x y heading)."
   (destructuring-bind (x y heading) start
-    (make-reckoning (make-chart (ars-magna.world:world-map (robot-world (rpl-robot))))
+    (make-reckoning (chart-of (ars-magna.world:world-map (robot-world (rpl-robot))))
                     (rpl-new-odometer 'reckoning)
                     x y heading)))
 

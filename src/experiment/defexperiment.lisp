@@ -33,8 +33,7 @@ none."
   (let ((variables (varied-variables clauses)))
     (and forms
          `(lambda ,variables
-            (declare (ignorable ,@(remove-if (lambda (name) (special-variable-p name nil))
-                                             variables))
+            (declare (ignorable ,@(remove-if #'special-p variables))
                      (special ,@(remove-if-not #'variable-name-p (robot-names clauses))))
             ,@forms))))
 

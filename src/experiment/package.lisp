@@ -12,6 +12,7 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
   (:import-from :ars-magna.rpl-robot #:*plan-limit*)
+  (:import-from :ars-magna.statistics #:sequential-level #:wilson-interval)
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
