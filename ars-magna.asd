@@ -184,6 +184,15 @@
                  (:file "world-pane") (:file "transcript") (:file "prompt") (:file "window")
                  (:file "commands") (:file "opening")))))
 
+(defsystem "ars-magna/fiveam"
+  :description "Checks for regression suites: plans that are held to their rates of success."
+  :depends-on ("ars-magna" "fiveam")
+  :serial t
+  :components
+  ((:module "src/fiveam" :serial t
+    :components ((:file "package") (:file "deciding") (:file "trying") (:file "repeating")
+                 (:file "telling") (:file "checking")))))
+
 ;;; Loaded by tests/clim.lisp, after the package of the tests, where McCLIM is found.
 (defsystem "ars-magna/clim-tests"
   :description "What the window claims."
@@ -192,7 +201,7 @@
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
-  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/cli" "fiveam")
+  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/cli" "ars-magna/fiveam" "fiveam")
   :serial t
   :components
   ((:module "tests" :serial t

@@ -14,7 +14,7 @@ layers' symbols are qualified by short local nicknames: geo:add, nisp:matchq, ro
                                   (:fluents "RPL.FLUENTS") (:tasks "RPL.TASKS")
                                   (:language "RPL.LANGUAGE") (:constructs "RPL.CONSTRUCTS")
                                   (:display "DISPLAY")
-                                  (:experiment "EXPERIMENT") (:cli "CLI"))
+                                  (:experiment "EXPERIMENT") (:rates "FIVEAM") (:cli "CLI"))
         for package = (find-package (concatenate 'string "ARS-MAGNA." layer))
         when package
           do (sb-ext:add-package-local-nickname nickname package :ars-magna.tests)))

@@ -12,11 +12,15 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
   (:import-from :ars-magna.rpl-robot #:*plan-limit*)
-  (:import-from :ars-magna.statistics #:sequential-level #:wilson-interval)
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
-           #:find-condition)
+           #:experiment-from #:experiment-package #:find-condition
+           #:condition-name #:condition-parameters)
+  ;; trial, workers, description, values
+  (:export #:run-trial #:call-in-silence #:call-by-workers #:form-text #:parameter-called
+           #:result-trial #:result-seed #:result-outcome #:result-reason #:result-ticks
+           #:result-digest #:result-error)
   ;; results
   (:export #:results-p #:results-samples #:results-directory #:results-factors #:results-measures
            #:read-results #:sample-p #:sample-experiment #:sample-condition #:sample-texts
