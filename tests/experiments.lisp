@@ -181,6 +181,15 @@
     (:success (evenp number)))
   (is (equal '("failure" "success" "limit" "success") (mapcar #'first (outcomes)))))
 
+(test outcomes.can-look-at-what-run-returned
+  (define-for-test (:robots ars-worlds:dot) (:limit 10) (:vary (number 1 2))
+    (:run (if (= number 1) (values 3 'why) (loop (run:run-ticks 1))))
+    (:success (eql 3 (first (experiment:trial-values))))
+    (:measure (count (length (experiment:trial-values)))))
+  (let ((results (experiment:run-experiment 'question :trials 1 :workers 1 :stream nil)))
+    (is (equal '("success" "limit") (mapcar #'third (rows-of results))))
+    (is (equal '(2 0) (measured results 'count)))))
+
 (test limit.is-kept-whatever-runs
   (define-for-test (:robots ars-worlds:dot) (:limit 25) (:vary (number 1 2 3 4 5))
     (:run (ecase number

@@ -8,7 +8,8 @@ layers' symbols are qualified by short local nicknames: geo:add, nisp:matchq, ro
 (in-package :ars-magna.tests)
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
-  (loop for (nickname layer) in '((:base "BASE") (:geo "GEOMETRY") (:nisp "NISP")
+  (loop for (nickname layer) in '((:base "BASE") (:geo "GEOMETRY") (:stats "STATISTICS")
+                                  (:nisp "NISP")
                                   (:world "WORLD") (:time "TIME") (:robot "ROBOT")
                                   (:command "COMMAND") (:run "RUN") (:rpl "RPL")
                                   (:fluents "RPL.FLUENTS") (:tasks "RPL.TASKS")
@@ -38,6 +39,15 @@ layers' symbols are qualified by short local nicknames: geo:add, nisp:matchq, ro
 (defun failure-reason (result)
   "Return what RESULT, a failed check's, says."
   (fiveam::reason result))
+
+(defun results-of (function)
+  "Return what came of the checks that FUNCTION makes, which do not count for the test that calls
+this."
+  (fiveam::return-result-list function))
+
+(defun passed-p (result)
+  "True if RESULT is that of a check that passed."
+  (fiveam::test-passed-p result))
 
 (defun test-claim (test)
   "Return what TEST, a name, says in its documentation."

@@ -129,3 +129,54 @@
                                                   texts))))
     (is (search (remove #\Space *long*)
                 (remove #\Space (apply #'concatenate 'string texts))))))
+
+;;; The canvas below.
+
+(test canvas.text-has-size-anchor-and-direction
+  (flet ((text (&rest options)
+           (first (drawing (canvas)
+                    (apply #'canvas:draw-words canvas canvas:draw-gcontext* 10 20 "a<b" options)))))
+    (is (string= (format nil "<text x=\"10\" y=\"20\" font-size=\"12\" text-anchor=\"start\" ~
+                              fill=\"#000000\">a&lt;b</text>")
+                 (text)))
+    (is (search "font-size=\"15\" text-anchor=\"end\" font-weight=\"bold\""
+                (text :size 15 :anchor :end :bold-p t)))
+    (is (search "transform=\"rotate(-90,10,20)\"" (text :upward-p t))))
+  (signals base:wrong-argument
+    (drawing (canvas) (canvas:draw-words canvas canvas:draw-gcontext* 0 0 "a" :anchor :left))))
+
+(defclass plain-canvas (canvas:canvas) ((strings :initform '() :accessor canvas-strings))
+  (:documentation "A canvas that has one font, and hides what is below."))
+
+(defmethod canvas:paint-string ((canvas plain-canvas) gcontext x y string)
+  (declare (ignore gcontext))
+  (push (list x y string) (canvas-strings canvas)))
+
+(test canvas.with-one-font-writes-in-that
+  (let ((canvas (make-instance 'plain-canvas)))
+    (canvas:with-canvas (canvas)
+      (canvas:with-opacity (canvas 1/2)
+        (loop for anchor in '(:start :middle :end)
+              do (canvas:draw-words canvas canvas:draw-gcontext* 100 20 "four"
+                                    :anchor anchor :size 20 :upward-p t))))
+    (is (equal '((100 20 "four") (86 20 "four") (72 20 "four"))
+               (reverse (canvas-strings canvas))))))
+
+(test canvas.dashes-are-as-long-as-the-context-says
+  (flet ((line (&rest options)
+           (first (drawing (canvas)
+                    (canvas:with-gcontext (canvas:draw-gcontext* :line-style :dash
+                                                                 :dashes (first options))
+                      (canvas:draw-line canvas canvas:draw-gcontext* 0 0 9 0))))))
+    (is (search "stroke-dasharray=\"4\"" (line)))
+    (is (search "stroke-dasharray=\"9,3,2,3\"" (line '(9 3 2 3))))
+    (is (search "stroke-dasharray=\"7\"" (line 7)))
+    (dolist (dashes '(0 (3 0) (:long) 1.5))
+      (signals base:wrong-argument (line dashes)))))
+
+(test canvas.opacity-is-for-what-is-drawn-within
+  (is (equal '("<g opacity=\"0.16\">" "</g>")
+             (remove-if (lambda (line) (search "<rect" line))
+                        (drawing (canvas)
+                          (canvas:with-opacity (canvas 16/100)
+                            (canvas:draw-rectangle canvas canvas:draw-gcontext* 0 0 1 1 t)))))))
