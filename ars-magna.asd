@@ -138,7 +138,8 @@
                  (:file "running") (:file "merging") (:file "differences") (:file "contrasts")
                  (:file "verdicts") (:file "comparing") (:file "comparing-versions")
                  (:file "comparison-picture") (:file "estimates") (:file "summary")
-                 (:file "text-table") (:file "remarks") (:file "report")))
+                 (:file "text-table") (:file "remarks") (:file "report") (:file "panels")
+                 (:file "result-charts") (:file "pictures")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.

@@ -43,4 +43,6 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:estimate-low #:estimate-high #:estimate-left-out #:estimate-texts
            #:summary-p #:summary-condition #:summary-texts #:summary-trials #:summary-failures
            #:summary-limits #:summary-errors #:summary-confidence #:summary-success #:summary-ticks
-           #:summary-measures #:summary-reasons #:summarize-results #:print-results))
+           #:summary-measures #:summary-reasons #:summarize-results #:print-results)
+  ;; pictures
+  (:export #:save-result-pictures))
