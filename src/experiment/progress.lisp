@@ -11,7 +11,7 @@
   (total 0 :type integer)
   (done 0 :type atomic-count)
   (begun (moment) :read-only t)
-  (told 0 :type integer))
+  (told (moment) :type integer))
 
 (defun duration-text (seconds)
   "Return SECONDS in words."
