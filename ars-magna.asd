@@ -127,7 +127,7 @@
                  (:file "words") (:file "page") (:file "series") (:file "legend")
                  (:file "labels") (:file "plane") (:file "line-chart") (:file "curves")
                  (:file "survival-chart") (:file "rows") (:file "difference-chart")
-                 (:file "measure-chart") (:file "saving")))
+                 (:file "measure-chart") (:file "drawing-chart") (:file "saving")))
    (:module "src/experiment" :serial t
     :components ((:file "package") (:file "values") (:file "csv") (:file "condition")
                  (:file "experiment") (:file "clauses") (:file "defexperiment")
@@ -139,7 +139,8 @@
                  (:file "verdicts") (:file "comparing") (:file "comparing-versions")
                  (:file "comparison-picture") (:file "estimates") (:file "summary")
                  (:file "text-table") (:file "remarks") (:file "report") (:file "panels")
-                 (:file "result-charts") (:file "pictures")))
+                 (:file "result-charts") (:file "pictures") (:file "ways")
+                 (:file "ways-picture")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.

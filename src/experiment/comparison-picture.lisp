@@ -30,8 +30,8 @@
 
 (defun comparison-chart (comparison measure &key (title (comparison-title comparison))
                                                (contrasts (all-contrasts comparison)))
-  "Return the chart, below TITLE, of what differs in MEASURE in COMPARISON, or those CONTRASTS of it,
-an SVG document."
+  "Return the chart, below TITLE, of what differs in MEASURE in COMPARISON, or in those CONTRASTS of
+it, an SVG document."
   (difference-chart (remove nil (mapcar (lambda (contrast)
                                           (picture-row contrast measure comparison))
                                         contrasts))

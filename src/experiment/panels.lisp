@@ -2,14 +2,14 @@
 
 (in-package :ars-magna.experiment)
 
-;;; The first factor whose values are numbers runs along a picture; the others tell series apart, and
-;;; where that makes too many of them, pictures. Factors are counted, as in SAMPLE-TEXTS.
+;;; The first factor whose values are numbers runs along a picture; the others tell series apart,
+;;; and where that makes too many of them, pictures. Factors go by their places in SAMPLE-TEXTS.
 
 (defconstant +most-series+ 6 "How many series there are in a picture at most.")
 
 (defstruct (panel (:constructor make-panel (where series)) (:copier nil))
-  "A picture's worth of conditions. WHERE says what these have in common, or is NIL; SERIES are lists
-(name sample...), with NIL as the name of a single one."
+  "A picture's worth of conditions. WHERE says what these have in common, or is NIL; SERIES are
+lists (name sample...), with NIL as the name of a single one."
   (where nil :type (or null string) :read-only t)
   (series '() :type list :read-only t))
 

@@ -9,7 +9,7 @@
 
 ;;; Files are called by what is in them.
 
-(defun plain-name (text)
+(defun file-word (text)
   "Return TEXT as the part of a file's name: letters, digits, points and single dashes."
   (let ((text (substitute-if #\- (lambda (char)
                                    (not (or (and (< (char-code char) 128) (alphanumericp char))
@@ -23,7 +23,7 @@
 
 (defun new-name (picture names)
   "Return the name for PICTURE, which is none of NAMES."
-  (let ((name (plain-name (format nil "~A~@[-~A~]" (picture-name picture)
+  (let ((name (file-word (format nil "~A~@[-~A~]" (picture-name picture)
                                   (picture-where picture)))))
     (if (member name names :test #'string=)
         (loop for number from 2

@@ -20,7 +20,7 @@
 
 (defun intervals-words (kind summaries)
   "Return what the intervals of SUMMARIES are, of a KIND of estimates, in a sentence."
-  (format nil "~A intervals~:[ of 95 %~;, at the confidence of the look at which trials ended~]; ~A."
+  (format nil "~A intervals~:[ of 95 %~;, with the confidence of the look that was the last~]; ~A."
           (ecase kind (:rate "Wilson's") (:mean "Student's") (:median "Rank"))
           (some (lambda (summary) (/= .95d0 (summary-confidence summary))) summaries)
           (trials-text summaries)))
@@ -134,28 +134,34 @@ estimate for a sample."
                                      :initial-value 0))))
     (max last (min limit (ceiling (* 21/20 last))))))
 
-(defun curve-of (name sample horizon confidence)
-  "Return the curve of SAMPLE for SURVIVAL-CHART, until the tick HORIZON."
+(defun curve-of (name sample horizon confidence band-p)
+  "Return the curve of SAMPLE for SURVIVAL-CHART, until the tick HORIZON, with bands if BAND-P."
   (let* ((events (cl:map 'vector #'success-p (sample-outcomes sample)))
          (times (cl:map 'vector (lambda (ticks done-p) (if done-p ticks horizon))
                         (sample-ticks sample) events)))
     (list name :times times
                :steps (loop for (time nil nil survival low high)
                               in (survival-curve times events :confidence confidence)
-                            collect (list time survival low high)))))
+                            collect (list time survival (and band-p low) (and band-p high))))))
+
+(defconstant +most-bands+ 4 "How many curves have bands at most; more would hide each other.")
+
+(defun survival-words (band-p limit)
+  (format nil "Kaplan and Meier's estimate~:[~;, with bands of 95 %~]. What failed, broke off or ~
+               came to the limit of ~D ticks is never done."
+          band-p limit))
 
 (defun survival-picture (results panel horizon)
-  (make-picture
-   "survival" (panel-where panel)
-   (survival-chart (loop for (name sample) in (panel-series panel)
-                         collect (curve-of name sample horizon (confidence-for results sample)))
-                   :title (title-of results)
-                   :subtitle (subtitle panel
-                                       (format nil "Trials not yet done, with bands of 95 % ~
-                                                    (Kaplan and Meier). What failed, broke off or ~
-                                                    came to the limit of ~D ticks is never done."
-                                               (limit-of results)))
-                   :x-label "ticks" :y-label "not yet done" :risk-label "not yet done")))
+  (let ((band-p (<= (length (panel-series panel)) +most-bands+)))
+    (make-picture
+     "survival" (panel-where panel)
+     (survival-chart (loop for (name sample) in (panel-series panel)
+                           collect (curve-of name sample horizon (confidence-for results sample)
+                                             band-p))
+                     :title (title-of results)
+                     :subtitle (subtitle panel (survival-words band-p (limit-of results)))
+                     :x-label "ticks" :y-label "trials not yet done"
+                     :risk-label "trials not yet done"))))
 
 (defun survival-pictures (results summaries)
   (let ((samples (results-samples results)))
@@ -167,8 +173,8 @@ estimate for a sample."
 ;;; Differences.
 
 (defun pairs-by (results place)
-  "Return lists of two samples of RESULTS that differ in the factor PLACE, all else equal if that can
-be, the second with its first value."
+  "Return lists of two samples of RESULTS that differ in the factor PLACE, all else equal if that
+can be, the second with its first value."
   (or (level-pairs results place (first (levels results place)))
       (loop with first = (first (results-samples results))
             for other in (rest (results-samples results))
