@@ -163,6 +163,12 @@
                  (:file "plans-errands") (:file "trials") (:file "plans-searching")
                  (:file "errand") (:file "experiments")))))
 
+;;; Loaded by worlds/figures.
+(defsystem "ars-magna/figures"
+  :description "Tables and pictures of the shipped experiments, for worlds/README.md."
+  :depends-on ("ars-magna/worlds")
+  :components ((:module "worlds" :components ((:file "figures")))))
+
 (defsystem "ars-magna/cli"
   :description "The prompt Robot>."
   :depends-on ("ars-magna" "ars-magna/worlds" "trivial-gray-streams")
@@ -205,7 +211,8 @@
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
-  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/cli" "ars-magna/fiveam" "fiveam")
+  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/figures" "ars-magna/cli"
+               "ars-magna/fiveam" "fiveam")
   :serial t
   :components
   ((:module "tests" :serial t

@@ -60,8 +60,8 @@
                    (* scale (map-width map)) (* scale (map-height map))
                    :title (or (question-of (experiment-name experiment))
                               (string-downcase (experiment-name experiment)))
-                   :subtitle (format nil "~A. The ways of all trials, with a marker at the end of each; ~
-                                      robots and things are where they are at the start."
+                   :subtitle (format nil "~A. The ways of all trials, with a marker at the end of ~
+                                          each. Robots and things are where a trial begins."
                                      (condition-name condition))
                    :entries (ways-entries ways))))
 

@@ -32,7 +32,8 @@
 (defun drawing-chart (draw width height &key title subtitle entries)
   "Return a drawing WIDTH and HEIGHT pixels large as an SVG document, with TITLE and SUBTITLE above,
 strings or NIL, and ENTRIES below, lists (index text) that say what lines mean that end in a marker
-(see LOOK-COLOR and DRAW-MARKER). The function DRAW is called with a canvas whose origin is the drawing's upper left corner."
+(see LOOK-COLOR and DRAW-MARKER). The function DRAW is called with a canvas whose origin is the
+upper left corner of the drawing."
   (let* ((page-width (max width 480))
          (heading (plan-heading title subtitle (+ page-width (* 2 +margin+))))
          (rows (entry-rows entries page-width))
