@@ -155,6 +155,16 @@
     (signals base:unknown-name (experiment:compare-levels results 'plans :stream nil))
     (signals base:misuse (experiment:compare-levels results 'noise :stream nil))))
 
+(test read-results.puts-in-order-what-a-run-under-way-has-written
+  (let ((rows (patrol-and-spiral)))
+    (flet ((verdicts (rows)
+             (with-made-up (results rows)
+               (is (= 2 (length (experiment:results-samples results))))
+               (experiment:comparison-verdicts
+                (experiment:compare-conditions results 'patrol 'spiral :stream nil)))))
+      (is (equal (verdicts rows)
+                 (verdicts (sort (copy-list rows) #'> :key #'third)))))))
+
 ;;; Several.
 
 (defun four-plans (noise)
