@@ -10,8 +10,8 @@
              (format stream "No row of a table: ~A" (cut (broken-line-text condition) 200))))
   (:documentation "A line of a table cannot be taken apart."))
 
-;; Most texts need no quotes, and most lines have none; these are taken together and apart here, in a
-;; tenth of the time.
+;; Most texts need no quotes, and most lines have none; these are put together and taken apart here,
+;; in a tenth of the time.
 
 (defun quotable-p (text)
   (declare (type string text))

@@ -72,8 +72,8 @@
     (call-in-silence (lambda () (call-with-own-lisps-dice #'work)))))
 
 (defun run-queue (experiment queue keep progress workers)
-  "Run the trials of QUEUE by WORKERS threads. If this is left, no trial is begun any more, and those
-under way are given a moment."
+  "Run the trials of QUEUE by WORKERS threads. If this is left, no trial is begun any more, and
+those under way are given a moment."
   (call-by-workers (lambda (worker) (work-off experiment queue keep progress worker))
                    workers
                    :pulse (lambda () (tell-progress progress))
