@@ -78,6 +78,7 @@
                                    (named-readtables "named-readtables")
                                    (lparallel "lparallel")
                                    (closer-mop "closer-mop")
+                                   (cl-csv "cl-csv")
                                    (trivial-gray-streams "trivial-gray-streams"))
         for files = (files-mentioning words '("src/" "rpl/" "cli/" "worlds/"))
         do (is (<= (length files) 1) "~A is named in ~S" library files))
@@ -90,7 +91,8 @@
 (defparameter *sb-ext-doors*
   '("src/base/policy.lisp" "src/base/floats.lisp" "src/base/globals.lisp" "src/base/atomic.lisp"
     "src/base/packages.lisp" "src/base/environments.lisp" "src/base/interrupts.lisp"
-    "src/base/debuggers.lisp" "src/base/files.lisp" "src/base/tables.lisp")
+    "src/base/debuggers.lisp" "src/base/files.lisp" "src/base/tables.lisp"
+    "src/base/random.lisp")
   "The files that may name SB-EXT.")
 
 (defparameter *before-the-doors*
@@ -124,7 +126,7 @@ project's systems has been loaded.")
 
 (defun unit-of (name)
   "Return what has one door: NAME's package, or NAME itself if it is in one of many ideas."
-  (if (find (package-part name) '("sb-ext" "sb-sys" "sb-kernel" "sb-c" "sb-int")
+  (if (find (package-part name) '("sb-ext" "sb-sys" "sb-kernel" "sb-vm" "sb-c" "sb-int")
             :test #'string=)
       name
       (package-part name)))
@@ -151,9 +153,10 @@ project's systems has been loaded.")
   (is (equal '() (implementation-names "(usb-port x)"))))
 
 (test chance-and-clock.come-from-where-they-should
-  (is (null (files-mentioning '("(random " "*random-state*" "(sleep ")
-                              '("src/" "rpl/" "cli/" "worlds/"))))
-  (is (equal '("src/time/pacing.lisp")
+  (is (null (files-mentioning '("(random " "(sleep ") '("src/" "rpl/" "cli/" "worlds/"))))
+  (is (equal '("src/base/random.lisp")
+             (files-mentioning '("*random-state*") '("src/" "rpl/" "cli/" "worlds/"))))
+  (is (equal '("src/experiment/stopwatch.lisp" "src/time/pacing.lisp")
              (files-mentioning '("get-internal-real-time" "get-universal-time"
                                  "get-time-of-day" "get-internal-run-time")
                                '("src/" "rpl/" "worlds/")))))

@@ -13,6 +13,10 @@
   "Return the name of the generic FUNCTION, a symbol or (SETF symbol)."
   (closer-mop:generic-function-name function))
 
+(defun method-functions (function)
+  "Return a list of the functions of the methods of the generic FUNCTION."
+  (mapcar #'closer-mop:method-function (closer-mop:generic-function-methods function)))
+
 (defun class-ancestors (class)
   "Return a list of CLASS and those it inherits from, those that are more special first."
   (closer-mop:class-precedence-list (closer-mop:ensure-finalized class)))

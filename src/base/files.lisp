@@ -89,3 +89,30 @@ octets that are no text in UTF-8."
       (error "~A, line ~D: it has bytes that are not UTF-8. Save the file in UTF-8"
              (native-name path) (1+ (count #\Newline text :end illegible))))
     (string-left-trim '(#.(code-char #xFEFF)) text)))
+
+;;; Files that several processes may have.
+
+(defun cut-file (path length)
+  "Let the file PATH end after LENGTH octets."
+  (sb-posix:truncate (native-name path) length)
+  (values))
+
+(defun call-with-file-lock (function path)
+  "Call FUNCTION while no other process that asks so has the file PATH, which is made if there is
+none; the system lets go of it when this process ends, in whatever way. Return true and what
+FUNCTION returns, or NIL if another has it."
+  (let ((descriptor (sb-posix:open (native-name path)
+                                   (logior sb-posix:o-creat sb-posix:o-rdwr) #o644)))
+    (unwind-protect
+         (when (handler-case (sb-posix:lockf descriptor sb-posix:f-tlock 0)
+                 (sb-posix:syscall-error () nil))
+           (values t (funcall function)))
+      (sb-posix:close descriptor))))
+
+(defun host-name ()
+  "Return what this machine is called."
+  (machine-instance))
+
+(defun process-number ()
+  "Return the number that the system has given to this process."
+  (sb-posix:getpid))

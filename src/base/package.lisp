@@ -29,14 +29,16 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; atomic
   (:export #:atomic-count #:compare-and-swap #:swap-if #:atomic-push #:atomic-incf #:atomic-decf
            #:memory-barrier)
-  ;; classes, packages
+  ;; classes, code, packages
   (:export #:define-function-class #:generic-name #:class-ancestors #:class-slot-names
+           #:code-references #:function-file
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
   ;; files, processes
   (:export #:native-name #:native-path #:existing-path #:replace-file #:plain-file-p 
            #:unusable-file-text
-           #:call-replacing-file #:decoded #:file-text
+           #:call-replacing-file #:decoded #:file-text #:cut-file #:call-with-file-lock
+           #:host-name #:process-number
            #:environment-value #:run-command)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
@@ -68,9 +70,10 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:reading-trouble
            #:text-of-condition)
-  ;; dice
+  ;; dice, random
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
-           #:roll-index #:roll-element #:roll-gaussian #:chance)
+           #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice
+           #:call-with-own-lisps-dice #:lisps-dice-p)
   ;; names
   (:export #:same-name-p #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables
@@ -87,9 +90,11 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; registry
   (:export #:registry #:define-registry #:registry-objects #:register #:seal-definitions
            #:lookup-entry #:from-this-file-p #:entry-name #:entry-object #:entry-source
-           #:entry-digest #:registry-entries #:users-p #:current-form-digest #:text-checksum
+           #:entry-digest #:registry-entries #:users-p #:current-form-digest #:form-digest
+           #:file-digest #:text-checksum
            #:name-string
            #:defined-names #:find-definition #:definition-to-replace #:variable-in-use-p
+           #:entries-meant
            #:*kept-variables* #:undefine #:take-back #:reinstate #:become
            #:with-own-definitions #:call-with-own-definitions)
   ;; messages
@@ -100,14 +105,16 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; askers
   (:export #:*asker* #:asker-note #:note-of-asker #:note-text)
   ;; user code
-  (:export #:call-user-code #:*break-on-user-error* #:in-any-case #:call-each
+  (:export #:call-user-code #:*break-on-user-error* #:*user-error-listener* #:in-any-case
+           #:call-each
            #:note-waiting #:report-break #:continue-inside
            #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*
            #:user-calls-waiting-p
            #:as-users-code #:abort-user-code #:brief-text #:text-of-origin)
   ;; parameters
-  (:export #:parameter #:parameter-p #:parameter-name #:parameter-default #:parameter-unit
-           #:parameter-kind #:parameter-group #:parameter-sentence #:parameter-value
+  (:export #:parameter #:parameter-p #:parameter-name #:parameter-symbol #:parameter-default
+           #:parameter-clean #:parameter-type #:parameter-unit #:parameter-kind #:parameter-group
+           #:parameter-sentence #:parameter-value #:check-parameter-value #:describe-type
            #:define-parameter
            #:all-parameters #:find-parameter #:call-with-parameters #:parameter-settings
            #:check-parameters #:call-with-parameter-values #:parameter-values #:follow-parameters

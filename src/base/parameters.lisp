@@ -27,6 +27,10 @@
       (documentation 'parameter-kind 'function) "Return :NOISE, :DELAY, :LIMIT or :SETTING."
       (documentation 'parameter-group 'function) "Return the heading that chapter 4 lists it under."
       (documentation 'parameter-sentence 'function) "Return what the parameter means.")
+(document-functions
+  parameter-symbol "Return the special variable that is the parameter."
+  parameter-clean "Return the value in a noiseless world of a parameter of kind :NOISE."
+  parameter-type "Return the type of the parameter's values.")
 
 (addition parameter-name)
 (defun parameter-name (parameter)
@@ -80,6 +84,7 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
      ',symbol))
 
 (defun check-parameter-value (parameter value)
+  "Signal WRONG-ARGUMENT unless PARAMETER can have VALUE."
   ;; Of a number that is none not even the type can be asked.
   (unless (and (or (not (realp value)) (finite-p value))
                (funcall (parameter-test parameter) value))

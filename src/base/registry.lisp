@@ -91,6 +91,12 @@ called just so is looked for in upper case."
                 when (eq name (entry-name entry)) return entry)
           (find-if (lambda (entry) (called-p entry name registry)) entries :from-end t)))))
 
+(defun entries-meant (name)
+  "Return the entries of users' definitions, of whatever kind, that NAME, a symbol, stands for."
+  (loop for registry in *registries*
+        for entry = (and (not (registry-fixed-p registry)) (lookup-entry name registry))
+        when (and entry (users-p entry)) collect entry))
+
 (defun defined-names (registry)
   "Return the names defined in REGISTRY, in order."
   (mapcar #'entry-name (registry-entries registry)))

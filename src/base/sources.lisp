@@ -211,17 +211,43 @@ at the beginning and at the end."
     (loop for char across text do (digest-add digest char))
     (digest-value digest)))
 
-(defvar *last-digest* '("" 0)
-  "A list of the text and number that FILE-DIGEST had last: each definition in a file asks again.")
+(defun form-end (text start)
+  "Return where the list that begins in TEXT at START ends."
+  (loop with depth = 0 and i = start
+        while (< i (length text))
+        do (let ((skipped (skip-text text i)))
+             (cond (skipped (setf i skipped))
+                   (t (case (char text i)
+                        (#\( (incf depth))
+                        (#\) (when (<= (decf depth) 0) (return (1+ i)))))
+                      (incf i))))
+        finally (return (length text))))
 
-(defun file-digest (file)
-  "Return a number for the code in FILE; comments and layout do not count."
+(defun code-without (operator text)
+  "Return TEXT, as CODE-ALONE returns it, without the forms at its top level whose OPERATOR, a
+string, is that, perhaps behind the name of a package."
+  (with-output-to-string (out)
+    (loop with i = 0
+          while (< i (length text))
+          do (let ((end (if (paren-p (char text i)) (form-end text i) (1+ i))))
+               (unless (word-at-p text (1+ i) operator)
+                 (write-string text out :start i :end end))
+               (setf i end)))))
+
+(defvar *last-digest* '("" nil 0)
+  "A list of the text, what was left out, and the number that FILE-DIGEST had last: each definition
+in a file asks again.")
+
+(defun file-digest (file &optional without)
+  "Return a number for the code in FILE; comments and layout do not count, nor do forms at top level
+whose operator is WITHOUT, a string, if given."
   ;; Any file can be read so, and what its bytes mean does not matter here.
   (let ((text (read-file-into-string file :external-format :latin-1)) (last *last-digest*))
-    (if (string= text (first last))
-        (second last)
-        (let ((number (text-digest (code-alone text))))
-          (setf *last-digest* (list text number))
+    (if (and (string= text (first last)) (equal without (second last)))
+        (third last)
+        (let* ((code (code-alone text))
+               (number (text-digest (if without (code-without without code) code))))
+          (setf *last-digest* (list text without number))
           number))))
 
 (defun form-digest (form)

@@ -90,7 +90,13 @@ names its origin, and the run goes on.")
   "Return ORIGIN, an item or list of items, as one text."
   (format nil "~{~A~}" (ensure-list origin)))
 
+(defvar *user-error-listener* nil
+  "A function that is called with the text of each error in users' code that is reported, or NIL.")
+
 (defun report-user-error (condition origin)
+  (when *user-error-listener*
+    (funcall *user-error-listener*
+             (format nil "in ~A: ~A" (text-of-origin origin) (brief-text condition))))
   (apply #'error-set "Error in "
          (append (ensure-list origin) (list ": " (brief-text condition)))))
 

@@ -107,7 +107,7 @@
 
 ;;; Where they are from.
 
-(defun entry-of (definition)
+(defun definition-entry (definition)
   "Return the registry entry of DEFINITION, (kind name ...), or NIL."
   (let ((registry (registry-of (first definition))))
     (and registry (lookup-entry (second definition) registry))))
@@ -122,7 +122,7 @@
   "Return the sources of DEFINITIONS that are files, each once."
   (remove-duplicates
    (loop for definition in definitions
-         for entry = (entry-of definition)
+         for entry = (definition-entry definition)
          append (remove-if-not #'rest
                                (cons (and entry (entry-source entry))
                                      (mapcar #'method-source (methods-of definition)))))
@@ -154,7 +154,7 @@
 definitions that are looked at."
   (destructuring-bind (kind name &rest number) definition
     (declare (ignore number))
-    (let ((entry (entry-of definition))
+    (let ((entry (definition-entry definition))
           (methods (methods-of definition))
           (files (and (same-name-p :file kind)
                       (remove name sources :key #'file-name-of :test-not #'string=))))

@@ -40,16 +40,30 @@ is not the current one out here, its parameters."
         (call)
         (call-with-parameter-values (simulation-known-parameters simulation) #'call))))
 
+(defun pass-freely (count simulation)
+  "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before."
+  (let* ((timeline (simulation-timeline simulation)) (custody (timeline-custody timeline)))
+    (loop repeat count
+          until (timeline-over timeline)
+          do (tick simulation)
+             (when (custody-questions custody) (answer-questions custody)))))
+
+;; Who lets ticks pass at a gate may wait there, or leave.
+(defun pass-gate (count simulation gate)
+  "Pass COUNT ticks as PASS-FREELY does, as many at a time as the function GATE allows."
+  (loop with left = count
+        until (or (zerop left) (simulation-over simulation))
+        do (let ((now (min left (funcall gate simulation))))
+             (pass-freely now simulation)
+             (decf left now))))
+
 (defun pass-ticks (count simulation)
   "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before.
 Nobody else can do that meanwhile, continuations neither."
-  (let* ((timeline (simulation-timeline simulation)) (custody (timeline-custody timeline)))
+  (let ((timeline (simulation-timeline simulation)) (gate (simulation-gate simulation)))
     (setf (timeline-passing-p timeline) t)
     (in-any-case
-      (loop repeat count
-            until (timeline-over timeline)
-            do (tick simulation)
-               (when (custody-questions custody) (answer-questions custody)))
+      (if gate (pass-gate count simulation gate) (pass-freely count simulation))
       (setf (timeline-passing-p timeline) nil))))
 
 (addition run-ticks)

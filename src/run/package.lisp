@@ -12,8 +12,9 @@ takes part in it. Manual 2.3 and appendix A.")
   ;; run
   (:export #:simulation #:simulation-p #:simulation-name #:simulation-world #:simulation-timeline
            #:simulation-tick #:simulation-seed #:simulation-robots #:simulation-journal
-           #:simulation-observers #:simulation-participants #:simulation-messages #:simulation-over
-           #:simulation-agenda #:simulation-ticking-p #:simulation-rate #:simulation-thread
+           #:simulation-gate #:simulation-observers #:simulation-participants
+           #:simulation-messages #:simulation-over #:simulation-agenda #:simulation-ticking-p
+           #:simulation-rate #:simulation-thread
            #:add-observer #:remove-observer #:add-participant #:remove-participant
            #:idle-p #:robot-simulation #:resident-simulation #:fresh-simulation #:headless-p
            #:copy-simulation #:set-seed #:end-simulation)
@@ -25,6 +26,8 @@ takes part in it. Manual 2.3 and appendix A.")
   (:export #:tree-p)
   ;; references
   (:export #:externalize #:internalize #:dereference)
+  ;; fingerprint
+  (:export #:definitions-of #:definition-entry)
   ;; tick, headless
   (:export #:tick #:run-ticks #:run-until #:step-ticks #:with-simulation #:call-with-simulation
            #:*simulation-variables*)

@@ -16,6 +16,8 @@
   (:link
    (journal nil t "the journal that the simulation keeps, or NIL")
    (messages *message-queue* message-queue "the message queue that the simulation reports to")
+   (gate nil (or null function)
+         "a function of the simulation that says how many ticks may pass before it is asked again")
    (observers '() list "the functions that are called after each tick")
    (participants '() list "what takes part in the simulation, see participant.lisp")))
 

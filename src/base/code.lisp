@@ -1,0 +1,35 @@
+;;;; code.lisp -- what compiled code refers to, and which file it is from.
+
+(in-package :ars-magna.base)
+
+(defun code-constants (function)
+  "Return a list of what the code of FUNCTION, and of those compiled with it, has as constants."
+  (let ((code (sb-kernel:fun-code-header (sb-kernel:%fun-fun function))))
+    (loop for index from sb-vm:code-constants-offset below (sb-kernel:code-header-words code)
+          collect (sb-kernel:code-header-ref code index))))
+
+(defun constant-meant (constant)
+  "Return what CONSTANT, one of code, stands for: of a call by name that name."
+  (if (typep constant 'sb-kernel:fdefn)
+      (sb-kernel:fdefn-name constant)
+      constant))
+
+(defun code-references (function)
+  "Return a list of what FUNCTION refers to: names of functions, which are symbols or lists,
+symbols, other functions, and whatever else stands in its code or was closed over. In it are no
+numbers."
+  (remove-if
+   (lambda (object) (typep object '(or number character string bit-vector null)))
+   (if (typep function 'generic-function)
+       (method-functions function)
+       (append (mapcar #'constant-meant (code-constants function))
+               (when (sb-kernel:closurep function) (sb-kernel:%closure-values function))))))
+
+(defun function-file (function)
+  "Return the file that FUNCTION was compiled from, as the system calls it, and the time at which
+that was written by then; NIL if it was typed."
+  (let* ((source (ignore-errors (sb-introspect:find-definition-source function)))
+         (path (and source (sb-introspect:definition-source-pathname source))))
+    (and path
+         (values (native-name (translate-logical-pathname path))
+                 (sb-introspect:definition-source-file-write-date source)))))

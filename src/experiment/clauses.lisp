@@ -1,0 +1,201 @@
+;;;; clauses.lisp -- the clauses of DEFEXPERIMENT: checked, and taken apart.
+
+(in-package :ars-magna.experiment)
+
+(defparameter *clauses*
+  '((:robots "(:robots name...), robots of one map")
+    (:parameters "(:parameters (parameter form)...)")
+    (:clean "(:clean) or (:clean t)")
+    (:vary "(:vary (what form...)...), or (what :in form) for the values in a list")
+    (:conditions "(:conditions (name (what form)...)...)")
+    (:trials "(:trials n), an integer from 1 to 1e9")
+    (:seed "(:seed n), an integer")
+    (:limit "(:limit n), a number of ticks from 1 to 1e9")
+    (:run "(:run form...)")
+    (:until "(:until form)")
+    (:success "(:success form)")
+    (:measure "(:measure (name form)...)"))
+  "The clauses, and how each looks.")
+
+(defun usage-of (key)
+  (second (assoc key *clauses*)))
+
+(defun reject (definition clause &optional (expected (usage-of (first clause))))
+  (reject-clause definition clause expected))
+
+(defun clause-key (definition clause)
+  "Return the keyword of CLAUSE. Signals MALFORMED-DEFINITION."
+  (unless (and (proper-list-p clause) (assoc (first clause) *clauses*))
+    (let* ((keys (mapcar #'first *clauses*))
+           (word (and (consp clause) (symbolp (first clause)) (first clause)))
+           (nearest (and word (nearest-name word keys))))
+      (reject-clause definition clause
+                     (format nil "~@[the clause ~(~S~); or one of the others, ~]a list that ~
+                                  begins with ~{~(~S~)~^, ~} or ~(~S~)"
+                             (and nearest (find nearest keys :test #'same-name-p))
+                             (butlast keys) (first (last keys))))))
+  (first clause))
+
+(defun check-clauses (definition clauses)
+  "Signal MALFORMED-DEFINITION unless CLAUSES are known, and each there once."
+  (loop for (clause . others) on clauses
+        for key = (clause-key definition clause)
+        when (find key others :key (lambda (other) (and (consp other) (first other))))
+          do (reject-clause definition clause (format nil "one clause ~(~S~) only" key))))
+
+(defun clause-called (key clauses)
+  "Return the rest of the clause KEY, and whether there is one."
+  (let ((clause (find key clauses :key #'first)))
+    (values (rest clause) (and clause t))))
+
+(defun check-each (definition clause test &optional (expected (usage-of (first clause))))
+  "Signal MALFORMED-DEFINITION about the first element of CLAUSE, after its key, that TEST is not
+true of; or about CLAUSE if there is none at all."
+  (unless (rest clause) (reject definition clause))
+  (dolist (element (rest clause))
+    (unless (funcall test element) (reject-clause definition element expected))))
+
+(defun check-names (definition clause names)
+  "Signal MALFORMED-DEFINITION if a name is in NAMES twice."
+  (loop for (name . others) on names
+        when (member name others)
+          do (reject-clause definition clause
+                            (format nil "each name once, not ~(~A~) twice" name))))
+
+;;; Names. What varies is a parameter, :ROBOTS, or a variable.
+
+(defun special-p (name)
+  (special-variable-p name nil))
+
+(defun can-vary-p (name)
+  "True if NAME is a parameter, or can be a variable of an experiment's forms."
+  (and name (symbolp name) (not (keywordp name))
+       (or (parameter-called name)
+           (null (variable-kind name))
+           (and (special-p name) (not (package-locked-p (symbol-package name)))))))
+
+(defun check-factor-name (definition part)
+  (unless (or (eq :robots (first part)) (can-vary-p (first part)))
+    (reject-clause definition part
+                   (format nil "something to vary that is a parameter, :robots, or a variable of ~
+                                your own; ~(~A~) is ~:[no name~;Lisp's or the simulator's~]"
+                           (safe-text (first part)) (and (first part) (symbolp (first part)))))))
+
+(defun check-factor (definition part)
+  "Signal MALFORMED-DEFINITION unless PART is (what form...) or (what :in form)."
+  (unless (and (proper-list-p part) (rest part))
+    (reject-clause definition part (usage-of :vary)))
+  (when (and (eq :in (second part)) (/= 3 (length part)))
+    (reject-clause definition part "(what :in form)"))
+  (check-factor-name definition part))
+
+(defun check-case (definition case)
+  (unless (and (proper-list-p case) (symbolp (first case)) (first case) (rest case)
+               (every (lambda (part) (and (proper-list-p part) (= 2 (length part))))
+                      (rest case)))
+    (reject-clause definition case "a condition (name (what form)...)"))
+  (check-names definition case (mapcar #'first (rest case)))
+  (mapc (lambda (part) (check-factor-name definition part)) (rest case)))
+
+(defun check-same-factors (definition cases)
+  "Signal MALFORMED-DEFINITION unless all CASES give values to the same names."
+  (let ((names (mapcar #'first (rest (first cases)))))
+    (dolist (case (rest cases))
+      (when (set-exclusive-or names (mapcar #'first (rest case)))
+        (reject-clause definition case
+                       (format nil "values for ~{~(~A~)~^, ~}, as in ~(~A~)" names
+                               (first (first cases))))))))
+
+(defun vary-parts (clauses) (clause-called :vary clauses))
+(defun case-parts (clauses) (clause-called :conditions clauses))
+
+(defun varied-names (clauses)
+  "Return the names of what CLAUSES vary."
+  (remove-duplicates (append (loop for case in (case-parts clauses)
+                                   append (mapcar #'first (rest case)))
+                             (mapcar #'first (vary-parts clauses)))
+                     :from-end t))
+
+(defun varied-variables (clauses)
+  "Return what CLAUSES vary and is neither a parameter nor the robots."
+  (remove-if (lambda (name) (or (eq :robots name) (parameter-called name)))
+             (varied-names clauses)))
+
+(defun mentioned-p (name tree)
+  (cond ((consp tree) (loop while (consp tree)
+                            thereis (mentioned-p name (pop tree))))
+        (t (eq name tree))))
+
+(defun doubt-unused (clauses)
+  "Warn of variables that no form of CLAUSES mentions."
+  (dolist (name (varied-variables clauses))
+    (unless (or (special-p name)
+                (loop for key in '(:run :until :success :measure)
+                      thereis (mentioned-p name (clause-called key clauses))))
+      (doubt-definition "~A is varied, but no form mentions it.~@[ Did you mean the parameter ~
+                         ~A?~]"
+                        name (nearest-name name (mapcar #'parameter-name (all-parameters)))))))
+
+;;; All of them.
+
+(defun check-column-names (definition clauses)
+  "Signal MALFORMED-DEFINITION if two columns of the table would be called the same."
+  (let ((taken (append *columns-before* *columns-between* *columns-after*
+                       (and (case-parts clauses) '("case")))))
+    (flet ((check (name clause)
+             (when (member (column-name name) taken :test #'string=)
+               (reject-clause definition clause
+                              (format nil "another name; the table has a column ~A already"
+                                      (column-name name))))
+             (push (column-name name) taken)))
+      (dolist (name (varied-names clauses)) (check name name))
+      (dolist (measure (clause-called :measure clauses)) (check (first measure) measure)))))
+
+(defun check-integer-clause (definition clause test)
+  (unless (and (= 2 (length clause)) (funcall test (second clause)))
+    (reject definition clause)))
+
+(defun check-clause (definition clause)
+  "Signal MALFORMED-DEFINITION unless CLAUSE has the right shape."
+  (ecase (first clause)
+    (:robots (check-each definition clause (lambda (name) (and name (typep name 'symbol)))))
+    (:parameters
+     (check-each definition clause
+                 (lambda (part) (and (proper-list-p part) (= 2 (length part))
+                                     (symbolp (first part)) (parameter-called (first part))))
+                 "(parameter form), with a parameter of the simulation such as max-speed*")
+     (check-names definition clause (mapcar #'first (rest clause))))
+    (:clean (unless (member (rest clause) '(() (t) (nil)) :test #'equal)
+              (reject definition clause)))
+    (:vary (check-each definition clause #'consp)
+     (dolist (part (rest clause)) (check-factor definition part))
+     (check-names definition clause (mapcar #'first (rest clause))))
+    (:conditions (check-each definition clause #'consp)
+     (dolist (case (rest clause)) (check-case definition case))
+     (check-names definition clause (mapcar #'first (rest clause)))
+     (check-same-factors definition (rest clause)))
+    ((:trials :limit)
+     (check-integer-clause definition clause
+                           (lambda (n) (and (integerp n) (<= 1 n +largest+)))))
+    (:seed (check-integer-clause definition clause #'integerp))
+    (:run (unless (rest clause) (reject definition clause)))
+    ((:until :success) (unless (= 2 (length clause)) (reject definition clause)))
+    (:measure
+     (check-each definition clause
+                 (lambda (part) (and (proper-list-p part) (= 2 (length part))
+                                     (symbolp (first part)) (first part)))))))
+
+(defun check-whole (definition name clauses)
+  "Signal MALFORMED-DEFINITION unless CLAUSES make an experiment."
+  (check-clauses definition clauses)
+  (dolist (clause clauses) (check-clause definition clause))
+  (flet ((given-p (key) (nth-value 1 (clause-called key clauses))))
+    (unless (or (given-p :robots) (member :robots (varied-names clauses)))
+      (reject-clause definition (list name +more+) "a clause (:robots name...)"))
+    (unless (given-p :run) (reject-clause definition (list name +more+) "a clause (:run form...)")))
+  (dolist (part (vary-parts clauses))
+    (when (find (first part) (case-parts clauses)
+                :test (lambda (name case) (assoc name (rest case))))
+      (reject-clause definition part "something that the :conditions do not vary already")))
+  (check-column-names definition clauses)
+  (doubt-unused clauses))

@@ -1,0 +1,76 @@
+;;;; condition.lisp -- under which conditions an experiment's trials run.
+
+(in-package :ars-magna.experiment)
+
+;;; What varies is a factor: a parameter, a variable of the experiment's forms, or the robots, and
+;;; with them the world. A condition gives each factor a value. Conditions are all combinations of
+;;; the factors' values, or a list of named cases, or each case with each combination.
+
+(defstruct (factor (:constructor make-factor (name values)) (:copier nil))
+  "What varies: NAME, a symbol, and its VALUES."
+  (name nil :type symbol :read-only t)
+  (values '() :type list :read-only t))
+
+(defstruct (factor-case (:constructor make-case (name settings)) (:copier nil))
+  "A named choice of values: SETTINGS, a list of lists (factor-name value)."
+  (name nil :type symbol :read-only t)
+  (settings '() :type list :read-only t))
+
+(defstruct (trial-condition (:conc-name condition-) (:constructor %make-condition) (:copier nil))
+  "What the trials of one condition have in common."
+  ;; What it is called, and how its values stand in a table.
+  (name "" :type string)
+  (texts '() :type list)
+  ;; Lists (factor-name value).
+  (settings '() :type list)
+  (robots '() :type list)
+  ;; The values of all parameters, and those of the variables of the experiment's forms, in order.
+  (parameters #() :type simple-vector)
+  (arguments '() :type list)
+  ;; What decides its trials, as far as that has been looked up, and whether CL:RANDOM is there.
+  (fingerprint nil :type (or null string))
+  (random-p t :type boolean))
+
+(defmethod print-object ((condition trial-condition) stream)
+  (print-unreadable-object (condition stream)
+    (format stream "condition ~A" (condition-name condition))))
+
+(defun combinations (factors)
+  "Return all lists of settings of FACTORS, the last one varying fastest."
+  (if (null factors)
+      (list '())
+      (loop with rest = (combinations (rest factors))
+            for value in (factor-values (first factors))
+            append (loop for others in rest
+                         collect (cons (list (factor-name (first factors)) value) others)))))
+
+(defun setting-text (setting)
+  (format nil "~(~A~)=~A" (first setting) (value-text (second setting))))
+
+(defun name-for (case-name settings)
+  "Return what the condition of CASE-NAME, or NIL, with the other SETTINGS is called."
+  (let ((words (append (and case-name (list (string-downcase case-name)))
+                       (mapcar #'setting-text settings))))
+    (if words (format nil "~{~A~^ ~}" words) "all")))
+
+;;; What a setting does.
+
+(defun parameter-called (name)
+  "Return the parameter whose variable is the symbol NAME, or NIL."
+  (let ((parameter (find-parameter name nil)))
+    (and parameter (eq name (parameter-symbol parameter)) parameter)))
+
+(defun start-value (parameter clean)
+  (if (and clean (eq :noise (parameter-kind parameter)))
+      (parameter-clean parameter)
+      (parameter-default parameter)))
+
+(defun parameters-with (settings clean)
+  "Return the values of all parameters, in a vector: as SETTINGS, lists (name value), say, the last
+one first, or as in a noiseless world if CLEAN is true, or else the manual's."
+  (cl:map 'simple-vector
+          (lambda (parameter)
+            (let ((setting (find (parameter-symbol parameter) settings
+                                 :key #'first :from-end t)))
+              (if setting (second setting) (start-value parameter clean))))
+          (all-parameters)))

@@ -1,0 +1,31 @@
+;;;; csv.lisp -- a line of a table, with commas: the one door to cl-csv.
+
+(in-package :ars-magna.experiment)
+
+;;; A row is one line: texts have no line ends in them (see PLAIN-TEXT).
+
+(define-condition broken-line (ars-magna-error)
+  ((line :initarg :line :reader broken-line-text))
+  (:report (lambda (condition stream)
+             (format stream "No row of a table: ~A" (cut (broken-line-text condition) 200))))
+  (:documentation "A line of a table cannot be taken apart."))
+
+(defun csv-line (texts)
+  "Return TEXTS, strings, as a line of a table, with its end (RFC 4180, but for a plain newline)."
+  (with-output-to-string (line)
+    (cl-csv:write-csv-row texts :stream line :newline (string #\Newline))))
+
+(defun texts-between-commas (line)
+  (loop with start = 0
+        for comma = (position #\, line :start start)
+        collect (subseq line start comma)
+        while comma
+        do (setf start (1+ comma))))
+
+(defun csv-texts (line)
+  "Return the texts in LINE, of a table. Signals BROKEN-LINE."
+  ;; Most lines have no quotes, and are so taken apart twenty times as fast.
+  (if (find #\" line)
+      (handler-case (cl-csv:read-csv-row line)
+        (error () (error 'broken-line :line line)))
+      (texts-between-commas line)))

@@ -1,0 +1,184 @@
+;;;; defexperiment.lisp -- DEFEXPERIMENT: an experiment from its text.
+
+(in-package :ars-magna.experiment)
+
+;;; Expanding.
+
+(defun values-form (part)
+  "Return the form of the list of values in PART of :vary."
+  (if (eq :in (second part))
+      (third part)
+      `(list ,@(rest part))))
+
+(defun factors-form (clauses)
+  `(list ,@(loop for part in (vary-parts clauses)
+                 collect `(list ',part ,(values-form part)))))
+
+(defun cases-form (clauses)
+  `(list ,@(loop for (name . parts) in (case-parts clauses)
+                 collect `(list ',name (list ,@(loop for part in parts
+                                                     collect `(list ',part ,(second part))))))))
+
+(defun settings-form (clauses)
+  `(list ,@(loop for part in (clause-called :parameters clauses)
+                 collect `(list ',part ,(second part)))))
+
+(defun robot-names (clauses)
+  "Return the names of robots that CLAUSES give once for all conditions."
+  (clause-called :robots clauses))
+
+(defun function-form (clauses forms)
+  "Return a function of the variables that CLAUSES vary, which evaluates FORMS; NIL if there are
+none."
+  (let ((variables (varied-variables clauses)))
+    (and forms
+         `(lambda ,variables
+            (declare (ignorable ,@(remove-if #'special-p variables))
+                     (special ,@(remove-if-not #'variable-name-p (robot-names clauses))))
+            ,@forms))))
+
+(defun measures-form (clauses)
+  `(list ,@(loop for (name form) in (clause-called :measure clauses)
+                 collect `(list ',name ,(function-form clauses (list form))))))
+
+(defun clean-p (clauses)
+  (multiple-value-bind (rest given) (clause-called :clean clauses)
+    (and given (or (null rest) (first rest)))))
+
+(defun deciding-text (clauses)
+  "Return those of CLAUSES that decide a trial, whatever varies."
+  (loop for key in '(:robots :parameters :clean :seed :limit :run :until :success :measure)
+        for clause = (find key clauses :key #'first)
+        when clause collect clause))
+
+(defun definition-form (name documentation clauses form)
+  `(define-experiment ',name
+     :documentation ,documentation
+     :robots ',(robot-names clauses)
+     :parameters ,(settings-form clauses)
+     :clean ,(clean-p clauses)
+     :factors ,(factors-form clauses)
+     :cases ,(cases-form clauses)
+     ,@(loop for key in '(:trials :seed :limit)
+             for value = (first (clause-called key clauses))
+             when value append (list key value))
+     :variables ',(varied-variables clauses)
+     :run ,(function-form clauses (clause-called :run clauses))
+     :until ,(function-form clauses (clause-called :until clauses))
+     :success ,(function-form clauses (clause-called :success clauses))
+     :measures ,(measures-form clauses)
+     :form ',form
+     :deciding ',(deciding-text clauses)))
+
+(addition defexperiment)
+(define-user-macro defexperiment (&whole form name &body clauses &environment environment)
+  "Define the experiment NAME, for RUN-EXPERIMENT. A string may come first that says what it asks.
+The CLAUSES are:
+  (:robots name...)          the robots in each trial's world, of one map
+  (:run form...)             what a trial does, in a fresh headless simulation
+  (:vary (what form...)...)  what varies, and its values: all combinations are tried. WHAT is a
+                             parameter, :ROBOTS (values are names or lists of names), or a
+                             variable of the other forms; a special variable is bound. (what :in
+                             form) takes the values from a list. Values are numbers, symbols,
+                             strings, or lists of such
+  (:conditions (name (what form)...)...)  named conditions instead, or combined with :vary
+  (:trials n)                how many of each condition, 100 unless given here or there
+  (:seed n)                  0 unless given; trial T has the seed N + T, under all conditions
+  (:limit n)                 for how many ticks a trial may go on, 100000 unless given
+  (:parameters (p form)...)  parameters other than the manual's; what is set outside is not seen
+  (:clean)                   no noise, but where :parameters and what varies say so. (With noise in
+                             perception give NO-SENSOR-ERROR* the value NIL.)
+  (:until form)              ticks pass after :run until FORM is true, for what continuations do
+  (:success form)            whether the trial succeeded, asked at its end; see TRIAL-VALUES
+  (:measure (name form)...)  what is measured at its end: numbers, T or NIL, symbols, strings, or
+                             :NONE where there is nothing to be measured
+Without :success and :until, the values of :run say how the trial went: those of RUN-PLAN what
+became of the plan; else the first one whether it succeeded, and the second, a symbol or string, why
+not. See RUN-EXPERIMENT for what is kept. Signals MALFORMED-DEFINITION. Return NAME."
+  (let ((definition (title "defexperiment" name)))
+    (multiple-value-bind (clauses documentation)
+        (if (stringp (first clauses))
+            (values (rest clauses) (first clauses))
+            (values clauses nil))
+      (expand-definition
+       form environment
+       (lambda ()
+         (unless (and name (symbolp name) (not (keywordp name)))
+           (reject-clause definition name "a symbol as the name"))
+         (check-whole definition name clauses)
+         (list (definition-form name documentation clauses form)))))))
+
+;;; Evaluating.
+
+(defun check-value (definition part value)
+  "Signal MALFORMED-DEFINITION unless VALUE, of PART, can be had by what varies there."
+  (let* ((name (first part)) (parameter (and (not (eq :robots name)) (parameter-called name))))
+    (cond ((eq :robots name) (check-robots definition part (ensure-list value)))
+          (parameter
+           (unless (ignore-errors (check-parameter-value parameter value) t)
+             (reject-clause definition part
+                            (format nil "values of ~(~A~), ~A, not ~A" name
+                                    (describe-type (parameter-type parameter))
+                                    (safe-text value)))))
+          ((not (value-p value))
+           (reject-clause definition part
+                          (format nil "numbers, symbols, strings or lists of them, not ~A: a ~
+                                       table must have a text for it"
+                                  (safe-text value)))))))
+
+(defun check-robots (definition part names)
+  (dolist (name names)
+    (unless (and name (symbolp name)) (reject-clause definition part "names of robots"))
+    (unless (find-blueprint name nil)
+      (reject-clause definition part
+                     (format nil "robots that are defined; ~(~A~) is none. Known: ~{~(~A~)~^, ~}"
+                             name (mapcar #'blueprint-name (all-blueprints))))))
+  (let ((maps (remove-duplicates (mapcar (lambda (name) (blueprint-map (find-blueprint name)))
+                                         names)
+                                 :test #'same-name-p)))
+    (when (rest maps)
+      (reject-clause definition part
+                     (format nil "robots of one map, not of ~{~(~A~)~^ and ~}" maps)))))
+
+(defun factor-from (definition part values)
+  (unless (and (proper-list-p values) values)
+    (reject-clause definition part "one value at least, in a list"))
+  (dolist (value values) (check-value definition part value))
+  (let ((texts (mapcar #'value-text values)))
+    (unless (= (length texts) (length (remove-duplicates texts :test #'string=)))
+      (reject-clause definition part "values that differ in the table")))
+  (make-factor (first part) values))
+
+(defun settings-from (definition settings)
+  "Return lists (name value) for SETTINGS, lists (part value) of a definition."
+  (loop for (part value) in settings
+        do (check-value definition part value)
+        collect (list (first part) value)))
+
+(defun define-experiment (name &key documentation robots parameters clean factors cases
+                                 (trials 100) (seed 0) (limit 100000) variables run until success
+                                 measures form deciding)
+  "Define the experiment NAME; what DEFEXPERIMENT expands to. Return it."
+  (let ((definition (title "defexperiment" name))
+        (experiment (%make-experiment name)))
+    (check-robots definition (list* :robots robots) robots)
+    (setf (experiment-documentation experiment) documentation
+          (experiment-robots experiment) robots
+          (experiment-factors experiment)
+          (loop for (part values) in factors collect (factor-from definition part values))
+          (experiment-cases experiment)
+          (loop for (case settings) in cases
+                collect (make-case case (settings-from definition settings)))
+          (experiment-trials experiment) trials
+          (experiment-seed experiment) seed
+          (experiment-limit experiment) limit
+          (experiment-variables experiment) variables
+          (experiment-run experiment) run
+          (experiment-until experiment) until
+          (experiment-success experiment) success
+          (experiment-measures experiment) measures
+          (experiment-form experiment) form
+          (experiment-deciding experiment) deciding
+          (experiment-conditions experiment)
+          (all-conditions experiment clean (settings-from definition parameters)))
+    (register *experiments* name experiment)))

@@ -1,0 +1,71 @@
+;;;; description.lisp -- the text beside a table: how to repeat it, and what decides it.
+
+(in-package :ars-magna.experiment)
+
+;;; It is for people, and nothing is read back but the parts of the fingerprints, to say which of
+;;; them have changed.
+
+(defun form-text (form package)
+  "Return FORM as its author, in PACKAGE, would write it."
+  (let ((*package* package) (*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 90)
+        (*print-length* nil) (*print-level* nil) (*print-circle* nil) (*print-readably* nil))
+    (prin1-to-string form)))
+
+(defun file-of-experiment (experiment)
+  "Return the name of the file that EXPERIMENT is from, without its directory, or NIL."
+  (let* ((entry (lookup-entry (experiment-name experiment) *experiments*))
+         (file (and entry (source-file (entry-source entry)))))
+    (and file (short-name (native-name file)))))
+
+(defun repetition-text (experiment trials until)
+  "Return how to run EXPERIMENT again."
+  (let ((file (file-of-experiment experiment)) (name (experiment-name experiment)))
+    (format nil "At a shell~:[, once its text is in a file~;~]:~%  ./cli/ars-magna experiment ~
+                 ~:*~:[FILE~;~:*~A~] ~(~A~) ~:[--trials ~D~;--until ~:*~A~*~] --out DIRECTORY~%~
+                 In Lisp, once it is loaded:~%  (run-experiment '~(~A~) ~:[:trials ~D~;:until ~
+                 ~:*~A~*~] :directory \"...\")~%"
+            file name (and until (value-text until)) trials
+            name (and until (value-text until)) trials)))
+
+(defun write-description (experiment parts trials until stream)
+  "Write to STREAM all that decides EXPERIMENT with TRIALS, or UNTIL intervals are narrow. PARTS are
+those of the fingerprints of its conditions, in order."
+  (format stream "The experiment ~(~A~).~@[~%~A~]~2%~A~%"
+          (experiment-name experiment) (experiment-documentation experiment)
+          (repetition-text experiment trials until))
+  (format stream "Trial T has the seed ~D + T under all conditions, and at most ~D ticks.~%~
+                  ARS MAGNA ~A.~2%~A~2%"
+          (experiment-seed experiment) (experiment-limit experiment) *simulator-version*
+          (form-text (experiment-form experiment) (experiment-package experiment)))
+  (format stream "What decides the trials of each condition:~%")
+  (loop for condition in (experiment-conditions experiment)
+        for its in parts
+        do (format stream "~%~A~%= ~A~%~{  ~A~%~}" (condition-fingerprint condition)
+                   (condition-name condition) (mapcar #'part-text its))))
+
+(defun save-description (experiment parts trials until directory)
+  (call-replacing-file (lambda (stream)
+                         (write-description experiment parts trials until stream))
+                       (description-file directory)))
+
+;;; What has changed.
+
+(defun parts-described (condition directory)
+  "Return the lines for the parts of CONDITION in the text in DIRECTORY; NIL if there are none."
+  (let ((lines (ignore-errors
+                (uiop:split-string (file-text (description-file directory))
+                                   :separator '(#\Newline))))
+        (title (format nil "= ~A" (condition-name condition))))
+    (loop for line in (rest (member title lines :test #'string=))
+          while (starts-with-subseq "  " line)
+          collect (string-trim " " line))))
+
+(defun changes-since (condition parts directory)
+  "Return in words, in a list, what of PARTS, of CONDITION, is not as the text in DIRECTORY says."
+  (flet ((without-number (line) (subseq line 0 (position #\Space line :from-end t))))
+    (let ((before (parts-described condition directory))
+          (now (mapcar #'part-text parts)))
+      (and before
+           (remove-duplicates
+            (mapcar #'without-number (set-exclusive-or before now :test #'string=))
+            :test #'string=)))))

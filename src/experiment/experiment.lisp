@@ -1,0 +1,121 @@
+;;;; experiment.lisp -- what an experiment is: its conditions, and what a trial does.
+
+(in-package :ars-magna.experiment)
+
+(defstruct (experiment (:constructor %make-experiment (name)) (:copier nil))
+  "A question: what is done in a trial, under which conditions, and what is measured."
+  (name nil :type symbol)
+  (documentation nil :type (or null string))
+  (package *package* :type package)
+  (robots '() :type list)
+  (factors '() :type list)
+  (cases '() :type list)
+  (conditions '() :type list)
+  (trials 100 :type (integer 1))
+  (seed 0 :type integer)
+  (limit 100000 :type (integer 1))
+  ;; Functions of the variables' values, or NIL.
+  (run nil :type (or null function))
+  (until nil :type (or null function))
+  (success nil :type (or null function))
+  ;; Lists (name function).
+  (measures '() :type list)
+  (variables '() :type list)
+  ;; All of its text, and what of it decides a trial.
+  (form '() :type list)
+  (deciding '() :type list))
+
+(addition experiment-p experiment-name experiment-conditions experiment-trials)
+(document-functions
+  experiment-p "True of an experiment."
+  experiment-name "Return the symbol that the experiment is called."
+  experiment-conditions "Return a list of the experiment's conditions."
+  experiment-trials "Return how many trials of each condition there are unless somebody says.")
+
+(defmethod print-object ((experiment experiment) stream)
+  (print-unreadable-object (experiment stream :type t)
+    (princ (experiment-name experiment) stream)))
+
+(define-registry experiment "experiment" :object-p experiment-p :by-symbol t)
+
+;;; Conditions.
+
+(defun condition-from (experiment settings case-name others clean parameters)
+  "Return the condition of EXPERIMENT with SETTINGS, those of CASE-NAME and OTHERS together, beside
+PARAMETERS, lists (name value), that all have."
+  (let ((robots (second (assoc :robots settings))))
+    (%make-condition
+     :name (name-for case-name others)
+     :texts (append (and (experiment-cases experiment) (list (string-downcase case-name)))
+                    (loop for name in (factor-names experiment)
+                          collect (value-text (second (assoc name settings)))))
+     :settings settings
+     :robots (if robots (ensure-list robots) (experiment-robots experiment))
+     :parameters (parameters-with (append parameters settings) clean)
+     :arguments (loop for name in (experiment-variables experiment)
+                      collect (second (assoc name settings))))))
+
+(defun factor-names (experiment)
+  "Return the names of all that varies in EXPERIMENT, in order."
+  (remove-duplicates
+   (append (loop for case in (experiment-cases experiment)
+                 append (mapcar #'first (factor-case-settings case)))
+           (mapcar #'factor-name (experiment-factors experiment)))
+   :from-end t))
+
+(defun all-conditions (experiment clean parameters)
+  "Return the conditions of EXPERIMENT, in order."
+  (loop for case in (or (experiment-cases experiment) (list nil))
+        append (loop for others in (combinations (experiment-factors experiment))
+                     collect (condition-from experiment
+                                             (append (and case (factor-case-settings case)) others)
+                                             (and case (factor-case-name case))
+                                             others clean parameters))))
+
+(addition find-condition)
+(defun find-condition (experiment designator)
+  "Return the condition of EXPERIMENT, or of the one so named, that DESIGNATOR means: a condition,
+its number, from 1, or what it is called, as far as that is unambiguous. Signals UNKNOWN-NAME."
+  (let* ((conditions (experiment-conditions (find-experiment experiment)))
+         (text (if (typep designator '(or symbol string)) (string designator) ""))
+         (called (and (string/= text "")
+                      (or (remove text conditions :key #'condition-name :test-not #'string-equal)
+                          (remove-if-not (lambda (condition)
+                                           (search text (condition-name condition)
+                                                   :test #'char-equal))
+                                         conditions)))))
+    (cond ((member designator conditions) designator)
+          ((and (integerp designator) (<= 1 designator (length conditions)))
+           (nth (1- designator) conditions))
+          ((= 1 (length called)) (first called))
+          (t (reject-name "condition" (if (symbolp designator) designator
+                                          (princ-to-string designator))
+                          (mapcar #'condition-name conditions))))))
+
+;;; Trials.
+
+(defun trial-seed (experiment trial)
+  "Return the seed of the trial numbered TRIAL, the same under all conditions."
+  (+ (experiment-seed experiment) trial))
+
+(defun column-name (name)
+  (string-downcase name))
+
+(defparameter *columns-before* '("experiment" "fingerprint" "condition")
+  "What stands in the table before what varies.")
+(defparameter *columns-between* '("seed" "trial" "outcome" "reason" "ticks")
+  "What stands between what varies and what is measured.")
+(defparameter *columns-after* '("digest" "error")
+  "What stands after what is measured.")
+
+(defun factor-columns (experiment)
+  (append (and (experiment-cases experiment) (list "case"))
+          (mapcar #'column-name (factor-names experiment))))
+
+(defun measure-columns (experiment)
+  (mapcar (lambda (measure) (column-name (first measure))) (experiment-measures experiment)))
+
+(defun columns (experiment)
+  "Return the names of the columns of the table of EXPERIMENT."
+  (append *columns-before* (factor-columns experiment) *columns-between*
+          (measure-columns experiment) *columns-after*))

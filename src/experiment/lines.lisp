@@ -1,0 +1,222 @@
+;;;; lines.lisp -- the lines of a table on disk, and putting them in order.
+
+(in-package :ars-magna.experiment)
+
+;;; A file is read as octets, a character each, so that a line's place in it is known; and a line at
+;;; a time, so that a table may be larger than memory. The last line counts only if it is whole:
+;;; what a process that was killed has written is cut there.
+
+(defun line-text (line)
+  "Return the text that LINE, whose characters are octets, stands for."
+  (if (every (lambda (char) (< (char-code char) 128)) line)
+      line
+      (decoded line)))
+
+(defun call-with-octets (function path)
+  "Call FUNCTION with a stream from which the octets of the file PATH are read as characters."
+  (with-open-file (in path :external-format :latin-1)
+    (funcall function in)))
+
+(defun map-lines (function path)
+  "Call FUNCTION with each whole line of the file PATH, of octets, where it begins, and its number
+from 1. Return where the last one ends."
+  (call-with-octets
+   (lambda (in)
+     (loop with start = 0
+           for number from 1
+           do (multiple-value-bind (line cut-off-p) (read-line in nil nil)
+                (when (or (null line) cut-off-p) (return start))
+                (funcall function line start number)
+                (incf start (1+ (length line))))))
+   path))
+
+(addition damaged-table)
+(define-condition damaged-table (ars-magna-error)
+  ((file :initarg :file :reader damaged-table-file)
+   (line :initarg :line :initform nil :reader damaged-table-line)
+   (trouble :initarg :trouble :reader damaged-table-trouble))
+  (:report (lambda (condition stream)
+             (format stream "~A~@[, line ~D~]: ~A"
+                     (native-name (damaged-table-file condition))
+                     (damaged-table-line condition)
+                     (damaged-table-trouble condition))))
+  (:documentation "A table of an experiment cannot be used as it is."))
+
+(defun reject-table (file line control &rest arguments)
+  (error 'damaged-table :file file :line line
+                        :trouble (apply #'format nil control arguments)))
+
+(defun row-texts (line columns file number)
+  "Return the texts of LINE, of octets, which is the line NUMBER of FILE, a table with COLUMNS.
+Signals DAMAGED-TABLE."
+  (let ((texts (handler-case (csv-texts (line-text line))
+                 (broken-line () '()))))
+    (unless (= (length texts) (length columns))
+      (reject-table file number "this is no row with ~D columns. Delete the line; its trial will ~
+                                 be run again."
+                    (length columns)))
+    texts))
+
+(defun header-of (file)
+  "Return the names of the columns of the table FILE. Signals DAMAGED-TABLE."
+  (let ((line (call-with-octets (lambda (in) (read-line in nil nil)) file)))
+    (or (and line (ignore-errors (csv-texts (line-text line))))
+        (reject-table file nil "it is empty; delete it."))))
+
+(defun map-rows (function file)
+  "Call FUNCTION with the texts of each row of the table FILE, its line of octets, where that begins
+and its number. Return where the last whole line ends, and the names of the columns. Signals
+DAMAGED-TABLE."
+  (let ((columns (header-of file)))
+    (values
+     (map-lines (lambda (line start number)
+                  (when (> number 1)
+                    (funcall function (row-texts line columns file number) line start number)))
+                file)
+     columns)))
+
+;;; Order: by condition, and within that by trial.
+
+(defstruct (row-group (:conc-name group-) (:constructor make-group (key)) (:copier nil))
+  "The rows of a condition: KEY is what they have before the column of the seed. RANK says where
+they stand among the others."
+  (key '() :type list :read-only t)
+  (rank 0 :type fixnum))
+
+(defstruct (indexed-row (:conc-name indexed-)
+                        (:constructor make-indexed-row (group trial file start number))
+                        (:copier nil))
+  "Where the row of a trial begins, in which of several files and on which line."
+  (group nil :type row-group :read-only t)
+  (trial 0 :type integer :read-only t)
+  (file nil :read-only t)
+  (start 0 :type integer :read-only t)
+  (number 0 :type fixnum :read-only t))
+
+(defun seed-column (columns)
+  (or (position "seed" columns :test #'string=)
+      (reject-use "A table of an experiment has a column seed, but there are only ~{~A~^, ~}."
+                  columns)))
+
+(defun trial-in (text file number)
+  (or (ignore-errors (parse-integer text))
+      (reject-table file number "~A is no number of a trial. Delete the line." text)))
+
+(defun index-rows (files)
+  "Return a vector of the rows in FILES, tables with the same columns, in no order, and a list of
+their groups."
+  (let ((groups (make-hash-table :test 'equal))
+        (rows (make-array 1000 :adjustable t :fill-pointer 0))
+        (columns (header-of (first files))))
+    (dolist (file files)
+      (unless (equal columns (header-of file))
+        (reject-table file nil "its columns are not those of ~A" (native-name (first files))))
+      (map-rows (lambda (texts line start number)
+                  (declare (ignore line))
+                  (let* ((seed (seed-column columns))
+                         (key (subseq texts 0 seed))
+                         (group (or (gethash key groups)
+                                    (setf (gethash key groups) (make-group key)))))
+                    (vector-push-extend
+                     (make-indexed-row group (trial-in (nth (1+ seed) texts) file number)
+                                       file start number)
+                     rows)))
+                file))
+    (values rows (hash-table-values groups))))
+
+(defun group-before-p (a b)
+  "True if the rows of the group A come before those of B: by experiment, and then by what varies."
+  (destructuring-bind (experiment fingerprint condition &rest texts) (group-key a)
+    (destructuring-bind (other-experiment other-fingerprint other-condition &rest others)
+        (group-key b)
+      (texts-before-p (append (list experiment) texts (list condition fingerprint))
+                      (append (list other-experiment) others
+                              (list other-condition other-fingerprint))))))
+
+(defun rank-groups (groups)
+  (loop for group in (sort (copy-list groups) #'group-before-p)
+        for rank from 0
+        do (setf (group-rank group) rank)))
+
+(defun row-before-p (a b)
+  (let ((rank (group-rank (indexed-group a))) (other (group-rank (indexed-group b))))
+    (or (< rank other)
+        (and (= rank other) (< (indexed-trial a) (indexed-trial b))))))
+
+(defun same-trial-p (a b)
+  (and (eq (indexed-group a) (indexed-group b))
+       (= (indexed-trial a) (indexed-trial b))))
+
+;;; Writing them in order.
+
+(defun call-with-line-reader (function files)
+  "Call FUNCTION with a function that returns the line of a row in one of FILES."
+  (let ((streams (make-hash-table :test 'eq)))
+    (unwind-protect
+         (progn
+           (dolist (file files)
+             (setf (gethash file streams) (list (open file :external-format :latin-1) 0)))
+           (funcall function
+                    (lambda (row)
+                      (destructuring-bind (stream place) (gethash (indexed-file row) streams)
+                        (unless (= place (indexed-start row))
+                          (file-position stream (indexed-start row)))
+                        (let ((line (read-line stream)))
+                          (setf (second (gethash (indexed-file row) streams))
+                                (+ (indexed-start row) (length line) 1))
+                          line)))))
+      (loop for (stream) being the hash-values of streams do (close stream)))))
+
+(defun reject-conflict (row other)
+  (reject-table (indexed-file row) (indexed-number row)
+                "this row and line ~D of ~A are of one trial and differ. Something outside of ~
+                 the experiment decides its trials; no table can have both."
+                (indexed-number other) (native-name (indexed-file other))))
+
+(defun in-order-p (rows)
+  "True if ROWS, a vector, are in order, and no two are of one trial."
+  (loop for index from 1 below (length rows)
+        always (row-before-p (aref rows (1- index)) (aref rows index))))
+
+(defun write-rows (rows line-of out)
+  "Write the lines of ROWS, in order, to OUT, one for each trial. LINE-OF returns the line of a row.
+Signals DAMAGED-TABLE if two of one trial differ. Return how many were written."
+  (loop with last = nil and last-line = nil and count = 0
+        for row across rows
+        for line = (funcall line-of row)
+        do (cond ((and last (same-trial-p last row))
+                  (unless (string= line last-line) (reject-conflict row last)))
+                 (t (write-line (line-text line) out)
+                    (incf count)))
+           (setf last row last-line line)
+        finally (return count)))
+
+(defun write-in-order (files file)
+  "Write the rows of FILES, tables, to FILE, in order, and each once; FILE may be one of them.
+Return how many there are. Signals DAMAGED-TABLE and MISUSE; then FILE is as it was."
+  (multiple-value-bind (rows groups) (index-rows files)
+    (rank-groups groups)
+    (check-groups groups)
+    (let ((columns (header-of (first files))) (count (length rows)))
+      (unless (and (equal files (list file)) (in-order-p rows))
+        (setf rows (stable-sort rows #'row-before-p))
+        (call-with-line-reader
+         (lambda (line-of)
+           (call-replacing-file (lambda (out)
+                                  (write-string (csv-line columns) out)
+                                  (setf count (write-rows rows line-of out)))
+                                file))
+         files))
+      count)))
+
+(defun check-groups (groups)
+  "Signal MISUSE if GROUPS have rows of one condition with different fingerprints."
+  (let ((known (make-hash-table :test 'equal)))
+    (dolist (group groups)
+      (destructuring-bind (experiment fingerprint &rest rest) (group-key group)
+        (let ((other (shiftf (gethash (cons experiment rest) known) fingerprint)))
+          (when other
+            (reject-use "There are rows of the experiment ~A, condition ~A, with the fingerprints ~
+                         ~A and ~A: they are of different code or configurations, and do not ~
+                         belong together."
+                        experiment (first rest) other fingerprint)))))))

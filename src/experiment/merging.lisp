@@ -1,0 +1,50 @@
+;;;; merging.lisp -- one table of several: of shards, of machines, of earlier runs.
+
+(in-package :ars-magna.experiment)
+
+(defun description-in (directories)
+  "Return the text of what decides the tables in DIRECTORIES, the first one that there is, or NIL."
+  (loop for directory in directories
+        for file = (description-file directory)
+        when (existing-path file) return (file-text file)))
+
+(defun copy-description (directories target)
+  (let ((text (description-in directories)))
+    (when text
+      (call-replacing-file (lambda (out) (write-string text out)) (description-file target)))))
+
+(defun join-machine-tables (directories target)
+  "Put the tables of what differs from run to run into one, in any order."
+  (let ((files (remove-if-not #'existing-path (mapcar #'machine-file directories))))
+    (when files
+      (call-replacing-file
+       (lambda (out)
+         (write-string (csv-line *machine-columns*) out)
+         (dolist (file files)
+           (map-lines (lambda (line start number)
+                        (declare (ignore start))
+                        (when (> number 1) (write-line (line-text line) out)))
+                      file)))
+       (machine-file target)))))
+
+(addition merge-results)
+(defun merge-results (directories &key (to (first directories)))
+  "Put the tables in DIRECTORIES, of one experiment, together in the directory TO, in order and each
+trial once. Return the results. Signals DAMAGED-TABLE if two rows of one trial differ, and MISUSE if
+their fingerprints do; TO is then as it was."
+  (check-argument merge-results directories
+                  (and (consp directories) (proper-list-p directories)
+                       (every (lambda (name) (typep name '(or string pathname))) directories))
+                  "a list of directories")
+  (check-argument merge-results to (typep to '(or string pathname)) "the name of a directory")
+  (let* ((sources (mapcar #'existing-table directories))
+         (target (ensure-store-directory to))
+         (there (and (existing-path (rows-file target)) (list target)))
+         (sources (remove-duplicates (append there sources) :test #'equal :from-end t)))
+    (call-with-directory
+     (lambda ()
+       (write-in-order (mapcar #'rows-file sources) (rows-file target))
+       (join-machine-tables sources target)
+       (copy-description sources target))
+     target)
+    (read-results target)))

@@ -1,0 +1,37 @@
+;;;; outcome.lisp -- how a trial went, from what its forms returned.
+
+(in-package :ars-magna.experiment)
+
+;;; An outcome is "success", "failure", "limit" (no more ticks were left) or "error" (the trial's
+;;; own code broke off). A failure has a reason, a word or two that others may share.
+
+(defparameter *plan-states* '(:succeeded :failed :evaporated :deadlock :limit :stopped)
+  "What RUN-PLAN returns as its second value.")
+
+(defun reason-of-failure (failure)
+  "Return the word for FAILURE, of a plan."
+  (value-text (or (and (typep failure 'plan-failure) (failure-class failure))
+                  (type-of failure))))
+
+(defun plan-outcome (result state)
+  "Return outcome and reason of a plan that RUN-PLAN said has RESULT and STATE."
+  (case state
+    (:succeeded (values "success" ""))
+    (:failed (values "failure" (reason-of-failure result)))
+    (:limit (values "limit" ""))
+    (t (values "failure" (value-text state)))))
+
+(defun outcome-of-values (result &optional reason &rest others)
+  "Return outcome and reason of a trial whose form :run returned RESULT, REASON and OTHERS."
+  (declare (ignore others))
+  (cond ((member reason *plan-states*) (plan-outcome result reason))
+        (result (values "success" ""))
+        (t (values "failure"
+                   (if (and reason (typep reason '(or symbol string))) (value-text reason) "")))))
+
+(defun error-in-plan (values)
+  "Return the text of the error in Lisp code that let a plan fail, if VALUES are RUN-PLAN's and it
+did; else an empty one."
+  (if (and (eq :failed (second values)) (typep (first values) 'lisp-failure))
+      (plain-text (failure-text (lisp-failure-condition (first values))))
+      ""))

@@ -1,0 +1,45 @@
+;;;; progress.lisp -- saying how far an experiment has come.
+
+(in-package :ars-magna.experiment)
+
+;;; On a terminal there is one line that changes; elsewhere a line now and then.
+
+(defstruct (progress (:constructor make-progress (stream terminal-p total)) (:copier nil))
+  "How far an experiment has come, of TOTAL trials, and who is told so."
+  (stream nil :read-only t)
+  (terminal-p nil :read-only t)
+  (total 0 :type integer)
+  (done 0 :type atomic-count)
+  (begun (moment) :read-only t)
+  (told (moment) :type integer))
+
+(defun duration-text (seconds)
+  "Return SECONDS in words."
+  (cond ((< seconds 100) (format nil "~D s" (round seconds)))
+        ((< seconds 6000) (format nil "~D min" (round seconds 60)))
+        (t (format nil "~,1F h" (/ seconds 3600)))))
+
+(defun rate-text (rate)
+  (if (< rate 10) (format nil "~,1F" rate) (format nil "~D" (round rate))))
+
+(defun progress-text (progress)
+  "Return how far PROGRESS has come: trials, rate, and how long it will take."
+  (let* ((done (progress-done progress)) (total (progress-total progress))
+         (seconds (seconds-since (progress-begun progress)))
+         (rate (if (plusp seconds) (/ done seconds) 0d0)))
+    (format nil "~D of ~D trials~@[, ~A a second~]~@[, ~A left~]" done total
+            (and (plusp rate) (rate-text rate))
+            (and (plusp rate) (< done total) (duration-text (/ (- total done) rate))))))
+
+(defun tell-progress (progress &optional last)
+  "Say how far PROGRESS has come, if it is time to, or this is the LAST time."
+  (let ((stream (progress-stream progress)))
+    (when (and stream
+               (or last
+                   (> (seconds-since (progress-told progress))
+                      (if (progress-terminal-p progress) 0.5 10))))
+      (setf (progress-told progress) (moment))
+      (if (progress-terminal-p progress)
+          (format stream "~C~A~C[K~:[~;~%~]" #\Return (progress-text progress) #\Escape last)
+          (format stream "~&~A~%" (progress-text progress)))
+      (finish-output stream))))

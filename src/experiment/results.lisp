@@ -1,0 +1,157 @@
+;;;; results.lisp -- a table in memory: what came of the trials of each condition.
+
+(in-package :ars-magna.experiment)
+
+;;; Text becomes what it stands for: numbers, T and NIL, :NONE where nothing was measured, and else
+;;; strings, of which equal ones are the same.
+
+(defstruct (sample (:constructor make-sample (experiment fingerprint condition texts))
+                   (:copier nil))
+  "What came of the trials of one condition, in order of their numbers: vectors of equal length."
+  (experiment "" :type string :read-only t)
+  (fingerprint "" :type string :read-only t)
+  (condition "" :type string :read-only t)
+  (texts '() :type list :read-only t)
+  (trials (column) :read-only t)
+  (outcomes (column) :read-only t)
+  (reasons (column) :read-only t)
+  (ticks (column) :read-only t)
+  ;; A list of a vector for each measure.
+  (measures '() :type list)
+  (errors (column) :read-only t))
+
+(defstruct (results (:constructor %make-results (columns)) (:copier nil))
+  "What came of an experiment: a sample for each condition, in order."
+  (columns '() :type list :read-only t)
+  (samples '() :type list)
+  ;; Where the table is, or NIL if it has not been kept.
+  (directory nil :type (or null pathname)))
+
+(addition results-p results-samples results-directory
+          sample-p sample-experiment sample-condition sample-texts sample-trials
+          sample-outcomes sample-reasons sample-ticks sample-errors)
+(document-functions
+  results-p "True of what came of an experiment."
+  results-samples "Return a list of what came of the trials of each condition."
+  results-directory "Return the path of the directory where the table is, or NIL."
+  sample-p "True of what came of the trials of one condition."
+  sample-experiment "Return what the experiment is called, a string."
+  sample-condition "Return what the condition is called, a string."
+  sample-texts "Return the values of what varies, strings as they stand in the table."
+  sample-trials "Return a vector of the numbers of the trials; the other vectors are in its order."
+  sample-outcomes "Return a vector of \"success\", \"failure\", \"limit\" and \"error\"."
+  sample-reasons "Return a vector of strings that say why trials failed."
+  sample-ticks "Return a vector of the ticks that passed in each trial."
+  sample-errors "Return a vector of what errors there were, strings; \"\" where there was none.")
+
+(defun column ()
+  (make-array 16 :adjustable t :fill-pointer 0))
+
+(defmethod print-object ((sample sample) stream)
+  (print-unreadable-object (sample stream)
+    (format stream "~D trials, ~A" (length (sample-trials sample)) (sample-condition sample))))
+
+(defmethod print-object ((results results) stream)
+  (print-unreadable-object (results stream :type t)
+    (format stream "~@[~A, ~]~D condition~:P"
+            (and (results-samples results) (sample-experiment (first (results-samples results))))
+            (length (results-samples results)))))
+
+;;; Columns.
+
+(defun columns-between (columns before after)
+  "Return those of COLUMNS that stand between those called BEFORE and AFTER."
+  (subseq columns (1+ (position before columns :test #'string=))
+          (position after columns :test #'string=)))
+
+(defun factor-columns-of (columns) (columns-between columns "condition" "seed"))
+(defun measure-columns-of (columns) (columns-between columns "ticks" "digest"))
+
+(addition results-factors results-measures)
+(defun results-factors (results)
+  "Return the names of what varies in RESULTS, a list of strings, in the order of SAMPLE-TEXTS."
+  (factor-columns-of (results-columns results)))
+
+(defun results-measures (results)
+  "Return the names of what RESULTS have measures of, a list of strings."
+  (measure-columns-of (results-columns results)))
+
+(addition sample-measure)
+(defun sample-measure (results sample measure)
+  "Return a vector of what was measured as MEASURE, a string or symbol, in the trials of SAMPLE, one
+of those of RESULTS: numbers, T, NIL, strings, and :NONE where nothing was. MEASURE may be ticks,
+too. Signals UNKNOWN-NAME."
+  (let ((place (position (string measure) (results-measures results) :test #'string-equal)))
+    (cond (place (nth place (sample-measures sample)))
+          ((string-equal measure "ticks") (sample-ticks sample))
+          (t (reject-name "measure" (string measure)
+                          (append (results-measures results) '("ticks")))))))
+
+;;; Reading.
+
+(defun value-in (text shared)
+  "Return what TEXT, of a table, stands for; strings are those in the table SHARED."
+  (cond ((string= text "") :none)
+        ((string= text "TRUE") t)
+        ((string= text "FALSE") nil)
+        ((number-in text))
+        (t (shared-text text shared))))
+
+(defun shared-text (text shared)
+  (or (gethash text shared) (setf (gethash text shared) text)))
+
+(defun new-sample (texts seed measures)
+  "Return an empty sample for the row TEXTS, whose column SEED is that of the seed."
+  (let ((sample (make-sample (first texts) (second texts) (third texts) (subseq texts 3 seed))))
+    (setf (sample-measures sample) (loop repeat measures collect (column)))
+    sample))
+
+(defun note-row (sample texts measures shared)
+  "Enter the row whose TEXTS from the trial's number on are these into SAMPLE."
+  (destructuring-bind (trial outcome reason ticks &rest rest) texts
+    (vector-push-extend (parse-integer trial) (sample-trials sample))
+    (vector-push-extend (shared-text outcome shared) (sample-outcomes sample))
+    (vector-push-extend (shared-text reason shared) (sample-reasons sample))
+    (vector-push-extend (parse-integer ticks) (sample-ticks sample))
+    (loop for column in (sample-measures sample)
+          for text in rest
+          do (vector-push-extend (value-in text shared) column))
+    (vector-push-extend (shared-text (nth (1+ measures) rest) shared) (sample-errors sample))))
+
+(defun results-in (file)
+  "Return the results in the table FILE, which is in order."
+  (let* ((columns (header-of file))
+         (results (%make-results columns))
+         (seed (seed-column columns))
+         (measures (length (measure-columns-of columns)))
+         (shared (make-hash-table :test 'equal))
+         (samples '()) (key nil))
+    (map-rows (lambda (texts line start number)
+                (declare (ignore line start number))
+                (unless (and key (loop for text in key for other in texts
+                                       always (string= text other)))
+                  (setf key (subseq texts 0 seed))
+                  (push (new-sample texts seed measures) samples))
+                (note-row (first samples) (nthcdr (1+ seed) texts) measures shared))
+              file)
+    (setf (results-samples results) (reverse samples))
+    results))
+
+(defun existing-table (directory)
+  "Return the path of DIRECTORY, in which there is a table. Signals MISUSE."
+  (let ((path (directory-called directory)))
+    (unless (existing-path (rows-file path))
+      (reject-use "There is no rows.csv in ~A. Give the directory of an experiment."
+                  (native-name path)))
+    path))
+
+(addition read-results)
+(defun read-results (directory)
+  "Return the results in DIRECTORY, where RUN-EXPERIMENT or MERGE-RESULTS has left them. Signals
+MISUSE if there are none, and DAMAGED-TABLE."
+  (check-argument read-results directory (typep directory '(or string pathname))
+                  "the name of a directory")
+  (let ((path (existing-table directory)))
+    (let ((results (results-in (rows-file path))))
+      (setf (results-directory results) path)
+      results)))

@@ -1,0 +1,81 @@
+;;;; rounds.lisp -- which trials are to be run, and running them.
+
+(in-package :ars-magna.experiment)
+
+;;; Trials come by number, and for each number all conditions, so that whoever stops early has as
+;;; many of each. Workers take one after the other from the queue. A shard (index . count) has the
+;;; trials whose numbers leave INDEX when divided by COUNT.
+
+(defstruct (queue (:constructor make-queue (conditions first last presence shard)) (:copier nil))
+  "The trials from FIRST to LAST of CONDITIONS that PRESENCE lacks, of SHARD if there is one."
+  (conditions '() :type list :read-only t)
+  (first 1 :type integer :read-only t)
+  (last 0 :type integer :read-only t)
+  (presence nil :type presence :read-only t)
+  (shard nil :type list :read-only t)
+  (lock (make-lock "trials") :read-only t)
+  ;; What comes next.
+  (trial 0 :type integer)
+  (left '() :type list)
+  (closed-p nil :type boolean))
+
+(defun in-shard-p (trial shard)
+  (or (null shard) (= (car shard) (mod trial (cdr shard)))))
+
+(defun step-queue (queue)
+  "Return the next trial of QUEUE, present or not, as a condition and a number, or NIL."
+  (when (null (queue-left queue))
+    (setf (queue-trial queue)
+          (loop for trial from (max (queue-first queue) (1+ (queue-trial queue)))
+                  to (queue-last queue)
+                when (in-shard-p trial (queue-shard queue)) return trial
+                finally (return (1+ (queue-last queue))))
+          (queue-left queue) (and (<= (queue-trial queue) (queue-last queue))
+                                  (queue-conditions queue))))
+  (values (pop (queue-left queue)) (queue-trial queue)))
+
+(defun next-trial (queue)
+  "Return a trial to be run now, as a condition and a number, or NIL if there is none left."
+  (with-lock ((queue-lock queue))
+    (unless (queue-closed-p queue)
+      (loop (multiple-value-bind (condition trial) (step-queue queue)
+              (cond ((null condition) (return nil))
+                    ((not (present-p condition trial (queue-presence queue)))
+                     (return (values condition trial)))))))))
+
+(defun close-queue (queue)
+  "Let nobody get another trial of QUEUE."
+  (setf (queue-closed-p queue) t))
+
+(defun count-missing (queue)
+  "Return how many trials there are in QUEUE, of which none has been taken."
+  (loop for trial from (queue-first queue) to (queue-last queue)
+        when (in-shard-p trial (queue-shard queue))
+          sum (count-if-not (lambda (condition) (present-p condition trial (queue-presence queue)))
+                            (queue-conditions queue))))
+
+;;; Running them.
+
+(defun run-and-keep (experiment condition trial keep worker)
+  "Run TRIAL of CONDITION, and have KEEP, a function, keep what comes of it."
+  (let* ((begun (moment))
+         (result (run-trial experiment condition trial)))
+    (funcall keep result (milliseconds-since begun) worker)))
+
+(defun work-off (experiment queue keep progress worker)
+  "Run trials of QUEUE until there are none left."
+  (flet ((work ()
+           (loop (multiple-value-bind (condition trial) (next-trial queue)
+                   (unless condition (return))
+                   (run-and-keep experiment condition trial keep worker)
+                   (atomic-incf (progress-done progress))))))
+    (call-in-silence (lambda () (call-with-own-lisps-dice #'work)))))
+
+(defun run-queue (experiment queue keep progress workers)
+  "Run the trials of QUEUE by WORKERS threads. If this is left, no trial is begun any more; those
+under way are left."
+  (unwind-protect
+       (call-by-workers (lambda (worker) (work-off experiment queue keep progress worker))
+                        workers
+                        (lambda () (tell-progress progress)))
+    (close-queue queue)))

@@ -1,0 +1,20 @@
+;;;; row.lisp -- what came of a trial, as a row of the table.
+
+(in-package :ars-magna.experiment)
+
+(defun result-texts (experiment result)
+  "Return the texts of the row for RESULT, of a trial of EXPERIMENT, in the order of its columns."
+  (let ((condition (result-condition result)))
+    (append (list (column-name (experiment-name experiment))
+                  (condition-fingerprint condition)
+                  (condition-name condition))
+            (condition-texts condition)
+            (list (princ-to-string (result-seed result))
+                  (princ-to-string (result-trial result))
+                  (result-outcome result)
+                  (result-reason result)
+                  (princ-to-string (result-ticks result)))
+            (or (result-measures result)
+                (make-list (length (experiment-measures experiment)) :initial-element ""))
+            (list (if (result-digest result) (format nil "~16,'0X" (result-digest result)) "")
+                  (result-error result)))))

@@ -1,0 +1,189 @@
+;;;; running.lisp -- RUN-EXPERIMENT: from a question to a table.
+
+(in-package :ars-magna.experiment)
+
+;;; A trial has its row, or has not; a second start runs those that have none. So an experiment that
+;;; was stopped, by whatever, is gone on with by starting it again. Rows come as trials end, and are
+;;; put in order at the end, so that the table is the same whoever ran what when.
+
+;;; What is there already.
+
+(defun reject-foreign (experiment condition parts directory)
+  (declare (ignore experiment))
+  (reject-use "~A has rows of the condition ~A that other code or another configuration has made~
+               ~@[; changed since: ~{~A~^, ~}~]. Give another directory, or delete these rows."
+              (native-name directory) (condition-name condition)
+              (changes-since condition parts directory)))
+
+(defun rows-there (experiment parts directory)
+  "Return the presence of rows of EXPERIMENT in DIRECTORY, and the texts of the last of them. PARTS
+are those of the fingerprints of its conditions. Signals MISUSE for rows of other code."
+  (present-rows experiment directory
+                (lambda (condition texts)
+                  (declare (ignore texts))
+                  (reject-foreign experiment condition
+                                  (nth (position condition (experiment-conditions experiment))
+                                       parts)
+                                  directory))))
+
+(defun check-repeatable (experiment texts)
+  "Signal MISUSE if the trial of EXPERIMENT whose row is TEXTS, if any, comes out otherwise now."
+  (let ((condition (and texts (condition-of-texts experiment texts))))
+    (when condition
+      (let* ((trial (parse-integer (nth (1+ (seed-column (columns experiment))) texts)))
+             (again (result-texts experiment
+                                  (call-in-silence
+                                   (lambda () (run-trial experiment condition trial))))))
+        (unless (equal texts again)
+          (reject-use "Trial ~D of the condition ~A has a row already, and comes out differently ~
+                       now: ~A instead of ~A. Something that is not in its fingerprint decides ~
+                       it, such as a variable that trials change, the clock, or a file. Mend ~
+                       that, and begin in another directory."
+                      trial (condition-name condition)
+                      (first (set-difference again texts :test #'string=))
+                      (first (set-difference texts again :test #'string=))))))))
+
+;;; Looking at intervals.
+
+(defun count-successes (experiment trials directory)
+  "Return a table of how many of the first TRIALS of each condition of EXPERIMENT succeeded."
+  (let* ((columns (columns experiment)) (seed (seed-column columns))
+         (counts (make-hash-table :test 'eq)))
+    (map-rows (lambda (texts line start number)
+                (declare (ignore line start number))
+                (let ((condition (condition-of-texts experiment texts)))
+                  (when (and condition
+                             (<= (parse-integer (nth (1+ seed) texts)) trials)
+                             (string= "success" (nth (+ 2 seed) texts)))
+                    (incf (gethash condition counts 0)))))
+              (rows-file directory))
+    counts))
+
+(defun wide-conditions (experiment conditions look width directory)
+  "Return those of CONDITIONS whose intervals at LOOK are wider than WIDTH."
+  (let* ((trials (count-at-look look))
+         (counts (count-successes experiment trials directory)))
+    (remove-if (lambda (condition)
+                 (multiple-value-bind (low high)
+                     (wilson-interval (gethash condition counts 0) trials
+                                      :confidence (confidence-at-look look))
+                   (<= (- high low) width)))
+               conditions)))
+
+;;; Rounds.
+
+(defun run-round (experiment conditions last presence shard store workers stream)
+  "Run the trials up to LAST of CONDITIONS that are not there."
+  (let* ((queue (make-queue conditions 1 last presence shard))
+         (missing (count-missing queue))
+         (progress (make-progress stream (and stream (interactive-stream-p stream)) missing)))
+    (when (plusp missing)
+      (run-queue experiment queue
+                 (lambda (result milliseconds worker)
+                   (keep-row store result milliseconds worker))
+                 progress (min workers missing))
+      (tell-progress progress t))))
+
+(defun run-all (experiment trials presence shard store workers stream)
+  (run-round experiment (experiment-conditions experiment) trials presence shard store workers
+             stream))
+
+(defun run-until-narrow (experiment width most directory store workers stream)
+  "Run trials until each interval is at most WIDTH wide, or there are MOST of each condition."
+  (loop with conditions = (experiment-conditions experiment)
+        for look from 1
+        for trials = (count-at-look look)
+        while (and conditions (<= trials most))
+        do (run-round experiment conditions trials
+                      (present-rows experiment directory (constantly nil))
+                      nil store workers stream)
+           (setf conditions (wide-conditions experiment conditions look width directory))))
+
+;;; The whole.
+
+(defparameter *most-trials* 1000000
+  "How many trials of a condition are run at most to make its interval narrow, unless one says.")
+
+(defun run-in (experiment directory trials until shard workers stream)
+  "Run the trials of EXPERIMENT that DIRECTORY has no rows of, and put the table in order."
+  (let ((parts (loop for condition in (experiment-conditions experiment)
+                     collect (prepare-condition experiment condition))))
+    (multiple-value-bind (presence last-texts) (rows-there experiment parts directory)
+      (check-repeatable experiment last-texts)
+      (save-description experiment parts trials until directory)
+      (call-with-store
+       (lambda (store)
+         (if until
+             (run-until-narrow experiment until trials directory store workers stream)
+             (run-all experiment trials presence shard store workers stream)))
+       experiment directory)
+      (write-in-order (list (rows-file directory)) (rows-file directory)))))
+
+(defun new-directory ()
+  "Return the path of a new directory among the system's temporary ones."
+  (loop for number from 0
+        for path = (directory-called (format nil "~Aars-magna-~D-~D/"
+                                             (native-name (uiop:temporary-directory))
+                                             (process-number) number))
+        when (nth-value 1 (ensure-directories-exist path)) return path))
+
+(defun call-with-temporary-directory (function)
+  "Call FUNCTION with the path of a new directory, which is gone afterwards."
+  (let ((path (new-directory)))
+    (unwind-protect (funcall function path)
+      (uiop:delete-directory-tree path :validate t :if-does-not-exist :ignore))))
+
+(defun shard-p (shard)
+  (or (null shard)
+      (and (consp shard) (integerp (car shard)) (integerp (cdr shard))
+           (< -1 (car shard) (cdr shard) (1+ +largest+)))))
+
+(defun check-run (trials workers directory until shard)
+  (check-argument run-experiment trials (and (integerp trials) (<= 1 trials +largest+))
+                  "how many trials of each condition, from 1 to 1e9")
+  (check-argument run-experiment workers (and (integerp workers) (<= 1 workers 1000))
+                  "how many threads, from 1 to 1000")
+  (check-argument run-experiment directory (typep directory '(or null string pathname))
+                  "the name of a directory, or NIL")
+  (check-argument run-experiment until (or (null until) (and (realp until) (< 0 until 1)))
+                  "how wide intervals may be, a number between 0 and 1")
+  (check-argument run-experiment shard (shard-p shard)
+                  "(index . count), with an index from 0 to below count")
+  (when (and until shard)
+    (reject-use "A shard cannot know when intervals are narrow enough: give :until or :shard.")))
+
+(defun run-and-read (experiment directory trials until shard workers stream)
+  (call-with-directory
+   (lambda ()
+     (run-in experiment directory trials until shard workers stream)
+     (results-in (rows-file directory)))
+   directory))
+
+(addition run-experiment)
+(defun run-experiment (name &key trials (workers (processors)) directory until shard
+                              (stream *standard-output*))
+  "Run the experiment NAME: TRIALS trials of each condition, or as many as it says, by WORKERS
+threads. Return the results; see PRINT-RESULTS, SAVE-RESULT-PICTURES and COMPARE-CONDITIONS.
+
+The table is kept in DIRECTORY, made if there is none: in rows.csv, a row for each trial; what
+differs from run to run in machine.csv; and how to repeat it in experiment.txt. Trials that have a
+row there are not run again, so that what was stopped is gone on with, and trials are added, by
+starting it again. Rows of other code or another configuration signal MISUSE. Without a DIRECTORY
+nothing is kept but what is returned.
+
+With UNTIL, a width, trials are added until the interval of each condition's success is at most that
+wide: after 50, 100, 200 ... trials, at most TRIALS, or a million. SHARD (index . count) runs the
+trials whose numbers divided by COUNT leave INDEX only, to be put together by MERGE-RESULTS. STREAM,
+or NIL, is told how far it has come.
+
+An error in a trial is a row. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE and DAMAGED-TABLE."
+  (let* ((experiment (find-experiment name))
+         (trials (or trials (if until *most-trials* (experiment-trials experiment)))))
+    (check-run trials workers directory until shard)
+    (flet ((run (path)
+             (run-and-read experiment path trials until shard workers stream)))
+      (if directory
+          (let* ((path (ensure-store-directory directory)) (results (run path)))
+            (setf (results-directory results) path)
+            results)
+          (call-with-temporary-directory #'run)))))

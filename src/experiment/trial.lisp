@@ -1,0 +1,178 @@
+;;;; trial.lisp -- one trial of an experiment, and what came of it.
+
+(in-package :ars-magna.experiment)
+
+;;; A trial is a function of the code, its condition and its seed. So it begins with the manual's
+;;; parameters but where the experiment says otherwise, with Lisp's own dice made from the seed for
+;;; code that rolls them, and with settings of the reader and printer that do not depend on where it
+;;; is run.
+
+(defstruct (result (:constructor make-result (condition trial seed)) (:copier nil))
+  "What came of a trial."
+  (condition nil :type trial-condition :read-only t)
+  (trial 0 :type integer :read-only t)
+  (seed 0 :type integer :read-only t)
+  (outcome "error" :type string)
+  (reason "" :type string)
+  (ticks 0 :type integer)
+  (measures '() :type list)
+  (digest nil :type (or null integer))
+  (error "" :type string))
+
+;;; Ticks. Who asks for more than there are is left.
+
+(defun limit-gate (limit next)
+  "Return a gate for a simulation that lets LIMIT ticks pass in all, and then leaves the trial. NEXT
+is a gate to ask besides, or NIL."
+  (lambda (simulation)
+    (let ((left (- limit (simulation-tick simulation))))
+      (unless (plusp left) (throw 'out-of-ticks nil))
+      (if next (min left (funcall next simulation)) left))))
+
+;;; Surroundings.
+
+(defvar *nowhere* (make-broadcast-stream) "Where what trials write goes.")
+
+(defun call-in-peace (function package)
+  "Call FUNCTION with all that Lisp code may look at as it is in each trial."
+  (let ((*package* package)
+        (*read-default-float-format* 'single-float)
+        (*read-base* 10) (*print-base* 10) (*print-radix* nil) (*print-case* :upcase)
+        (*print-pretty* nil) (*print-readably* nil) (*print-escape* t) (*print-circle* nil)
+        (*print-length* nil) (*print-level* nil) (*print-array* t) (*print-gensym* t))
+    (funcall function)))
+
+(defun call-in-silence (function)
+  "Call FUNCTION; what it writes is lost, and what enters a debugger is an error."
+  (let ((*standard-output* *nowhere*) (*error-output* *nowhere*) (*trace-output* *nowhere*)
+        (*break-on-user-error* nil))
+    (answering-debugger ((lambda (condition there-p)
+                           (declare (ignore there-p))
+                           (throw 'broken-off condition)))
+      (funcall function))))
+
+(defun call-with-dice-of (condition seed function)
+  "Call FUNCTION with what CL:RANDOM says decided by SEED, if a trial of CONDITION may ask it."
+  (if (condition-random-p condition)
+      (call-with-lisps-dice function seed)
+      (funcall function)))
+
+(defun call-in-trial (function experiment condition trial &key gate)
+  "Call FUNCTION in the fresh simulation of TRIAL of CONDITION of EXPERIMENT. GATE, if given, is a
+gate to be asked besides that of the limit."
+  (let ((seed (trial-seed experiment trial))
+        (limit (experiment-limit experiment)))
+    (call-in-peace
+     (lambda ()
+       (call-with-parameter-values
+        (copy-seq (condition-parameters condition))
+        (lambda ()
+          (let ((*plan-limit* limit))
+            (call-with-simulation
+             (lambda ()
+               (setf (simulation-gate (current-simulation)) (limit-gate limit gate))
+               (call-with-dice-of condition seed function))
+             (condition-robots condition)
+             :seed seed :variables (remove-if-not #'variable-name-p
+                                                  (condition-robots condition)))))))
+     (experiment-package experiment))))
+
+;;; What happens in it.
+
+(defvar *trial-values* '() "What the form :run of the trial under way has returned, a list.")
+
+(addition trial-values)
+(defun trial-values ()
+  "Return a list of the values of the form :run of the trial at whose end we are: for :success and
+:measure. NIL if it did not return, and before it has."
+  *trial-values*)
+
+(defun call-form (function condition)
+  "Call FUNCTION, of a form of the experiment, with the values that CONDITION has for variables."
+  (apply (the function function) (condition-arguments condition)))
+
+(defun pass-until (function condition)
+  "Let ticks pass until FUNCTION returns true."
+  (loop until (call-form function condition) do (run-ticks 1))
+  t)
+
+(defun run-forms (experiment condition)
+  "Do what EXPERIMENT says under CONDITION. Return the values of :run, or T if it has :until; NIL
+and :LIMIT if too few ticks were left."
+  (catch 'out-of-ticks
+    (return-from run-forms
+      (let ((values (multiple-value-list (call-form (experiment-run experiment) condition))))
+        (setf *trial-values* values)
+        (if (experiment-until experiment)
+            (list (pass-until (experiment-until experiment) condition))
+            values))))
+  (list nil :limit))
+
+(defun decide (experiment condition outcome)
+  "Return the outcome of a trial of CONDITION that so far is OUTCOME."
+  (let ((success (experiment-success experiment)))
+    (cond ((null success) outcome)
+          ((call-form success condition) "success")
+          ((string= outcome "success") "failure")
+          (t outcome))))
+
+(defun measure (experiment condition)
+  "Return the texts of what EXPERIMENT measures. Signals WRONG-ARGUMENT if a table cannot have one."
+  (loop for (name function) in (experiment-measures experiment)
+        for value = (call-form function condition)
+        do (unless (value-p value)
+             (reject-argument "measure" name value "a number, symbol, string or list of them"))
+        collect (value-text value)))
+
+(defun note-end (result)
+  "Enter into RESULT how far the current simulation has come."
+  (setf (result-ticks result) (simulation-tick)
+        (result-digest result) (state-digest)))
+
+(defun note-error (result text)
+  "Let RESULT be that of a trial that broke off, as TEXT says."
+  (setf (result-outcome result) "error"
+        (result-reason result) ""
+        (result-measures result) '()
+        (result-error result) (plain-text text)))
+
+(defun conduct (experiment result)
+  "Do in the current simulation what EXPERIMENT says, and enter into RESULT what comes of it."
+  (let* ((condition (result-condition result))
+         (*trial-values* '())
+         (values (run-forms experiment condition)))
+    (multiple-value-bind (outcome reason) (apply #'outcome-of-values values)
+      (setf (result-outcome result) (decide experiment condition outcome)
+            (result-reason result) (if (string= "success" (result-outcome result)) "" reason)
+            (result-measures result) (measure experiment condition))
+      (when (string= "" (result-error result))
+        (setf (result-error result) (error-in-plan values))))))
+
+(defun call-noting-errors (function result)
+  "Call FUNCTION. If it breaks off, enter that into RESULT; likewise the first error of other code
+of users'."
+  (let* ((*user-error-listener* (lambda (text)
+                                  (when (string= "" (result-error result))
+                                    (setf (result-error result) (plain-text text)))))
+         (trouble (catch 'broken-off
+                    (restart-case
+                        (handler-case (progn (funcall function) nil)
+                          ((or error storage-condition) (condition)
+                            (regain-room condition)
+                            condition))
+                      (abort () :report "End this trial." "aborted")))))
+    (when trouble
+      (note-error result (if (stringp trouble) trouble (text-of-condition trouble))))))
+
+(defun run-trial (experiment condition trial &key gate)
+  "Run TRIAL, a number, of CONDITION of EXPERIMENT. Return its result. GATE is as for
+CALL-IN-TRIAL."
+  (let ((result (make-result condition trial (trial-seed experiment trial))))
+    (call-noting-errors
+     (lambda ()
+       (call-in-trial (lambda ()
+                        (call-noting-errors (lambda () (conduct experiment result)) result)
+                        (note-end result))
+                      experiment condition trial :gate gate))
+     result)
+    result))

@@ -1,0 +1,95 @@
+;;;; values.lisp -- what may stand in a table, and how it is written there.
+
+(in-package :ars-magna.experiment)
+
+;;; Whatever reads the table, R, pandas or sqlite, must take a number for a number. So floats have
+;;; no exponent marker of Lisp's, ratios become floats, and truth is TRUE or FALSE.
+
+(defconstant +longest-text+ 500
+  "How many characters a text in a table has at most.")
+
+(defun address-end (text start)
+  "Return where the address ends that begins in TEXT at START, as in #<HASH-TABLE {10042BD5D3}>; NIL
+if none does."
+  (let ((end (and (char= #\{ (char text start))
+                  (position #\} text :start start))))
+    (and end (> end (+ 6 start))
+         (every (lambda (char) (digit-char-p char 16)) (subseq text (1+ start) end))
+         (1+ end))))
+
+(defun without-addresses (text)
+  "Return TEXT without where in memory objects happened to be."
+  (if (find #\{ text)
+      (with-output-to-string (out)
+        (loop with i = 0
+              while (< i (length text))
+              do (let ((end (address-end text i)))
+                   (unless end (write-char (char text i) out))
+                   (setf i (or end (1+ i))))))
+      text))
+
+(defun plain-text (text)
+  "Return TEXT on one line, of bounded length, with nothing in it but what can be seen and is the
+same in each run."
+  (cut (one-line (without-addresses (substitute-if-not #\Space #'graphic-char-p text)))
+       +longest-text+))
+
+(defun float-text (number)
+  "Return NUMBER, a finite float, in the fewest digits that stand for it alone."
+  (let ((*read-default-float-format* (type-of number)))
+    (prin1-to-string number)))
+
+(defun listed-text (object)
+  "Return OBJECT, a symbol, list or string in one, as people write it, without packages."
+  (format nil "~(~A~)" (safe-text object :escape nil)))
+
+(defun finite-value-p (value)
+  "True if VALUE is a number that a table can have."
+  (and (realp value) (finite-p value)))
+
+(defun value-p (value)
+  "True if VALUE may stand in a table: a number, symbol, string, character, or list of such."
+  (typecase value
+    (number (finite-value-p value))
+    ((or symbol string character) t)
+    (cons (and (proper-list-p value) (every #'value-p value)))))
+
+(defun value-text (value)
+  "Return how VALUE stands in a table."
+  (case value
+    ((t) "TRUE")
+    ((nil) "FALSE")
+    (:none "")
+    (t (typecase value
+         (integer (princ-to-string value))
+         (ratio (float-text (float value 1d0)))
+         (float (float-text value))
+         (string (plain-text value))
+         (t (plain-text (listed-text value)))))))
+
+;;; Back from a table.
+
+(defun number-in (text)
+  "Return the number that TEXT, of a table, is, or NIL."
+  (and (plusp (length text))
+       (find (char text 0) "-0123456789")
+       (every (lambda (char) (find char "-+.eE0123456789")) text)
+       (let ((*read-default-float-format* 'double-float))
+         (ignore-errors (let ((number (read-from-string text)))
+                          (and (realp number) number))))))
+
+(defun text-before-p (a b)
+  "True if the text A comes before B in a table: numbers by size, and before words."
+  (let ((number (number-in a)) (other (number-in b)))
+    (cond ((and number other (/= number other)) (< number other))
+          ((and number other) (string< a b))
+          (number t)
+          (other nil)
+          (t (string< a b)))))
+
+(defun texts-before-p (a b)
+  "True if the list of texts A comes before B, which is as long."
+  (loop for (text . nil) on a
+        for (other . nil) on b
+        do (cond ((text-before-p text other) (return t))
+                 ((text-before-p other text) (return nil)))))
