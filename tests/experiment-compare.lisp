@@ -119,6 +119,14 @@
       (is (mentions-p way "p = 1; if there is one, it is at most 0.14."))
       (is (mentions-p found "found is true more often with patrol than with spiral")))))
 
+(test compare.says-what-is-equal-seed-by-seed
+  (with-made-up (results (append (rows-of-outcomes "a" "0" "+++-" :way #'identity)
+                                 (rows-of-outcomes "b" "0" "++-+" :way #'identity)))
+    (is (string= (format nil "noise=0: way of a and b is equal, seed by seed: 9.500 against 9.500 ~
+                              on average over 4 common seeds.")
+                 (third (experiment:comparison-verdicts
+                         (experiment:compare-conditions results 1 2 :stream nil)))))))
+
 (test compare.is-the-same-the-other-way-round
   (with-made-up (results (patrol-and-spiral))
     (let ((one (difference-in "success" (experiment:compare-conditions results 1 2 :stream nil)))
