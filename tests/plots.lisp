@@ -179,6 +179,13 @@
     (is (subsetp '("<&\">" "b - a" "+12.5 % (-1 % to +26 %)" "p = 0.03" "c - a" "no data" "0 %")
                  texts :test #'string=))))
 
+(test measures.stay-with-their-group
+  (is (= 3 (length (colored "rect" "#8fb3cc"
+                            (plots:measure-chart '((a (1 2)) (b (3)) (c ())))))))
+  (let ((numbers (list 1 2)))
+    (plots:measure-chart `((a ,numbers) (b (3))))
+    (is (equal '(1 2) numbers))))
+
 (test measures.are-columns-as-high-as-there-are-many
   (let* ((chart (plots:measure-chart '((a (1 1 1 1 2 2 nil 10) 2 1 2))))
          (heights (mapcar (lambda (element) (chart-number "height" element))

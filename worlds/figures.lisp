@@ -1,8 +1,8 @@
 ;;;; figures.lisp -- runs the shipped experiments, and brings worlds/README.md up to date with them.
 
-;;; The command worlds/figures calls SAVE-FIGURES. Tables go into the page between two comments, such
-;;; as <!-- table of three-ways-of-searching --> and <!-- end of table -->; pictures into a directory
-;;; beside it. The same code makes the same bytes.
+;;; The command worlds/figures calls SAVE-FIGURES. Tables go into the page between two comments,
+;;; such as <!-- table of three-ways-of-searching --> and <!-- end of table -->; pictures into a
+;;; directory beside it. The same code makes the same bytes.
 
 (in-package :ars-worlds)
 
@@ -13,9 +13,10 @@
   "For each experiment the names of those of its pictures that the page shows.")
 
 (defparameter *ways-shown*
-  '((fetching-against-motion-noise "motion-noise*=0.6" 60)
-    (three-ways-of-searching "way=search-watchfully miss-thing-prob*=0.2" 20))
-  "Lists (experiment condition trials): the ways that the page shows.")
+  '((fetching-against-motion-noise "motion-noise*=0.6" 60 (52 12 120 46))
+    (three-ways-of-searching "way=search-watchfully miss-thing-prob*=0.2" 20 nil))
+  "Lists (experiment condition trials part): the ways that the page shows, and of which part of the
+map.")
 
 (defun in-worlds (name)
   "Return the path of the file NAME in worlds/."
@@ -65,8 +66,8 @@
                                           (with-output-to-string (out)
                                             (print-results results out))))
                   (save-pictures-kept experiment results names)))
-    (loop for (experiment condition trials) in *ways-shown*
+    (loop for (experiment condition trials part) in *ways-shown*
              do (save-ways-picture experiment condition
                                    (merge-pathnames "ways.svg" (pictures-of experiment))
-                                   :trials trials))
+                                   :trials trials :part part))
     (save-page lines page)))

@@ -8,7 +8,8 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
                 #:figure-text #:line-chart #:survival-chart #:difference-chart #:measure-chart
                 #:drawing-chart #:look-color #:draw-marker #:save-chart)
   (:import-from :ars-magna.canvas
-                #:draw-gcontext* #:graphics-scale* #:with-gcontext #:with-opacity #:draw-lines)
+                #:draw-gcontext* #:graphics-scale* #:with-gcontext #:with-opacity #:with-origin
+                #:draw-lines)
   (:import-from :ars-magna.display
                 #:take-snapshot #:snapshot-map #:draw-terrain #:draw-movers #:picture-kind)
   (:import-from :ars-magna.world #:map-width #:map-height)

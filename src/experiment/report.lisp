@@ -67,12 +67,13 @@ they are too large or small for that."
 
 (defun tally-text (tally most)
   "Return TALLY, an alist from texts to counts, in one line, the MOST commonest first."
-  (let ((rest (nthcdr most tally)))
-    (format nil "~{~A~^, ~}~@[, others (~D)~]"
-            (loop for (text . count) in tally
-                  repeat most
-                  collect (format nil "~A (~D)" (cut text 60) count))
-            (and rest (reduce #'+ rest :key #'cdr)))))
+  (flet ((counted (text count)
+           (format nil "~A~C(~D)" (cut text 60) #\No-break_space count)))
+    (let ((rest (nthcdr most tally)))
+      (format nil "~{~A~^, ~}"
+              (append (loop for (text . count) in tally
+                            repeat most collect (counted text count))
+                      (and rest (list (counted "others" (reduce #'+ rest :key #'cdr)))))))))
 
 (defun kind-heading (estimate)
   (ecase (estimate-kind estimate)

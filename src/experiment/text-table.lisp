@@ -13,10 +13,11 @@
         (t width)))
 
 (defun wrapped-text (text width)
-  "Return TEXT, of one line, as a list of lines of at most WIDTH characters, one at least."
+  "Return TEXT, of one line, as a list of lines of at most WIDTH characters, one at least. A line
+does not end at a no-break space, which becomes a space."
   (loop with rest = (string-trim " " text)
         for end = (break-place rest width)
-        collect (string-right-trim " " (subseq rest 0 end))
+        collect (substitute #\Space #\No-break_space (string-right-trim " " (subseq rest 0 end)))
         do (setf rest (string-left-trim " " (subseq rest end)))
         until (string= "" rest)))
 

@@ -7,9 +7,9 @@
     ("error" 3 "broke off with an error"))
   "Lists (outcome look words), in the order of the legend.")
 
-(defun scale-for (map)
-  "Return how many pixels a metre of MAP has in a picture."
-  (clamp (floor 720 (map-width map)) 4 20))
+(defun scale-for (width)
+  "Return how many pixels a metre has in a picture of WIDTH metres."
+  (clamp (floor 720 width) 4 20))
 
 (defun way-opacity (count)
   "Return how much one of COUNT ways hides what is below."
@@ -49,15 +49,22 @@
         when (plusp count)
           collect (list look (format nil "~A: ~D trial~:P" words count))))
 
-(defun ways-chart (experiment condition snapshot ways)
-  "Return a picture of the world in SNAPSHOT with WAYS, of CONDITION of EXPERIMENT, in it."
-  (let* ((map (snapshot-map snapshot)) (scale (scale-for map)))
+(defun draw-ways-on-map (canvas snapshot ways left top)
+  "Draw WAYS and the world of SNAPSHOT, so that the point LEFT, TOP of it is in the upper left."
+  (with-origin (canvas (- (* graphics-scale* left)) (- (* graphics-scale* top)))
+    (with-opacity (canvas 1/2) (draw-terrain canvas (snapshot-map snapshot)))
+    (draw-ways canvas ways)
+    (draw-movers canvas snapshot '())))
+
+(defun ways-chart (experiment condition snapshot ways part)
+  "Return a picture of the world in SNAPSHOT with WAYS, of CONDITION of EXPERIMENT, in it: of the
+PART (left top right bottom)."
+  (destructuring-bind (left top right bottom) part
     (drawing-chart (lambda (canvas)
-                     (let ((graphics-scale* scale))
-                       (with-opacity (canvas 1/2) (draw-terrain canvas map))
-                       (draw-ways canvas ways)
-                       (draw-movers canvas snapshot '())))
-                   (* scale (map-width map)) (* scale (map-height map))
+                     (let ((graphics-scale* (scale-for (- right left))))
+                       (draw-ways-on-map canvas snapshot ways left top)))
+                   (* (scale-for (- right left)) (- right left))
+                   (* (scale-for (- right left)) (- bottom top))
                    :title (or (question-of (experiment-name experiment))
                               (string-downcase (experiment-name experiment)))
                    :subtitle (format nil "~A. The ways of all trials, with a marker at the end of ~
@@ -76,17 +83,31 @@
       trials
       (loop for trial from 1 to trials collect trial)))
 
+(defun part-of-map (part map)
+  "Return the list (left top right bottom) that PART, an argument of SAVE-WAYS-PICTURE, means."
+  (let ((width (map-width map)) (height (map-height map)))
+    (check-argument save-ways-picture part
+                    (or (null part)
+                        (and (proper-list-p part) (= 4 (length part)) (every #'integerp part)
+                             (destructuring-bind (left top right bottom) part
+                               (and (< -1 left right (1+ width)) (< -1 top bottom (1+ height))))))
+                    (format nil "a list (left top right bottom) of integers within ~D x ~D, or NIL"
+                            width height))
+    (or part (list 0 0 width height))))
+
 (addition save-ways-picture)
-(defun save-ways-picture (experiment condition file &key (trials 50))
+(defun save-ways-picture (experiment condition file &key (trials 50) part)
   "Save in FILE, replacing it, a map of the world of CONDITION of EXPERIMENT with the ways that its
 robots went in TRIALS, the first so many or a list of their numbers: in colours that say what became
 of each trial, with a marker where it ended. The trials are run again for that. CONDITION is as for
-FIND-CONDITION. FILE is SVG or, where the program rsvg-convert is installed, PNG, as its name ends.
-Return its truename. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE without that program."
+FIND-CONDITION. PART (left top right bottom), in cells, is what is wanted of the map, by default
+all. FILE is SVG or, where the program rsvg-convert is installed, PNG, as its name ends. Return its
+truename. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE without that program."
   (picture-kind 'save-ways-picture file)
   (let* ((experiment (find-experiment experiment))
          (condition (find-condition experiment condition))
-         (trials (trial-numbers trials)))
-    (save-chart file (ways-chart experiment condition
-                                 (start-of-trial experiment condition (first trials))
-                                 (ways-of-trials experiment condition trials)))))
+         (trials (trial-numbers trials))
+         (snapshot (start-of-trial experiment condition (first trials)))
+         (part (part-of-map part (snapshot-map snapshot))))
+    (save-chart file (ways-chart experiment condition snapshot
+                                 (ways-of-trials experiment condition trials) part))))

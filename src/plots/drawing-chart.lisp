@@ -5,7 +5,7 @@
 (defconstant +entry-space+ 24 "How far entries of a legend below are apart, in pixels.")
 
 (defun entry-width (text)
-  (+ +sample-width+ 8 (text-width text +text-size+)))
+  (+ +sample-width+ 12 (text-width text +text-size+)))
 
 (defun entry-rows (entries width)
   "Return ENTRIES, lists (index text), as lists of those that stand beside each other within WIDTH."
@@ -25,7 +25,7 @@
           do (with-ink ((look-color index) 1.6)
                (draw-line canvas draw-gcontext* x (- y 4) (+ x +sample-width+) (- y 4)))
              (draw-marker canvas index (+ x +sample-width+) (- y 4))
-             (write-lines canvas (+ x +sample-width+ 8) y (list text))
+             (write-lines canvas (+ x +sample-width+ 12) y (list text))
              (incf x (+ (entry-width text) +entry-space+)))
     (incf y (+ +text-step+ 4))))
 
