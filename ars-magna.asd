@@ -128,7 +128,8 @@
                  (:file "fingerprint") (:file "row") (:file "lines")
                  (:file "directory") (:file "workers") (:file "progress") (:file "rounds")
                  (:file "temporary") (:file "stopping") (:file "results") (:file "description")
-                 (:file "running") (:file "merging")))
+                 (:file "running") (:file "merging")
+                 (:file "aside") (:file "replaying") (:file "failures")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.
@@ -160,9 +161,9 @@
                  (:file "console") (:file "user-names") (:file "session") (:file "line")
                  (:file "arguments") (:file "layout") (:file "errands") (:file "robot-lines")
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
-                 (:file "status-lines") (:file "running-lines") (:file "loading")
+                 (:file "status-lines") (:file "visits") (:file "running-lines") (:file "loading")
                  (:file "worlds") (:file "world-lines") (:file "plans") (:file "plan-lines")
-                 (:file "plan-views") (:file "picture-lines") (:file "debugger")
+                 (:file "plan-views") (:file "picture-lines") (:file "trial-lines") (:file "debugger")
                  (:file "prompt") (:file "options") (:file "main")))))
 
 (defsystem "ars-magna/clim"

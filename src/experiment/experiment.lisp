@@ -23,7 +23,9 @@
   (variables '() :type list)
   ;; All of its text, and what of it decides a trial.
   (form '() :type list)
-  (deciding '() :type list))
+  (deciding '() :type list)
+  ;; What came of it when it was run last in this Lisp, or NIL.
+  (results nil))
 
 (addition experiment-p experiment-name experiment-conditions experiment-trials)
 (document-functions

@@ -4,13 +4,15 @@
   (:documentation "Controlled experiments: conditions, trials, tables that can be repeated and gone
 on with, on as many cores and machines as there are. Names cl-csv and lparallel.")
   (:use :cl :ars-magna.base :ars-magna.run)
-  (:import-from :ars-magna.time #:current-simulation)
+  (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
+                #:seconds-now #:check-rate)
   (:import-from :ars-magna.robot #:find-blueprint #:all-blueprints #:blueprint-name #:blueprint-map)
   (:import-from :ars-magna.rpl.tasks
                 #:procedure #:procedure-p #:procedure-source
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
-  (:import-from :ars-magna.rpl-robot #:*plan-limit*)
+  (:import-from :ars-magna.rpl-robot #:*plan-limit* #:*trace-plans*)
+  (:import-from :ars-magna.display #:keep-history #:open-display #:*display-opener*)
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
@@ -21,4 +23,11 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:sample-trials #:sample-outcomes #:sample-reasons #:sample-ticks #:sample-errors
            #:sample-measure)
   ;; lines, running, merging, workers
-  (:export #:damaged-table #:run-experiment #:merge-results #:processors))
+  (:export #:damaged-table #:run-experiment #:merge-results #:processors)
+  ;; aside, replaying, failures
+  (:export #:run-again #:call-aside #:await-time #:replay-trial #:row-of-trial #:row-differences
+           #:prepare-condition #:trial-failures #:print-failures)
+  ;; what the prompt shows
+  (:export #:condition-name #:experiment-limit #:experiment-documentation #:trial-seed
+           #:result-outcome #:result-reason #:result-ticks #:result-digest #:result-error
+           #:measured))
