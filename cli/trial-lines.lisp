@@ -95,17 +95,22 @@
 
 ;;; Going there, and out again.
 
+(defun pause-soon (session visit restart)
+  "Let VISIT pause at its next tick, and what has been interrupted go on by RESTART."
+  (pause-visit visit)
+  (setf (visit-interrupted-p visit) t)
+  (format (session-console session)
+          "~&Interrupted: the trial pauses at its next tick. Control-C leaves it.~%")
+  (invoke-restart restart))
+
 (defun call-pausable (session visit function)
   "Call FUNCTION. If the user presses control C while ticks pass in VISIT, it pauses at the next one;
 if that does not come, and he does so again, it is left."
   (flet ((heed (condition)
            (let ((restart (find-restart 'go-on condition)))
-             (cond ((and restart
-                         (not (session-batch-p session))
-                         (not (shiftf (visit-interrupted-p visit) t)))
-                    (pause-visit visit)
-                    (invoke-restart restart))
-                   (t (setf (visit-left-p visit) t))))))
+             (if (or (null restart) (session-batch-p session) (visit-interrupted-p visit))
+                 (setf (visit-left-p visit) t)
+                 (pause-soon session visit restart)))))
     (handler-bind ((user-interrupt #'heed))
       (funcall function))))
 
@@ -164,7 +169,7 @@ if that does not come, and he does so again, it is left."
 
 (defun leave-trial (session)
   (unless (session-visit session) (reject-line "The prompt is in no trial."))
-  (leave-visit (session-visit session)
+  (leave-visit session
                (lambda () (format t "Out of the trial~@[, in ~(~A~)~].~%"
                                   (and *simulation* (simulation-name *simulation*))))))
 

@@ -67,15 +67,17 @@
         ((visit-running-p visit) (rate-text (visit-rate visit)))
         (t "paused")))
 
-(defun leave-visit (visit &optional (next #'values))
-  "Leave the trial of VISIT, which the prompt is in; then call NEXT, a function."
-  (setf (visit-left-p visit) t)
+(defun leave-visit (session &optional (next #'values))
+  "Leave the trial that SESSION is in; then call NEXT, a function. Nobody hears what the trial has to
+say of that."
+  (setf (visit-left-p (session-visit session)) t)
+  (stop-listening session)
   (throw 'left-visit next))
 
 (defun call-outside (session function)
   "Call FUNCTION where SESSION is in no trial: if it is in one, leave that first."
   (if (session-visit session)
-      (leave-visit (session-visit session) function)
+      (leave-visit session function)
       (funcall function)))
 
 ;;; Has a line changed the run? Then that is no longer the one of the experiment.
@@ -133,19 +135,17 @@
                                (next-line session)))
        (note-if-changed session visit before))
      (call-guarded session (lambda () (show-messages session)))
-     (when (session-over-p session) (leave-visit visit)))))
+     (when (session-over-p session) (leave-visit session)))))
 
 ;;; Between ticks.
 
 (defun tell-stop (session visit)
   "Say that the ticks which were to pass in VISIT have passed, or were stopped."
-  (let ((interrupted-p (shiftf (visit-interrupted-p visit) nil)))
-    (when interrupted-p
-      (answered (session-console session))
-      (format (session-console session) "~&Interrupted.~%"))
-    (when (and (zerop (visit-steps visit))
-               (or (shiftf (visit-stepped-p visit) nil) interrupted-p))
-      (format (session-console session) "~&Tick ~D.~%" (simulation-tick *simulation*)))))
+  (when (shiftf (visit-interrupted-p visit) nil)
+    (answered (session-console session))
+    (setf (visit-stepped-p visit) t))
+  (when (and (zerop (visit-steps visit)) (shiftf (visit-stepped-p visit) nil))
+    (format (session-console session) "~&Tick ~D.~%" (simulation-tick *simulation*))))
 
 (defun next-due (visit)
   "Return when the tick after the one of VISIT that is due now will be."
@@ -174,7 +174,7 @@
   "Return the gate of the trial of VISIT, at which SESSION reads lines."
   (lambda (simulation)
     (declare (ignore simulation))
-    (when (visit-left-p visit) (leave-visit visit))
+    (when (visit-left-p visit) (leave-visit session))
     (tell-stop session visit)
     (loop until (tick-passes-p session visit) do (visit-line session visit))
     1))

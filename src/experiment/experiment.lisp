@@ -77,7 +77,8 @@ PARAMETERS, lists (name value), that all have."
 (addition find-condition)
 (defun find-condition (experiment designator)
   "Return the condition of EXPERIMENT, or of the one so named, that DESIGNATOR means: a condition,
-its number, from 1, or what it is called, as far as that is unambiguous. Signals UNKNOWN-NAME."
+its number, from 1, or what it is called, as far as that is unambiguous. Signals UNKNOWN-NAME, and
+MISUSE if it could be several."
   (let* ((conditions (experiment-conditions (find-experiment experiment)))
          (text (if (typep designator '(or symbol string)) (string designator) ""))
          (called (and (string/= text "")
@@ -89,7 +90,10 @@ its number, from 1, or what it is called, as far as that is unambiguous. Signals
     (cond ((member designator conditions) designator)
           ((and (integerp designator) (<= 1 designator (length conditions)))
            (nth (1- designator) conditions))
-          ((= 1 (length called)) (first called))
+          ((rest called)
+           (reject-use "~A could be the condition ~{~A~#[~; or ~:;, ~]~}. Say more of it." text
+                       (mapcar #'condition-name called)))
+          (called (first called))
           (t (reject-name "condition" (if (symbolp designator) designator
                                           (princ-to-string designator))
                           (mapcar #'condition-name conditions))))))
