@@ -13,10 +13,11 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
                 #:lisp-failure #:lisp-failure-condition)
   (:import-from :ars-magna.rpl-robot #:*plan-limit* #:*trace-plans*)
   (:import-from :ars-magna.display #:keep-history #:open-display #:*display-opener*)
+  (:import-from :ars-magna.statistics #:sequential-level #:wilson-interval)
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
-           #:find-condition)
+           #:find-condition #:trial-values)
   ;; results
   (:export #:results-p #:results-samples #:results-directory #:results-factors #:results-measures
            #:read-results #:sample-p #:sample-experiment #:sample-condition #:sample-texts

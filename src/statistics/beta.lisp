@@ -17,7 +17,8 @@
 of the probability of A successes and B failures (Loader 2000). A and B are 0 or from 1/2 on."
   (declare (type double-float a b x y))
   (let ((n (+ a b)))
-    (cond ((zerop a) (log-power y x b))
+    (cond ((zerop n) 0d0)
+          ((zerop a) (log-power y x b))
           ((zerop b) (log-power x y a))
           (t (+ (- (stirling-rest n) (stirling-rest a) (stirling-rest b)
                    (deviance a (* n x)) (deviance b (* n y)))
@@ -29,8 +30,8 @@ of the probability of A successes and B failures (Loader 2000). A and B are 0 or
   (+ (log-binomial-density a b x y) (log (/ (* a b) (+ a b)))))
 
 (defun beta-fraction (a b x y)
-  "Return I_X(A, B) divided by X^A Y^B / beta(A, B), for X up to about A/(A+B) (the continued fraction
-of Didonato and Morris 1992, all of whose terms are above 0 there)."
+  "Return I_X(A, B) divided by X^A Y^B / beta(A, B), for X up to about A/(A+B) (the continued
+fraction of Didonato and Morris 1992, all of whose terms are above 0 there)."
   (declare (type double-float a b x y) #.*hot*)
   (flet ((lower-part (m)
            (declare (type double-float m))

@@ -1,4 +1,4 @@
-;;;; pairs.lisp -- two ways of doing the same trials: which succeeds more often?
+;;;; pairs.lisp -- which of two ways of doing the same trials succeeds more often.
 
 (in-package :ars-magna.statistics)
 
@@ -7,9 +7,9 @@
   "Return how likely it is that two equally good ways differ as much as these: of the same trials,
 FIRST succeeded one way only, SECOND the other way only; those with the same outcome both ways say
 nothing. The test is exact, and its size never above what it says (McNemar 1947; Fagerland,
-Lydersen and Laake 2013, \"The McNemar test for binary matched-pairs data\", formula 4). The second
-value is the mid-p of the same page, less careful and as a rule nearer to the truth. Both are 1 of
-no trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
+Lydersen and Laake 2013, \"The McNemar test for binary matched-pairs data\"). The second value is
+the mid-p of the same paper, less careful and as a rule nearer to the truth. Both are 1 of no
+trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
   (check-count mcnemar-test first)
   (check-count mcnemar-test second)
   (let* ((trials (+ first second)) (fewer (min first second))
@@ -17,7 +17,7 @@ no trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to
          (point (- tail (half-or-fewer (1- fewer) trials))))
     (cond ((zerop trials) (values 1d0 1d0))
           ((= first second) (values 1d0 (- 1 (/ point 2))))
-          (t (values (* 2 tail) (- (* 2 tail) point))))))
+          (t (values (min 1d0 (* 2 tail)) (- (* 2 tail) point))))))
 
 (defun corrected-correlation (both first second neither)
   "Return how much the outcomes of two ways go together, less what small numbers feign (Newcombe
@@ -35,6 +35,12 @@ no trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to
 cosine CORRELATION."
   (declare (type double-float a b correlation))
   (sqrt (max 0d0 (+ (* a a) (* b b) (* -2 correlation a b)))))
+
+(defun paired-bounds (p q bounds-of-p bounds-of-q correlation)
+  "Return the bounds for P less Q, of the bounds for each and their CORRELATION."
+  (destructuring-bind (low-p high-p low-q high-q) (append bounds-of-p bounds-of-q)
+    (values (- (- p q) (side (- p low-p) (- high-q q) correlation))
+            (+ (- p q) (side (- high-p p) (- q low-q) correlation)))))
 
 (addition paired-proportion-interval)
 (defun paired-proportion-interval (both first second neither &key (confidence .95d0))
@@ -56,9 +62,3 @@ together are no more, and CONFIDENCE is between 0 and 1."
                        (multiple-value-list (wilson-bounds (+ both first) trials z))
                        (multiple-value-list (wilson-bounds (+ both second) trials z))
                        (corrected-correlation both first second neither)))))
-
-(defun paired-bounds (p q bounds-of-p bounds-of-q correlation)
-  "Return the bounds for P less Q, of the bounds for each and their CORRELATION."
-  (destructuring-bind (low-p high-p low-q high-q) (append bounds-of-p bounds-of-q)
-    (values (- (- p q) (side (- p low-p) (- high-q q) correlation))
-            (+ (- p q) (side (- high-p p) (- q low-q) correlation)))))

@@ -1,4 +1,4 @@
-;;;; permutation.lisp -- is what differs between two ways, trial by trial, more than chance?
+;;;; permutation.lisp -- whether what differs between two ways, trial by trial, is chance.
 
 (in-package :ars-magna.statistics)
 

@@ -14,8 +14,8 @@ LOOK is an integer from 1 to 100,000, and LEVEL between 0 and 1."
 
 (defun log-evidence (successes trials rate)
   (declare (type double-float rate))
-  (- (+ (log (double (1+ trials)))
-        (log-binomial-density (double successes) (double (- trials successes)) rate (- 1 rate)))))
+  (- 0d0 (log (double (1+ trials)))
+     (log-binomial-density (double successes) (double (- trials successes)) rate (- 1 rate))))
 
 (addition rate-evidence)
 (defun rate-evidence (successes trials rate)

@@ -54,10 +54,9 @@ the high one, as that was so before."
 was done. TIMES and EVENTS are lists or vectors; where the event is T (or 1), it was done at that
 time; where it is NIL (or 0), it was cut short then, and might have taken longer, as at a limit of
 ticks. LOW and HIGH bound the survival at that time, by Greenwood's formula on the scale of
-log(-log) (Kalbfleisch and Prentice 2002, formula 1.13; Collett 2015, 2.2.3), which gives no bounds
-once nothing is left: LOW is 0 then, and HIGH that of the step before, or 1. No steps if nothing
-was done. Signals WRONG-ARGUMENT unless TIMES are from 0 to 1e15, EVENTS as many, and CONFIDENCE
-between 0 and 1."
+log(-log) (Kalbfleisch and Prentice 2002, chapter 1), which gives no bounds once nothing is left:
+LOW is 0 then, and HIGH that of the step before, or 1. No steps if nothing was done. Signals
+WRONG-ARGUMENT unless TIMES are from 0 to 1e15, EVENTS as many, and CONFIDENCE between 0 and 1."
   (check-survival 'survival-curve 'times times 'events events)
   (let* ((z (normal-reach (check-share survival-curve confidence)))
          (dated (dated times events)) (size (length dated))
