@@ -26,8 +26,8 @@
   'sb-sys:fd-stream)
 
 (defun octets-within-p (stream seconds)
-  "Wait until STREAM, a descriptor-stream, can be read or is at its end, for SECONDS at most. True if
-so."
+  "Wait until STREAM, a descriptor-stream, can be read or is at its end, for SECONDS at most. True
+if so."
   (or (listen stream)
       (sb-sys:wait-until-fd-usable (sb-sys:fd-stream-fd stream) :input seconds)))
 

@@ -104,8 +104,8 @@
   (invoke-restart restart))
 
 (defun call-pausable (session visit function)
-  "Call FUNCTION. If the user presses control C while ticks pass in VISIT, it pauses at the next one;
-if that does not come, and he does so again, it is left."
+  "Call FUNCTION. If the user presses control C while ticks pass in VISIT, it pauses at the next
+one; if that does not come, and he does so again, it is left."
   (flet ((heed (condition)
            (let ((restart (find-restart 'go-on condition)))
              (if (or (null restart) (session-batch-p session) (visit-interrupted-p visit))
@@ -179,10 +179,10 @@ if that does not come, and he does so again, it is left."
                               (number count "the number of the trial" :optional)
                               (directory :token "the directory of its row" :optional))
     (:running)
-    "Go into a trial of an experiment: the very run that its row is of, at tick 0. There STEP, RESUME
-and RATE let time pass, STATUS, PLAN-TREE, WHY and others look around, and SAVE-JOURNAL keeps it.
-With DIRECTORY, what comes of it is compared with its row. Where nobody sits, RESUME lets it pass to
-its end. TRIAL OFF leads out again, as do WORLD and another TRIAL. Without NUMBER, list the
+    "Go into a trial of an experiment: the very run that its row is of, at tick 0. There STEP,
+RESUME and RATE let time pass, STATUS, PLAN-TREE, WHY and others look around, and SAVE-JOURNAL keeps
+it. Where nobody sits, RESUME lets it pass to its end. With DIRECTORY, what comes of it is compared
+with its row. TRIAL OFF leads out again, as do WORLD and another TRIAL. Without NUMBER, list the
 conditions; without NAME, the experiments, or say where the prompt is."
   (cond ((and (null name) (session-visit session)) (write-visit session (session-visit session)))
         ((null name) (write-experiments))
@@ -195,7 +195,7 @@ conditions; without NAME, the experiments, or say where the prompt is."
              (go-to-trial session (make-visit experiment (condition-meant experiment condition)
                                               number directory))))))
 
-(define-line "FAILURES" (session (name :token "an experiment that has been run here, or a directory")
+(define-line "FAILURES" (session (name :token "a directory, or an experiment that was run here")
                                  (condition :token "a part of a condition's name" :optional))
     (:running)
     "Show what went wrong in the trials of an experiment, by condition and reason, with a line that

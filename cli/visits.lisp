@@ -56,7 +56,8 @@
 (defun step-visit (visit count)
   "Let COUNT more ticks pass before the next line."
   (check-visit-goes-on visit)
-  (unless (whole-p count 1) (reject-line "N cannot be ~D. Give a number of ticks, 1 or more." count))
+  (unless (whole-p count 1)
+    (reject-line "N cannot be ~D. Give a number of ticks, from 1 to 1e9." count))
   (setf (visit-running-p visit) nil
         (visit-stepped-p visit) t)
   (incf (visit-steps visit) count))
@@ -68,8 +69,8 @@
         (t "paused")))
 
 (defun leave-visit (session &optional (next #'values))
-  "Leave the trial that SESSION is in; then call NEXT, a function. Nobody hears what the trial has to
-say of that."
+  "Leave the trial that SESSION is in; then call NEXT, a function. Nobody hears what the trial has
+to say of that."
   (setf (visit-left-p (session-visit session)) t)
   (stop-listening session)
   (throw 'left-visit next))

@@ -8,9 +8,10 @@
 ;;; it does so aside: with the reader, printer and dice that he had outside, and the debugger.
 
 (defparameter *surroundings*
-  '(*package* *readtable* *random-state* *read-default-float-format* *read-base* *print-base*
-    *print-radix* *print-case* *print-pretty* *print-readably* *print-escape* *print-circle*
-    *print-length* *print-level* *print-array* *print-gensym* *asker*)
+  (list *lisps-dice*
+        '*package* '*readtable* '*read-default-float-format* '*read-base* '*print-base*
+        '*print-radix* '*print-case* '*print-pretty* '*print-readably* '*print-escape*
+        '*print-circle* '*print-length* '*print-level* '*print-array* '*print-gensym* '*asker*)
   "Variables that are one thing for a trial and another for who looks at it.")
 
 (defstruct (outside (:constructor make-outside (values hook)) (:copier nil))

@@ -32,7 +32,10 @@
   experiment-p "True of an experiment."
   experiment-name "Return the symbol that the experiment is called."
   experiment-conditions "Return a list of the experiment's conditions."
-  experiment-trials "Return how many trials of each condition there are unless somebody says.")
+  experiment-trials "Return how many trials of each condition there are unless somebody says."
+  experiment-documentation "Return what the experiment asks, a string, or NIL."
+  experiment-limit "Return how many ticks a trial of the experiment has at most."
+  condition-name "Return what the condition is called, a string.")
 
 (defmethod print-object ((experiment experiment) stream)
   (print-unreadable-object (experiment stream :type t)
@@ -77,8 +80,7 @@ PARAMETERS, lists (name value), that all have."
 (addition find-condition)
 (defun find-condition (experiment designator)
   "Return the condition of EXPERIMENT, or of the one so named, that DESIGNATOR means: a condition,
-its number, from 1, or what it is called, as far as that is unambiguous. Signals UNKNOWN-NAME, and
-MISUSE if it could be several."
+its number, from 1, or what it is called, as far as that is unambiguous. Signals UNKNOWN-NAME."
   (let* ((conditions (experiment-conditions (find-experiment experiment)))
          (text (if (typep designator '(or symbol string)) (string designator) ""))
          (called (and (string/= text "")
@@ -90,13 +92,10 @@ MISUSE if it could be several."
     (cond ((member designator conditions) designator)
           ((and (integerp designator) (<= 1 designator (length conditions)))
            (nth (1- designator) conditions))
-          ((rest called)
-           (reject-use "~A could be the condition ~{~A~#[~; or ~:;, ~]~}. Say more of it." text
-                       (mapcar #'condition-name called)))
-          (called (first called))
+          ((= 1 (length called)) (first called))
           (t (reject-name "condition" (if (symbolp designator) designator
                                           (princ-to-string designator))
-                          (mapcar #'condition-name conditions))))))
+                          (mapcar #'condition-name (or called conditions)))))))
 
 ;;; Trials.
 

@@ -78,8 +78,8 @@ names; all if it is NIL. Signals UNKNOWN-NAME."
 
 (addition trial-failures)
 (defun trial-failures (results &optional condition)
-  "Return what went wrong in RESULTS (results, an experiment that has been run here, or the name of a
-directory), or in those of CONDITION, a string or symbol that is a part of its name: a list of
+  "Return what went wrong in RESULTS (results, an experiment that has been run here, or the name of
+a directory), or in those of CONDITION, a string or symbol that is a part of its name: a list of
 plists :condition :outcome :reason :error :count :share (of the condition's trials) :trials (their
 numbers), in the order of conditions and then of counts. Errors in code that let its trial go on
 count, too. REPLAY-TRIAL opens one. Signals MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."

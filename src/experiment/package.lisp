@@ -26,9 +26,9 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
   ;; lines, running, merging, workers
   (:export #:damaged-table #:run-experiment #:merge-results #:processors)
   ;; aside, replaying, failures
-  (:export #:run-again #:call-until-error #:call-aside #:await-time #:replay-trial #:row-of-trial #:row-differences
-           #:prepare-condition #:trial-failures #:print-failures)
+  (:export #:run-again #:call-until-error #:call-aside #:await-time #:replay-trial
+           #:row-of-trial #:row-differences #:prepare-condition #:measured
+           #:trial-failures #:print-failures)
   ;; what the prompt shows
   (:export #:condition-name #:experiment-limit #:experiment-documentation #:trial-seed
-           #:result-outcome #:result-reason #:result-ticks #:result-digest #:result-error
-           #:measured))
+           #:result-outcome #:result-reason #:result-ticks #:result-error))

@@ -126,8 +126,8 @@ there is none."
                        (look-around replaying)))))
 
 (defun run-comparing (replaying directory function)
-  "Call FUNCTION, which runs the trial of REPLAYING. Return its result, and in what that differs from
-the row in DIRECTORY, if that is given."
+  "Call FUNCTION, which runs the trial of REPLAYING. Return its result, and in what that differs
+from the row in DIRECTORY, if that is given."
   (let* ((experiment (replaying-experiment replaying))
          (condition (replaying-condition replaying))
          (parts (and directory (prepare-condition experiment condition)))

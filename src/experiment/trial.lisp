@@ -19,6 +19,12 @@
   (digest nil :type (or null integer))
   (error "" :type string))
 
+(document-functions
+  result-outcome "Return \"success\", \"failure\", \"limit\" or \"error\"."
+  result-reason "Return why the trial failed, a word or two, or an empty string."
+  result-ticks "Return how many ticks passed in the trial."
+  result-error "Return the text of the first error in the trial, or an empty string.")
+
 ;;; Ticks. Who asks for more than there are is left.
 
 (defun limit-gate (limit next)
