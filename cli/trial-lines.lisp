@@ -101,16 +101,17 @@
   (setf (visit-interrupted-p visit) t)
   (format (session-console session)
           "~&Interrupted: the trial pauses at its next tick. Control-C leaves it.~%")
+  (finish-output (session-console session))
   (invoke-restart restart))
 
 (defun call-pausable (session visit function)
-  "Call FUNCTION. If the user presses control C while ticks pass in VISIT, it pauses at the next
-one; if that does not come, and he does so again, it is left."
+  "Call FUNCTION. If somebody sits at SESSION and presses control C while ticks pass in VISIT, it
+pauses at the next one; if that does not come, and he does so again, it is left."
   (flet ((heed (condition)
            (let ((restart (find-restart 'go-on condition)))
-             (if (or (null restart) (session-batch-p session) (visit-interrupted-p visit))
-                 (setf (visit-left-p visit) t)
-                 (pause-soon session visit restart)))))
+             (if (and restart (terminal-p session) (not (visit-interrupted-p visit)))
+                 (pause-soon session visit restart)
+                 (setf (visit-left-p visit) t)))))
     (handler-bind ((user-interrupt #'heed))
       (funcall function))))
 

@@ -82,9 +82,14 @@
   (is-true (has-words-p (complaint "trial off") "in no trial")))
 
 (test trial.is-interrupted-by-control-c
-  (let ((text (joined (type-lines '("trial interrupting all 1" "step 6" "(+ 40 2)" "resume")))))
+  (let ((text (joined (type-at-terminal "trial interrupting all 1" "step 6" "(+ 40 2)" "resume"))))
     (is-true (has-words-p text "Interrupted: the trial pauses at its next tick" "Tick 3." "42"
                           "over at tick 7: success")))
+  (let ((text (joined (type-at-terminal "trial interrupting-twice all 1" "step 6" "(+ 40 2)"
+                                        "trial off"))))
+    (is-true (has-words-p text "The trial has been left." "Interrupted." "42" "in no trial")))
+  (let ((text (joined (type-lines '("trial interrupting all 1" "step 6" "(+ 40 2)")))))
+    (is-true (has-words-p text "The trial has been left." "Interrupted." "42")))
   (is (= 130 (catch 'cli::leave
                (type-batch "trial interrupting all 1" "step 6" "(+ 40 2)")))))
 
@@ -108,7 +113,7 @@
        (is-true (has-words-p (joined (type-batch (string-trim " " line) "resume"))
                              "over at tick 3: error" "This is loud."))
        (is (= 3 (length (type-batch "failures try loudly"))))
-       (is-true (has-words-p (complaint "failures interr") "has not been run"))))))
+       (is-true (has-words-p (complaint "failures interrupting") "has not been run"))))))
 
 (test trial.stops-a-live-prompt-meanwhile
   (let ((lines (type-live '("pause" "(simulation-tick)" "trial trying well 1" "resume" "trial off"

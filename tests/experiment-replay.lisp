@@ -29,6 +29,13 @@
   (run:run-ticks 4)
   t)
 
+(defun interrupt-oneself-twice ()
+  "Do as control C does twice before a tick passes."
+  (run:run-ticks 3)
+  (loop repeat 2
+        do (with-simple-restart (cli::go-on "Go on.") (error 'sb-sys:interactive-interrupt)))
+  t)
+
 (defun try (way)
   "Do what WAY says in the current simulation, in a trial."
   (ecase way
@@ -55,6 +62,10 @@
 (experiment:defexperiment interrupting
   (:robots ars-user::butler)
   (:run (interrupt-oneself)))
+
+(experiment:defexperiment interrupting-twice
+  (:robots ars-user::butler)
+  (:run (interrupt-oneself-twice)))
 
 (defun call-with-trials (function)
   "Call FUNCTION with the results of TRYING and the directory they are in."
