@@ -137,7 +137,8 @@
                  (:file "rounds") (:file "stopping") (:file "results") (:file "description")
                  (:file "running") (:file "merging") (:file "differences") (:file "contrasts")
                  (:file "verdicts") (:file "comparing") (:file "comparing-versions")
-                 (:file "comparison-picture")))
+                 (:file "comparison-picture") (:file "aside") (:file "replaying")
+                 (:file "failures")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.
@@ -170,9 +171,9 @@
                  (:file "console") (:file "user-names") (:file "session") (:file "line")
                  (:file "arguments") (:file "layout") (:file "errands") (:file "robot-lines")
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
-                 (:file "status-lines") (:file "running-lines") (:file "loading")
+                 (:file "status-lines") (:file "visits") (:file "running-lines") (:file "loading")
                  (:file "worlds") (:file "world-lines") (:file "plans") (:file "plan-lines")
-                 (:file "plan-views") (:file "picture-lines") (:file "debugger")
+                 (:file "plan-views") (:file "picture-lines") (:file "trial-lines") (:file "debugger")
                  (:file "prompt") (:file "options") (:file "main")))))
 
 (defsystem "ars-magna/clim"
@@ -235,7 +236,8 @@
                  (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
                  (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
-                 (:file "cli-debugger") (:file "cli-files") (:file "cli-plan-tree")
+                 (:file "cli-debugger") (:file "experiment-replay")
+                 (:file "cli-trials") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
                  (:file "rpl-seeing-truth")
                  (:file "kinds") (:file "digests") (:file "runs") (:file "outliving")

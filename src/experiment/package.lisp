@@ -5,13 +5,15 @@
 on with, on as many cores and machines as there are. Names cl-csv and lparallel.")
   (:use :cl :ars-magna.base :ars-magna.statistics :ars-magna.run)
   (:import-from :ars-magna.plots #:difference-chart #:save-chart)
-  (:import-from :ars-magna.time #:current-simulation)
+  (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
+                #:seconds-now #:check-rate)
   (:import-from :ars-magna.robot #:find-blueprint #:all-blueprints #:blueprint-name #:blueprint-map)
   (:import-from :ars-magna.rpl.tasks
                 #:procedure #:procedure-p #:procedure-source
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
-  (:import-from :ars-magna.rpl-robot #:*plan-limit*)
+  (:import-from :ars-magna.rpl-robot #:*plan-limit* #:*trace-plans*)
+  (:import-from :ars-magna.display #:keep-history #:open-display #:*display-opener*)
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
@@ -35,4 +37,10 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:comparison-p #:comparison-contrasts #:comparison-verdicts #:print-comparison
            #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture)
   ;; lines, running, merging, workers
-  (:export #:damaged-table #:run-experiment #:merge-results #:processors))
+  (:export #:damaged-table #:run-experiment #:merge-results #:processors)
+  ;; aside, replaying, failures
+  (:export #:run-again #:call-until-error #:call-aside #:await-time #:replay-trial
+           #:row-of-trial #:row-differences #:prepare-condition #:measured
+           #:trial-failures #:print-failures)
+  ;; what the prompt shows
+  (:export #:experiment-documentation #:trial-seed))
