@@ -131,7 +131,7 @@
                           (("0.5") ,@(times 7 '("success" :ticks 1061 :values (3)))
                                    ("error" :error "boom"))))
     (is (equal
-         '("made-up: 2 conditions, 8 trials each" ""
+         `("made-up: 2 conditions, 8 trials each" ""
            "  noise  success %      errors  ticks of successes, median  way, mean"
            "      0  75 (41 to 93)       0    40 (  40 to   40)         2.500 (1.726 to 3.274)  n=8"
            "    0.5  88 (53 to 98)       1  1061 (1061 to 1061)         3.000 (3.000 to 3.000)  n=7"
@@ -142,7 +142,8 @@
            "  1  boom: noise=0.5 (1)"
            "     (replay-trial 'made-up \"noise=0.5\" 8)"
            ""
-           "In parentheses 95 % intervals: Wilson's of rates, by ranks of medians, Student's of means."
+           ,(concatenate 'string "In parentheses 95 % intervals: Wilson's of rates, by ranks of "
+                         "medians, Student's of means.")
            "A trial that broke off with an error counts as one that did not succeed.")
          (text-lines (report-text results))))))
 

@@ -13,7 +13,8 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
   (:import-from :ars-magna.display
                 #:take-snapshot #:snapshot-map #:draw-terrain #:draw-movers #:picture-kind)
   (:import-from :ars-magna.world #:map-width #:map-height)
-  (:import-from :ars-magna.time #:current-simulation)
+  (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
+                #:seconds-now #:check-rate)
   (:import-from :ars-magna.robot
                 #:robot-x #:robot-y #:find-blueprint #:all-blueprints #:blueprint-name
                 #:blueprint-map)
@@ -21,7 +22,8 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
                 #:procedure #:procedure-p #:procedure-source
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
-  (:import-from :ars-magna.rpl-robot #:*plan-limit*)
+  (:import-from :ars-magna.rpl-robot #:*plan-limit* #:*trace-plans*)
+  (:import-from :ars-magna.display #:keep-history #:open-display #:*display-opener*)
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
@@ -46,6 +48,12 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture)
   ;; lines, running, merging, workers
   (:export #:damaged-table #:run-experiment #:merge-results #:processors)
+  ;; aside, replaying, failures
+  (:export #:run-again #:call-until-error #:call-aside #:await-time #:replay-trial
+           #:row-of-trial #:row-differences #:prepare-condition #:measured
+           #:trial-failures #:print-failures)
+  ;; what the prompt shows
+  (:export #:experiment-documentation #:trial-seed)
   ;; estimates, summary, report
   (:export #:estimate-p #:estimate-name #:estimate-kind #:estimate-count #:estimate-value
            #:estimate-low #:estimate-high #:estimate-left-out #:estimate-texts
