@@ -84,7 +84,12 @@
 (test pictures.leave-out-what-there-is-nothing-of
   (with-report (results '("noise") '("m") `((("0") ,@(times 9 '("failure" :values ("word"))))))
     (with-directories (pictures)
-      (is (equal '("success.svg") (picture-names results pictures))))))
+      (is (equal '("success.svg") (picture-names results pictures)))))
+  (with-report (results '("noise") '() `((("0") ,@(times 9 '("failure" :ticks 7)))
+                                         (("1") ,@(times 9 '("failure" :ticks 8)))))
+    (with-directories (pictures)
+      (is (equal '("success.svg" "difference-in-success-by-noise.svg")
+                 (picture-names results pictures))))))
 
 (test pictures.of-anything-are-drawn
   (flet ((check (factors measures conditions)

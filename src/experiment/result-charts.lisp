@@ -146,10 +146,11 @@ estimate for a sample."
 
 (defconstant +most-bands+ 4 "How many curves have bands at most; more would hide each other.")
 
-(defun survival-words (band-p limit)
-  (format nil "Kaplan and Meier's estimate~:[~;, with bands of 95 %~]. What failed, broke off or ~
-               came to the limit of ~D ticks is never done."
-          band-p limit))
+(defun survival-words (band-p results)
+  (format nil "Kaplan and Meier's estimate~@[, with bands of ~A~]. What failed, broke off or came ~
+               to the limit of ~D ticks is never done."
+          (and band-p (if (results-until results) "the last look's confidence" "95 %"))
+          (limit-of results)))
 
 (defun survival-picture (results panel horizon)
   (let ((band-p (<= (length (panel-series panel)) +most-bands+)))
@@ -159,7 +160,7 @@ estimate for a sample."
                            collect (curve-of name sample horizon (confidence-for results sample)
                                              band-p))
                      :title (title-of results)
-                     :subtitle (subtitle panel (survival-words band-p (limit-of results)))
+                     :subtitle (subtitle panel (survival-words band-p results))
                      :x-label "ticks" :y-label "trials not yet done"
                      :risk-label "trials not yet done"))))
 
@@ -189,12 +190,16 @@ can be, the second with its first value."
                                    (compared-names 'save-result-pictures (list results) nil)
                                    nil))))
 
+(defun contrasts-in (measure comparison)
+  "Return those contrasts of COMPARISON that say something of MEASURE."
+  (remove-if-not (lambda (contrast)
+                   (let ((difference (difference-called measure contrast)))
+                     (or (same-runs-p contrast)
+                         (and difference (paired-estimate difference)))))
+                 (comparison-contrasts comparison)))
+
 (defun difference-charts (comparison measure name title)
-  (loop with all = (remove-if-not (lambda (contrast)
-                                    (or (same-runs-p contrast)
-                                        (difference-called measure contrast)))
-                                  (comparison-contrasts comparison))
-        with chunks = (in-chunks all +most-rows+)
+  (loop with chunks = (in-chunks (contrasts-in measure comparison) +most-rows+)
         for chunk in chunks
         for number from 1
         collect (make-picture name (and (rest chunks) (princ-to-string number))

@@ -9,7 +9,7 @@
 
 (defun scale-for (width)
   "Return how many pixels a metre has in a picture of WIDTH metres."
-  (clamp (floor 720 width) 4 20))
+  (clamp (floor 720 width) 4 40))
 
 (defun way-opacity (count)
   "Return how much one of COUNT ways hides what is below."
