@@ -123,7 +123,7 @@
                  (:file "fingerprint") (:file "row") (:file "lines")
                  (:file "directory") (:file "workers") (:file "progress") (:file "rounds")
                  (:file "temporary") (:file "stopping") (:file "results") (:file "description")
-                 (:file "running") (:file "merging")))
+                 (:file "running") (:file "merging") (:file "shards")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.
@@ -158,7 +158,10 @@
                  (:file "status-lines") (:file "running-lines") (:file "loading")
                  (:file "worlds") (:file "world-lines") (:file "plans") (:file "plan-lines")
                  (:file "plan-views") (:file "picture-lines") (:file "debugger")
-                 (:file "prompt") (:file "options") (:file "main")))))
+                 (:file "prompt") (:file "options") (:file "texts") (:file "report")
+                 (:file "experiments") (:file "executable") (:file "spreading")
+                 (:file "experiment-command") (:file "table-commands") (:file "commands")
+                 (:file "main")))))
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."

@@ -27,6 +27,12 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:plan-ending-p #:begin-plan #:end-plan #:plans #:print-plans
                 #:call-with-plans-in-use)
   (:import-from :ars-magna.rpl-pictures #:save-plan-timeline)
+  (:import-from :ars-magna.experiment
+                #:all-experiments #:experiment-name #:experiment-conditions #:experiment-trials
+                #:run-experiment #:merge-results #:processors #:settle-fingerprints
+                #:results-samples #:results-directory #:sample-condition #:sample-trials
+                #:sample-outcomes #:sample-errors
+                #:shard-directory #:directories-with-rows #:count-rows #:missing-shards)
   ;; trivial-gray-streams
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream
            #:stream-line-column #:stream-write-char #:stream-write-string

@@ -21,4 +21,7 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:sample-trials #:sample-outcomes #:sample-reasons #:sample-ticks #:sample-errors
            #:sample-measure)
   ;; lines, running, merging, workers
-  (:export #:damaged-table #:run-experiment #:merge-results #:processors))
+  (:export #:damaged-table #:run-experiment #:merge-results #:processors)
+  ;; fingerprint, shards
+  (:export #:settle-fingerprints #:shard-directory #:directories-with-rows #:count-rows
+           #:missing-shards))
