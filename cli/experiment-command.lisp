@@ -8,6 +8,9 @@
 (defun say (control &rest arguments)
   "Tell the user something beside what he has asked for."
   (let ((output (text-output 2)))
+    ;; A line that tells of progress may stand there.
+    (when (interactive-stream-p output)
+      (format output "~C~C[K" #\Return #\Escape))
     (format output "ars-magna: ~?~%" control arguments)
     (finish-output output)))
 

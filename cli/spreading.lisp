@@ -4,24 +4,26 @@
 
 ;;; All that is done here is to write a script, and this program with the user's experiment, into
 ;;; the directory of the results, and to start the script: it can be read, changed and started by
-;;; itself. Shards are as many as make starting one cheap beside what it does, and no more than
-;;; there may be tasks in an array of Slurm's; how many there are depends on nothing but the
-;;; experiment, so that starting again finds the same ones.
+;;; itself. Shards are so large that starting one, a fifth of a second, is cheap beside what it does,
+;;; but enough for several cores; and no more than there may be tasks in an array of Slurm's. How
+;;; many they are depends on nothing but the experiment, so that starting again finds the same ones.
 
-(defparameter *trials-in-shard* '(("run.sh" 500) ("job.sh" 5000))
-  "For how many trials there is a shard in each kind of script.")
+(defparameter *shards-of-scripts* '(("run.sh" 500 16) ("job.sh" 5000 1))
+  "Lists (script trials least): for how many trials there is a shard, but at least so many shards.")
 
 (defconstant +most-shards+ 1000 "How many shards there are at most unless somebody says.")
+
+(defun default-shards (experiment trials script)
+  "Return how many shards TRIALS trials of each condition of EXPERIMENT make for SCRIPT."
+  (destructuring-bind (size least)
+      (rest (assoc script *shards-of-scripts* :test #'string=))
+    (min trials
+         (clamp (ceiling (* trials (length (experiment-conditions experiment))) size)
+                least +most-shards+))))
 
 (defun trials-of (experiment options)
   "Return how many trials of each condition of EXPERIMENT OPTIONS want."
   (option-value :trials options (experiment-trials experiment)))
-
-(defun default-shards (experiment trials script)
-  "Return how many shards TRIALS trials of each condition of EXPERIMENT make for SCRIPT."
-  (let ((all (* trials (length (experiment-conditions experiment)))))
-    (clamp (ceiling all (second (assoc script *trials-in-shard* :test #'string=)))
-           1 (min trials +most-shards+))))
 
 (defun place-for (directory)
   "Return what the directory for DIRECTORY is called on other machines."
