@@ -19,11 +19,17 @@
                  (:file "variables") (:file "definitions") (:file "user-macros")
                  (:file "registry") (:file "own-definitions") (:file "messages")
                  (:file "askers") (:file "user-code") (:file "parameters") (:file "physics")
+                 (:file "parameters-of-runs")
                  (:file "kinds") (:file "digesting") (:file "copying") (:file "given")
                  (:file "argument-types") (:file "operators")))
    (:module "src/geometry" :serial t
     :components ((:file "package") (:file "types") (:file "operands") (:file "points")
                  (:file "intervals") (:file "angles")))
+   (:module "src/statistics" :serial t
+    :components ((:file "package") (:file "arguments") (:file "fractions") (:file "gamma")
+                 (:file "normal") (:file "beta") (:file "samples") (:file "proportions")
+                 (:file "means") (:file "bootstrap") (:file "pairs") (:file "permutation")
+                 (:file "several") (:file "survival") (:file "sequential")))
    (:module "src/nisp" :serial t
     :components ((:file "package") (:file "control") (:file "typed-lists") (:file "binding")
                  (:file "types") (:file "slots") (:file "values") (:file "matching")
@@ -68,11 +74,11 @@
                  (:file "replaced-maps") (:file "journal-text") (:file "replay")))
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "gcontext") (:file "canvas")
-                 (:file "drawing") (:file "svg") (:file "package") (:file "text-map")
-                 (:file "history") (:file "snapshot") (:file "subjects") (:file "contents")
-                 (:file "terrain") (:file "place-marks") (:file "world-display")
-                 (:file "details") (:file "displays") (:file "picture") (:file "animation")
-                 (:file "opening")))
+                 (:file "drawing") (:file "text") (:file "svg") (:file "package")
+                 (:file "text-map") (:file "history") (:file "snapshot") (:file "subjects")
+                 (:file "contents") (:file "terrain") (:file "place-marks")
+                 (:file "world-display") (:file "details") (:file "displays")
+                 (:file "picture") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
     :components ((:file "package") (:file "home") (:file "fluent") (:file "network")
                  (:file "known") (:file "propagation") (:file "views") (:file "repair")
@@ -116,13 +122,19 @@
    (:module "rpl/pictures" :serial t
     :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")
                  (:file "saving")))
+   (:module "src/plots" :serial t
+    :components ((:file "package") (:file "figures") (:file "axis") (:file "looks")
+                 (:file "words") (:file "page") (:file "series") (:file "legend")
+                 (:file "labels") (:file "plane") (:file "line-chart") (:file "curves")
+                 (:file "survival-chart") (:file "rows") (:file "difference-chart")
+                 (:file "measure-chart") (:file "saving")))
    (:module "src/experiment" :serial t
     :components ((:file "package") (:file "values") (:file "csv") (:file "condition")
                  (:file "experiment") (:file "clauses") (:file "defexperiment")
                  (:file "outcome") (:file "trial") (:file "version") (:file "reaching")
                  (:file "fingerprint") (:file "row") (:file "lines")
-                 (:file "directory") (:file "workers") (:file "progress") (:file "rounds")
-                 (:file "temporary") (:file "stopping") (:file "results") (:file "description")
+                 (:file "directory") (:file "workers") (:file "stopwatch") (:file "progress")
+                 (:file "rounds") (:file "stopping") (:file "results") (:file "description")
                  (:file "running") (:file "merging") (:file "shards")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
@@ -141,9 +153,10 @@
   ((:module "worlds" :serial t
     :components ((:file "package") (:file "prototypes") (:file "kickers")
                  (:file "manipulations") (:file "watson") (:file "office") (:file "hall")
-                 (:file "tiny") (:file "wayfinding") (:file "plans-reckoning")
+                 (:file "tiny") (:file "charts") (:file "wayfinding") (:file "plans-reckoning")
                  (:file "plans-moving") (:file "plans-looking") (:file "plans-handling")
-                 (:file "plans-errands") (:file "errand")))))
+                 (:file "plans-errands") (:file "trials") (:file "plans-searching")
+                 (:file "errand") (:file "experiments")))))
 
 (defsystem "ars-magna/cli"
   :description "The prompt Robot>."
@@ -195,7 +208,10 @@
                  (:file "looking-cameras") (:file "looking-approach") (:file "corners")
                  (:file "approaching") (:file "handling") (:file "handling-inside")
                  (:file "handling-bins") (:file "handling-chance") (:file "manipulations")
-                 (:file "shipped-manipulations") (:file "statistics") (:file "rpl-fluents")
+                 (:file "shipped-manipulations") (:file "statistics")
+                 (:file "inference-tables") (:file "inference-samples")
+                 (:file "inference-comparing") (:file "inference-survival")
+                 (:file "inference-coverage") (:file "rpl-fluents")
                  (:file "rpl-compiler") (:file "rpl-plans") (:file "rpl-policies")
                  (:file "rpl-failures") (:file "rpl-engine") (:file "rpl-control")
                  (:file "rpl-orders") (:file "rpl-valves") (:file "rpl-stress")
@@ -207,7 +223,9 @@
                  (:file "rpl-left") (:file "rpl-robot-live") (:file "rpl-gone")
                  (:file "rpl-text") (:file "rpl-text-places") (:file "rpl-examples-robot")
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
-                 (:file "display") (:file "display-files") (:file "clim") (:file "cli")
+                 (:file "worlds-searching")
+                 (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
+                 (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
@@ -237,7 +255,7 @@
                  (:file "manual-c") (:file "manual-c-plans") (:file "manual-d")
                  (:file "manual-e") (:file "hostile-numbers") (:file "ownership")
                  (:file "users-hands") (:file "src-readme") (:file "rpl-readme")
-                 (:file "tests-readme") (:file "architecture") (:file "isolation")
+                 (:file "tests-readme") (:file "architecture") (:file "experiments") (:file "experiments-tables") (:file "isolation")
                  (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))

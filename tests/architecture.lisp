@@ -126,7 +126,7 @@ project's systems has been loaded.")
 
 (defun unit-of (name)
   "Return what has one door: NAME's package, or NAME itself if it is in one of many ideas."
-  (if (find (package-part name) '("sb-ext" "sb-sys" "sb-kernel" "sb-c" "sb-int")
+  (if (find (package-part name) '("sb-ext" "sb-sys" "sb-kernel" "sb-vm" "sb-c" "sb-int")
             :test #'string=)
       name
       (package-part name)))
@@ -153,9 +153,10 @@ project's systems has been loaded.")
   (is (equal '() (implementation-names "(usb-port x)"))))
 
 (test chance-and-clock.come-from-where-they-should
-  (is (null (files-mentioning '("(random " "*random-state*" "(sleep ")
-                              '("src/" "rpl/" "cli/" "worlds/"))))
-  (is (equal '("src/time/pacing.lisp")
+  (is (null (files-mentioning '("(random " "(sleep ") '("src/" "rpl/" "cli/" "worlds/"))))
+  (is (equal '("src/base/random.lisp")
+             (files-mentioning '("*random-state*") '("src/" "rpl/" "cli/" "worlds/"))))
+  (is (equal '("src/experiment/stopwatch.lisp" "src/time/pacing.lisp")
              (files-mentioning '("get-internal-real-time" "get-universal-time"
                                  "get-time-of-day" "get-internal-run-time")
                                '("src/" "rpl/" "worlds/")))))

@@ -193,3 +193,19 @@
       (driver:begin-plan 'listen-ahead)
       (is (= alone (run:state-digest)))
       (is (/= with-plans (run:state-digest time:*simulation* t))))))
+
+;;; Names.
+
+(defun digest-of (datum)
+  (base:digest-value (base:digest-add (base:make-digest) datum)))
+
+(test digest.names-count-as-what-they-are-called
+  (loop for (name other) in '(("RED" "REED") ("ÄTNA" "ATNA"))
+        for growing = (make-array 20 :element-type 'character :adjustable t :fill-pointer 0)
+        do (loop for char across name do (vector-push-extend (char-downcase char) growing))
+           (dolist (same (list (intern name :ars-magna.tests) (make-symbol (string-downcase name))
+                               (string-downcase name) growing))
+             (is (= (digest-of name) (digest-of same))))
+           (is (/= (digest-of name) (digest-of other))))
+  (is (= (digest-of nil) (digest-of "nil")))
+  (is (= (digest-of "red") (digest-of (coerce "red" 'simple-base-string)))))

@@ -8,7 +8,8 @@ layers' symbols are qualified by short local nicknames: geo:add, nisp:matchq, ro
 (in-package :ars-magna.tests)
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
-  (loop for (nickname layer) in '((:base "BASE") (:geo "GEOMETRY") (:nisp "NISP")
+  (loop for (nickname layer) in '((:base "BASE") (:geo "GEOMETRY") (:stats "STATISTICS")
+                                  (:nisp "NISP")
                                   (:world "WORLD") (:time "TIME") (:robot "ROBOT")
                                   (:command "COMMAND") (:run "RUN") (:rpl "RPL")
                                   (:fluents "RPL.FLUENTS") (:tasks "RPL.TASKS")

@@ -105,6 +105,39 @@
     (is (not (member '(5 4) round :test #'equal)))
     (is (not (member '(5 5) round :test #'equal)))))
 
+(defun corners-of (map)
+  "Return points in all parts of MAP."
+  (loop for x from 5 below (world:map-width map) by 28
+        append (loop for y from 7 below (world:map-height map) by 23
+                     collect (list x y))))
+
+(test find-way.does-not-depend-on-what-was-asked-before
+  (let* ((map (world:find-map 'office))
+         (chart (ars-worlds:make-chart map))
+         (points (corners-of map))
+         (barred '(((62 38) 50) ((62 39) 50))))
+    (is (< 10 (length points)))
+    (loop for (start goal) on points while goal
+          do (let ((way (ars-worlds:find-way chart start goal)))
+               (is (< 10 (length way)))
+               (is (equal (way-in 'office start goal barred)
+                          (ars-worlds:find-way chart start goal barred)))
+               (is (equal way (ars-worlds:find-way chart start goal)))
+               (is (equal way (way-in 'office start goal)))))))
+
+(test charts.are-shared-until-their-map-changes
+  (base:with-own-definitions ()
+    (flet ((chart () (ars-worlds:chart-of (world:find-map 'split))))
+      (let ((chart (chart)))
+        (is (eq chart (chart)))
+        (world:rebuild-map 'split)
+        (is (not (eq chart (chart))))
+        (setf chart (chart))
+        (is (eq chart (chart)))
+        (world:defmap split (9 5))
+        (is (not (eq chart (chart))))
+        (is (< 4 (length (ars-worlds:find-way (chart) '(2 2) '(6 2)))))))))
+
 ;;; Reckoning.
 
 (defun believed-error (me robot)

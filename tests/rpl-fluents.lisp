@@ -253,3 +253,9 @@
     (is (typep failure 'rpl:lisp-failure))
     (is (typep (rpl:lisp-failure-condition failure) 'type-error))
     (is (equal '(rpl:wait-for (< f 0)) (rpl:failure-form failure)))))
+
+(test fluents.of-a-vector-are-numbered
+  (let ((fluents (rpl:create-fluent-vector "dial" 12)))
+    (is (equal '("dial 0" "dial 9" "dial 10" "dial 11")
+               (loop for index in '(0 9 10 11)
+                     collect (rpl:fluent-name (svref fluents index)))))))

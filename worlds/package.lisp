@@ -15,8 +15,8 @@ and programs for the robots there. Written as users write theirs.")
   (:export #:lock #:unlock #:switch-on #:switch-off)
   ;; worlds and their robots
   (:export #:watson #:robbie #:office #:marvin #:gofer #:hall #:porter #:tiny #:dot)
-  ;; wayfinding
-  (:export #:chart #:make-chart #:find-way #:next-step)
+  ;; charts, wayfinding
+  (:export #:chart #:make-chart #:chart-of #:find-way #:next-step)
   ;; plans: reckoning
   (:export #:reckoning #:here #:begin-reckoning #:reckon #:distance-left #:angle-towards
            #:point-ahead)
@@ -35,6 +35,12 @@ and programs for the robots there. Written as users write theirs.")
            #:withdraw-camera #:put-thing-down #:free-hand #:stowed-p)
   ;; plans: errands
   (:export #:find-and-take #:fetch-thing #:tidy-once #:tidy-room)
+  ;; trials
+  (:export #:dice-for #:hide-thing #:make-restless #:near-p #:beside-p)
+  ;; plans: searching
+  (:export #:watson-lookouts* #:look-near-and-far #:look-round #:make-out #:find-from-here
+           #:go-and-look #:travel-watching #:look-on-the-way #:search-by-chance #:search-nearest
+           #:search-watchfully)
   ;; an errand with continuations
   (:export #:run-errand))
 

@@ -8,12 +8,13 @@
 (in-readtable :nisp)
 
 (defstruct (reckoning (:constructor make-reckoning (chart odometer x y heading)) (:copier nil))
-  "Where a robot believes to be on its map, and which cells it found barred."
+  "Where a robot believes to be on its map, how far it drove, and which cells it found barred."
   (chart nil :type chart :read-only t)
   (odometer nil :read-only t)
   (x 0d0 :type real)
   (y 0d0 :type real)
   (heading 0d0 :type real)
+  (driven 0d0 :type real)
   ;; A list of (cell cost until): what the cell costs more until that tick.
   (barred '() :type list)
   (trouble 0 :type fixnum))
@@ -25,7 +26,7 @@
 (defun begin-reckoning (start)
   "Return a reckoning of the plans' robot, which is at START, a list (x y heading)."
   (destructuring-bind (x y heading) start
-    (make-reckoning (make-chart (ars-magna.world:world-map (robot-world (rpl-robot))))
+    (make-reckoning (chart-of (ars-magna.world:world-map (robot-world (rpl-robot))))
                     (rpl-new-odometer 'reckoning)
                     x y heading)))
 
@@ -39,6 +40,7 @@
     (incf (reckoning-x me) (- (* cos (pt-x moved)) (* sin (pt-y moved))))
     (incf (reckoning-y me) (+ (* sin (pt-x moved)) (* cos (pt-y moved))))
     (incf (reckoning-heading me) turned)
+    (incf (reckoning-driven me) (length-of (pt-x moved) (pt-y moved)))
     (list (reckoning-x me) (reckoning-y me))))
 
 (defun distance-left (me point)

@@ -2,157 +2,125 @@
 
 ;;; Good for plans that drive through doorways. What is used is what a robot may know: the walls
 ;;; and places of its map, and which cells it found barred. Costs are whole numbers, so that ways
-;;; are the same everywhere. Points and cells are lists (x y).
+;;; are the same everywhere.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
 
-(defstruct (chart (:constructor %make-chart (map costs)) (:copier nil))
-  "A map and what it costs to cross each of its cells, 0 for a wall."
-  (map nil :type map :read-only t)
-  (costs nil :type (simple-array fixnum (* *)) :read-only t))
-
-;;; The map.
-
-(defun length-of (dx dy)
-  "Return the length of the vector (DX,DY)."
-  (sqrt (+ (* dx dx) (* dy dy))))
-
-(defun cell-of (point)
-  "Return the cell in which POINT is."
-  (mapcar #'floor point))
-
-(defun middle-of (cell)
-  "Return the point in the middle of CELL."
-  (list (+ (first cell) .5) (+ (second cell) .5)))
-
-(defun free-p (map x y)
-  "True if the cell of MAP at (X,Y) is inside it and no wall."
-  (and (< -1 (floor x) (map-width map))
-       (< -1 (floor y) (map-height map))
-       (not (wall-at-p map x y))))
-
-(defun doorway-at (map x y)
-  "Return the place of MAP at (X,Y) if that is a doorway, or NIL."
-  (let ((place (and (free-p map x y)
-                    (ars-magna.world:cell-type (map-cell map x y)))))
-    (and place
-         (eq (ars-magna.world:place-type place) (find-place-type 'doorway))
-         place)))
-
-(defun wide-p (map x y)
-  "True if no wall of MAP is within three quarters of a metre of (X,Y), as to the axes."
-  (loop for dx in '(-.75 0 .75)
-        always (loop for dy in '(-.75 0 .75)
-                     always (free-p map (+ x dx) (+ y dy)))))
-
-(defun cell-cost (map x y)
-  (cond ((not (free-p map x y)) 0)
-        ((doorway-at map x y) 2)
-        ((wide-p map (+ x .5) (+ y .5)) 1)
-        (t 4)))
-
-(defun make-chart (map)
-  "Return a chart of MAP: to hug walls costs more than to keep away from them."
-  (let ((costs (make-array (list (map-width map) (map-height map)) :element-type 'fixnum)))
-    (dotimes (x (map-width map) (%make-chart map costs))
-      (dotimes (y (map-height map))
-        (setf (aref costs x y) (cell-cost map x y))))))
-
-(defun with-barred (chart barred)
-  "Return the costs of CHART and of BARRED, a list of (cell cost), together."
-  (let* ((costs (chart-costs chart))
-         (sums (make-array (array-dimensions costs) :element-type 'fixnum)))
-    (dotimes (index (array-total-size costs))
-      (setf (row-major-aref sums index) (row-major-aref costs index)))
-    (loop for ((x y) cost) in barred
-          when (and (array-in-bounds-p sums x y) (plusp (aref sums x y)))
-            do (incf (aref sums x y) cost))
-    sums))
-
-(defun nearest-free (map x y)
-  "Return the free cell of MAP nearest to (X,Y); NIL if there is none near."
-  (loop for radius from 0 to 5
-        do (loop for dx from (- radius) to radius
-                 do (loop for dy from (- radius) to radius
-                          when (free-p map (+ x dx) (+ y dy))
-                            do (return-from nearest-free
-                                 (cell-of (list (+ x dx) (+ y dy))))))))
-
-;;; Ways.
-
 (defconstant +most-cost+ 2000
   "More than any step from cell to cell may cost.")
 
-(defun neighbours (costs x y)
-  "Return a list of (x y cost) for the cells next to (X,Y): diagonally only where no wall juts in."
-  (declare (type (simple-array fixnum (* *)) costs) (type fixnum x y))
-  (flet ((cost (x y) (if (array-in-bounds-p costs x y) (aref costs x y) 0)))
-    (loop for (dx dy) of-type (fixnum fixnum)
-            in '((1 0) (0 1) (-1 0) (0 -1) (1 1) (-1 1) (-1 -1) (1 -1))
-          for straight = (zerop (* dx dy))
-          for cost of-type fixnum = (cost (+ x dx) (+ y dy))
-          when (and (plusp cost)
-                    (or straight
-                        (and (plusp (cost (+ x dx) y)) (plusp (cost x (+ y dy))))))
-            collect (list (+ x dx) (+ y dy) (* (if straight 10 14) cost)))))
+(defconstant +not-reached+ most-positive-fixnum
+  "The cost of ways that nobody has found.")
 
-(defun spread-costs (costs start goal)
-  "Return a table of what it costs to get to the cell GOAL from each that is no farther from it than
-START. Cells are taken in order of cost, from as many lists as a step may cost, used in turn."
-  (let ((totals (make-array (array-dimensions costs) :element-type 'fixnum :initial-element -1))
-        (waiting (make-array +most-cost+ :initial-element '())))
-    (push goal (aref waiting 0))
-    (loop with idle = 0
-          for total from 0
-          for here = (reverse (shiftf (aref waiting (mod total +most-cost+)) '()))
-          until (or (> idle +most-cost+) (plusp (aref totals (first start) (second start))))
-          do (setf idle (if here 0 (1+ idle)))
-             (loop for (x y) in here
-                   when (minusp (aref totals x y))
-                     do (setf (aref totals x y) total)
-                        (loop for (next-x next-y step) in (neighbours costs x y)
-                              when (minusp (aref totals next-x next-y))
-                                do (push (list next-x next-y)
-                                         (aref waiting (mod (+ total step) +most-cost+))))))
+(declaim (inline call-with-neighbours))
+(defun call-with-neighbours (function costs rows cell)
+  "Call FUNCTION with each cell next to CELL, a number, and the length of the step there: diagonally
+only where no wall juts in."
+  (declare (type costs costs) (type (unsigned-byte 31) cell) (type (integer 0 40000) rows))
+  (labels ((free-p (offset) (plusp (aref costs (+ cell offset))))
+           (straight (offset)
+             (when (free-p offset) (funcall function (+ cell offset) 10)))
+           (diagonal (dx dy)
+             (when (and (free-p (+ dx dy)) (free-p dx) (free-p dy))
+               (funcall function (+ cell dx dy) 14))))
+    (declare (inline free-p))
+    (straight rows)
+    (straight 1)
+    (straight (- rows))
+    (straight -1)
+    (diagonal rows 1)
+    (diagonal (- rows) 1)
+    (diagonal (- rows) -1)
+    (diagonal rows -1)))
+
+(defun spread-costs (costs rows goal)
+  "Return a table of what it costs to get to the cell GOAL from each. Cells are taken in order of
+cost, from as many lists as a step may cost, used in turn."
+  (declare (type costs costs) (type fixnum goal))
+  (let ((totals (make-array (length costs) :element-type 'fixnum :initial-element +not-reached+))
+        (waiting (make-array +most-cost+ :initial-element '()))
+        (count 0))
+    (declare (type fixnum count))
+    (flet ((reach (cell total)
+             (declare (type fixnum cell total))
+             (when (< total (aref totals cell))
+               (setf (aref totals cell) total)
+               (incf count)
+               (push cell (svref waiting (mod total +most-cost+))))))
+      (reach goal 0)
+      (loop for total of-type (unsigned-byte 60) from 0
+            do (dolist (cell (shiftf (svref waiting (mod total +most-cost+)) '()))
+                 (declare (type (unsigned-byte 31) cell))
+                 (decf count)
+                 ;; If not, it has been reached at a lower cost meanwhile.
+                 (when (= total (aref totals cell))
+                   (call-with-neighbours
+                    (lambda (next length)
+                      (reach next (+ total (* length (aref costs next)))))
+                    costs rows cell)))
+            until (zerop count)))
     totals))
 
-(defun cheapest-next (costs totals cell)
+(defconstant +goals-known+ 4
+  "For how many goals a chart knows what it costs to get there.")
+
+(defun costs-to (chart goal)
+  "Return what SPREAD-COSTS does for the costs of CHART."
+  (let ((known (chart-known chart)))
+    (cdr (or (assoc goal known)
+             (let ((new (cons goal (spread-costs (chart-costs chart) (chart-rows chart) goal))))
+               (setf (chart-known chart)
+                     (cons new (subseq known 0 (min (length known) (1- +goals-known+)))))
+               new)))))
+
+(defun cheapest-next (costs totals rows cell)
   "Return the cell next to CELL by way of which the goal of TOTALS is nearest."
-  (let ((here (apply #'aref costs cell)))
-    (loop with best = nil and least = nil
-          for (x y step) in (neighbours costs (first cell) (second cell))
-          for total = (aref totals x y)
-          ;; Totals count what it costs to leave a cell.
-          for way = (+ total (* here (/ step (aref costs x y))))
-          when (and (>= total 0) (or (null least) (< way least)))
-            do (setf least way
-                     best (list x y))
-          finally (return best))))
+  (declare (type costs costs totals))
+  (let ((best cell) (least +not-reached+))
+    (call-with-neighbours
+     (lambda (next length)
+       ;; Totals count what it costs to leave a cell.
+       (let ((way (+ (aref totals next) (* length (aref costs cell)))))
+         (when (< way least)
+           (setf best next least way))))
+     costs rows cell)
+    best))
 
 (defun find-way (chart start goal &optional (barred '()))
   "Return the way on CHART from the point START to the point GOAL: the cells from the first to the
 last; () if there is none. BARRED is a list of (cell cost) for cells that cost up to 100 more."
   (let ((start (nearest-free (chart-map chart) (first start) (second start)))
-        (goal (nearest-free (chart-map chart) (first goal) (second goal)))
-        (costs (with-barred chart barred)))
+        (goal (nearest-free (chart-map chart) (first goal) (second goal))))
     (when (and start goal)
-      (let ((totals (spread-costs costs start goal)))
-        (when (>= (aref totals (first start) (second start)) 0)
-          (loop for cell = start then (cheapest-next costs totals cell)
-                collect cell
-                until (equal cell goal)))))))
+      (let* ((costs (with-barred chart barred))
+             (rows (chart-rows chart))
+             (start (cell-number chart (first start) (second start)))
+             (goal (cell-number chart (first goal) (second goal)))
+             (totals (if barred (spread-costs costs rows goal) (costs-to chart goal))))
+        (when (< (aref totals start) +not-reached+)
+          (loop for cell = start then (cheapest-next costs totals rows cell)
+                collect (numbered-cell chart cell)
+                until (= cell goal)))))))
 
 ;;; Steps of a way.
 
+(defun as-doubles (point)
+  "Return POINT with double-floats for its coordinates."
+  (mapcar (lambda (number) (float number 1d0)) point))
+
 (defun clear-way-p (chart barred start goal)
   "True if a robot can drive from START straight to GOAL well away from all walls."
-  (destructuring-bind ((x y) (goal-x goal-y)) (list start goal)
-    (loop with count = (ceiling (* 4 (length-of (- goal-x x) (- goal-y y))))
-          for i from 1 to count
-          for point = (list (+ x (* (- goal-x x) (/ i count))) (+ y (* (- goal-y y) (/ i count))))
-          always (and (wide-p (chart-map chart) (first point) (second point))
-                      (not (assoc (cell-of point) barred :test #'equal))))))
+  (destructuring-bind ((x y) (goal-x goal-y)) (list (as-doubles start) (as-doubles goal))
+    (declare (type coordinate x y goal-x goal-y))
+    (loop with dx = (- goal-x x) and dy = (- goal-y y)
+          with count of-type (unsigned-byte 40) = (ceiling (* 4 (length-of dx dy)))
+          for i of-type (unsigned-byte 40) from 1 to count
+          for part = (/ (float i 1d0) count)
+          for way-x = (+ x (* dx part)) and way-y = (+ y (* dy part))
+          always (and (wide-p chart way-x way-y)
+                      (or (null barred)
+                          (not (assoc (cell-of (list way-x way-y)) barred :test #'equal)))))))
 
 (defun straight-run (cells)
   "Return the last of the first four CELLS, at most, that lie in a straight line."
@@ -166,8 +134,7 @@ last; () if there is none. BARRED is a list of (cell cost) for cells that cost u
   "Return the last of the middles of CELLS and the point END to which a robot can drive straight
 from START, or as far as CELLS go straight on."
   (or (find-if (lambda (point) (clear-way-p chart barred start point))
-               (append (mapcar #'middle-of (rest cells)) (list end))
-               :from-end t)
+               (cons end (reverse (mapcar #'middle-of (rest cells)))))
       (if (rest cells) (middle-of (straight-run cells)) end)))
 
 (defun before-doorway (map door last)

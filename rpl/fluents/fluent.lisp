@@ -78,6 +78,10 @@ watcher, the value, and NIL or the error met in computing it. PENDING counts eve
 for (manual D.2)."
   (create-fluent name nil))
 
+(defun numeral (number)
+  "Return the digits of NUMBER, 0 or more."
+  (if (< number 10) (string (digit-char number)) (princ-to-string number)))
+
 (addition create-fluent-vector)
 (defun create-fluent-vector (name count &optional value)
   "Return a vector of COUNT new fluents with VALUE, one for each part of a kind (manual C). Signals
@@ -86,7 +90,8 @@ WRONG-ARGUMENT unless COUNT is an integer from 0 to a million."
                   "an integer from 0 to 1000000")
   (let ((vector (make-array count)))
     (dotimes (i count vector)
-      (setf (svref vector i) (create-fluent (format nil "~A ~D" name i) value)))))
+      (setf (svref vector i)
+            (create-fluent (concatenate 'string (string name) " " (numeral i)) value)))))
 
 ;;; Doubly linked lists, so that leaving one costs the same however many are in it.
 

@@ -5,27 +5,33 @@
 ;;; Each variable holds a fluent or, for cameras, hands and bins, a vector of fluents, one for each
 ;;; such part. RPL-INIT-ROBOT makes them; a headless simulation binds its own.
 
-(defvar *fluent-variables* '() "A list (variable kind) of all fluent variables.")
+(defvar *fluent-variables* '() "A list (variable kind name) of all fluent variables; the kind of
+part is a symbol, NIL for the robot itself.")
 
 (pushnew '*fluent-variables* *kept-variables*)
 
-(defun check-fluent-kind (kind)
-  "Signal MALFORMED-DEFINITION unless KIND is ROBOT or a kind of part."
-  (unless (or (same-name-p kind 'robot)
-              (find kind (all-kinds 'part) :key #'kind-name :test #'same-name-p))
-    (reject-clause "define-fluents" kind "ROBOT, or a kind of part such as CAMERA")))
+(defun fluent-kind (kind)
+  "Return the name of the kind of part called KIND, or NIL for ROBOT. Signals MALFORMED-DEFINITION
+if there is none."
+  (unless (same-name-p kind 'robot)
+    (or (find kind (mapcar #'kind-name (all-kinds 'part)) :test #'same-name-p)
+        (reject-clause "define-fluents" kind "ROBOT, or a kind of part such as CAMERA"))))
+
+(defun note-fluent-variable (variable kind)
+  (pushnew (list variable (fluent-kind kind) (string-downcase variable)) *fluent-variables*
+           :key #'first))
 
 (defmacro define-fluents (kind &body definitions)
   "Define fluent variables for KIND, ROBOT or a kind of part such as CAMERA: (name documentation).
 Return their names."
   `(progn
-     (check-fluent-kind ',kind)
+     (fluent-kind ',kind)
      ,@(loop for (name text) in definitions
              collect `(public ,name)
              collect `(defvar ,name nil ,(format nil "~A~@[~A~] (Manual C.)" text
                                                  (unless (same-name-p kind 'robot)
                                                    (format nil " A vector, by ~(~A~)." kind))))
-             collect `(pushnew '(,name ,kind) *fluent-variables* :key #'first)
+             collect `(note-fluent-variable ',name ',kind)
              collect `(declare-fluent-variable ',name ,(if (same-name-p kind 'robot)
                                                            t
                                                            (string-downcase kind)))
@@ -66,9 +72,9 @@ Return their names."
 
 (defun make-fluents (robot)
   "Give all fluent variables fresh fluents that suit ROBOT (reading 183)."
-  (loop for (variable kind) in *fluent-variables*
-        for name = (string-downcase variable)
-        do (setf (symbol-value variable)
-                 (if (same-name-p kind 'robot)
-                     (create-fluent name)
-                     (create-fluent-vector name (length (parts-of-kind robot kind)))))))
+  (let ((kinds (mapcar #'type-of (robot-parts robot))))
+    (loop for (variable kind name) in *fluent-variables*
+          do (setf (symbol-value variable)
+                   (if kind
+                       (create-fluent-vector name (count kind kinds))
+                       (create-fluent name))))))

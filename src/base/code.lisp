@@ -15,8 +15,9 @@
       constant))
 
 (defun code-references (function)
-  "Return a list of what FUNCTION refers to: names of functions, which are symbols or lists, symbols,
-other functions, and whatever else stands in its code or was closed over. In it are no numbers."
+  "Return a list of what FUNCTION refers to: names of functions, which are symbols or lists,
+symbols, other functions, and whatever else stands in its code or was closed over. In it are no
+numbers."
   (remove-if
    (lambda (object) (typep object '(or number character string bit-vector null)))
    (if (typep function 'generic-function)

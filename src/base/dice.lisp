@@ -29,18 +29,45 @@
       (documentation 'dice-state 'function)
       "Return the state of the dice, an integer of 64 bits.")
 
-(defun name-word (name)
-  "Return a 64-bit word that depends on the characters of NAME only (FNV-1a)."
+(declaim (inline characters-word))
+(defun characters-word (string code)
+  "Return a 64-bit word for the characters of STRING, each by what the function CODE returns of it
+(FNV-1a)."
   (let ((word #xCBF29CE484222325))
     (declare (type word word))
-    (loop for char across (string name)
-          do (setf word (ldb (byte 64 0) (* (logxor word (char-code char)) #x100000001B3))))
-    word))
+    (flet ((add (char)
+             (setf word (ldb (byte 64 0) (* (logxor word (funcall code char)) #x100000001B3)))))
+      (declare (inline add))
+      ;; The first two are how Lisp keeps names.
+      (typecase string
+        (simple-base-string (loop for char across string do (add char)))
+        ((simple-array character (*)) (loop for char across string do (add char)))
+        (t (loop for char across string do (add char))))
+      word)))
+
+(defun text-word (text)
+  "Return a 64-bit word that depends on the characters of TEXT, a string designator, only."
+  (declare #.*hot*)
+  (characters-word (string text) #'char-code))
+
+(declaim (inline upper-code))
+(defun upper-code (char)
+  "Return the code of CHAR in upper case."
+  (let ((code (char-code char)))
+    ;; CHAR-UPCASE, which need not be asked of most, takes its time.
+    (cond ((<= (char-code #\a) code (char-code #\z)) (- code 32))
+          ((< code 128) code)
+          (t (char-code (char-upcase char))))))
+
+(defun name-word (name)
+  "Return a 64-bit word that depends on what NAME, a string designator, is called in upper case."
+  (declare #.*hot*)
+  (characters-word (string name) #'upper-code))
 
 (defun make-dice (seed &optional (purpose ""))
   "Return dice for PURPOSE (a string designator) that depend on it and on the integer SEED only."
   (check-argument make-dice seed (integerp seed) "an integer")
-  (%make-dice (mix-word (logxor (mix-word (ldb (byte 64 0) seed)) (name-word purpose)))))
+  (%make-dice (mix-word (logxor (mix-word (ldb (byte 64 0) seed)) (text-word purpose)))))
 
 (declaim (inline roll-word roll chance roll-between))
 (defun roll-word (dice)

@@ -20,21 +20,28 @@ DIGEST."))
 (defun digest-add (digest datum)
   "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by
 their elements, functions as such, other objects by what tells them apart. Return DIGEST."
+  (declare #.*hot* (type digest digest))
   (typecase datum
+    (null (digest-word digest (load-time-value (name-word nil))))
     (double-float
      (digest-word digest (double-to-bits datum)))
+    (fixnum (digest-word digest (ldb (byte 64 0) datum)))
     (integer (digest-word digest (ldb (byte 64 0) datum)))
     (ratio (if (finite-p datum)
                (digest-add digest (coerce datum 'double-float))
                (digest-add digest (list (numerator datum) (denominator datum)))))
     (real (digest-add digest (coerce datum 'double-float)))
-    ((or symbol string) (digest-word digest (name-word (name-string datum))))
+    ((or symbol string) (digest-word digest (name-word datum)))
     (character (digest-word digest (char-code datum)))
     (cons (digest-word digest 3)
      (loop for tail = datum then (cdr tail)
            while (consp tail)
            do (digest-add digest (car tail))
            finally (digest-add digest tail)))
+    ((simple-array (unsigned-byte 8) (*)) (digest-word digest (length datum))
+     (loop for octet across datum do (digest-word digest octet)))
+    (simple-vector (digest-word digest (length datum))
+     (loop for element across datum do (digest-add digest element)))
     (vector (digest-word digest (length datum))
      (loop for element across datum do (digest-add digest element)))
     (function (digest-word digest 1))
@@ -43,4 +50,4 @@ their elements, functions as such, other objects by what tells them apart. Retur
 
 (defun text-checksum (text &optional (before 0))
   "Return a number of 32 bits for the characters of TEXT, and for BEFORE, a number of that kind."
-  (ldb (byte 32 0) (mix-word (logxor before (name-word text)))))
+  (ldb (byte 32 0) (mix-word (logxor before (text-word text)))))

@@ -21,15 +21,9 @@ DIGEST. A kind may add an :AFTER method.")
     (let ((kind (kind-of object)))
       (digest-mention object digest)
       (when kind
-        (dolist (slot (kind-slots kind))
-          (when (decisive-p slot)
-            (digest-slot slot (slot-content slot object) digest)))))
+        (dolist (slot (kind-decisive-slots kind))
+          (digest-slot slot (slot-content slot object) digest))))
     digest))
-
-(defun decisive-p (slot)
-  "True if SLOT has state in it, or parts."
-  (or (eq :state (kind-slot-role slot))
-      (and (eq :fixed (kind-slot-role slot)) (kind-slot-part-p slot))))
 
 (defun digest-slot (slot value digest)
   (if (kind-slot-part-p slot)

@@ -100,14 +100,13 @@ octets that are no text in UTF-8."
 (defun call-with-file-lock (function path)
   "Call FUNCTION while no other process that asks so has the file PATH, which is made if there is
 none; the system lets go of it when this process ends, in whatever way. Return true and what
-FUNCTION returns, or NIL if another has it. A file left is removed."
+FUNCTION returns, or NIL if another has it."
   (let ((descriptor (sb-posix:open (native-name path)
                                    (logior sb-posix:o-creat sb-posix:o-rdwr) #o644)))
     (unwind-protect
          (when (handler-case (sb-posix:lockf descriptor sb-posix:f-tlock 0)
                  (sb-posix:syscall-error () nil))
-           (unwind-protect (values t (funcall function))
-             (ignore-errors (delete-file (native-path (native-name path))))))
+           (values t (funcall function)))
       (sb-posix:close descriptor))))
 
 (defun host-name ()

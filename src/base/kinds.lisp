@@ -27,11 +27,20 @@
   (reader nil :type function :read-only t)
   (writer nil :type function :read-only t))
 
-(defstruct (object-kind (:conc-name kind-) (:constructor make-kind (name slots parent))
+(defun decisive-p (slot)
+  "True if SLOT has state in it, or parts."
+  (or (eq :state (kind-slot-role slot))
+      (and (eq :fixed (kind-slot-role slot)) (kind-slot-part-p slot))))
+
+(defstruct (object-kind (:conc-name kind-)
+                        (:constructor make-kind
+                            (name slots parent
+                             &aux (decisive-slots (remove-if-not #'decisive-p slots))))
                         (:predicate kind-p) (:copier nil))
   "A kind of object: its slots, those of its PARENT first."
   (name nil :type symbol :read-only t)
   (slots '() :type list :read-only t)
+  (decisive-slots '() :type list :read-only t)
   (parent nil :type (or null object-kind) :read-only t))
 
 (document-functions

@@ -72,7 +72,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:text-of-condition)
   ;; dice, random
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
-           #:roll-index #:roll-element #:roll-gaussian #:chance #:seeded-random-state)
+           #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice
+           #:call-with-own-lisps-dice #:lisps-dice-p)
   ;; names
   (:export #:same-name-p #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables
@@ -104,15 +105,16 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; askers
   (:export #:*asker* #:asker-note #:note-of-asker #:note-text)
   ;; user code
-  (:export #:call-user-code #:*break-on-user-error* #:*user-error-listener* #:in-any-case #:call-each
+  (:export #:call-user-code #:*break-on-user-error* #:*user-error-listener* #:in-any-case
+           #:call-each
            #:note-waiting #:report-break #:continue-inside
            #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*
            #:user-calls-waiting-p
            #:as-users-code #:abort-user-code #:brief-text #:text-of-origin)
   ;; parameters
-  (:export #:parameter #:parameter-p #:parameter-name #:parameter-symbol #:parameter-clean
-           #:parameter-type #:check-parameter-value #:describe-type #:parameter-default #:parameter-unit
-           #:parameter-kind #:parameter-group #:parameter-sentence #:parameter-value
+  (:export #:parameter #:parameter-p #:parameter-name #:parameter-symbol #:parameter-default
+           #:parameter-clean #:parameter-type #:parameter-unit #:parameter-kind #:parameter-group
+           #:parameter-sentence #:parameter-value #:check-parameter-value #:describe-type
            #:define-parameter
            #:all-parameters #:find-parameter #:call-with-parameters #:parameter-settings
            #:check-parameters #:call-with-parameter-values #:parameter-values #:follow-parameters

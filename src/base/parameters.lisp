@@ -12,6 +12,8 @@
   (default nil :read-only t)
   (unit "" :type string :read-only t)
   (type t :read-only t)
+  ;; True of the values that are of the type.
+  (test (constantly t) :type function :read-only t)
   (kind :limit :type (member :noise :delay :limit :setting) :read-only t)
   (clean nil :read-only t)
   (group "" :type string :read-only t)
@@ -25,6 +27,10 @@
       (documentation 'parameter-kind 'function) "Return :NOISE, :DELAY, :LIMIT or :SETTING."
       (documentation 'parameter-group 'function) "Return the heading that chapter 4 lists it under."
       (documentation 'parameter-sentence 'function) "Return what the parameter means.")
+(document-functions
+  parameter-symbol "Return the special variable that is the parameter."
+  parameter-clean "Return the value in a noiseless world of a parameter of kind :NOISE."
+  parameter-type "Return the type of the parameter's values.")
 
 (addition parameter-name)
 (defun parameter-name (parameter)
@@ -73,13 +79,15 @@ noiseless world, for parameters of kind :noise; ADDITION is true if the manual d
      (register
       *parameters* ',symbol
       (make-parameter :symbol ',symbol :default ,default :unit ,unit :type ',type
+                      :test (lambda (value) (typep value ',type))
                       :kind ,kind :clean ,clean :group ,group :sentence ,sentence))
      ',symbol))
 
 (defun check-parameter-value (parameter value)
+  "Signal WRONG-ARGUMENT unless PARAMETER can have VALUE."
   ;; Of a number that is none not even the type can be asked.
   (unless (and (or (not (realp value)) (finite-p value))
-               (typep value (parameter-type parameter)))
+               (funcall (parameter-test parameter) value))
     (error 'wrong-argument :operator "set parameter" :name (parameter-name parameter)
                            :value value
                            :expected (describe-type (parameter-type parameter)))))
@@ -133,66 +141,3 @@ Returns nothing (manual, chapter 4)."
   (loop for (symbol value) in (shiftf *noise-before-cleaning* nil)
         do (setf (symbol-value symbol) value))
   (values))
-
-;;; A run binds its own.
-
-(defun check-settings (settings)
-  "Signal WRONG-ARGUMENT unless SETTINGS is a list of lists (name value)."
-  (check-argument with-simulation settings
-                  (and (proper-list-p settings)
-                       (loop for setting in settings
-                             always (and (proper-list-p setting) (= 2 (length setting)))))
-                  "a list of lists (name value), such as ((max-speed* 1/2))"))
-
-(defun call-with-parameters (settings function)
-  "Call FUNCTION with every parameter bound: as SETTINGS, a list of lists (name value), says, and as
-it is now where they say nothing. Changes made inside end with the call. Signals WRONG-ARGUMENT and
-UNKNOWN-NAME."
-  (check-settings settings)
-  (let* ((settings (loop for (name value) in settings
-                         collect (cons (parameter-symbol (find-parameter name)) value)))
-         (symbols (mapcar #'parameter-symbol (registry-objects *parameters*)))
-         (values (loop for parameter in (registry-objects *parameters*)
-                       for symbol = (parameter-symbol parameter)
-                       for setting = (assoc symbol settings)
-                       do (when setting (check-parameter-value parameter (cdr setting)))
-                       collect (if setting (cdr setting) (symbol-value symbol)))))
-    (progv (cons '*noise-before-cleaning* symbols) (cons *noise-before-cleaning* values)
-      (funcall function))))
-
-(defun call-with-parameter-values (values function)
-  "Call FUNCTION with the parameters bound to VALUES, a vector as PARAMETER-VALUES returns, and
-leave in it what they are afterwards. Return the values of FUNCTION."
-  (progv (mapcar #'parameter-symbol (registry-objects *parameters*)) (coerce values 'list)
-    (multiple-value-prog1 (funcall function)
-      (replace values (parameter-values)))))
-
-(defun parameter-values ()
-  "Return a vector of the values of all parameters as they are now, for FOLLOW-PARAMETERS."
-  (map 'vector (lambda (parameter) (symbol-value (parameter-symbol parameter)))
-       (registry-objects *parameters*)))
-
-(defun usable-value-p (parameter value)
-  "True if PARAMETER can have VALUE; if not, queue an error message."
-  (handler-case (progn (check-parameter-value parameter value) t)
-    (wrong-argument (trouble) (error-set (princ-to-string trouble)) nil)))
-
-(defun follow-parameters (known global-p note)
-  "Find the parameters that have changed since KNOWN, a vector made by PARAMETER-VALUES, was
-last brought up to date, and do that. If GLOBAL-P, the caller is a thread with bindings of its
-own: values set globally by others come in and values set here go out. A value that cannot be
-used is put back, with an error message. NOTE is called with each symbol and its new value."
-  (declare #.*hot* (type simple-vector known) (type function note))
-  (loop for parameter in (registry-objects *parameters*)
-        for index of-type fixnum from 0
-        for symbol = (parameter-symbol (the parameter parameter))
-        for old = (svref known index)
-        for here = (symbol-value symbol)
-        for global = (if global-p (global-value symbol) here)
-        unless (and (eql here old) (eql global old))
-          do (let ((new (if (eql global old) here global)))
-               (unless (usable-value-p parameter new) (setf new old))
-               (setf (svref known index) new
-                     (symbol-value symbol) new)
-               (when global-p (setf (global-value symbol) new))
-               (unless (eql new old) (funcall note symbol new)))))

@@ -2,6 +2,16 @@
 
 (in-package :ars-magna.base)
 
-(defun seeded-random-state (seed)
-  "Return a random state for CL:RANDOM that depends on the integer SEED only."
-  (sb-ext:seed-random-state (ldb (byte 32 0) (mix-word (ldb (byte 64 0) seed)))))
+(defun call-with-lisps-dice (function seed)
+  "Call FUNCTION. What CL:RANDOM says in it depends on the integer SEED only."
+  (let ((*random-state* (sb-ext:seed-random-state
+                         (ldb (byte 32 0) (mix-word (ldb (byte 64 0) seed))))))
+    (funcall function)))
+
+(defun call-with-own-lisps-dice (function)
+  "Call FUNCTION. CL:RANDOM has dice of its own in it, which no other thread rolls."
+  (let ((*random-state* (make-random-state nil))) (funcall function)))
+
+(defun lisps-dice-p (symbol)
+  "True if SYMBOL is a name by which Lisp's own dice are rolled."
+  (and (member symbol '(cl:random cl:*random-state* cl:make-random-state)) t))

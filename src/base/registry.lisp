@@ -87,7 +87,8 @@ called just so is looked for in upper case."
   (when (typep name '(or symbol string))
     (let ((entries (registry-entries registry))
           (name (or (qualified-symbol name) name)))
-      (or (find name entries :key #'entry-name :test #'eq)
+      (or (loop for entry in entries
+                when (eq name (entry-name entry)) return entry)
           (find-if (lambda (entry) (called-p entry name registry)) entries :from-end t)))))
 
 (defun entries-meant (name)

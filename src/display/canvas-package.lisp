@@ -9,7 +9,8 @@
            #:lightgreen* #:lightblue* #:lightviolet* #:shade #:color-called)
   ;; gcontext
   (:export #:gcontext #:gcontext-p #:create-gcontext #:gcontext-foreground
-           #:gcontext-background #:gcontext-line-width #:gcontext-line-style #:with-gcontext
+           #:gcontext-background #:gcontext-line-width #:gcontext-line-style
+           #:gcontext-dashes #:with-gcontext
            #:draw-gcontext* #:graphics-scale* #:in-color* #:with-color #:with-lines)
   ;; canvas
   (:export #:canvas #:canvas-p #:canvas-color-p #:paint-rectangles #:paint-arc #:paint-path
@@ -20,5 +21,8 @@
   (:export #:draw-rectangle #:draw-rectangles #:draw-arc #:draw-arcs #:draw-line #:draw-lines
            #:draw-segments #:draw-point #:draw-points #:draw-glyph #:draw-glyphs
            #:draw-image-glyph #:draw-image-glyphs #:clear-area)
+  ;; text
+  (:export #:+text-font+ #:text-width #:paint-text #:draw-words #:call-with-opacity
+           #:with-opacity)
   ;; svg
   (:export #:svg-canvas #:svg-stream #:call-with-svg #:with-svg #:write-svg #:number-text))

@@ -7,13 +7,16 @@
 
 (deftype line-style () '(member :solid :dash :double-dash))
 
+(deftype dashes () '(or (integer 1 1000) list))
+
 (defstruct (gcontext (:constructor create-gcontext (&key foreground background line-width
-                                                      line-style)))
+                                                      line-style dashes)))
   "With what to draw."
   (foreground #x000000 :type color)
   (background #xFFFFFF :type color)
   (line-width 1 :type (real 0))
-  (line-style :solid :type line-style))
+  (line-style :solid :type line-style)
+  (dashes 4 :type dashes))
 
 (setf (documentation 'create-gcontext 'function)
       "Return a new graphics context: by default solid black lines, one pixel wide."
@@ -25,7 +28,10 @@
       (documentation 'gcontext-line-width 'function)
       "Return how wide lines are, in pixels; 0 means the thinnest. Can be set."
       (documentation 'gcontext-line-style 'function)
-      "Return how lines look: :SOLID, :DASH or :DOUBLE-DASH. Can be set.")
+      "Return how lines look: :SOLID, :DASH or :DOUBLE-DASH. Can be set."
+      (documentation 'gcontext-dashes 'function)
+      "Return how long dashes and the gaps between them are, in pixels: one integer for all, by
+default 4, or a list (dash gap ...). Can be set. A canvas may have dashes of its own instead.")
 
 (public draw-gcontext*)
 (defvar draw-gcontext* (create-gcontext)
@@ -41,32 +47,38 @@
 (defvar in-color* t
   "True while drawing on a display that has colours, false on a monochrome one (manual B.1).")
 
-(defun check-pen (foreground line-width line-style)
+(defun check-pen (foreground line-width line-style &optional dashes)
   (check-argument with-color foreground (typep foreground '(or null color))
                   "a colour, such as (vref red* 9)")
   (check-argument with-lines line-width (or (null line-width)
                                              (and (within-reason-p line-width) (<= 0 line-width)))
                   "a width in pixels, from 0 to 1e9")
   (check-argument with-lines line-style (typep line-style '(or null line-style))
-                  ":solid, :dash or :double-dash"))
+                  ":solid, :dash or :double-dash")
+  (check-argument with-gcontext dashes
+                  (or (null dashes) (whole-p dashes 1 1000)
+                      (and (consp dashes) (every (lambda (dash) (whole-p dash 1 1000)) dashes)))
+                  "an integer from 1 to 1000, in pixels, or a list of such"))
 
-(defun call-with-gcontext (function gcontext &key foreground background line-width line-style)
+(defun call-with-gcontext (function gcontext &key foreground background line-width line-style
+                                                dashes)
   "Call FUNCTION while GCONTEXT is as the other arguments say; NIL leaves it as it is."
-  (check-pen foreground line-width line-style)
+  (check-pen foreground line-width line-style dashes)
   (let ((old (copy-gcontext gcontext)))
-    (flet ((set-to (foreground background line-width line-style)
+    (flet ((set-to (foreground background line-width line-style dashes)
              (when foreground (setf (gcontext-foreground gcontext) foreground))
              (when background (setf (gcontext-background gcontext) background))
              (when line-width (setf (gcontext-line-width gcontext) line-width))
-             (when line-style (setf (gcontext-line-style gcontext) line-style))))
-      (set-to foreground background line-width line-style)
+             (when line-style (setf (gcontext-line-style gcontext) line-style))
+             (when dashes (setf (gcontext-dashes gcontext) dashes))))
+      (set-to foreground background line-width line-style dashes)
       (unwind-protect (funcall function)
         (set-to (gcontext-foreground old) (gcontext-background old)
-                (gcontext-line-width old) (gcontext-line-style old))))))
+                (gcontext-line-width old) (gcontext-line-style old) (gcontext-dashes old))))))
 
 (defmacro with-gcontext ((gcontext &rest options) &body body)
-  "Run BODY while GCONTEXT has the :foreground, :background, :line-width and :line-style that
-OPTIONS give, as CLX does."
+  "Run BODY while GCONTEXT has the :foreground, :background, :line-width, :line-style and :dashes
+that OPTIONS give, as CLX does."
   `(call-with-gcontext (lambda () ,@body) ,gcontext ,@options))
 
 (public with-color)

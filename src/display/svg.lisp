@@ -62,6 +62,12 @@
   (write-svg canvas "\"/>
 "))
 
+(defun interposed (separator dashes)
+  "Return the list of DASHES, an integer or a list, with SEPARATOR between them."
+  (if (listp dashes)
+      (rest (loop for dash in dashes collect separator collect dash))
+      (list dashes)))
+
 (defun write-stroke (canvas gcontext)
   (write-svg canvas " fill=\"none\" stroke=\"")
   (write-color (gcontext-foreground gcontext) (svg-stream canvas))
@@ -69,7 +75,9 @@
   (let ((width (gcontext-line-width gcontext)))
     (unless (<= width 1) (write-svg canvas " stroke-width=\"" width "\"")))
   (unless (eq (gcontext-line-style gcontext) :solid)
-    (write-svg canvas " stroke-dasharray=\"4\""))
+    (write-svg canvas " stroke-dasharray=\"")
+    (apply #'write-svg canvas (interposed "," (gcontext-dashes gcontext)))
+    (write-svg canvas "\""))
   (write-svg canvas "/>
 "))
 
@@ -211,6 +219,26 @@
 " text "</g>
 ")))
 
+(defmethod paint-text ((canvas svg-canvas) gcontext x y string size anchor upward-p bold-p)
+  (let ((reach (text-width string size bold-p)))
+    (note-reach canvas (- x reach) (- y reach) (+ x reach) (+ y reach)))
+  (write-svg canvas "<text x=\"" x "\" y=\"" y "\" font-size=\"" size "\" text-anchor=\""
+             (string-downcase anchor) "\"" (if bold-p " font-weight=\"bold\"" ""))
+  (when upward-p (write-svg canvas " transform=\"rotate(-90," x "," y ")\""))
+  (write-svg canvas " fill=\"")
+  (write-color (gcontext-foreground gcontext) (svg-stream canvas))
+  (write-svg canvas "\">")
+  (write-text string (svg-stream canvas))
+  (write-svg canvas "</text>
+"))
+
+(defmethod call-with-opacity (function (canvas svg-canvas) opacity)
+  (write-svg canvas "<g opacity=\"" opacity "\">
+")
+  (multiple-value-prog1 (funcall function)
+    (write-svg canvas "</g>
+")))
+
 (defmethod call-with-subject (function (canvas svg-canvas) subject)
   (write-svg canvas "<g><title>")
   (write-text (subject-title subject) (svg-stream canvas))
@@ -220,27 +248,28 @@
     (write-svg canvas "</g>
 ")))
 
-(defun write-document (body width height stream)
+(defun write-document (body width height stream font)
   (let ((canvas (make-instance 'svg-canvas :stream stream)))
     (write-svg canvas "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" width
                "\" height=\"" height "\" viewBox=\"0 0 " width " " height
-               "\" font-family=\"DejaVu Sans Mono, monospace\" font-size=\"11.6\""
+               "\" font-family=\"" font "\" font-size=\"11.6\""
                " xml:space=\"preserve\">
 <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>
 " body "</svg>
 ")))
 
-(defun call-with-svg (function stream &key (color-p t))
+(defun call-with-svg (function stream &key (color-p t) (font "DejaVu Sans Mono, monospace"))
   "Call FUNCTION with a canvas, then write what it has drawn to STREAM as an SVG document, white
-where nothing was drawn. FUNCTION returns its width and height in pixels, as two values."
+where nothing was drawn, with text in the font family FONT. FUNCTION returns its width and height
+in pixels, as two values."
   (let* ((width 0) (height 0)
          (body (with-output-to-string (scratch)
                  (setf (values width height)
                        (funcall function (make-instance 'svg-canvas :stream scratch
                                                                     :color-p color-p))))))
-    (write-document body width height stream)))
+    (write-document body width height stream font)))
 
 (defmacro with-svg ((canvas stream &rest options) &body body)
   "Run BODY, which draws on CANVAS and returns its width and height in pixels, as two values, then
-write what it has drawn to STREAM as an SVG document. OPTIONS: :color-p."
+write what it has drawn to STREAM as an SVG document. OPTIONS: :color-p, :font."
   `(call-with-svg (lambda (,canvas) ,@body) ,stream ,@options))

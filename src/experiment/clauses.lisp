@@ -26,10 +26,14 @@
 (defun clause-key (definition clause)
   "Return the keyword of CLAUSE. Signals MALFORMED-DEFINITION."
   (unless (and (proper-list-p clause) (assoc (first clause) *clauses*))
-    (reject-clause definition clause
-                   (format nil "a clause ~{~(~S~)~^, ~} or ~(~S~)"
-                           (butlast (mapcar #'first *clauses*))
-                           (first (first (last *clauses*))))))
+    (let* ((keys (mapcar #'first *clauses*))
+           (word (and (consp clause) (symbolp (first clause)) (first clause)))
+           (nearest (and word (nearest-name word keys))))
+      (reject-clause definition clause
+                     (format nil "~@[the clause ~(~S~); or one of the others, ~]a list that ~
+                                  begins with ~{~(~S~)~^, ~} or ~(~S~)"
+                             (and nearest (find nearest keys :test #'same-name-p))
+                             (butlast keys) (first (last keys))))))
   (first clause))
 
 (defun check-clauses (definition clauses)
@@ -60,19 +64,22 @@ true of; or about CLAUSE if there is none at all."
 
 ;;; Names. What varies is a parameter, :ROBOTS, or a variable.
 
-(defun name-trouble (name)
-  "Return in words why NAME cannot be a variable of an experiment's forms, or NIL."
-  (cond ((not (and (symbolp name) name (not (keywordp name)))) "a symbol")
-        ((parameter-called name) nil)
-        ((and (not (special-variable-p name nil)) (null (variable-kind name))) nil)
-        ((special-variable-p name nil)
-         (and (package-locked-p (symbol-package name))
-              (format nil "a variable of your own; ~(~A~) is the simulator's or Lisp's" name)))
-        (t (format nil "a name that can be a variable; ~(~A~) is none" name))))
+(defun special-p (name)
+  (special-variable-p name nil))
+
+(defun can-vary-p (name)
+  "True if NAME is a parameter, or can be a variable of an experiment's forms."
+  (and name (symbolp name) (not (keywordp name))
+       (or (parameter-called name)
+           (null (variable-kind name))
+           (and (special-p name) (not (package-locked-p (symbol-package name)))))))
 
 (defun check-factor-name (definition part)
-  (let ((trouble (if (eq :robots (first part)) nil (name-trouble (first part)))))
-    (when trouble (reject-clause definition part (format nil "~A to vary" trouble)))))
+  (unless (or (eq :robots (first part)) (can-vary-p (first part)))
+    (reject-clause definition part
+                   (format nil "something to vary that is a parameter, :robots, or a variable of ~
+                                your own; ~(~A~) is ~:[no name~;Lisp's or the simulator's~]"
+                           (safe-text (first part)) (and (first part) (symbolp (first part)))))))
 
 (defun check-factor (definition part)
   "Signal MALFORMED-DEFINITION unless PART is (what form...) or (what :in form)."
@@ -122,7 +129,7 @@ true of; or about CLAUSE if there is none at all."
 (defun doubt-unused (clauses)
   "Warn of variables that no form of CLAUSES mentions."
   (dolist (name (varied-variables clauses))
-    (unless (or (special-variable-p name nil)
+    (unless (or (special-p name)
                 (loop for key in '(:run :until :success :measure)
                       thereis (mentioned-p name (clause-called key clauses))))
       (doubt-definition "~A is varied, but no form mentions it.~@[ Did you mean the parameter ~

@@ -33,8 +33,7 @@ none."
   (let ((variables (varied-variables clauses)))
     (and forms
          `(lambda ,variables
-            (declare (ignorable ,@(remove-if (lambda (name) (special-variable-p name nil))
-                                             variables))
+            (declare (ignorable ,@(remove-if #'special-p variables))
                      (special ,@(remove-if-not #'variable-name-p (robot-names clauses))))
             ,@forms))))
 
@@ -87,9 +86,10 @@ The CLAUSES are:
   (:seed n)                  0 unless given; trial T has the seed N + T, under all conditions
   (:limit n)                 for how many ticks a trial may go on, 100000 unless given
   (:parameters (p form)...)  parameters other than the manual's; what is set outside is not seen
-  (:clean)                   no noise, but where :parameters and what varies say so
+  (:clean)                   no noise, but where :parameters and what varies say so. (With noise in
+                             perception give NO-SENSOR-ERROR* the value NIL.)
   (:until form)              ticks pass after :run until FORM is true, for what continuations do
-  (:success form)            whether the trial succeeded, asked at its end
+  (:success form)            whether the trial succeeded, asked at its end; see TRIAL-VALUES
   (:measure (name form)...)  what is measured at its end: numbers, T or NIL, symbols, strings, or
                              :NONE where there is nothing to be measured
 Without :success and :until, the values of :run say how the trial went: those of RUN-PLAN what
@@ -132,7 +132,13 @@ not. See RUN-EXPERIMENT for what is kept. Signals MALFORMED-DEFINITION. Return N
     (unless (find-blueprint name nil)
       (reject-clause definition part
                      (format nil "robots that are defined; ~(~A~) is none. Known: ~{~(~A~)~^, ~}"
-                             name (mapcar #'blueprint-name (all-blueprints)))))))
+                             name (mapcar #'blueprint-name (all-blueprints))))))
+  (let ((maps (remove-duplicates (mapcar (lambda (name) (blueprint-map (find-blueprint name)))
+                                         names)
+                                 :test #'same-name-p)))
+    (when (rest maps)
+      (reject-clause definition part
+                     (format nil "robots of one map, not of ~{~(~A~)~^ and ~}" maps)))))
 
 (defun factor-from (definition part values)
   (unless (and (proper-list-p values) values)

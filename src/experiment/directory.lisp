@@ -4,7 +4,7 @@
 
 ;;; rows.csv has a row for each trial and nothing that differs from run to run; machine.csv says how
 ;;; long each took, and where; experiment.txt how to repeat it all. One process at a time writes
-;;; there: it holds the lock of the file `lock'.
+;;; there: it holds the lock of the file `.lock'.
 
 (defstruct (store (:constructor make-store (path experiment)) (:copier nil))
   "The directory PATH in which rows of EXPERIMENT are kept, while they are written."
@@ -50,7 +50,7 @@
                        (native-name path))))
     (unless (claim-directory path) (reject))
     (unwind-protect
-         (multiple-value-bind (done value) (call-with-file-lock function (file-in path "lock"))
+         (multiple-value-bind (done value) (call-with-file-lock function (file-in path ".lock"))
            (unless done (reject))
            value)
       (with-lock (*stores-lock*)

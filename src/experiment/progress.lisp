@@ -10,11 +10,8 @@
   (terminal-p nil :read-only t)
   (total 0 :type integer)
   (done 0 :type atomic-count)
-  (begun (get-internal-real-time) :read-only t)
-  (told 0 :type integer))
-
-(defun seconds-since (time)
-  (/ (- (get-internal-real-time) time) (float internal-time-units-per-second 1d0)))
+  (begun (moment) :read-only t)
+  (told (moment) :type integer))
 
 (defun duration-text (seconds)
   "Return SECONDS in words."
@@ -41,7 +38,7 @@
                (or last
                    (> (seconds-since (progress-told progress))
                       (if (progress-terminal-p progress) 0.5 10))))
-      (setf (progress-told progress) (get-internal-real-time))
+      (setf (progress-told progress) (moment))
       (if (progress-terminal-p progress)
           (format stream "~C~A~C[K~:[~;~%~]" #\Return (progress-text progress) #\Escape last)
           (format stream "~&~A~%" (progress-text progress)))

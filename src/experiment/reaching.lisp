@@ -104,7 +104,7 @@
 (defun visit-symbol (symbol reach)
   (unless (gethash symbol (reach-seen reach))
     (setf (gethash symbol (reach-seen reach)) t)
-    (cond ((member symbol '(random *random-state*)) (setf (reach-random-p reach) t))
+    (cond ((lisps-dice-p symbol) (setf (reach-random-p reach) t))
           ((users-symbol-p symbol) (visit-name symbol reach)))))
 
 (defun visit-list (list reach)

@@ -27,16 +27,18 @@
   ;; Where the table is, or NIL if it has not been kept.
   (directory nil :type (or null pathname)))
 
-(addition results-p results-samples sample-p sample-experiment sample-condition sample-texts
-          sample-trials sample-outcomes sample-reasons sample-ticks sample-errors)
+(addition results-p results-samples results-directory
+          sample-p sample-experiment sample-condition sample-texts sample-trials
+          sample-outcomes sample-reasons sample-ticks sample-errors)
 (document-functions
   results-p "True of what came of an experiment."
   results-samples "Return a list of what came of the trials of each condition."
+  results-directory "Return the path of the directory where the table is, or NIL."
   sample-p "True of what came of the trials of one condition."
   sample-experiment "Return what the experiment is called, a string."
   sample-condition "Return what the condition is called, a string."
   sample-texts "Return the values of what varies, strings as they stand in the table."
-  sample-trials "Return a vector of the numbers of the trials, in order, which other vectors follow."
+  sample-trials "Return a vector of the numbers of the trials; the other vectors are in its order."
   sample-outcomes "Return a vector of \"success\", \"failure\", \"limit\" and \"error\"."
   sample-reasons "Return a vector of strings that say why trials failed."
   sample-ticks "Return a vector of the ticks that passed in each trial."

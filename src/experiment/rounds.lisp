@@ -56,23 +56,20 @@
 
 ;;; Running them.
 
-(defun milliseconds-since (time)
-  (/ (- (get-internal-real-time) time) (/ internal-time-units-per-second 1000d0)))
-
 (defun run-and-keep (experiment condition trial keep worker)
   "Run TRIAL of CONDITION, and have KEEP, a function, keep what comes of it."
-  (let* ((begun (get-internal-real-time))
+  (let* ((begun (moment))
          (result (run-trial experiment condition trial)))
     (funcall keep result (milliseconds-since begun) worker)))
 
 (defun work-off (experiment queue keep progress worker)
   "Run trials of QUEUE until there are none left."
-  (call-in-silence
-   (lambda ()
-     (loop (multiple-value-bind (condition trial) (next-trial queue)
-             (unless condition (return))
-             (run-and-keep experiment condition trial keep worker)
-             (atomic-incf (progress-done progress)))))))
+  (flet ((work ()
+           (loop (multiple-value-bind (condition trial) (next-trial queue)
+                   (unless condition (return))
+                   (run-and-keep experiment condition trial keep worker)
+                   (atomic-incf (progress-done progress))))))
+    (call-in-silence (lambda () (call-with-own-lisps-dice #'work)))))
 
 (defun run-queue (experiment queue keep progress workers)
   "Run the trials of QUEUE by WORKERS threads. If this is left, no trial is begun any more; those

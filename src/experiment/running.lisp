@@ -119,12 +119,17 @@ are those of the fingerprints of its conditions. Signals MISUSE for rows of othe
        experiment directory)
       (write-in-order (list (rows-file directory)) (rows-file directory)))))
 
+(defun new-directory ()
+  "Return the path of a new directory among the system's temporary ones."
+  (loop for number from 0
+        for path = (directory-called (format nil "~Aars-magna-~D-~D/"
+                                             (native-name (uiop:temporary-directory))
+                                             (process-number) number))
+        when (nth-value 1 (ensure-directories-exist path)) return path))
+
 (defun call-with-temporary-directory (function)
   "Call FUNCTION with the path of a new directory, which is gone afterwards."
-  (let ((path (directory-called
-               (format nil "~Aars-magna-~D-~36R/" (native-name (uiop:temporary-directory))
-                       (process-number) (random (expt 36 8) (make-random-state t))))))
-    (ensure-directories-exist path)
+  (let ((path (new-directory)))
     (unwind-protect (funcall function path)
       (uiop:delete-directory-tree path :validate t :if-does-not-exist :ignore))))
 

@@ -3,9 +3,9 @@
 (in-package :ars-magna.experiment)
 
 ;;; A trial is a function of the code, its condition and its seed. So it begins with the manual's
-;;; parameters but where the experiment says otherwise, with a random state made from the seed for
-;;; code that uses Lisp's own, and with settings of the reader and printer that do not depend on
-;;; where it is run.
+;;; parameters but where the experiment says otherwise, with Lisp's own dice made from the seed for
+;;; code that rolls them, and with settings of the reader and printer that do not depend on where it
+;;; is run.
 
 (defstruct (result (:constructor make-result (condition trial seed)) (:copier nil))
   "What came of a trial."
@@ -33,10 +33,9 @@ is a gate to ask besides, or NIL."
 
 (defvar *nowhere* (make-broadcast-stream) "Where what trials write goes.")
 
-(defun call-in-peace (function random-state package)
-  "Call FUNCTION with all that Lisp code may look at as it is in each trial of one seed."
+(defun call-in-peace (function package)
+  "Call FUNCTION with all that Lisp code may look at as it is in each trial."
   (let ((*package* package)
-        (*random-state* random-state)
         (*read-default-float-format* 'single-float)
         (*read-base* 10) (*print-base* 10) (*print-radix* nil) (*print-case* :upcase)
         (*print-pretty* nil) (*print-readably* nil) (*print-escape* t) (*print-circle* nil)
@@ -52,6 +51,12 @@ is a gate to ask besides, or NIL."
                            (throw 'broken-off condition)))
       (funcall function))))
 
+(defun call-with-dice-of (condition seed function)
+  "Call FUNCTION with what CL:RANDOM says decided by SEED, if a trial of CONDITION may ask it."
+  (if (condition-random-p condition)
+      (call-with-lisps-dice function seed)
+      (funcall function)))
+
 (defun call-in-trial (function experiment condition trial &key gate)
   "Call FUNCTION in the fresh simulation of TRIAL of CONDITION of EXPERIMENT. GATE, if given, is a
 gate to be asked besides that of the limit."
@@ -66,14 +71,21 @@ gate to be asked besides that of the limit."
             (call-with-simulation
              (lambda ()
                (setf (simulation-gate (current-simulation)) (limit-gate limit gate))
-               (funcall function))
+               (call-with-dice-of condition seed function))
              (condition-robots condition)
              :seed seed :variables (remove-if-not #'variable-name-p
                                                   (condition-robots condition)))))))
-     (if (condition-random-p condition) (seeded-random-state seed) *random-state*)
      (experiment-package experiment))))
 
 ;;; What happens in it.
+
+(defvar *trial-values* '() "What the form :run of the trial under way has returned, a list.")
+
+(addition trial-values)
+(defun trial-values ()
+  "Return a list of the values of the form :run of the trial at whose end we are: for :success and
+:measure. NIL if it did not return, and before it has."
+  *trial-values*)
 
 (defun call-form (function condition)
   "Call FUNCTION, of a form of the experiment, with the values that CONDITION has for variables."
@@ -90,6 +102,7 @@ and :LIMIT if too few ticks were left."
   (catch 'out-of-ticks
     (return-from run-forms
       (let ((values (multiple-value-list (call-form (experiment-run experiment) condition))))
+        (setf *trial-values* values)
         (if (experiment-until experiment)
             (list (pass-until (experiment-until experiment) condition))
             values))))
@@ -126,6 +139,7 @@ and :LIMIT if too few ticks were left."
 (defun conduct (experiment result)
   "Do in the current simulation what EXPERIMENT says, and enter into RESULT what comes of it."
   (let* ((condition (result-condition result))
+         (*trial-values* '())
          (values (run-forms experiment condition)))
     (multiple-value-bind (outcome reason) (apply #'outcome-of-values values)
       (setf (result-outcome result) (decide experiment condition outcome)

@@ -8,9 +8,31 @@
 (defconstant +longest-text+ 500
   "How many characters a text in a table has at most.")
 
+(defun address-end (text start)
+  "Return where the address ends that begins in TEXT at START, as in #<HASH-TABLE {10042BD5D3}>; NIL
+if none does."
+  (let ((end (and (char= #\{ (char text start))
+                  (position #\} text :start start))))
+    (and end (> end (+ 6 start))
+         (every (lambda (char) (digit-char-p char 16)) (subseq text (1+ start) end))
+         (1+ end))))
+
+(defun without-addresses (text)
+  "Return TEXT without where in memory objects happened to be."
+  (if (find #\{ text)
+      (with-output-to-string (out)
+        (loop with i = 0
+              while (< i (length text))
+              do (let ((end (address-end text i)))
+                   (unless end (write-char (char text i) out))
+                   (setf i (or end (1+ i))))))
+      text))
+
 (defun plain-text (text)
-  "Return TEXT on one line, of bounded length, with nothing in it but what can be seen."
-  (cut (one-line (substitute-if-not #\Space #'graphic-char-p text)) +longest-text+))
+  "Return TEXT on one line, of bounded length, with nothing in it but what can be seen and is the
+same in each run."
+  (cut (one-line (without-addresses (substitute-if-not #\Space #'graphic-char-p text)))
+       +longest-text+))
 
 (defun float-text (number)
   "Return NUMBER, a finite float, in the fewest digits that stand for it alone."

@@ -13,7 +13,8 @@ takes part in it. Manual 2.3 and appendix A.")
   (:export #:simulation #:simulation-p #:simulation-name #:simulation-world #:simulation-timeline
            #:simulation-tick #:simulation-seed #:simulation-robots #:simulation-journal
            #:simulation-gate #:simulation-observers #:simulation-participants
-           #:simulation-messages #:simulation-over #:simulation-agenda #:simulation-ticking-p #:simulation-rate #:simulation-thread
+           #:simulation-messages #:simulation-over #:simulation-agenda #:simulation-ticking-p
+           #:simulation-rate #:simulation-thread
            #:add-observer #:remove-observer #:add-participant #:remove-participant
            #:idle-p #:robot-simulation #:resident-simulation #:fresh-simulation #:headless-p
            #:copy-simulation #:set-seed #:end-simulation)

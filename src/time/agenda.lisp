@@ -3,15 +3,16 @@
 (in-package :ars-magna.time)
 
 ;;; A hierarchical timing wheel. The near wheel has a bucket for each tick of the current page of
-;;; 1024 ticks, the far wheel one for each page of the current volume of 1024 pages; what lies
+;;; 256 ticks, the far wheel one for each page of the current volume of 256 pages; what lies
 ;;; beyond waits in one list. Turning a page moves its far bucket into the near wheel. Queueing
 ;;; and running an event cost the same however many wait.
 ;;;
-;;; Invariants: buckets hold events in the order of queueing; within a tick, higher priorities
-;;; run first and equal ones in that order; a resource has at most one pending event; cancelled
-;;; events stay in their bucket and are dropped when it comes up. Manual 3.8.
+;;; Invariants: a bucket is NIL or the last of its events, which form a ring: next to the last is
+;;; the first, and so on in the order of queueing. Within a tick, higher priorities run first and
+;;; equal ones in that order; a resource has at most one pending event; cancelled events stay in
+;;; their bucket and are dropped when it comes up. Manual 3.8.
 
-(defconstant +page-bits+ 10)
+(defconstant +page-bits+ 8)
 (defconstant +page-size+ (ash 1 +page-bits+))
 (defconstant +page-mask+ (1- +page-size+))
 
@@ -28,25 +29,24 @@
   ;; True while some bucket holds the event, pending or cancelled, and what comes after it there.
   (:link
    (queued-p nil boolean "a bucket holds the event, pending or cancelled")
-   (next nil (or null event) "the event behind it in its bucket")))
+   (next nil (or null event) "the event behind it in its bucket; the first behind the last")))
 
 (defmethod reference ((event event))
   (list :event (event-time event)))
 
-(defstruct (bucket (:constructor make-bucket ()) (:copier nil))
-  (first nil :type (or null event))
-  (last nil :type (or null event)))
+(deftype bucket () '(or null event))
+(deftype wheel () '(simple-vector #.+page-size+))
 
 (defun make-wheel ()
-  (let ((wheel (make-array +page-size+)))
-    (dotimes (i +page-size+ wheel) (setf (svref wheel i) (make-bucket)))))
+  (make-array +page-size+ :initial-element nil))
 
 (defstruct (agenda (:constructor make-agenda ()) (:copier nil))
   "The events of one simulation."
   (tick 0 :type tick-count)
-  (near (make-wheel) :type (simple-vector #.+page-size+) :read-only t)
-  (far (make-wheel) :type (simple-vector #.+page-size+) :read-only t)
-  (beyond (make-bucket) :type bucket :read-only t)
+  (near (make-wheel) :type wheel :read-only t)
+  ;; NIL as long as no event lay beyond the current page: short runs never need it.
+  (far nil :type (or null wheel))
+  (beyond nil :type bucket)
   ;; How many events are pending, and how many of those have a priority other than 0.
   (pending 0 :type fixnum)
   (unequal 0 :type fixnum)
@@ -58,15 +58,22 @@
   agenda-tick "Return the tick that the agenda has reached."
   agenda-pending "Return how many events are pending.")
 
-(declaim (inline append-event))
-(defun append-event (event bucket)
-  (setf (event-next event) nil
-        (event-queued-p event) t)
-  (let ((last (bucket-last bucket)))
-    (if last
-        (setf (event-next last) event)
-        (setf (bucket-first bucket) event)))
-  (setf (bucket-last bucket) event))
+(declaim (inline behind first-of))
+(defun behind (last event)
+  "Put EVENT behind LAST, which a bucket holds; return EVENT, which the bucket is to hold now."
+  (setf (event-queued-p event) t
+        (event-next event) (if last (shiftf (event-next last) event) event))
+  event)
+
+(define-modify-macro append-event (event) behind)
+
+(defun first-of (last)
+  "Return the first of the events in the ring of LAST, or NIL, and cut the ring before it."
+  (and last (shiftf (event-next last) nil)))
+
+(defun far-wheel (agenda)
+  (or (agenda-far agenda)
+      (setf (agenda-far agenda) (make-wheel))))
 
 (defun shelve (agenda event)
   "Put EVENT into the bucket of its time."
@@ -74,19 +81,11 @@
   (let* ((time (event-time event))
          (page (ash time (- +page-bits+)))
          (current (ash (agenda-tick agenda) (- +page-bits+))))
-    (append-event event
-                  (the bucket
-                       (cond ((= page current)
-                              (svref (agenda-near agenda) (logand time +page-mask+)))
-                             ((= (ash page (- +page-bits+)) (ash current (- +page-bits+)))
-                              (svref (agenda-far agenda) (logand page +page-mask+)))
-                             (t (agenda-beyond agenda)))))))
-
-(defun empty-bucket (bucket)
-  "Take all events out of BUCKET; return the first."
-  (prog1 (bucket-first bucket)
-    (setf (bucket-first bucket) nil
-          (bucket-last bucket) nil)))
+    (cond ((= page current)
+           (append-event (svref (agenda-near agenda) (logand time +page-mask+)) event))
+          ((= (ash page (- +page-bits+)) (ash current (- +page-bits+)))
+           (append-event (svref (far-wheel agenda) (logand page +page-mask+)) event))
+          (t (append-event (agenda-beyond agenda) event)))))
 
 (defun shelve-all (agenda event)
   "Shelve EVENT and those that follow it anew, dropping the cancelled."
@@ -100,8 +99,10 @@
 (defun turn-page (agenda)
   (let ((page (ash (agenda-tick agenda) (- +page-bits+))))
     (when (zerop (logand page +page-mask+))
-      (shelve-all agenda (empty-bucket (agenda-beyond agenda))))
-    (shelve-all agenda (empty-bucket (svref (agenda-far agenda) (logand page +page-mask+))))))
+      (shelve-all agenda (first-of (shiftf (agenda-beyond agenda) nil))))
+    (when (agenda-far agenda)
+      (shelve-all agenda (first-of (shiftf (svref (agenda-far agenda) (logand page +page-mask+))
+                                           nil))))))
 
 ;;; Resources.
 
@@ -201,35 +202,46 @@ interrupted."
           do (run-if-pending agenda (shiftf event (event-next (the event event)))))
     (when event (run-in-order agenda event))))
 
+(defun run-bucket (agenda last)
+  "Run the events of the bucket that held LAST."
+  (if (zerop (agenda-unequal agenda))
+      (run-in-order agenda (first-of last))
+      (call-each (lambda (event) (run-if-pending agenda event))
+                 (bucket-by-priority (first-of last)))))
+
 (defun advance-agenda (agenda)
   "Go on to the next tick and run the events due in it."
   (declare #.*hot* (type agenda agenda))
   (let ((tick (incf (agenda-tick agenda))))
     (when (zerop (logand tick +page-mask+)) (turn-page agenda))
-    (let* ((bucket (svref (agenda-near agenda) (logand tick +page-mask+)))
-           (event (bucket-first (the bucket bucket))))
-      (when event
-        (empty-bucket bucket)
-        (if (zerop (agenda-unequal agenda))
-            (run-in-order agenda event)
-            (call-each (lambda (event) (run-if-pending agenda event))
-                       (bucket-by-priority event)))))))
+    (let ((last (svref (agenda-near agenda) (logand tick +page-mask+))))
+      (when last
+        (setf (svref (agenda-near agenda) (logand tick +page-mask+)) nil)
+        (run-bucket agenda last)))))
 
 ;;; Looking at it whole.
 
-(defun map-bucket (function bucket)
-  (loop for event = (bucket-first bucket) then (event-next event)
-        while event
-        do (when (event-pending-p event) (funcall function event))))
+(defun map-bucket (function last)
+  "Call FUNCTION with the pending events in the bucket that LAST is, in order."
+  (when last
+    (loop for event = (event-next last) then (event-next event)
+          do (when (event-pending-p event) (funcall function event))
+          until (eq event last))))
+
+(defun map-wheel (function wheel)
+  (declare (type wheel wheel))
+  (loop for bucket across wheel
+        do (when bucket (map-bucket function bucket))))
 
 (defun pending-events (agenda)
   "Return a list of the events pending in AGENDA: by time, and at the same time by priority and then
 in the order of queueing."
   (let ((events '()))
     (flet ((note (event) (push event events)))
-      (loop for bucket across (agenda-near agenda) do (map-bucket #'note bucket))
-      (loop for bucket across (agenda-far agenda) do (map-bucket #'note bucket))
-      (map-bucket #'note (agenda-beyond agenda)))
+      (unless (zerop (agenda-pending agenda))
+        (map-wheel #'note (agenda-near agenda))
+        (when (agenda-far agenda) (map-wheel #'note (agenda-far agenda)))
+        (map-bucket #'note (agenda-beyond agenda))))
     (stable-sort (nreverse events)
                  (lambda (a b)
                    (or (< (event-time a) (event-time b))

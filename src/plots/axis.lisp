@@ -1,0 +1,139 @@
+;;;; axis.lisp -- from numbers to pixels, with marks at round numbers.
+
+(in-package :ars-magna.plots)
+
+(defstruct (axis (:copier nil))
+  "The numbers from LOW to HIGH (their logarithms if LOG-P) between the pixels FROM and TO. MARKS
+is a list of (value line...), lines of text, which run upward if UPWARD-P."
+  (low 0 :type real)
+  (high 1 :type real)
+  (from 0 :type real)
+  (to 1 :type real)
+  (log-p nil :type boolean)
+  (marks '() :type list)
+  (upward-p nil :type boolean))
+
+(defun spot-of (value log-p)
+  "Return where VALUE is along an axis: VALUE, or its logarithm if LOG-P."
+  (cond ((not log-p) value)
+        (t (check-argument chart value (plusp value)
+                           "more than 0 on a logarithmic axis; leave :log-x out, or make it a word")
+           (let ((power (power-of-ten value)))
+             (+ power (rational (log (double (/ value (expt 10 power))) 10d0)))))))
+
+(defun antilogarithm (spot)
+  "Return the number whose logarithm is SPOT, about."
+  (multiple-value-bind (power rest) (floor spot)
+    (* (expt 10 power) (rational (expt 10d0 (double rest))))))
+
+(defun place (value axis)
+  "Return the pixel of VALUE."
+  (let ((low (axis-low axis)))
+    (+ (axis-from axis)
+       (* (- (axis-to axis) (axis-from axis))
+          (/ (- (spot-of value (axis-log-p axis)) low) (- (axis-high axis) low))))))
+
+;;; Limits.
+
+(defun limits (values)
+  "Return the least and the greatest of VALUES, further apart if they are the same; 0 and 1 if there
+are none."
+  (let ((low (if values (reduce #'min values) 0))
+        (high (if values (reduce #'max values) 1)))
+    (cond ((< low high) (values low high))
+          ((zerop low) (values 0 1))
+          (t (values (- low (/ (abs low) 10)) (+ high (/ (abs high) 10)))))))
+
+(defun widened (low high from to inset)
+  "Return the ends of an axis between the pixels FROM and TO on which LOW and HIGH are INSET from
+these, but no more than a sixth of it."
+  (let* ((span (- to from))
+         (inset (min inset (/ span 6)))
+         (margin (* (- high low) (/ inset (- span (* 2 inset))))))
+    (values (- low margin) (+ high margin))))
+
+;;; Do the marks fit?
+
+(defconstant +text-size+ 12 "How high the font of charts is, in pixels.")
+(defconstant +text-step+ 15 "How far lines of text are apart, in pixels.")
+
+(defun mark-width (mark)
+  (reduce #'max (rest mark) :key (lambda (line) (text-width line +text-size+)) :initial-value 0))
+
+(defun marks-width (axis)
+  "Return how wide the widest text at AXIS is."
+  (reduce #'max (axis-marks axis) :key #'mark-width :initial-value 0))
+
+(defun marks-fit-p (axis least)
+  "True if the texts of the marks of AXIS, at least LEAST pixels wide, stand clear of each other."
+  (loop for (mark next) on (axis-marks axis)
+        while next
+        always (<= (+ 12 (/ (+ (max least (mark-width mark)) (max least (mark-width next))) 2))
+                   (- (place (first next) axis) (place (first mark) axis)))))
+
+(defun fit-marks (axis candidates least)
+  "Give AXIS the first of CANDIDATES, functions that return marks, whose texts fit."
+  (loop for (candidate . more) on candidates
+        do (setf (axis-marks axis) (funcall candidate))
+        until (or (null more) (marks-fit-p axis least)))
+  axis)
+
+;;; Axes across.
+
+(defun step-candidates (low high start end percent)
+  "Return functions that return marks between START and END, 10 or fewer between LOW and HIGH."
+  (loop for most in '(10 8 6 5 4 3 2 1)
+        collect (let ((step (round-step (- high low) most)))
+                  (lambda () (step-marks step start end percent)))))
+
+(defun linear-axis (values from to &key percent (least 0) (inset 16))
+  "Return an axis for VALUES from the pixel FROM to TO, with as many marks as fit, at least LEAST
+pixels wide. The least and greatest of VALUES are INSET pixels from the ends."
+  (multiple-value-bind (low high) (limits values)
+    (multiple-value-bind (start end) (widened low high from to inset)
+      (fit-marks (make-axis :low start :high end :from from :to to)
+                 (step-candidates low high low high percent)
+                 least))))
+
+(defun decade-marks (low high factors every)
+  "Return marks at FACTORS times each power of ten that EVERY divides, from LOW to HIGH."
+  (loop for power from (floor low) to (ceiling high)
+        when (zerop (mod power every))
+          append (loop for factor in factors
+                       for value = (* factor (expt 10 power))
+                       when (<= low (spot-of value t) high)
+                         collect (list value (plain-text value 4)))))
+
+(defun logarithmic-candidates (low high percent)
+  "Return functions that return marks for the logarithms from LOW to HIGH, most marks first."
+  (if (< (- high low) 1)
+      (let ((least (antilogarithm low)) (most (antilogarithm high)))
+        (step-candidates least most least most percent))
+      (loop for (every . factors) in '((1 1 2 3 4 5 6 7 8 9) (1 1 2 5) (1 1 3) (1 1) (2 1) (3 1)
+                                       (5 1) (10 1) (50 1) (200 1))
+            collect (let ((factors factors) (every every))
+                      (lambda () (decade-marks low high factors every))))))
+
+(defun logarithmic-axis (values from to &key percent (least 0) (inset 16))
+  "Return an axis for the logarithms of VALUES as LINEAR-AXIS does for these."
+  (multiple-value-bind (low high)
+      (limits (mapcar (lambda (value) (spot-of value t)) (or values '(1 10))))
+    (multiple-value-bind (start end) (widened low high from to inset)
+      (fit-marks (make-axis :low start :high end :from from :to to :log-p t)
+                 (logarithmic-candidates start end percent)
+                 least))))
+
+(defun axis-across (values from to log-p &rest options)
+  "Return an axis for VALUES as LINEAR-AXIS does with OPTIONS, logarithmic if LOG-P."
+  (apply (if log-p #'logarithmic-axis #'linear-axis) values from to options))
+
+;;; The axis upward. Its ends are marks.
+
+(defun axis-upward (values percent range)
+  "Return an axis for VALUES and the two numbers of RANGE; where it is on the page is not yet said."
+  (multiple-value-bind (low high) (limits (append range values))
+    (let* ((low (if (<= 0 low (/ high 2)) 0 low))
+           (step (round-step (- high low) 6))
+           (low (multiple-below step low))
+           (high (multiple-above step high)))
+      (make-axis :low low :high high :marks (step-marks step low high percent)))))

@@ -1,0 +1,104 @@
+;;;; figures.lisp -- numbers as people read them, and round numbers.
+
+(in-package :ars-magna.plots)
+
+;;; Inside, all numbers are rationals: nothing overflows, whatever their size, and the same data
+;;; make the same picture to the last byte.
+
+(defun exact (value)
+  "Return VALUE, a finite number, as a rational, 0.1 as 1/10; NIL if it is NIL. Signals
+WRONG-ARGUMENT."
+  (check-argument chart value (or (null value) (finite-p value))
+                  "a number that is not infinite, or NIL if there is none")
+  (and value (rationalize value)))
+
+(defun power-of-ten (value)
+  "Return the greatest integer N for which 10^N is at most the size of VALUE, not 0."
+  (let* ((size (abs value))
+         (bits (- (integer-length (numerator size)) (integer-length (denominator size)) 1)))
+    (loop for power from (- (floor (* 3/10 bits)) (ceiling (max 0 (- bits)) 100) 1)
+          while (<= (expt 10 (1+ power)) size)
+          finally (return power))))
+
+;;; Text.
+
+(defun decimal-text (value decimals)
+  "Return VALUE, a rational, in decimals, rounded to DECIMALS of these."
+  (multiple-value-bind (whole rest)
+      (truncate (abs (round (* value (expt 10 decimals)))) (expt 10 decimals))
+    (format nil "~:[~;-~]~D~:[~;.~V,'0D~]"
+            (and (minusp value) (plusp (+ whole rest)))
+            whole (plusp decimals) decimals rest)))
+
+(defun without-zeros (text)
+  "Return TEXT, a number, without the zeros that end its decimals."
+  (if (find #\. text)
+      (string-right-trim "." (string-right-trim "0" text))
+      text))
+
+(defun rounded (value digits)
+  "Return VALUE, a rational, rounded to so many significant DIGITS."
+  (if (zerop value)
+      0
+      (let ((unit (expt 10 (- (power-of-ten value) digits -1))))
+        (* unit (round value unit)))))
+
+(defun plain-text (value digits)
+  (let* ((value (rounded value digits))
+         (power (if (zerop value) 0 (power-of-ten value))))
+    (if (<= -4 power 6)
+        (without-zeros (decimal-text value (max 0 (- digits 1 power))))
+        (format nil "~Ae~D" (without-zeros (decimal-text (/ value (expt 10 power)) (1- digits)))
+                power))))
+
+(defun figure-text (value &key (percent nil) (digits 4))
+  "Return VALUE, a number, as text of so many significant DIGITS, as per cent if PERCENT: 0.3,
+12.5 %, 1.5e9. NIL is a dash. Signals WRONG-ARGUMENT."
+  (let ((value (exact value)))
+    (cond ((null value) "-")
+          (percent (format nil "~A %" (plain-text (* 100 value) digits)))
+          (t (plain-text value digits)))))
+
+;;; Round numbers along an axis.
+
+(defun round-step (span most)
+  "Return the least of 1, 2 and 5 times a power of ten of which at most MOST fit in SPAN."
+  (let ((least (/ span most)))
+    (loop for power from (power-of-ten least)
+          thereis (loop for factor in '(1 2 5)
+                        for step = (* factor (expt 10 power))
+                        when (<= least step) return step))))
+
+(defconstant +slack+ 1/1000000000
+  "By how much of a step a float may miss a round number that is meant.")
+
+(defun multiple-below (step value)
+  "Return the last multiple of STEP up to VALUE."
+  (* step (floor (+ (/ value step) +slack+))))
+
+(defun multiple-above (step value)
+  "Return the first multiple of STEP from VALUE on."
+  (* step (ceiling (- (/ value step) +slack+))))
+
+(defun multiples (step low high)
+  "Return the multiples of STEP from LOW to HIGH."
+  (loop for value from (multiple-above step low) to (multiple-below step high) by step
+        collect value))
+
+(defun step-text (value step largest percent)
+  "Return the text of VALUE, one of some STEP apart up to LARGEST; each has as many decimals."
+  (flet ((decimals (step) (max 0 (- (power-of-ten step)))))
+    (cond (percent
+           (format nil "~A %" (decimal-text (* 100 value) (decimals (* 100 step)))))
+          ((and (<= 1/100000 step) (< largest (expt 10 7)))
+           (decimal-text value (decimals step)))
+          ((zerop value) "0")
+          (t (let ((unit (expt 10 (power-of-ten largest))))
+               (format nil "~Ae~D" (decimal-text (/ value unit) (decimals (/ step unit)))
+                       (power-of-ten largest)))))))
+
+(defun step-marks (step low high percent)
+  "Return a list of marks (value text) for an axis from LOW to HIGH, STEP apart."
+  (let ((largest (max (abs low) (abs high))))
+    (loop for value in (multiples step low high)
+          collect (list value (step-text value step largest percent)))))

@@ -1,0 +1,43 @@
+;;;; legend.lisp -- which look means which series, beside the chart.
+
+(in-package :ars-magna.plots)
+
+(defconstant +sample-width+ 30 "How wide the sample of a series is, in pixels.")
+(defconstant +entry-gap+ 6 "How far entries of the legend are apart, in pixels.")
+
+(defstruct (legend (:copier nil))
+  "What stands beside a chart: ENTRIES are lists (index line...)."
+  (entries '() :type list)
+  (connect t)
+  (width 0 :type real)
+  (height 0 :type real))
+
+(defun plan-legend (names most connect)
+  "Return the legend for series called NAMES, at most MOST pixels wide; one of no width if all are
+empty. CONNECT: lines belong to the samples."
+  (if (every (lambda (name) (string= "" name)) names)
+      (make-legend)
+      (let* ((room (- most +sample-width+ 24))
+             (entries (loop for name in names
+                            for index from 0
+                            collect (cons index (wrapped name room)))))
+        (make-legend :entries entries :connect connect
+                     :width (+ +sample-width+ 24
+                               (reduce #'max entries :key (lambda (entry)
+                                                            (lines-width (rest entry)))))
+                     :height (loop for (nil . lines) in entries
+                                   sum (+ +entry-gap+ (lines-height (or lines '("")))))))))
+
+(defun draw-sample (canvas index x y connect)
+  "Draw how the series INDEX looks from X, around Y."
+  (when connect
+    (with-look (index 1.8)
+      (draw-line canvas draw-gcontext* x y (+ x +sample-width+) y)))
+  (draw-marker canvas index (+ x (/ +sample-width+ 2)) y))
+
+(defun draw-legend (canvas legend x y)
+  "Draw LEGEND with its upper left corner at X, Y."
+  (loop for (index . lines) in (legend-entries legend)
+        do (draw-sample canvas index (+ x 16) (+ y 6) (legend-connect legend))
+           (write-lines canvas (+ x 16 +sample-width+ 8) (+ y 10) lines)
+           (incf y (+ +entry-gap+ (lines-height (or lines '("")))))))

@@ -1,0 +1,41 @@
+;;;; page.lisp -- what all charts have: a margin, a title, and a document that they become.
+
+(in-package :ars-magna.plots)
+
+(defconstant +margin+ 16 "How much is left free around a chart, in pixels.")
+
+(defun check-size (width height)
+  (check-argument chart width (whole-p width 300 10000)
+                  "an integer from 300 to 10000, in pixels")
+  (check-argument chart height (whole-p height 200 10000)
+                  "an integer from 200 to 10000, in pixels"))
+
+;;; Title and subtitle.
+
+(defstruct (heading (:constructor make-heading (title subtitle)) (:copier nil))
+  "Lines of text above a chart."
+  (title '() :type list)
+  (subtitle '() :type list))
+
+(defun plan-heading (title subtitle width)
+  "Return the heading for a page WIDTH pixels wide."
+  (let ((room (- width (* 2 +margin+))))
+    (make-heading (wrapped title room :size 15 :bold-p t) (wrapped subtitle room))))
+
+(defun heading-bottom (heading)
+  (+ +margin+ (* 19 (length (heading-title heading))) (lines-height (heading-subtitle heading))))
+
+(defun draw-heading (canvas heading)
+  (let ((y (write-lines canvas +margin+ (+ +margin+ 13) (heading-title heading)
+                        :size 15 :step 19 :bold-p t)))
+    (write-lines canvas +margin+ (- y 2) (heading-subtitle heading) :color +faint-ink+)))
+
+;;; The document.
+
+(defun page-svg (draw width height)
+  "Return what the function DRAW draws on a canvas as an SVG document, as a string."
+  (with-output-to-string (stream)
+    (with-svg (canvas stream :font +text-font+)
+      (with-canvas (canvas)
+        (funcall draw canvas)
+        (values width height)))))

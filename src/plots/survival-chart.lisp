@@ -1,0 +1,124 @@
+;;;; survival-chart.lisp -- how many are left after so much time, as curves with steps.
+
+(in-package :ars-magna.plots)
+
+;;; The curve.
+
+(defun stairs (steps end reader plane)
+  "Return points x y ... along STEPS until the time END, whose heights READER reads."
+  (loop for (step next) on steps
+        for y = (place (funcall reader step) (plane-upward plane))
+        collect (place (first step) (plane-across plane))
+        collect y
+        collect (place (if next (first next) end) (plane-across plane))
+        collect y))
+
+(defun backward (points)
+  "Return POINTS, x y ..., from the last to the first."
+  (loop for (y x) on (reverse points) by #'cddr
+        collect x
+        collect y))
+
+(defun bands (curve)
+  "Return lists (end step...): STEPS of CURVE that follow each other and have an interval, until the
+time END."
+  (let ((bands '()) (band '()))
+    (flet ((finish (end)
+             (when band (push (cons end (reverse band)) bands))
+             (setf band '())))
+      (loop for step in (curve-steps curve)
+            do (if (and (third step) (fourth step))
+                   (push step band)
+                   (finish (first step))))
+      (finish (curve-end curve)))
+    (nreverse bands)))
+
+(defun draw-bands (canvas curve plane)
+  (with-opacity (canvas 16/100)
+    (with-ink ((look-color (curve-index curve)))
+      (loop for (end . steps) in (bands curve)
+            do (draw-lines canvas draw-gcontext*
+                           (append (stairs steps end #'third plane)
+                                   (backward (stairs steps end #'fourth plane)))
+                           :fill-p t)))))
+
+(defun draw-censored (canvas curve plane)
+  "Draw a short line upward where somebody has left CURVE, one for each pixel."
+  (let ((places (remove-duplicates
+                 (loop for time in (remove-duplicates (curve-censored curve))
+                       collect (list (round (place time (plane-across plane)))
+                                     (place (second (step-at time curve)) (plane-upward plane))))
+                 :test #'equal)))
+    (with-ink ((look-color (curve-index curve)) 1.4)
+      (loop for (x y) in places
+            do (draw-line canvas draw-gcontext* x (- y 5) x (+ y 5))))))
+
+(defun draw-markers-along (canvas curve curves plane)
+  "Draw up to four markers along CURVE, clear of those of the other CURVES."
+  (loop with end = (reduce #'max curves :key #'curve-end)
+        for turn below 4
+        for time = (* end 1/4 (+ turn (/ (+ 1/2 (curve-index curve)) (length curves))))
+        while (<= time (curve-end curve))
+        do (draw-marker canvas (curve-index curve) (place time (plane-across plane))
+                        (place (second (step-at time curve)) (plane-upward plane)))))
+
+(defun draw-curve (canvas curve plane)
+  (with-look ((curve-index curve) 1.8)
+    (draw-lines canvas draw-gcontext*
+                (stairs (curve-steps curve) (curve-end curve) #'second plane)))
+  (draw-censored canvas curve plane))
+
+(defun draw-curves (canvas curves plane)
+  (let ((known (remove-if-not #'known-p curves)))
+    (dolist (curve known) (draw-bands canvas curve plane))
+    (dolist (curve known) (draw-curve canvas curve plane))
+    (dolist (curve known) (draw-markers-along canvas curve curves plane))))
+
+;;; Below: how many are left.
+
+(defun risk-height (curves)
+  (if (some #'curve-times curves) (+ 10 (* +text-step+ (1+ (length curves)))) 0))
+
+(defun risk-width (curves)
+  "Return how wide the numbers of those at risk are at most."
+  (text-width (figure-text (reduce #'max curves :key (lambda (curve) (length (curve-times curve)))
+                                                :initial-value 0))
+              +text-size+))
+
+(defun draw-risks (canvas curves plane label)
+  (let ((y (+ (plane-below plane) 20)))
+    (write-lines canvas +margin+ y (list label) :color +faint-ink+)
+    (dolist (curve curves)
+      (incf y +text-step+)
+      (draw-sample canvas (curve-index curve) +margin+ (- y 4) t)
+      (dolist (mark (axis-marks (plane-across plane)))
+        (write-lines canvas (place (first mark) (plane-across plane)) y
+                     (list (princ-to-string (at-risk (first mark) curve)))
+                     :anchor :middle)))))
+
+(defun survival-chart (curves &rest options
+                       &key (risk-label "still there") title subtitle x-label y-label width height)
+  "Return a chart of CURVES, the shares that are left over time, as an SVG document. Each is a list
+(name :steps steps :censored times :times times). A step is a list (time survival low high): the
+share that is left from then on, 0 to 1, and its band; before the first all are. CENSORED are the
+times at which somebody was lost sight of, TIMES those until which each was seen, however that
+ended: from these come the numbers of those left, below the chart, which RISK-LABEL introduces. The
+other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
+  (declare (ignore title subtitle x-label y-label width height))
+  (check-argument survival-chart risk-label (stringp risk-label) "a string")
+  (let* ((curves (checked-curves curves))
+         (ends (cons 0 (mapcar #'curve-end curves)))
+         (plane (apply #'plan-plane
+                       (lambda (from to)
+                         (linear-axis ends from to :least (risk-width curves) :inset 8))
+                       (axis-upward '() t '(0 1))
+                       (mapcar (lambda (curve) (legend-name (curve-name curve) (known-p curve)))
+                               curves)
+                       :extra (risk-height curves)
+                       :least-left (+ +margin+ +sample-width+ 14 (/ (risk-width curves) 2))
+                       options)))
+    (plane-svg plane (some #'known-p curves)
+               (lambda (canvas)
+                 (draw-curves canvas curves plane)
+                 (when (some #'curve-times curves)
+                   (draw-risks canvas curves plane risk-label))))))

@@ -1,0 +1,132 @@
+;;;; survival.lisp -- how long something takes, of which some was cut short.
+
+(in-package :ars-magna.statistics)
+
+;;; What ends by being done and what is cut short in the same moment is taken to have been cut short
+;;; after that.
+
+(defun check-survival (operator times-name times events-name events)
+  "Signal WRONG-ARGUMENT unless TIMES and EVENTS, so called, go together."
+  (unless (elements-p times #'amount-p)
+    (reject-argument operator times-name times "a list or vector of numbers from 0 to 1e15"))
+  (unless (elements-p events (lambda (event) (member event '(t nil 1 0))))
+    (reject-argument operator events-name events
+                     "a list or vector of T (or 1, done at that time) and NIL (or 0, cut short)"))
+  (check-pairs operator events-name events times))
+
+(defun dated (times events &optional mark)
+  "Return a vector of lists (time done-p mark), in order of TIMES."
+  (sort (map 'vector (lambda (time event) (list time (and (member event '(t 1)) t) mark))
+             times events)
+        #'< :key #'first))
+
+(defun same-time-end (dated start)
+  "Return the index of the first in DATED, from START, that is later."
+  (or (position (first (aref dated start)) dated :key #'first :test #'/= :start start)
+      (length dated)))
+
+(defun call-with-moments (function dated)
+  "Call FUNCTION with the start and the end in DATED of each moment in which something was done."
+  (loop with start = 0
+        while (< start (length dated))
+        do (let ((end (same-time-end dated start)))
+             (when (find t dated :key #'second :start start :end end)
+               (funcall function start end))
+             (setf start end))))
+
+(defun done-between (dated start end)
+  (count t dated :key #'second :start start :end end))
+
+;;; The curve.
+
+(defun band (survival variance z highest)
+  "Return the bounds for SURVIVAL, of which Greenwood's sum is VARIANCE; of none left, HIGHEST is
+the high one, as that was so before."
+  (if (zerop survival)
+      (values 0d0 highest)
+      (let ((factor (exp (/ (* z (sqrt variance)) (- (log survival))))))
+        (values (expt survival factor) (expt survival (/ factor))))))
+
+(addition survival-curve)
+(defun survival-curve (times events &key (confidence .95d0))
+  "Return which share takes longer than each time, the product-limit estimate (Kaplan and Meier
+1958): a list of steps (time at-risk done survival low high), one for each time at which something
+was done. TIMES and EVENTS are lists or vectors; where the event is T (or 1), it was done at that
+time; where it is NIL (or 0), it was cut short then, and might have taken longer, as at a limit of
+ticks. LOW and HIGH bound the survival at that time, by Greenwood's formula on the scale of
+log(-log) (Kalbfleisch and Prentice 2002, chapter 1), which gives no bounds once nothing is left:
+LOW is 0 then, and HIGH that of the step before, or 1. No steps if nothing was done. Signals
+WRONG-ARGUMENT unless TIMES are from 0 to 1e15, EVENTS as many, and CONFIDENCE between 0 and 1."
+  (check-survival 'survival-curve 'times times 'events events)
+  (let* ((z (normal-reach (check-share survival-curve confidence)))
+         (dated (dated times events)) (size (length dated))
+         (survival 1d0) (variance 0d0) (highest 1d0) (steps '()))
+    (flet ((note (start end)
+             (let* ((at-risk (- size start)) (done (done-between dated start end))
+                    (left (- at-risk done)))
+               (setf survival (* survival (/ (double left) at-risk)))
+               (when (plusp left) (incf variance (/ (double done) at-risk left)))
+               (multiple-value-bind (low high) (band survival variance z highest)
+                 (push (list (first (aref dated start)) at-risk done survival low high) steps)
+                 (setf highest high)))))
+      (call-with-moments #'note dated))
+    (nreverse steps)))
+
+(defun curve-p (value)
+  "True if VALUE looks like what SURVIVAL-CURVE returns."
+  (and (proper-list-p value)
+       (every (lambda (step) (and (proper-list-p step) (= 6 (length step)) (every #'realp step)))
+              value)))
+
+(addition median-survival)
+(defun median-survival (curve)
+  "Return the time by which half are done, by CURVE, a result of SURVIVAL-CURVE, and the bounds for
+it, low and high: the first times at which survival, its low and its high bound are a half or less
+(Brookmeyer and Crowley 1982). Each is NIL if that never comes. Signals WRONG-ARGUMENT."
+  (check-argument median-survival curve (curve-p curve) "a list that SURVIVAL-CURVE returned")
+  (flet ((halved (reader)
+           (first (find-if (lambda (step) (<= (funcall reader step) (+ .5d0 1d-12))) curve))))
+    (values (halved #'fourth) (halved #'fifth) (halved #'sixth))))
+
+;;; Two groups.
+
+(defun expected-and-variance (at-risk first-at-risk done)
+  "Return how many of DONE are expected of the first group, and the variance of that."
+  (let ((share (/ first-at-risk at-risk)))
+    (values (* done share)
+            (if (= at-risk 1)
+                0
+                (/ (* done share (- 1 share) (- at-risk done)) (1- at-risk))))))
+
+(defun log-rank-sums (dated)
+  "Return how many of the first group in DATED, those marked, are done, are expected to be, and the
+variance of that."
+  (let ((observed 0) (expected 0d0) (variance 0d0) (gone 0)
+        (marked (count t dated :key #'third)) (seen 0))
+    (flet ((note (start end)
+             (incf gone (count t dated :key #'third :start seen :end start))
+             (setf seen start)
+             (incf observed (count-if (lambda (one) (and (second one) (third one))) dated
+                                      :start start :end end))
+             (multiple-value-bind (mean spread)
+                 (expected-and-variance (- (length dated) start) (- marked gone)
+                                        (done-between dated start end))
+               (incf expected mean)
+               (incf variance spread))))
+      (call-with-moments #'note dated))
+    (values observed expected variance)))
+
+(addition log-rank-test)
+(defun log-rank-test (first-times first-events second-times second-events)
+  "Return how likely it is that two groups that take equally long differ as much as these: the
+log-rank test (Mantel 1966; Peto and Peto 1972). Times and events are as for SURVIVAL-CURVE. The
+other values: chi-square, of one degree of freedom; how many of the first group were done, and how
+many were to be expected. The first is 1, the second 0, if nothing can be said, as of an empty
+group. Signals WRONG-ARGUMENT as SURVIVAL-CURVE does."
+  (check-survival 'log-rank-test 'first-times first-times 'first-events first-events)
+  (check-survival 'log-rank-test 'second-times second-times 'second-events second-events)
+  (multiple-value-bind (observed expected variance)
+      (log-rank-sums (merge 'vector (dated first-times first-events t)
+                            (dated second-times second-events) #'< :key #'first))
+    (let ((square (if (zerop variance) 0d0 (/ (expt (- observed expected) 2) variance))))
+      (values (chi-square-tail square 1) square observed expected))))
