@@ -135,7 +135,10 @@
                  (:file "fingerprint") (:file "row") (:file "lines")
                  (:file "directory") (:file "workers") (:file "stopwatch") (:file "progress")
                  (:file "rounds") (:file "stopping") (:file "results") (:file "description")
-                 (:file "running") (:file "merging") (:file "shards")))
+                 (:file "running") (:file "merging") (:file "shards") (:file "differences")
+                 (:file "contrasts")
+                 (:file "verdicts") (:file "comparing") (:file "comparing-versions")
+                 (:file "comparison-picture")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.
@@ -186,6 +189,15 @@
                  (:file "world-pane") (:file "transcript") (:file "prompt") (:file "window")
                  (:file "commands") (:file "opening")))))
 
+(defsystem "ars-magna/fiveam"
+  :description "Checks for regression suites: plans that are held to their rates of success."
+  :depends-on ("ars-magna" "fiveam")
+  :serial t
+  :components
+  ((:module "src/fiveam" :serial t
+    :components ((:file "package") (:file "deciding") (:file "trying") (:file "repeating")
+                 (:file "telling") (:file "checking")))))
+
 ;;; Loaded by tests/clim.lisp, after the package of the tests, where McCLIM is found.
 (defsystem "ars-magna/clim-tests"
   :description "What the window claims."
@@ -194,7 +206,7 @@
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
-  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/cli" "fiveam")
+  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/cli" "ars-magna/fiveam" "fiveam")
   :serial t
   :components
   ((:module "tests" :serial t
@@ -255,7 +267,8 @@
                  (:file "manual-c") (:file "manual-c-plans") (:file "manual-d")
                  (:file "manual-e") (:file "hostile-numbers") (:file "ownership")
                  (:file "users-hands") (:file "src-readme") (:file "rpl-readme")
-                 (:file "tests-readme") (:file "architecture") (:file "experiments") (:file "experiments-tables") (:file "isolation")
+                 (:file "tests-readme") (:file "architecture") (:file "experiments") (:file "experiments-tables") (:file "experiment-compare")
+                 (:file "experiment-compare-versions") (:file "rates") (:file "isolation")
                  (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))

@@ -15,7 +15,7 @@ layers' symbols are qualified by short local nicknames: geo:add, nisp:matchq, ro
                                   (:fluents "RPL.FLUENTS") (:tasks "RPL.TASKS")
                                   (:language "RPL.LANGUAGE") (:constructs "RPL.CONSTRUCTS")
                                   (:display "DISPLAY")
-                                  (:experiment "EXPERIMENT") (:cli "CLI"))
+                                  (:experiment "EXPERIMENT") (:rates "FIVEAM") (:cli "CLI"))
         for package = (find-package (concatenate 'string "ARS-MAGNA." layer))
         when package
           do (sb-ext:add-package-local-nickname nickname package :ars-magna.tests)))
@@ -39,6 +39,15 @@ layers' symbols are qualified by short local nicknames: geo:add, nisp:matchq, ro
 (defun failure-reason (result)
   "Return what RESULT, a failed check's, says."
   (fiveam::reason result))
+
+(defun results-of (function)
+  "Return what came of the checks that FUNCTION makes, which do not count for the test that calls
+this."
+  (fiveam::return-result-list function))
+
+(defun passed-p (result)
+  "True if RESULT is that of a check that passed."
+  (fiveam::test-passed-p result))
 
 (defun test-claim (test)
   "Return what TEST, a name, says in its documentation."

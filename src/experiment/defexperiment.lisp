@@ -155,12 +155,12 @@ not. See RUN-EXPERIMENT for what is kept. Signals MALFORMED-DEFINITION. Return N
         do (check-value definition part value)
         collect (list (first part) value)))
 
-(defun define-experiment (name &key documentation robots parameters clean factors cases
-                                 (trials 100) (seed 0) (limit 100000) variables run until success
-                                 measures form deciding)
-  "Define the experiment NAME; what DEFEXPERIMENT expands to. Return it."
-  (let ((definition (title "defexperiment" name))
-        (experiment (%make-experiment name)))
+(defun experiment-from (name definition
+                        &key documentation robots parameters clean factors cases
+                          (trials 100) (seed 0) (limit 100000) variables run until success
+                          measures form deciding)
+  "Return an experiment called NAME; DEFINITION is what errors in it are said to be in."
+  (let ((experiment (%make-experiment name)))
     (check-robots definition (list* :robots robots) robots)
     (setf (experiment-documentation experiment) documentation
           (experiment-robots experiment) robots
@@ -181,4 +181,10 @@ not. See RUN-EXPERIMENT for what is kept. Signals MALFORMED-DEFINITION. Return N
           (experiment-deciding experiment) deciding
           (experiment-conditions experiment)
           (all-conditions experiment clean (settings-from definition parameters)))
-    (register *experiments* name experiment)))
+    experiment))
+
+(defun define-experiment (name &rest options)
+  "Define the experiment NAME by OPTIONS, those of EXPERIMENT-FROM; what DEFEXPERIMENT expands to.
+Return it."
+  (register *experiments* name
+            (apply #'experiment-from name (title "defexperiment" name) options)))

@@ -3,7 +3,8 @@
 (defpackage :ars-magna.experiment
   (:documentation "Controlled experiments: conditions, trials, tables that can be repeated and gone
 on with, on as many cores and machines as there are. Names cl-csv and lparallel.")
-  (:use :cl :ars-magna.base :ars-magna.run)
+  (:use :cl :ars-magna.base :ars-magna.statistics :ars-magna.run)
+  (:import-from :ars-magna.plots #:difference-chart #:save-chart)
   (:import-from :ars-magna.time #:current-simulation)
   (:import-from :ars-magna.robot #:find-blueprint #:all-blueprints #:blueprint-name #:blueprint-map)
   (:import-from :ars-magna.rpl.tasks
@@ -11,16 +12,28 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
   (:import-from :ars-magna.rpl-robot #:*plan-limit*)
-  (:import-from :ars-magna.statistics #:sequential-level #:wilson-interval)
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
-           #:find-condition #:trial-values)
+           #:experiment-from #:experiment-package #:find-condition #:trial-values
+           #:condition-name #:condition-parameters)
+  ;; trial, workers, description, values
+  (:export #:run-trial #:call-in-silence #:call-by-workers #:form-text #:parameter-called
+           #:result-trial #:result-seed #:result-outcome #:result-reason #:result-ticks
+           #:result-digest #:result-error)
   ;; results
   (:export #:results-p #:results-samples #:results-directory #:results-factors #:results-measures
            #:read-results #:sample-p #:sample-experiment #:sample-condition #:sample-texts
            #:sample-trials #:sample-outcomes #:sample-reasons #:sample-ticks #:sample-errors
            #:sample-measure)
+  ;; differences, contrasts, verdicts, comparing, comparing-versions, comparison-picture
+  (:export #:paired-difference-p #:paired-measure #:paired-trials #:paired-first #:paired-second
+           #:paired-estimate #:paired-low #:paired-high #:paired-p #:paired-adjusted-p
+           #:paired-table
+           #:contrast-p #:contrast-first #:contrast-second #:contrast-where #:contrast-trials
+           #:contrast-same #:contrast-differences
+           #:comparison-p #:comparison-contrasts #:comparison-verdicts #:print-comparison
+           #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture)
   ;; lines, running, merging, workers
   (:export #:damaged-table #:run-experiment #:merge-results #:processors)
   ;; fingerprint, shards

@@ -12,12 +12,15 @@
   (fingerprint "" :type string :read-only t)
   (condition "" :type string :read-only t)
   (texts '() :type list :read-only t)
+  (seeds (column) :read-only t)
   (trials (column) :read-only t)
   (outcomes (column) :read-only t)
   (reasons (column) :read-only t)
   (ticks (column) :read-only t)
   ;; A list of a vector for each measure.
   (measures '() :type list)
+  ;; Integers, or NIL; trials whose digests are equal have been the same run.
+  (digests (column) :read-only t)
   (errors (column) :read-only t))
 
 (defstruct (results (:constructor %make-results (columns)) (:copier nil))
@@ -106,9 +109,14 @@ too. Signals UNKNOWN-NAME."
     (setf (sample-measures sample) (loop repeat measures collect (column)))
     sample))
 
+(defun digest-in (text)
+  "Return a number for the digest in TEXT, of a table, or NIL. Sixty bits of it are enough."
+  (and (string/= text "") (ldb (byte 60 0) (parse-integer text :radix 16))))
+
 (defun note-row (sample texts measures shared)
-  "Enter the row whose TEXTS from the trial's number on are these into SAMPLE."
-  (destructuring-bind (trial outcome reason ticks &rest rest) texts
+  "Enter the row whose TEXTS from the seed on are these into SAMPLE."
+  (destructuring-bind (seed trial outcome reason ticks &rest rest) texts
+    (vector-push-extend (parse-integer seed) (sample-seeds sample))
     (vector-push-extend (parse-integer trial) (sample-trials sample))
     (vector-push-extend (shared-text outcome shared) (sample-outcomes sample))
     (vector-push-extend (shared-text reason shared) (sample-reasons sample))
@@ -116,6 +124,7 @@ too. Signals UNKNOWN-NAME."
     (loop for column in (sample-measures sample)
           for text in rest
           do (vector-push-extend (value-in text shared) column))
+    (vector-push-extend (digest-in (nth measures rest)) (sample-digests sample))
     (vector-push-extend (shared-text (nth (1+ measures) rest) shared) (sample-errors sample))))
 
 (defun results-in (file)
@@ -132,7 +141,7 @@ too. Signals UNKNOWN-NAME."
                                        always (string= text other)))
                   (setf key (subseq texts 0 seed))
                   (push (new-sample texts seed measures) samples))
-                (note-row (first samples) (nthcdr (1+ seed) texts) measures shared))
+                (note-row (first samples) (nthcdr seed texts) measures shared))
               file)
     (setf (results-samples results) (reverse samples))
     results))

@@ -1,0 +1,137 @@
+;;;; comparing-versions.lisp -- one experiment run by two versions of the code, row by row.
+
+(in-package :ars-magna.experiment)
+
+;;; Over all conditions a seed counts as one, as its trials under several conditions share their
+;;; chance: for each seed the share of conditions under which it succeeds is compared.
+
+(defun results-given (operator name value)
+  "Return the results that VALUE, the argument NAME of OPERATOR, means, and what they are called."
+  (cond ((results-p value)
+         (values value (if (results-directory value)
+                           (native-name (results-directory value))
+                           (string-downcase name))))
+        ((typep value '(or string pathname))
+         (values (read-results value) (if (stringp value) value (native-name value))))
+        (t (reject-argument operator name value "the name of a directory, or results"))))
+
+(defun short-names (first second)
+  "Return the last parts of the names FIRST and SECOND if these tell them apart, else the names."
+  (flet ((last-part (name)
+           (let ((name (string-right-trim "/" name)))
+             (subseq name (1+ (or (position #\/ name :from-end t) -1))))))
+    (if (string= (last-part first) (last-part second))
+        (values first second)
+        (values (last-part first) (last-part second)))))
+
+(defun condition-pairs (first second)
+  "Return lists of samples of the results FIRST and SECOND that are of one condition; and the names
+of conditions that one of them lacks."
+  (flet ((called (sample results)
+           (find (sample-condition sample) (results-samples results)
+                 :key #'sample-condition :test #'string=)))
+    (values (loop for sample in (results-samples first)
+                  for other = (called sample second)
+                  when other collect (list sample other))
+            (mapcar #'sample-condition
+                    (append (remove-if (lambda (sample) (called sample second))
+                                       (results-samples first))
+                            (remove-if (lambda (sample) (called sample first))
+                                       (results-samples second)))))))
+
+(defun note-successes (sample counts)
+  "Add to COUNTS, a table by seed, a list (trials successes), the trials of SAMPLE."
+  (loop for seed across (sample-seeds sample)
+        for outcome across (sample-outcomes sample)
+        for entry = (or (gethash seed counts) (setf (gethash seed counts) (list 0 0)))
+        do (incf (first entry))
+           (when (success-p outcome) (incf (second entry)))))
+
+(defun successes-by-seed (samples)
+  (let ((counts (make-hash-table)))
+    (dolist (sample samples counts) (note-successes sample counts))))
+
+(defun complete-seeds (pairs)
+  "Return the seeds of which both samples of all PAIRS have a trial, in order."
+  (let ((count (length pairs))
+        (first (successes-by-seed (mapcar #'first pairs)))
+        (second (successes-by-seed (mapcar #'second pairs))))
+    (values (sort (loop for seed being the hash-keys of first using (hash-value entry)
+                        when (and (= count (first entry))
+                                  (= count (first (gethash seed second '(0 0)))))
+                          collect seed)
+                  #'<)
+            first second)))
+
+(defun overall-contrast (contrast pairs)
+  "Return CONTRAST, of versions, with how they differ in success over all PAIRS of samples."
+  (multiple-value-bind (seeds first second) (complete-seeds pairs)
+    (flet ((shares (counts)
+             (loop for seed in seeds
+                   collect (/ (second (gethash seed counts)) (length pairs)))))
+      (setf (contrast-trials contrast) (length seeds)
+            (contrast-differences contrast)
+            (list (mean-difference "success" (shares first) (shares second) :rate))))
+    contrast))
+
+(defun check-one-experiment (before after)
+  (let ((names (mapcar (lambda (results)
+                         (if (results-samples results)
+                             (sample-experiment (first (results-samples results)))
+                             (reject-use "There are no rows in a table to be compared.")))
+                       (list before after))))
+    (unless (apply #'string= names)
+      (reject-use "One table is of the experiment ~A and the other of ~A. Give two of one ~
+                   experiment."
+                  (first names) (second names)))
+    (first names)))
+
+(defun contrasts-of-versions (pairs before after first second names)
+  "Return contrasts of PAIRS, lists of samples of AFTER and BEFORE, which are called FIRST and
+SECOND."
+  (loop for (sample other) in pairs
+        collect (contrast-samples (make-contrast (sample-condition sample) first second)
+                                  after sample before other names)))
+
+(defun reject-lack-of-pairs (contrasts before-name after-name)
+  (when (every (lambda (contrast) (zerop (contrast-trials contrast))) contrasts)
+    (reject-use "~A and ~A have no trials of equal condition and seed." before-name after-name)))
+
+(defun comparison-of-versions (before after before-name after-name names)
+  "Return the comparison of the results BEFORE and AFTER, which are called so, in what NAMES say."
+  (multiple-value-bind (first second) (short-names after-name before-name)
+    (multiple-value-bind (pairs lacking) (condition-pairs after before)
+      (let ((comparison
+              (make-comparison
+               (format nil "The experiment ~A, seed by seed: ~A against ~A, before."
+                       (check-one-experiment before after) after-name before-name)
+               :versions
+               (contrasts-of-versions pairs before after first second names))))
+        (reject-lack-of-pairs (comparison-contrasts comparison) before-name after-name)
+        (when (and (rest pairs) (member "success" names :test #'string=)
+                   (notevery #'same-runs-p (comparison-contrasts comparison)))
+          (setf (comparison-overall comparison)
+                (overall-contrast (make-contrast "over all" first second) pairs)))
+        (when lacking
+          (setf (comparison-notes comparison)
+                (list (format nil "Only one of them has the condition~P ~{~A~^, ~}."
+                              (length lacking) lacking))))
+        (finish-comparison comparison)))))
+
+(addition compare-results)
+(defun compare-results (before after &key measure (stream *standard-output*))
+  "Compare two tables of one experiment that two versions of the code have made: BEFORE and AFTER are
+directories, or results. Trials of equal condition and seed are compared, per condition and, for
+success, over all conditions, where each seed counts once. Differences are AFTER less BEFORE. It is
+said which conditions got better or worse, and how many trials are the same to the last bit: rows
+with equal digest, outcome and measures. The other arguments, the value and the errors are those of
+COMPARE-CONDITIONS; DAMAGED-TABLE and MISUSE, too, as READ-RESULTS, and if the tables are of
+different experiments."
+  (check-stream 'compare-results stream)
+  (multiple-value-bind (old old-name) (results-given 'compare-results 'before before)
+    (multiple-value-bind (new new-name) (results-given 'compare-results 'after after)
+      (let ((comparison (comparison-of-versions
+                         old new old-name new-name
+                         (compared-names 'compare-results (list new old) measure))))
+        (when stream (print-comparison comparison stream))
+        comparison))))

@@ -1,0 +1,169 @@
+;;;; contrasts.lisp -- two conditions side by side: their trials of equal seeds, in all respects.
+
+(in-package :ars-magna.experiment)
+
+(defstruct (contrast (:constructor make-contrast (where first second)) (:copier nil))
+  "Two conditions or versions, called FIRST and SECOND; WHERE says what they have in common."
+  (where nil :type (or null string) :read-only t)
+  (first "" :type string :read-only t)
+  (second "" :type string :read-only t)
+  (trials 0 :type integer)
+  ;; How many trials of each have no counterpart, and how many of those that have broke off.
+  (alone-first 0 :type integer)
+  (alone-second 0 :type integer)
+  (errors-first 0 :type integer)
+  (errors-second 0 :type integer)
+  (same 0 :type integer)
+  (differences '() :type list))
+
+(defstruct (comparison (:constructor make-comparison (title kind contrasts)) (:copier nil))
+  "Conditions of an experiment side by side, or two versions of it: KIND is :CONDITIONS or
+:VERSIONS. OVERALL is the contrast of versions over all conditions, or NIL."
+  (title "" :type string :read-only t)
+  (kind :conditions :type keyword :read-only t)
+  (contrasts '() :type list :read-only t)
+  (overall nil :type (or null contrast))
+  (tests 0 :type integer)
+  (notes '() :type list))
+
+(addition contrast-p contrast-first contrast-second contrast-where contrast-trials contrast-same
+          contrast-differences comparison-p comparison-contrasts)
+(document-functions
+  contrast-p "True of two conditions, or versions, that have been compared."
+  contrast-first "Return what the first is called, a string."
+  contrast-second "Return what the second is called, a string."
+  contrast-where "Return what both have in common, a string, or NIL."
+  contrast-trials "Return how many pairs of trials with equal seeds there are."
+  contrast-same "Return in how many pairs both trials are the same run to the last bit, with equal
+rows."
+  contrast-differences "Return a list of the differences in success, ticks and what was measured;
+none if all pairs are the same runs."
+  comparison-p "True of what COMPARE-CONDITIONS, COMPARE-LEVELS and COMPARE-RESULTS return."
+  comparison-contrasts "Return a list of the pairs of conditions, or versions, that were compared.")
+
+(defmethod print-object ((contrast contrast) stream)
+  (print-unreadable-object (contrast stream)
+    (format stream "~A against ~A" (contrast-first contrast) (contrast-second contrast))))
+
+(defmethod print-object ((comparison comparison) stream)
+  (print-unreadable-object (comparison stream :type t)
+    (format stream "~A, ~D contrast~:P" (comparison-title comparison)
+            (length (comparison-contrasts comparison)))))
+
+;;; Pairs.
+
+(defun common-trials (first second)
+  "Return where the samples FIRST and SECOND have trials with equal seeds, a list of conses of two
+indexes."
+  (let ((seeds (sample-seeds first)) (others (sample-seeds second)) (i 0) (j 0) (pairs '()))
+    (loop while (and (< i (length seeds)) (< j (length others)))
+          do (let ((seed (aref seeds i)) (other (aref others j)))
+               (when (= seed other) (push (cons i j) pairs))
+               (when (<= seed other) (incf i))
+               (when (>= seed other) (incf j))))
+    (nreverse pairs)))
+
+(defun success-p (outcome) (string= outcome "success"))
+
+(defun both-succeed (first second pairs)
+  "Return those of PAIRS in which the trials of FIRST and SECOND both succeeded."
+  (remove-if-not (lambda (pair)
+                   (and (success-p (aref (sample-outcomes first) (car pair)))
+                        (success-p (aref (sample-outcomes second) (cdr pair)))))
+                 pairs))
+
+(defun column-of (results sample name)
+  (if (string-equal name "success")
+      (cl:map 'vector #'success-p (sample-outcomes sample))
+      (sample-measure results sample name)))
+
+(defun paired-values (column other pairs)
+  "Return lists of the values in COLUMN and OTHER in PAIRS in which both were measured."
+  (loop for (i . j) in pairs
+        for a = (aref column i)
+        for b = (aref other j)
+        unless (or (eq :none a) (eq :none b))
+          collect a into firsts and collect b into seconds
+        finally (return (values firsts seconds))))
+
+;;; What was measured is a rate if it is always true or false, and a mean if there are numbers;
+;;; words cannot be subtracted.
+
+(defun only-numbers (firsts seconds)
+  (loop for a in firsts
+        for b in seconds
+        when (and (quantity-p a) (quantity-p b))
+          collect a into numbers and collect b into others
+        finally (return (values numbers others))))
+
+(defun difference-of-values (name firsts seconds)
+  "Return the difference in NAME between FIRSTS and SECONDS, lists of values; NIL of words."
+  (flet ((all (test) (and (every test firsts) (every test seconds))))
+    (cond ((all (lambda (value) (typep value 'boolean))) (rate-difference name firsts seconds))
+          ((or (some #'realp firsts) (some #'realp seconds))
+           (multiple-value-call #'mean-difference name (only-numbers firsts seconds)))
+          (t nil))))
+
+(defun difference-in (name results first other-results second pairs)
+  "Return the difference in NAME between FIRST, of RESULTS, and SECOND, of OTHER-RESULTS."
+  (let ((pairs (if (string-equal name "ticks") (both-succeed first second pairs) pairs)))
+    (multiple-value-bind (firsts seconds)
+        (paired-values (column-of results first name) (column-of other-results second name) pairs)
+      (cond ((string-equal name "ticks") (mean-difference "ticks" firsts seconds))
+            ((or firsts (string-equal name "success"))
+             (difference-of-values (string-downcase name) firsts seconds))))))
+
+;;; The whole.
+
+(defun same-row-p (first i second j)
+  "True if the trials at I of FIRST and at J of SECOND have the same row, but for the fingerprint."
+  (flet ((same (reader)
+           (equal (aref (funcall reader first) i) (aref (funcall reader second) j))))
+    (and (same #'sample-digests) (same #'sample-outcomes) (same #'sample-reasons)
+         (same #'sample-ticks) (same #'sample-errors)
+         (= (length (sample-measures first)) (length (sample-measures second)))
+         (every (lambda (column other) (equal (aref column i) (aref other j)))
+                (sample-measures first) (sample-measures second)))))
+
+(defun count-errors (sample places)
+  (count-if (lambda (i) (string= "error" (aref (sample-outcomes sample) i))) places))
+
+;; What is the same to the last bit needs no test, and is none among several.
+(defun same-runs-p (contrast)
+  "True if all pairs of trials of CONTRAST are the same runs."
+  (and (plusp (contrast-trials contrast))
+       (= (contrast-same contrast) (contrast-trials contrast))))
+
+(defun contrast-samples (contrast results first other-results second names)
+  "Enter into CONTRAST how FIRST, of RESULTS, and SECOND, of OTHER-RESULTS, differ in what NAMES
+say. Return CONTRAST."
+  (let* ((pairs (common-trials first second)) (count (length pairs)))
+    (setf (contrast-trials contrast) count
+          (contrast-alone-first contrast) (- (length (sample-trials first)) count)
+          (contrast-alone-second contrast) (- (length (sample-trials second)) count)
+          (contrast-errors-first contrast) (count-errors first (mapcar #'car pairs))
+          (contrast-errors-second contrast) (count-errors second (mapcar #'cdr pairs))
+          (contrast-same contrast)
+          (loop for (i . j) in pairs count (same-row-p first i second j))
+          (contrast-differences contrast)
+          (unless (same-runs-p contrast)
+            (loop for name in names
+                  for difference = (difference-in name results first other-results second pairs)
+                  when difference collect difference)))
+    contrast))
+
+(defun difference-called (name contrast)
+  "Return the difference of CONTRAST in NAME, or NIL."
+  (find name (contrast-differences contrast) :key #'paired-measure :test #'string-equal))
+
+(defun finish-comparison (comparison)
+  "Let all differences of COMPARISON know how many they are. Return it."
+  (setf (comparison-tests comparison)
+        (adjust-for-all
+         (loop for contrast in (all-contrasts comparison)
+               append (contrast-differences contrast))))
+  comparison)
+
+(defun all-contrasts (comparison)
+  (append (comparison-contrasts comparison)
+          (and (comparison-overall comparison) (list (comparison-overall comparison)))))

@@ -1,0 +1,103 @@
+;;;; differences.lisp -- by how much two conditions differ in one thing, over trials of equal seeds.
+
+(in-package :ars-magna.experiment)
+
+;;; Trials of one seed have the same chance in them, so the difference between two conditions is
+;;; taken seed by seed: what is easy for both, or hard, falls out of it. Rates are compared by
+;;; Newcombe's interval and the exact McNemar test, means by Student's and a permutation test.
+
+(defstruct (paired-difference (:conc-name paired-)
+                              (:constructor make-difference
+                                  (measure kind trials first second low high p
+                                   &optional table))
+                              (:copier nil))
+  "How two conditions differ in MEASURE, a KIND of number: :RATE or :MEAN."
+  (measure "" :type string :read-only t)
+  (kind :mean :type (member :rate :mean) :read-only t)
+  (trials 0 :type integer :read-only t)
+  (first nil :read-only t)
+  (second nil :read-only t)
+  (low nil :read-only t)
+  (high nil :read-only t)
+  (p nil :read-only t)
+  (table '() :type list :read-only t)
+  (adjusted-p nil))
+
+(defun paired-estimate (difference)
+  "Return by how much the first rate or mean of DIFFERENCE is above the second, or NIL."
+  (and (paired-first difference) (- (paired-first difference) (paired-second difference))))
+
+(addition paired-difference-p paired-measure paired-trials paired-first paired-second
+          paired-estimate paired-low paired-high paired-p paired-adjusted-p paired-table)
+(document-functions
+  paired-difference-p "True of how two conditions differ in one thing."
+  paired-measure "Return what is compared: success, ticks or the name of a measure, a string."
+  paired-trials "Return how many pairs of trials are counted."
+  paired-first "Return the rate, from 0 to 1, or mean of the first; NIL of no trials."
+  paired-second "Return the rate, from 0 to 1, or mean of the second; NIL of no trials."
+  paired-low "Return the lower end of the 95 % interval of the difference; NIL of too few trials."
+  paired-high "Return the upper end of the 95 % interval of the difference; NIL of too few trials."
+  paired-p "Return the probability of as large a difference, or larger, if there is none; or NIL."
+  paired-adjusted-p "Return PAIRED-P as it counts among all tests of the comparison (Holm), or NIL."
+  paired-table "Return, of a rate, in how many pairs it was so for both, only for the first, only
+for the second, and for neither, a list of four; of a mean, or over several conditions, NIL.")
+
+(defmethod print-object ((difference paired-difference) stream)
+  (print-unreadable-object (difference stream)
+    (format stream "difference in ~A, ~D pairs" (paired-measure difference)
+            (paired-trials difference))))
+
+;;; Rates.
+
+(defun pair-table (firsts seconds)
+  "Return how often both, only the first, only the second and neither of FIRSTS and SECONDS, lists
+of booleans, are true."
+  (let ((both 0) (first 0) (second 0) (neither 0))
+    (loop for a in firsts
+          for b in seconds
+          do (cond ((and a b) (incf both)) (a (incf first)) (b (incf second)) (t (incf neither))))
+    (list both first second neither)))
+
+(defun rate-difference (measure firsts seconds)
+  "Return how often MEASURE is so, by FIRSTS and SECONDS, lists of booleans."
+  (destructuring-bind (both first second neither) (pair-table firsts seconds)
+    (let ((trials (+ both first second neither)))
+      (if (zerop trials)
+          (make-difference measure :rate 0 nil nil nil nil nil)
+          (multiple-value-bind (low high) (paired-proportion-interval both first second neither)
+            (make-difference measure :rate trials
+                             (/ (+ both first) trials) (/ (+ both second) trials) low high
+                             (values (mcnemar-test first second))
+                             (list both first second neither)))))))
+
+;;; Means.
+
+(defun draws-for (trials)
+  "Return how many draws the test of so many TRIALS is worth: with many, fewer will do."
+  (max 1000 (min 10000 (floor 200000000 (max 1 trials)))))
+
+(defun mean-difference (measure firsts seconds &optional (kind :mean))
+  "Return how large MEASURE is on average, by FIRSTS and SECONDS, lists of numbers."
+  (let ((trials (length firsts)))
+    (if (zerop trials)
+        (make-difference measure kind 0 nil nil nil nil nil)
+        (multiple-value-bind (low high) (mean-difference-interval firsts seconds)
+          (make-difference measure kind trials (mean firsts) (mean seconds) low high
+                           (values (permutation-test (mapcar (lambda (a b)
+                                                               (- (rational a) (rational b)))
+                                                             firsts seconds)
+                                                     :resamples (draws-for trials))))))))
+
+;;; Several.
+
+(defun adjust-for-all (differences)
+  "Let each of DIFFERENCES know what its test is worth among them. Return how many tests there are."
+  (let ((tested (remove nil differences :key #'paired-p)))
+    (loop for difference in tested
+          for adjusted in (holm-adjusted (mapcar #'paired-p tested))
+          do (setf (paired-adjusted-p difference) adjusted))
+    (length tested)))
+
+(defun told-difference-p (difference)
+  "True if DIFFERENCE is more than chance, as far as that can be told with 95 % confidence."
+  (and (paired-adjusted-p difference) (<= (paired-adjusted-p difference) .05d0)))

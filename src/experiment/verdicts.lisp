@@ -1,0 +1,242 @@
+;;;; verdicts.lisp -- what a comparison tells, in words and as a table.
+
+(in-package :ars-magna.experiment)
+
+;;; Numbers, with as many digits as they are known to.
+
+(defun decimals-text (value decimals)
+  (let ((text (format nil "~,VF" decimals (double value))))
+    (string-right-trim "." (if (string= "-" (string-right-trim "0." text))
+                               (subseq text 1)  ; no minus before nothing
+                               text))))
+
+(defun hundredths-text (share trials)
+  "Return SHARE, seen in TRIALS, in hundredths."
+  (decimals-text (* 100 share) (max 0 (- (ceiling (log (max 2 trials) 10)) 2))))
+
+(defun decimals-known (low high)
+  "Return how many decimals a mean between LOW and HIGH is worth."
+  (if (and low (< low high))
+      (max 0 (min 6 (- 1 (floor (log (- high low) 10)))))
+      3))
+
+(defun number-writer (difference)
+  "Return a function that writes the numbers of DIFFERENCE, without units."
+  (if (eq :rate (paired-kind difference))
+      (lambda (value) (hundredths-text value (paired-trials difference)))
+      (let ((decimals (decimals-known (paired-low difference) (paired-high difference))))
+        (lambda (value)
+          (let ((text (decimals-text value decimals)))
+            (if (find #\. text) (string-right-trim "." (string-right-trim "0" text)) text))))))
+
+(defun p-text (p)
+  "Return the probability P as people write it after a p: = .032, < .001."
+  (cond ((null p) "-")
+        ((< p .001d0) "< .001")
+        ((> p .995d0) "= 1")
+        (t (let ((text (format nil "~,VF" (if (< p .0995d0) 3 2) p)))
+             (format nil "= ~A" (string-left-trim "0" text))))))
+
+(defun interval-words (difference)
+  "Return by how much DIFFERENCE is, with its interval, as a verdict says it."
+  (let ((write (number-writer difference)))
+    (flet ((text (value) (funcall write value)))
+      (format nil "difference ~A~:[~; point~:P~] (~A to ~A, 95 %)"
+              (text (paired-estimate difference)) (eq :rate (paired-kind difference))
+              (text (paired-low difference)) (text (paired-high difference))))))
+
+(defun p-words (difference tests)
+  "Return how likely DIFFERENCE is by chance, and what that is worth among TESTS."
+  (let ((p (p-text (paired-p difference))) (adjusted (p-text (paired-adjusted-p difference))))
+    (if (string= p adjusted)
+        (format nil "p ~A" p)
+        (format nil "p ~A (~A as one of ~D tests)" p adjusted tests))))
+
+(defun both-words (difference)
+  "Return the two rates or means of DIFFERENCE."
+  (let ((write (number-writer difference)))
+    (if (eq :rate (paired-kind difference))
+        (format nil "~A % against ~A %" (funcall write (paired-first difference))
+                (funcall write (paired-second difference)))
+        (format nil "~A against ~A on average" (funcall write (paired-first difference))
+                (funcall write (paired-second difference))))))
+
+(defun trials-words (difference)
+  (format nil "~:[over~;where both succeed,~] ~D common seed~:P"
+          (string= "ticks" (paired-measure difference)) (paired-trials difference)))
+
+(defun figures-words (difference tests)
+  (format nil "~A ~A, ~A, ~A" (both-words difference) (trials-words difference)
+          (interval-words difference) (p-words difference tests)))
+
+;;; Verdicts.
+
+(defun direction-words (difference first second)
+  "Return that FIRST is above or below SECOND, as DIFFERENCE says."
+  (let ((more (plusp (paired-estimate difference))) (measure (paired-measure difference)))
+    (cond ((string= measure "success")
+           (format nil "~A succeeds ~:[less~;more~] often than ~A" first more second))
+          ((string= measure "ticks")
+           (format nil "~A takes ~:[fewer~;more~] ticks than ~A" first more second))
+          ((eq :rate (paired-kind difference))
+           (format nil "~A is true ~:[less~;more~] often with ~A than with ~A"
+                   measure more first second))
+          (t (format nil "~A is ~:[less~;more~] with ~A than with ~A"
+                     measure more first second)))))
+
+(defun largest-words (difference)
+  "Return how large DIFFERENCE, if there is one, can be."
+  (format nil "if there is one, it is at most ~A~:[~; points~]"
+          (funcall (number-writer difference)
+                   (max (abs (paired-low difference)) (abs (paired-high difference))))
+          (eq :rate (paired-kind difference))))
+
+(defun verdict (difference contrast tests)
+  "Return in words what DIFFERENCE, of CONTRAST, tells, as one of TESTS."
+  (let ((first (contrast-first contrast)) (second (contrast-second contrast)))
+    (format nil "~@[~A: ~]~A." (contrast-where contrast)
+            (cond ((or (null (paired-p difference)) (null (paired-low difference)))
+                   (format nil "~A of ~A and ~A cannot be compared: ~A"
+                           (paired-measure difference) first second (trials-words difference)))
+                  ((told-difference-p difference)
+                   (format nil "~A: ~A" (direction-words difference first second)
+                           (figures-words difference tests)))
+                  (t (format nil "No difference in ~A between ~A and ~A can be told: ~A; ~A"
+                             (paired-measure difference) first second
+                             (figures-words difference tests) (largest-words difference)))))))
+
+(defun success-verdict (contrast)
+  "Return :BETTER or :WORSE if the first of CONTRAST succeeds more or less often, :SAME if both are
+the same runs, else NIL."
+  (let ((difference (difference-called "success" contrast)))
+    (cond ((same-runs-p contrast) :same)
+          ((null difference) nil)
+          ((told-difference-p difference)
+           (if (plusp (paired-estimate difference)) :better :worse)))))
+
+(defun contrast-verdicts (contrast tests)
+  (if (same-runs-p contrast)
+      (list (format nil "~@[~A: ~]~A and ~A are the same in all ~D trials, to the last bit."
+                    (contrast-where contrast) (contrast-first contrast) (contrast-second contrast)
+                    (contrast-trials contrast)))
+      (loop for difference in (contrast-differences contrast)
+            collect (verdict difference contrast tests))))
+
+(defun versions-verdict (comparison)
+  "Return in words how many conditions got better and worse, and how many rows are the same."
+  (let* ((contrasts (comparison-contrasts comparison))
+         (found (mapcar #'success-verdict contrasts))
+         (trials (reduce #'+ contrasts :key #'contrast-trials))
+         (same (reduce #'+ contrasts :key #'contrast-same)))
+    (if (= same trials)
+        (format nil "All ~D trials that both have are the same to the last bit." trials)
+        (format nil "Of ~D condition~:P ~[none succeeds~;1 succeeds~:;~:*~D succeed~] more often ~
+                     than before, ~[none~:;~:*~D~] less often~[~:;, ~:*~D ~[~;is~:;are~] the ~
+                     same~]~[~:;, and of ~:*~D no difference can be told~]. Of ~D trials that ~
+                     both have, ~D are the same to the last bit."
+                (length found) (count :better found) (count :worse found)
+                (count :same found) (count :same found) (count nil found) trials same))))
+
+(addition comparison-verdicts)
+(defun comparison-verdicts (comparison)
+  "Return what COMPARISON tells, a list of sentences: of two versions first how many conditions got
+better or worse and how many trials are the same to the last bit; and then, for each pair of
+conditions, which succeeds more often, takes more ticks and so on, with both rates or means, the
+difference with its 95 % interval, and p. A difference is called one if p, as it counts among all
+tests of COMPARISON (Holm), is at most .05; else it is said how large it can be."
+  (check-argument comparison-verdicts comparison (comparison-p comparison) "a comparison")
+  (let ((all (loop for contrast in (all-contrasts comparison)
+                   append (contrast-verdicts contrast (comparison-tests comparison)))))
+    (cond ((not (eq :versions (comparison-kind comparison))) all)
+          ((every #'same-runs-p (comparison-contrasts comparison))
+           (list (versions-verdict comparison)))
+          (t (cons (versions-verdict comparison) all)))))
+
+;;; What had to be left out.
+
+(defun counts-words (contrast first second)
+  "Return FIRST and SECOND, how many trials of those of CONTRAST, in words; NIL if none are."
+  (let ((words (loop for count in (list first second)
+                     for name in (list (contrast-first contrast) (contrast-second contrast))
+                     when (plusp count) collect (format nil "~D of ~A" count name))))
+    (and words (format nil "~@[~A: ~]~{~A~^ and ~}" (contrast-where contrast) words))))
+
+(defun left-out-notes (contrast)
+  "Return sentences on which trials of CONTRAST are not compared, or broke off."
+  (let ((alone (counts-words contrast (contrast-alone-first contrast)
+                             (contrast-alone-second contrast)))
+        (errors (counts-words contrast (contrast-errors-first contrast)
+                              (contrast-errors-second contrast))))
+    (append (and alone (list (format nil "Left out, as only one has their seeds: ~A." alone)))
+            (and errors (not (same-runs-p contrast))
+                 (list (format nil "Broke off with an error, and counted as not succeeded: ~A."
+                               errors))))))
+
+(defun comparison-remarks (comparison)
+  "Return sentences on what COMPARISON had to leave out."
+  (append (comparison-notes comparison)
+          (loop for contrast in (comparison-contrasts comparison)
+                append (left-out-notes contrast))))
+
+;;; The table.
+
+(defparameter *headings* '("measure" "seeds" "first" "second" "difference" "p" "Holm"))
+
+(defun bare-p (p)
+  (string-left-trim "= " (p-text p)))
+
+(defun table-row (difference)
+  "Return the texts of the table for DIFFERENCE."
+  (let ((write (number-writer difference)) (rate-p (eq :rate (paired-kind difference))))
+    (flet ((text (value) (if value (funcall write value) "-")))
+      (list (paired-measure difference) (princ-to-string (paired-trials difference))
+            (format nil "~A~:[~; %~]" (text (paired-first difference)) rate-p)
+            (format nil "~A~:[~; %~]" (text (paired-second difference)) rate-p)
+            (format nil "~A (~A to ~A)" (text (paired-estimate difference))
+                    (text (paired-low difference)) (text (paired-high difference)))
+            (bare-p (paired-p difference)) (bare-p (paired-adjusted-p difference))))))
+
+(defun contrast-heading (contrast)
+  (let ((table (let ((success (difference-called "success" contrast)))
+                 (and success (paired-table success)))))
+    (format nil "~@[~A: ~]~A (first) against ~A~:[~; (the same)~]~@[: ~{both ~D, only the first ~
+                 ~D, only the second ~D, neither ~D~}~]"
+            (contrast-where contrast) (contrast-first contrast) (contrast-second contrast)
+            (same-runs-p contrast) table)))
+
+(defun write-columns (rows widths stream)
+  (dolist (row rows)
+    (format stream "  ~VA~{  ~V@A~}~%" (first widths) (first row)
+            (loop for text in (rest row)
+                  for width in (rest widths)
+                  collect width collect text))))
+
+(defun write-table (comparison stream)
+  (let* ((groups (loop for contrast in (all-contrasts comparison)
+                       collect (mapcar #'table-row (contrast-differences contrast))))
+         (widths (apply #'mapcar (lambda (&rest texts) (reduce #'max texts :key #'length))
+                        *headings* (apply #'append groups))))
+    (write-columns (list *headings*) widths stream)
+    (loop for contrast in (all-contrasts comparison)
+          for rows in groups
+          do (format stream "~A~%" (contrast-heading contrast))
+             (write-columns rows widths stream))))
+
+(addition print-comparison)
+(defun print-comparison (comparison &optional (stream *standard-output*))
+  "Write COMPARISON to STREAM: a line that says what is compared; the verdicts (see
+COMPARISON-VERDICTS), a line each; what was left out, if anything; and a table, with a line for each
+pair of conditions, how many trials succeeded in both, one and neither of them, and below it a row
+for each measure: over how many seeds, both rates or means, the difference (of rates in points) with
+its 95 % interval, and p before and after Holm's correction for all tests. Return COMPARISON."
+  (check-argument print-comparison comparison (comparison-p comparison) "a comparison")
+  (format stream "~A~2%~{~A~%~}" (comparison-title comparison) (comparison-verdicts comparison))
+  (format stream "~@[~%~{~A~%~}~]" (comparison-remarks comparison))
+  (when (plusp (comparison-tests comparison))
+    (terpri stream)
+    (write-table comparison stream)
+    (format stream "~%Differences are first less second, seed by seed, with 95 % intervals: of ~
+                    rates Newcombe's~%and McNemar's exact test, of means Student's and a ~
+                    permutation test. Holm: p as one of ~D test~:P.~%"
+            (comparison-tests comparison)))
+  comparison)

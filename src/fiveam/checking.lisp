@@ -1,0 +1,121 @@
+;;;; checking.lisp -- IS-SUCCESS-RATE: a check that holds something to its rate of success.
+
+(in-package :ars-magna.fiveam)
+
+;;; What is tried: a form, with an experiment of its own, or an experiment that there is.
+
+(defun parameter-parts (parameters)
+  "Return PARAMETERS, lists (name value), as EXPERIMENT-FROM takes them."
+  (check-argument is-success-rate parameters
+                  (and (proper-list-p parameters)
+                       (every (lambda (setting) (and (proper-list-p setting) (= 2 (length setting))))
+                              parameters))
+                  "a list of lists (name value)")
+  (loop for (name value) in parameters
+        for symbol = (parameter-symbol (find-parameter name))
+        collect (list (list symbol value) value)))
+
+(defun experiment-of-form (function robots form package seed limit parameters clean)
+  "Return an experiment whose trials call FUNCTION, made of FORM in PACKAGE, with ROBOTS."
+  (check-argument is-success-rate seed (integerp seed) "an integer")
+  (check-argument is-success-rate limit (whole-p limit 1) "a number of ticks from 1 to 1e9")
+  (let ((experiment (experiment-from 'is-success-rate "is-success-rate"
+                                     :robots robots :run function :seed seed :limit limit
+                                     :parameters (parameter-parts parameters) :clean clean
+                                     :form form)))
+    (setf (experiment-package experiment) (find-package package))
+    experiment))
+
+(defun condition-given (experiment condition)
+  "Return the condition of EXPERIMENT that CONDITION means; its only one if that is NIL."
+  (let ((all (experiment-conditions experiment)))
+    (cond (condition (find-condition experiment condition))
+          ((rest all)
+           (reject-use "The experiment ~(~A~) has several conditions; say which, as in (:experiment ~
+                        '~(~A~) :condition ~S)."
+                       (experiment-name experiment) (experiment-name experiment)
+                       (condition-name (first all))))
+          (t (first all)))))
+
+;;; Checking.
+
+(defun call-check (experiment condition robots form at-least trials level workers)
+  "Check by up to TRIALS of CONDITION of EXPERIMENT that AT-LEAST so many succeed. ROBOTS and FORM
+are what its author wrote. True if they do."
+  (check-rates 'is-success-rate at-least trials level)
+  (check-argument is-success-rate workers (whole-p workers 1 1000) "how many threads, 1 to 1000")
+  (let ((check (run-check (make-check experiment condition robots form (exact-rate at-least) trials
+                                      (exact-rate level) workers))))
+    (cond ((eq :passed (check-verdict check))
+           (pass "~A" (success-text check))
+           t)
+          (t (fail "~A" (failure-text check))
+             nil))))
+
+(defun hold-form (function robots form package at-least trials level workers
+                  seed limit parameters clean)
+  "Check FUNCTION, made of FORM, as IS-SUCCESS-RATE does."
+  (let ((experiment (experiment-of-form function robots form package seed limit parameters clean)))
+    (call-check experiment (first (experiment-conditions experiment)) robots form
+                at-least trials level workers)))
+
+(defun hold-experiment (name condition at-least trials level workers)
+  "Check CONDITION of the experiment NAME as IS-SUCCESS-RATE does."
+  (let ((experiment (find-experiment name)))
+    (call-check experiment (condition-given experiment condition) '() nil
+                at-least (or trials (experiment-trials experiment)) level workers)))
+
+(defun experiment-clause (form options)
+  "Return the arguments of FORM, (:experiment name :condition c). Signals MALFORMED-DEFINITION if
+it is none, or OPTIONS are given that the experiment decides."
+  (unless (and (proper-list-p form) (member (length form) '(2 4))
+               (or (null (cddr form)) (eq :condition (third form))))
+    (reject-clause "is-success-rate" form "(:experiment name) or (:experiment name :condition c)"))
+  (when options
+    (reject-clause "is-success-rate" form
+                   (format nil "no ~(~S~) beside it, as the experiment says that"
+                           (first options))))
+  (list (second form) (fourth form)))
+
+(defun robot-names (robots form)
+  "Return the names in ROBOTS, a name or a list. Signals MALFORMED-DEFINITION if there is none."
+  (let ((names (ensure-list (unquoted robots))))
+    (unless (and (proper-list-p names) names (every #'symbolp names))
+      (reject-clause "is-success-rate" form
+                     "an option :robots, with the name of a robot or a list of names of one map"))
+    names))
+
+(define-user-macro is-success-rate
+    (form &rest options
+          &key robots (at-least .95) trials (level .05) (seed 0) parameters clean (limit 100000)
+          (workers 1))
+  "Check, in a test of FiveAM, that FORM succeeds in AT-LEAST such a share of trials, 0.95 unless
+given. Each trial evaluates FORM in a fresh headless simulation with ROBOTS, the name of a robot or a
+list of names, which are bound to the robots, as an experiment's :run does: the values of RUN-PLAN,
+or else the first value, say whether it succeeded; errors, and trials that take more than LIMIT
+ticks, did not. So a LIMIT of 300 with :at-least 1/2 holds the median of ticks to 300. Trial T has
+the seed SEED + T, and the manual's parameters but for PARAMETERS, a list of lists (name value);
+without noise if CLEAN. FORM may instead be (:experiment NAME) or (:experiment NAME :condition C):
+then trials are those of that experiment, which says the rest.
+
+At most TRIALS are run, 200 unless given, or as many as the experiment says, and no more than are
+needed: the check fails as soon as it is plain that the rate is lower than AT-LEAST, and passes as
+soon as it is plain that it is higher. After the last trial it fails if the rate is below AT-LEAST as
+far as that can be told (by its exact interval), and else passes: whoever wants small losses to be
+noticed gives more trials, see PASS-PROBABILITY. Something that succeeds AT-LEAST so often fails with
+a probability of at most LEVEL. With an AT-LEAST of 1 all trials must succeed.
+
+Seeds are fixed, so the same code has the same answer each time, by however many WORKERS, threads;
+with several of them FORM does not see what the test has bound. The reason of a failure gives the
+numbers, the first trials that did not succeed and why, and a form that repeats one. Return true if
+the check passes. Signals MALFORMED-DEFINITION, WRONG-ARGUMENT and UNKNOWN-NAME."
+  (if (and (consp form) (eq :experiment (first form)))
+      (destructuring-bind (name condition)
+          (experiment-clause form (intersection '(:robots :seed :parameters :clean :limit) options))
+        `(hold-experiment ,name ,condition ,at-least ,trials ,level ,workers))
+      (let ((names (robot-names robots form)))
+        `(hold-form (lambda ()
+                      (declare (special ,@(variables-among names)))
+                      ,form)
+                    ',names ',form ,(package-name *package*) ,at-least ,(or trials 200) ,level
+                    ,workers ,seed ,limit ,parameters ,clean))))

@@ -1,0 +1,76 @@
+;;;; deciding.lisp -- whether a rate of success is high enough, after as few trials as will do.
+
+(in-package :ars-magna.fiveam)
+
+;;; A suite that cries wolf is soon ignored. So what is tested is whether the rate is below what it
+;;; should be, and a LEVEL bounds how often that is said where it is not so. Half of LEVEL is for
+;;; looks on the way: after each trial, by evidence that may be looked at that often. The other half
+;;; is for the end: by the exact interval. In between the trials can end early with either answer.
+
+(defun exact-rate (rate)
+  "Return RATE as a double-float; a single-float as the decimals that are written."
+  (double (rationalize rate)))
+
+(defun early-verdict (successes trials rate level)
+  "Return :PASSED, :FAILED or NIL for SUCCESSES of TRIALS, with more to come."
+  (if (= rate 1)
+      (if (= successes trials) nil :failed)
+      (ecase (rate-verdict successes trials rate :level (/ level 2))
+        (:above :passed)
+        (:below :failed)
+        ((nil) nil))))
+
+(defun last-verdict (successes trials rate level)
+  "Return :PASSED or :FAILED for SUCCESSES of TRIALS, which are all."
+  (if (< (nth-value 1 (exact-interval successes trials :confidence (- 1 level))) rate)
+      :failed
+      :passed))
+
+(defun verdict (successes trials most rate level)
+  "Return :PASSED, :FAILED or, if that is to be left to further trials, NIL, for SUCCESSES of
+TRIALS, of which there may be MOST."
+  (or (early-verdict successes trials rate level)
+      (and (= trials most) (last-verdict successes trials rate level))))
+
+;;; How good that is, by going through all that can happen.
+
+(defun check-rates (operator at-least trials level)
+  "Signal WRONG-ARGUMENT, of OPERATOR, unless these can decide."
+  (unless (and (finite-p at-least) (<= 1d-9 at-least 1))
+    (reject-argument operator 'at-least at-least "a rate above 0 and up to 1, such as .95"))
+  (unless (and (integerp trials) (<= 1 trials +largest+))
+    (reject-argument operator 'trials trials "how many trials at most, from 1 to 1e9"))
+  (unless (and (finite-p level) (<= 1d-9 level 1/2))
+    (reject-argument operator 'level level "a probability from 1e-9 to .5, such as .05")))
+
+(defun step-odds (odds count rate)
+  "Return the probabilities of 0 to COUNT successes, of the ODDS of 0 to COUNT - 1 before another
+trial that succeeds with the probability RATE."
+  (let ((next (make-array (1+ count) :initial-element 0)))
+    (loop for successes below count
+          for share = (aref odds successes)
+          do (incf (aref next successes) (* share (- 1 rate)))
+             (incf (aref next (1+ successes)) (* share rate)))
+    next))
+
+(defun pass-probability (rate &key (at-least .95) (trials 200) (level .05))
+  "Return with which probability IS-SUCCESS-RATE passes, with these arguments, if trials succeed with
+the probability RATE; and how many trials are run on average. Both are exact but for rounding: all
+ways that the trials can go are added up, which takes a second for 1,000 trials or so. So one finds
+out which loss of success a check will notice: with the arguments above, one of 90 % passes in ...
+
+Signals WRONG-ARGUMENT."
+  (check-argument pass-probability rate (probability-p rate) "a number from 0 to 1")
+  (check-rates 'pass-probability at-least trials level)
+  (let ((rate (exact-rate rate)) (at-least (exact-rate at-least)) (level (exact-rate level))
+        (odds (vector 1)) (passed 0) (run 0))
+    (loop for count from 1 to trials
+          do (incf run (reduce #'+ odds))
+             (setf odds (step-odds odds count rate))
+             (loop for successes to count
+                   for verdict = (and (plusp (aref odds successes))
+                                      (verdict successes count trials at-least level))
+                   when verdict
+                     do (when (eq :passed verdict) (incf passed (aref odds successes)))
+                        (setf (aref odds successes) 0)))
+    (values (double passed) (double run))))

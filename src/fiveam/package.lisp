@@ -1,0 +1,19 @@
+;;;; package.lisp -- checks for FiveAM that hold plans to their rates: the one door to FiveAM.
+
+(defpackage :ars-magna.fiveam
+  (:nicknames :ars-fiveam)
+  (:documentation "Checks for suites of tests written with FiveAM, which hold plans, programs and
+experiments to their rates of success. Use it beside FIVEAM.")
+  (:use :cl :ars-magna.base)
+  (:import-from :fiveam #:pass #:fail)
+  (:import-from :ars-magna.statistics #:rate-verdict #:exact-interval)
+  (:import-from :ars-magna.run #:variables-among #:unquoted)
+  (:import-from :ars-magna.experiment
+                #:experiment-from #:find-experiment #:experiment-name #:experiment-conditions
+                #:experiment-trials #:experiment-package #:find-condition #:condition-name
+                #:condition-parameters #:run-trial #:call-in-silence #:call-by-workers #:form-text
+                #:result-trial #:result-seed #:result-outcome #:result-reason #:result-error)
+  ;; deciding
+  (:export #:pass-probability)
+  ;; checking
+  (:export #:is-success-rate))

@@ -1,0 +1,59 @@
+;;;; telling.lisp -- why a check failed: numbers, examples, and how to see one.
+
+(in-package :ars-magna.fiveam)
+
+(defparameter *examples* 5 "How many trials that did not succeed are listed.")
+
+(defun subject-text (check)
+  "Return what CHECK is about."
+  (if (check-robots check)
+      (text-of (check-form check) check)
+      (format nil "~(~A~), ~A" (experiment-name (check-experiment check))
+              (condition-name (check-condition check)))))
+
+(defun per-cent (share)
+  (let ((text (format nil "~,2F" (* 100 share))))
+    (format nil "~A %" (string-right-trim "." (string-right-trim "0" text)))))
+
+(defun outcome-text (result)
+  "Return how the trial went that RESULT is of."
+  (format nil "~A~:[: ~A~;~*~]~:[: ~A~;~*~]" (result-outcome result)
+          (string= "" (result-reason result)) (result-reason result)
+          (string= "" (result-error result)) (result-error result)))
+
+(defun example-lines (bad)
+  "Return lines for the first of BAD, results of trials that did not succeed."
+  (append (loop for result in bad
+                repeat *examples*
+                collect (format nil "  trial ~D, seed ~D: ~A" (result-trial result)
+                                (result-seed result) (outcome-text result)))
+          (when (> (length bad) *examples*)
+            (list (format nil "  and ~D more" (- (length bad) *examples*))))))
+
+(defun bad-results (check)
+  "Return what came of those trials of CHECK that did not succeed, in order."
+  (remove-if #'success-p (reverse (check-results check))))
+
+(defun numbers-text (check)
+  "Return how many trials of CHECK succeeded."
+  (let ((trials (length (check-results check))) (successes (check-successes check)))
+    (format nil "~D of ~D trial~:P succeeded, ~A" successes trials
+            (per-cent (/ successes trials)))))
+
+(defun meaning-text (check)
+  (if (= 1 (check-at-least check))
+      "All should."
+      (format nil "If ~A or more succeeded in the long run, a check would say so with a probability ~
+                   of at most ~A."
+              (per-cent (check-at-least check)) (per-cent (check-level check)))))
+
+(defun failure-text (check)
+  "Return why CHECK failed, in lines."
+  (let ((bad (bad-results check)))
+    (format nil "~A~%succeeds less often than ~A: ~A.~%~A~%Of those that did not:~%~{~A~%~}To see ~
+                 one:~%  ~A"
+            (subject-text check) (per-cent (check-at-least check)) (numbers-text check)
+            (meaning-text check) (example-lines bad) (repetition-text check (first bad)))))
+
+(defun success-text (check)
+  (format nil "~A: ~A" (subject-text check) (numbers-text check)))

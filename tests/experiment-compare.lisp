@@ -1,0 +1,207 @@
+;;;; experiment-compare.lisp -- conditions and versions side by side, seed by seed.
+
+(in-package :ars-magna.tests)
+
+(def-suite* experiment-compare :in ars-magna)
+
+;;; Tables that are made up. A row is a list (plan noise seed outcome ticks way digest); TRIAL is the
+;;; seed less 7.
+
+(defun made-up-line (row fingerprint)
+  (destructuring-bind (plan noise seed outcome ticks way digest) row
+    (format nil "search,~A,plan=~A noise=~A,~:*~:*~A,~A,~D,~D,~A,,~D,~A,~A,~16,'0X,~A"
+            fingerprint plan noise seed (- seed 7) outcome ticks way
+            (if (string= way "") "" (if (string= outcome "success") "TRUE" "FALSE"))
+            digest (if (string= outcome "error") "boom" ""))))
+
+(defun made-up-table (directory rows &optional (fingerprint "A1"))
+  (write-table directory
+               (cons (format nil "experiment,fingerprint,condition,plan,noise,seed,trial,outcome,~
+                                  reason,ticks,way,found,digest,error")
+                     (mapcar (lambda (row) (made-up-line row fingerprint)) rows))))
+
+(defun rows-of-outcomes (plan noise outcomes &key (ticks 100) (way 5) (first 8))
+  "Return rows of trials that went as the string OUTCOMES says: + success, - failure, ! error."
+  (loop for char across outcomes
+        for seed from first
+        collect (list plan noise seed
+                      (ecase char (#\+ "success") (#\- "failure") (#\! "error"))
+                      (if (functionp ticks) (funcall ticks seed) ticks)
+                      (if (char= char #\!) "" (if (functionp way) (funcall way seed) way))
+                      (sxhash (list plan noise seed char)))))
+
+(defun repeated (&rest chars-and-counts)
+  (apply #'concatenate 'string
+         (loop for (char count) on chars-and-counts by #'cddr
+               collect (make-string count :initial-element char))))
+
+(defmacro with-made-up ((results rows) &body body)
+  "Run BODY with RESULTS bound to those of a table of ROWS."
+  `(with-directories (directory)
+     (made-up-table directory ,rows)
+     (let ((,results (experiment:read-results directory)))
+       ,@body)))
+
+;; Both succeed 150 times, only the first 32, only the second 6, neither 12.
+(defun patrol-and-spiral ()
+  (append (rows-of-outcomes "patrol" "0.1" (repeated #\+ 182 #\- 18) :ticks #'identity
+                                                                     :way 4)
+          (rows-of-outcomes "spiral" "0.1" (repeated #\+ 150 #\- 32 #\+ 6 #\- 12)
+                            :ticks (lambda (seed) (+ 2 seed (mod seed 3)))
+                            :way (lambda (seed) (if (evenp seed) 3 5)))))
+
+(defun differences-of (comparison)
+  (experiment:contrast-differences (first (experiment:comparison-contrasts comparison))))
+
+(defun difference-in (measure comparison)
+  (find measure (differences-of comparison) :key #'experiment:paired-measure :test #'string=))
+
+(defun tail-of-coin (successes trials)
+  "Return how likely so few SUCCESSES are in TRIALS with a fair coin, exactly."
+  (loop for k to successes
+        sum (/ (loop with product = 1
+                     for i from 1 to k
+                     do (setf product (* product (/ (- trials i -1) i)))
+                     finally (return product))
+               (expt 2 trials))))
+
+(defun near-p (a b) (< (abs (- a b)) 1d-9))
+
+;;; Two conditions.
+
+(test compare.counts-pairs-of-equal-seeds
+  (with-made-up (results (patrol-and-spiral))
+    (let* ((comparison (experiment:compare-conditions results 'patrol 'spiral :stream nil))
+           (contrast (first (experiment:comparison-contrasts comparison)))
+           (success (difference-in "success" comparison)))
+      (is (equal '("noise=0.1" "patrol" "spiral" 200 0)
+                 (list (experiment:contrast-where contrast) (experiment:contrast-first contrast)
+                       (experiment:contrast-second contrast) (experiment:contrast-trials contrast)
+                       (experiment:contrast-same contrast))))
+      (is (equal '("success" "ticks" "way" "found")
+                 (mapcar #'experiment:paired-measure (differences-of comparison))))
+      (is (equal '(150 32 6 12) (experiment:paired-table success)))
+      (is (equal '(200 91/100 78/100 13/100)
+                 (list (experiment:paired-trials success) (experiment:paired-first success)
+                       (experiment:paired-second success) (experiment:paired-estimate success))))
+      (is (near-p (* 2 (tail-of-coin 6 38)) (experiment:paired-p success)))
+      (multiple-value-bind (low high)
+          (ars-magna.statistics:paired-proportion-interval 150 32 6 12)
+        (is (= low (experiment:paired-low success)))
+        (is (= high (experiment:paired-high success)))))))
+
+(test compare.takes-ticks-where-both-succeed-and-measures-everywhere
+  (with-made-up (results (patrol-and-spiral))
+    (let* ((comparison (experiment:compare-conditions results 'patrol 'spiral :stream nil))
+           (ticks (difference-in "ticks" comparison))
+           (way (difference-in "way" comparison)))
+      (is (= 150 (experiment:paired-trials ticks)))
+      (is (near-p -3 (experiment:paired-estimate ticks)))
+      (is (> 1d-3 (experiment:paired-p ticks)))
+      (is (= 200 (experiment:paired-trials way)))
+      (is (near-p 0 (experiment:paired-estimate way)))
+      (is (= 1 (experiment:paired-p way)))
+      (is (null (experiment:paired-table way))))))
+
+(test compare.says-in-words-what-a-researcher-can-believe
+  (with-made-up (results (patrol-and-spiral))
+    (destructuring-bind (success ticks way found)
+        (experiment:comparison-verdicts
+         (experiment:compare-conditions results 'patrol 'spiral :stream nil))
+      (is (string= "noise=0.1: patrol succeeds more often than spiral: 91.0 % against 78.0 % over ~
+                    200 common seeds, difference 13.0 points (7.4 to 18.7, 95 %), p < .001."
+                   success))
+      (is (mentions-p ticks "patrol takes fewer ticks than spiral: 82.5 against 85.5 on average ~
+                             where both succeed, 150 common seeds, difference -3"))
+      (is (mentions-p way "No difference in way between patrol and spiral can be told: 4 against 4"))
+      (is (mentions-p way "p = 1; if there is one, it is at most 0.14."))
+      (is (mentions-p found "found is true more often with patrol than with spiral")))))
+
+(test compare.is-the-same-the-other-way-round
+  (with-made-up (results (patrol-and-spiral))
+    (let ((one (difference-in "success" (experiment:compare-conditions results 1 2 :stream nil)))
+          (other (difference-in "success" (experiment:compare-conditions results 2 1 :stream nil))))
+      (is (= (experiment:paired-p one) (experiment:paired-p other)))
+      (is (near-p (experiment:paired-low one) (- (experiment:paired-high other))))
+      (is (mentions-p (first (experiment:comparison-verdicts
+                              (experiment:compare-conditions results 2 1 :stream nil)))
+                      "spiral succeeds less often than patrol")))))
+
+(test compare.counts-common-seeds-and-errors-as-it-says
+  (with-made-up (results (append (rows-of-outcomes "a" "0" "!+++-" :first 8)
+                                 (rows-of-outcomes "b" "0" "!!--+" :first 10)))
+    (let* ((text (with-output-to-string (out)
+                   (experiment:compare-conditions results 1 2 :stream out)))
+           (success (difference-in "success"
+                                   (experiment:compare-conditions results 1 2 :stream nil))))
+      (is (equal '(0 2 0 1) (experiment:paired-table success)))
+      (is (mentions-p text "Left out, as only one has their seeds: noise=0: 2 of a and 2 of b."))
+      (is (mentions-p text "Broke off with an error, and counted as not succeeded: noise=0: 2 of b."))
+      (is (not (mentions-p text "way  "))))))
+
+(test compare.needs-something-to-compare
+  (with-made-up (results (append (rows-of-outcomes "a" "0" "+++" :first 8)
+                                 (rows-of-outcomes "b" "0" "+++" :first 100)))
+    (signals base:misuse (experiment:compare-conditions results 1 2 :stream nil))
+    (signals base:misuse (experiment:compare-conditions results 1 1 :stream nil))
+    (signals base:unknown-name (experiment:compare-conditions results 1 'c :stream nil))
+    (signals base:unknown-name (experiment:compare-conditions results 1 3 :stream nil))
+    (signals base:unknown-name
+      (experiment:compare-conditions results 1 2 :measure 'weight :stream nil))
+    (signals base:wrong-argument (experiment:compare-conditions 5 1 2))
+    (signals base:wrong-argument (experiment:compare-conditions results 1 2 :stream 5))
+    (signals base:unknown-name (experiment:compare-levels results 'plans :stream nil))
+    (signals base:misuse (experiment:compare-levels results 'noise :stream nil))))
+
+;;; Several.
+
+(defun four-plans (noise)
+  (loop for plan in '("a" "b" "c" "d")
+        for bad from 0 by 6
+        append (rows-of-outcomes plan noise (repeated #\- bad #\+ (- 60 bad)))))
+
+(test compare.corrects-p-for-all-tests
+  (with-made-up (results (four-plans "0"))
+    (let* ((comparison (experiment:compare-conditions results 'a :all :measure 'success
+                                                                      :stream nil))
+           (all (loop for contrast in (experiment:comparison-contrasts comparison)
+                      append (experiment:contrast-differences contrast))))
+      (is (equal '("b" "c" "d")
+                 (mapcar #'experiment:contrast-second
+                         (experiment:comparison-contrasts comparison))))
+      ;; 6, 12 and 18 pairs of which all favour the first: 2/2^6, 2/2^12, 2/2^18.
+      (is (equal (list (expt 2d0 -5) (expt 2d0 -11) (expt 2d0 -17))
+                 (mapcar #'experiment:paired-p all)))
+      (is (equal (list (expt 2d0 -5) (* 2 (expt 2d0 -11)) (* 3 (expt 2d0 -17)))
+                 (mapcar #'experiment:paired-adjusted-p all)))
+      (is (mentions-p (second (experiment:comparison-verdicts comparison))
+                      "p < .001.")))))
+
+(test compare.tells-no-difference-that-is-one-of-many-tests-only
+  "5 pairs against 0 are p = 1/16; 6 are 1/32, and that as one of two no less than 1/16."
+  (with-made-up (results (append (rows-of-outcomes "a" "0" (repeated #\+ 40))
+                                 (rows-of-outcomes "b" "0" (repeated #\- 6 #\+ 34))
+                                 (rows-of-outcomes "c" "0" (repeated #\- 5 #\+ 35))))
+    (flet ((first-verdict (&rest arguments)
+             (first (experiment:comparison-verdicts
+                     (apply #'experiment:compare-conditions results 'a
+                            (append arguments '(:measure success :stream nil)))))))
+      (is (mentions-p (first-verdict 'b) "a succeeds more often than b"))
+      (is (mentions-p (first-verdict :all) "No difference in success between a and b can be told"))
+      (is (mentions-p (first-verdict :all) "p = .031 (.062 as one of 2 tests)")))))
+
+(test compare-levels.keeps-all-else-equal
+  (with-made-up (results (append (four-plans "0") (four-plans "0.5")))
+    (flet ((contrasts (&rest arguments)
+             (mapcar (lambda (contrast)
+                       (list (experiment:contrast-where contrast)
+                             (experiment:contrast-first contrast)
+                             (experiment:contrast-second contrast)))
+                     (experiment:comparison-contrasts
+                      (apply #'experiment:compare-levels results
+                             (append arguments '(:stream nil)))))))
+      (is (equal '(("noise=0" "a" "c") ("noise=0.5" "a" "c") ("noise=0" "b" "c")
+                   ("noise=0.5" "b" "c") ("noise=0" "d" "c") ("noise=0.5" "d" "c"))
+                 (contrasts 'plan :against 'c)))
+      (is (equal '("plan=a" "noise=0.5" "noise=0") (first (contrasts "noise"))))
+      (signals base:unknown-name (contrasts 'plan :against 'e)))))
