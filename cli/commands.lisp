@@ -4,7 +4,8 @@
 
 (defparameter *shell-commands*
   '(("experiment" experiment-command)
-    ("merge" merge-command))
+    ("merge" merge-command)
+    ("compare" compare-command))
   "Lists (name function): the function gets the arguments that follow, a list of strings, and
 returns the status to exit with. What it does is said in usage-NAME.txt.")
 

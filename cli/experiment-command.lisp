@@ -53,7 +53,7 @@
         (reject-usage "--shard takes I/N, a part I from 0 to below their number N, not ~A." text))))
 
 (defun parse-path (text)
-  (if (string= text "") (reject-usage "A file or directory has a name, not none.") text))
+  (if (string= text "") (reject-usage "A file or directory has a name, not an empty one.") text))
 
 (defparameter *experiment-options*
   '(("--trials" :trials parse-count) ("--workers" :workers parse-count) ("--out" :out parse-path)
@@ -105,30 +105,41 @@
   (let ((out (option-value :out options)) (shard (option-value :shard options)))
     (if shard (shard-directory out (car shard) (cdr shard)) out)))
 
-(defun run-here (experiment options)
-  "Run what OPTIONS want of EXPERIMENT in this process, and say what came of it."
+(defun results-of (experiment options)
+  "Run what OPTIONS want of EXPERIMENT in this process. Return the results."
   (let ((directory (directory-for-rows options)))
     (when directory (ensure-results-directory directory))
-    (let ((results (run-experiment experiment
-                                   :trials (option-value :trials options)
-                                   :workers (option-value :workers options (processors))
-                                   :until (option-value :until options)
-                                   :shard (option-value :shard options)
-                                   :directory directory
-                                   :stream (and (not (option-value :quiet options))
-                                                (text-output 2)))))
-      (unless (option-value :shard options)
-        (report-results results (option-value :plot options))))
+    (run-experiment experiment
+                    :trials (option-value :trials options)
+                    :workers (option-value :workers options (processors))
+                    :until (option-value :until options)
+                    :shard (option-value :shard options)
+                    :directory directory
+                    :stream (and (not (option-value :quiet options)) (text-output 2)))))
+
+(defun run-here (experiment options)
+  "Run what OPTIONS want of EXPERIMENT in this process, and say what came of it."
+  (let ((results (results-of experiment options)))
+    (unless (option-value :shard options)
+      (report-results results (option-value :plot options)))
     0))
 
-(defun tell-stopped (arguments options)
-  "Say what is there after an interrupt, and with what command to go on."
+(defun tell-stopped (command arguments options)
+  "Say what is there when COMMAND with ARGUMENTS has been interrupted, and how to go on."
   (let* ((out (option-value :out options))
          (rows (and out (ignore-errors (count-rows out)))))
     (if out
         (say "stopped with ~D row~:P in ~A. To go on:~%  ~A" (or rows 0) out
-             (command-text (append (program-words) (cons "experiment" arguments))))
+             (command-text (append (program-words) (list command) arguments)))
         (say "stopped; nothing is kept without --out DIR."))))
+
+(defun call-stoppable (function command arguments options)
+  "Call FUNCTION, which does COMMAND with ARGUMENTS, and return the status that it returns, or that
+of what has been interrupted."
+  (handler-case (funcall function)
+    (user-interrupt ()
+      (tell-stopped command arguments options)
+      130)))
 
 (defun print-missing (experiment options)
   "Print the numbers of the shards that lack rows, in a line, or none."
@@ -146,6 +157,11 @@
         ((option-value :slurm options) (spread-by-slurm experiment words options))
         (t (run-here experiment options))))
 
+(defun known-experiment (words)
+  "Return the experiment that WORDS, a file or name and perhaps another name, stand for."
+  (prog1 (apply #'experiment-called words)
+    (tell-doubts)))
+
 (defun experiment-command (arguments)
   "Do what ./cli/ars-magna experiment ARGUMENTS does. Return the status to exit with."
   (let* ((options (parse-options arguments :table *experiment-options* :others t))
@@ -153,11 +169,7 @@
     (check-together options)
     (unless (<= 1 (length words) 2)
       (reject-usage "experiment takes a file or the name of an experiment, and one more name at ~
-                     most~@[, not ~{~A~^ ~}~]. Known: ~{~A~^, ~}."
+                     most~@[, not ~{~A~^ ~}~].~@[ Known: ~{~A~^, ~}.~]"
                     words (experiment-words (all-experiments))))
-    (handler-case (let ((experiment (apply #'experiment-called words)))
-                    (tell-doubts)
-                    (conduct-experiment experiment words options))
-      (user-interrupt ()
-        (tell-stopped arguments options)
-        130))))
+    (call-stoppable (lambda () (conduct-experiment (known-experiment words) words options))
+                    "experiment" arguments options)))

@@ -32,6 +32,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:run-experiment #:merge-results #:processors #:settle-fingerprints
                 #:results-samples #:results-directory #:sample-condition #:sample-trials
                 #:sample-outcomes #:sample-errors
+                #:read-results #:compare-conditions #:compare-results #:save-comparison-picture
                 #:shard-directory #:directories-with-rows #:count-rows #:missing-shards)
   ;; trivial-gray-streams
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream

@@ -22,7 +22,11 @@
   "Call FUNCTION in each of COUNT threads, with its number from 1, and wait until all have returned.
 PULSE, a function, is called here now and then. If this is left, the threads are left too, whatever
 they do. What FUNCTION signals is signalled here."
-  (let* ((lparallel:*kernel* (lparallel:make-kernel count :name "trials"))
+  (let* ((lparallel:*kernel* (lparallel:make-kernel
+                              count :name "trials"
+                              ;; It would tell users that threads are left.
+                              :bindings `((*standard-output* . ,*nowhere*)
+                                          (*error-output* . ,*nowhere*))))
          (channel (lparallel:make-channel))
          (done nil))
     (unwind-protect
