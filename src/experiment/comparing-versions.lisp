@@ -120,8 +120,8 @@ SECOND."
 
 (addition compare-results)
 (defun compare-results (before after &key measure (stream *standard-output*))
-  "Compare two tables of one experiment that two versions of the code have made: BEFORE and AFTER are
-directories, or results. Trials of equal condition and seed are compared, per condition and, for
+  "Compare two tables of one experiment that two versions of the code have made: BEFORE and AFTER
+are directories, or results. Trials of equal condition and seed are compared, per condition and, for
 success, over all conditions, where each seed counts once. Differences are AFTER less BEFORE. It is
 said which conditions got better or worse, and how many trials are the same to the last bit: rows
 with equal digest, outcome and measures. The other arguments, the value and the errors are those of

@@ -5,8 +5,8 @@
 ;;; What is compared.
 
 (defun compared-names (operator results measure)
-  "Return the names of what is to be compared in all RESULTS: what MEASURE, the argument of OPERATOR,
-says, or all that they have."
+  "Return the names of what is to be compared in all RESULTS: what MEASURE, the argument of
+OPERATOR, says, or all that they have."
   (let ((known (append '("success" "ticks")
                        (reduce (lambda (names others)
                                  (remove-if-not (lambda (name)
@@ -22,19 +22,24 @@ says, or all that they have."
           known
           (mapcar #'known-name (ensure-list measure))))))
 
+(defun samples-called (samples text)
+  "Return those of SAMPLES whose condition is called TEXT; or else has that for a value; or else has
+it in its name."
+  (flet ((those (test) (remove-if-not test samples)))
+    (or (those (lambda (sample) (string-equal text (sample-condition sample))))
+        (those (lambda (sample) (member text (sample-texts sample) :test #'string-equal)))
+        (those (lambda (sample) (search text (sample-condition sample) :test #'char-equal))))))
+
 (defun sample-called (results designator)
   "Return the sample of RESULTS that DESIGNATOR means: a sample, the number of a condition, from 1,
-or its name as far as that is unambiguous. Signals UNKNOWN-NAME."
+or its name or a part of that as far as it is unambiguous. Signals UNKNOWN-NAME."
   (let* ((samples (results-samples results))
          (text (if (typep designator '(or symbol string)) (string designator) ""))
-         (called (or (remove text samples :key #'sample-condition :test-not #'string-equal)
-                     (remove-if-not (lambda (sample)
-                                      (search text (sample-condition sample) :test #'char-equal))
-                                    samples))))
+         (called (and (string/= "" text) (samples-called samples text))))
     (cond ((member designator samples) designator)
           ((and (integerp designator) (<= 1 designator (length samples)))
            (nth (1- designator) samples))
-          ((and (string/= "" text) (= 1 (length called))) (first called))
+          ((= 1 (length called)) (first called))
           (t (reject-name "condition"
                           (if (symbolp designator) designator (princ-to-string designator))
                           (mapcar #'sample-condition samples))))))
@@ -85,16 +90,16 @@ where, and the rest their names."
     comparison))
 
 (defun check-stream (operator stream)
-  (unless (or (null stream) (output-stream-p stream))
+  (unless (or (null stream) (and (streamp stream) (output-stream-p stream)))
     (reject-argument operator 'stream stream "an output stream, or NIL")))
 
 (addition compare-conditions)
 (defun compare-conditions (results first second &key measure (stream *standard-output*))
   "Compare the conditions FIRST and SECOND of RESULTS, as RUN-EXPERIMENT and READ-RESULTS return
-them, seed by seed: how often they succeed, the ticks of trials that succeed in both, and all that is
-measured in numbers or as true or false; or, with MEASURE, a name or list of names, only that. A
-condition is given by its number, from 1, or by its name as far as that is unambiguous; :ALL as
-SECOND compares FIRST with each of the others.
+them, seed by seed: how often they succeed, the ticks of trials that succeed in both, and all that
+is measured in numbers or as true or false; or, with MEASURE, a name or list of names, only that. A
+condition is given by its number, from 1, or by its name or a part of that, such as one value of what
+varies, as far as it is unambiguous; :ALL as SECOND compares FIRST with each of the others.
 
 Only trials with seeds that both have are counted; a trial that broke off with an error, or came to
 its limit, did not succeed. Return a comparison, and write it to STREAM, if there is one, as

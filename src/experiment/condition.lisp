@@ -31,6 +31,10 @@
   (fingerprint nil :type (or null string))
   (random-p t :type boolean))
 
+(document-functions
+  condition-name "Return what the condition is called, a string."
+  condition-parameters "Return a vector of the values of all parameters, in their order.")
+
 (defmethod print-object ((condition trial-condition) stream)
   (print-unreadable-object (condition stream)
     (format stream "condition ~A" (condition-name condition))))

@@ -30,7 +30,8 @@
   experiment-p "True of an experiment."
   experiment-name "Return the symbol that the experiment is called."
   experiment-conditions "Return a list of the experiment's conditions."
-  experiment-trials "Return how many trials of each condition there are unless somebody says.")
+  experiment-trials "Return how many trials of each condition there are unless somebody says."
+  experiment-package "Return the package in which the experiment was written.")
 
 (defmethod print-object ((experiment experiment) stream)
   (print-unreadable-object (experiment stream :type t)

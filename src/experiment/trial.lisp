@@ -19,6 +19,15 @@
   (digest nil :type (or null integer))
   (error "" :type string))
 
+(document-functions
+  result-trial "Return the number of the trial."
+  result-seed "Return the seed of the trial."
+  result-outcome "Return \"success\", \"failure\", \"limit\" or \"error\"."
+  result-reason "Return why the trial failed, a string."
+  result-ticks "Return how many ticks passed."
+  result-digest "Return the digest of the state at the end, or NIL."
+  result-error "Return what error there was, a string; \"\" if none.")
+
 ;;; Ticks. Who asks for more than there are is left.
 
 (defun limit-gate (limit next)

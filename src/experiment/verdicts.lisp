@@ -25,9 +25,7 @@
   (if (eq :rate (paired-kind difference))
       (lambda (value) (hundredths-text value (paired-trials difference)))
       (let ((decimals (decimals-known (paired-low difference) (paired-high difference))))
-        (lambda (value)
-          (let ((text (decimals-text value decimals)))
-            (if (find #\. text) (string-right-trim "." (string-right-trim "0" text)) text))))))
+        (lambda (value) (decimals-text value decimals)))))
 
 (defun p-text (p)
   "Return the probability P as people write it after a p: = .032, < .001."
@@ -36,6 +34,9 @@
         ((> p .995d0) "= 1")
         (t (let ((text (format nil "~,VF" (if (< p .0995d0) 3 2) p)))
              (format nil "= ~A" (string-left-trim "0" text))))))
+
+(defun bare-p (p)
+  (string-left-trim "= " (p-text p)))
 
 (defun interval-words (difference)
   "Return by how much DIFFERENCE is, with its interval, as a verdict says it."
@@ -47,10 +48,9 @@
 
 (defun p-words (difference tests)
   "Return how likely DIFFERENCE is by chance, and what that is worth among TESTS."
-  (let ((p (p-text (paired-p difference))) (adjusted (p-text (paired-adjusted-p difference))))
-    (if (string= p adjusted)
-        (format nil "p ~A" p)
-        (format nil "p ~A (~A as one of ~D tests)" p adjusted tests))))
+  (let ((p (paired-p difference)) (adjusted (paired-adjusted-p difference)))
+    (format nil "p ~A~:[ (~A as one of ~D tests)~]" (p-text p)
+            (string= (p-text p) (p-text adjusted)) (bare-p adjusted) tests)))
 
 (defun both-words (difference)
   "Return the two rates or means of DIFFERENCE."
@@ -181,9 +181,6 @@ tests of COMPARISON (Holm), is at most .05; else it is said how large it can be.
 ;;; The table.
 
 (defparameter *headings* '("measure" "seeds" "first" "second" "difference" "p" "Holm"))
-
-(defun bare-p (p)
-  (string-left-trim "= " (p-text p)))
 
 (defun table-row (difference)
   "Return the texts of the table for DIFFERENCE."

@@ -8,21 +8,20 @@
   "Return PARAMETERS, lists (name value), as EXPERIMENT-FROM takes them."
   (check-argument is-success-rate parameters
                   (and (proper-list-p parameters)
-                       (every (lambda (setting) (and (proper-list-p setting) (= 2 (length setting))))
+                       (every (lambda (part) (and (proper-list-p part) (= 2 (length part))))
                               parameters))
                   "a list of lists (name value)")
   (loop for (name value) in parameters
         for symbol = (parameter-symbol (find-parameter name))
         collect (list (list symbol value) value)))
 
-(defun experiment-of-form (function robots form package seed limit parameters clean)
-  "Return an experiment whose trials call FUNCTION, made of FORM in PACKAGE, with ROBOTS."
+(defun experiment-of-form (function robots package seed limit parameters clean)
+  "Return an experiment whose trials call FUNCTION, written in PACKAGE, with ROBOTS."
   (check-argument is-success-rate seed (integerp seed) "an integer")
   (check-argument is-success-rate limit (whole-p limit 1) "a number of ticks from 1 to 1e9")
   (let ((experiment (experiment-from 'is-success-rate "is-success-rate"
                                      :robots robots :run function :seed seed :limit limit
-                                     :parameters (parameter-parts parameters) :clean clean
-                                     :form form)))
+                                     :parameters (parameter-parts parameters) :clean clean)))
     (setf (experiment-package experiment) (find-package package))
     experiment))
 
@@ -31,8 +30,8 @@
   (let ((all (experiment-conditions experiment)))
     (cond (condition (find-condition experiment condition))
           ((rest all)
-           (reject-use "The experiment ~(~A~) has several conditions; say which, as in (:experiment ~
-                        '~(~A~) :condition ~S)."
+           (reject-use "The experiment ~(~A~) has several conditions; say which, as in ~
+                        (:experiment '~(~A~) :condition ~S)."
                        (experiment-name experiment) (experiment-name experiment)
                        (condition-name (first all))))
           (t (first all)))))
@@ -55,7 +54,7 @@ are what its author wrote. True if they do."
 (defun hold-form (function robots form package at-least trials level workers
                   seed limit parameters clean)
   "Check FUNCTION, made of FORM, as IS-SUCCESS-RATE does."
-  (let ((experiment (experiment-of-form function robots form package seed limit parameters clean)))
+  (let ((experiment (experiment-of-form function robots package seed limit parameters clean)))
     (call-check experiment (first (experiment-conditions experiment)) robots form
                 at-least trials level workers)))
 
@@ -79,7 +78,9 @@ it is none, or OPTIONS are given that the experiment decides."
 
 (defun robot-names (robots form)
   "Return the names in ROBOTS, a name or a list. Signals MALFORMED-DEFINITION if there is none."
-  (let ((names (ensure-list (unquoted robots))))
+  (let ((names (ensure-list (if (and (consp robots) (eq 'quote (first robots)))
+                                (second robots)
+                                robots))))
     (unless (and (proper-list-p names) names (every #'symbolp names))
       (reject-clause "is-success-rate" form
                      "an option :robots, with the name of a robot or a list of names of one map"))
@@ -89,21 +90,22 @@ it is none, or OPTIONS are given that the experiment decides."
     (form &rest options
           &key robots (at-least .95) trials (level .05) (seed 0) parameters clean (limit 100000)
           (workers 1))
-  "Check, in a test of FiveAM, that FORM succeeds in AT-LEAST such a share of trials, 0.95 unless
-given. Each trial evaluates FORM in a fresh headless simulation with ROBOTS, the name of a robot or a
-list of names, which are bound to the robots, as an experiment's :run does: the values of RUN-PLAN,
-or else the first value, say whether it succeeded; errors, and trials that take more than LIMIT
-ticks, did not. So a LIMIT of 300 with :at-least 1/2 holds the median of ticks to 300. Trial T has
-the seed SEED + T, and the manual's parameters but for PARAMETERS, a list of lists (name value);
-without noise if CLEAN. FORM may instead be (:experiment NAME) or (:experiment NAME :condition C):
+  "Check, in a test of FiveAM, that FORM succeeds in a share AT-LEAST of trials, .95 unless given.
+Each trial evaluates FORM in a fresh headless simulation with ROBOTS, the name of a robot or a list
+of names, which are bound to the robots. As in an experiment's :run, the values of RUN-PLAN, or else
+the first value, say whether it succeeded; errors, and trials that take more than LIMIT ticks, did
+not. So a LIMIT of 300 with :at-least 1/2 holds the median of ticks to 300. Trial T has the seed
+SEED + T, and the manual's parameters but for PARAMETERS, a list of lists (name value), and without
+noise if CLEAN is true. FORM may instead be (:experiment NAME) or (:experiment NAME :condition C):
 then trials are those of that experiment, which says the rest.
 
 At most TRIALS are run, 200 unless given, or as many as the experiment says, and no more than are
 needed: the check fails as soon as it is plain that the rate is lower than AT-LEAST, and passes as
-soon as it is plain that it is higher. After the last trial it fails if the rate is below AT-LEAST as
-far as that can be told (by its exact interval), and else passes: whoever wants small losses to be
-noticed gives more trials, see PASS-PROBABILITY. Something that succeeds AT-LEAST so often fails with
-a probability of at most LEVEL. With an AT-LEAST of 1 all trials must succeed.
+soon as it is plain that it is higher. After the last trial it fails if the rate is below AT-LEAST
+as far as that can be told, and else passes. (On the way RATE-VERDICT is asked after each trial, at
+the end EXACT-INTERVAL, each with half of LEVEL.) So what succeeds AT-LEAST so often fails with a
+probability of at most LEVEL; how likely it is that a loss is noticed, PASS-PROBABILITY says, and
+more trials make it likelier. With an AT-LEAST of 1 all trials must succeed.
 
 Seeds are fixed, so the same code has the same answer each time, by however many WORKERS, threads;
 with several of them FORM does not see what the test has bound. The reason of a failure gives the

@@ -7,7 +7,7 @@ experiments to their rates of success. Use it beside FIVEAM.")
   (:use :cl :ars-magna.base)
   (:import-from :fiveam #:pass #:fail)
   (:import-from :ars-magna.statistics #:rate-verdict #:exact-interval)
-  (:import-from :ars-magna.run #:variables-among #:unquoted)
+  (:import-from :ars-magna.run #:variables-among #:with-simulation)
   (:import-from :ars-magna.experiment
                 #:experiment-from #:find-experiment #:experiment-name #:experiment-conditions
                 #:experiment-trials #:experiment-package #:find-condition #:condition-name

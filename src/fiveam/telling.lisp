@@ -43,7 +43,7 @@
 (defun meaning-text (check)
   (if (= 1 (check-at-least check))
       "All should."
-      (format nil "If ~A or more succeeded in the long run, a check would say so with a probability ~
+      (format nil "If ~A or more succeeded in the long run, this would be said with a probability ~
                    of at most ~A."
               (per-cent (check-at-least check)) (per-cent (check-level check)))))
 
