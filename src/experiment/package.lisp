@@ -4,7 +4,7 @@
   (:documentation "Controlled experiments: conditions, trials, tables that can be repeated and gone
 on with, on as many cores and machines as there are. Names cl-csv and lparallel.")
   (:use :cl :ars-magna.base :ars-magna.statistics :ars-magna.run)
-  (:import-from :ars-magna.plots #:difference-chart #:save-chart)
+  (:import-from :ars-magna.plots #:difference-chart #:save-chart #:figure-text)
   (:import-from :ars-magna.time #:current-simulation)
   (:import-from :ars-magna.robot #:find-blueprint #:all-blueprints #:blueprint-name #:blueprint-map)
   (:import-from :ars-magna.rpl.tasks
@@ -38,4 +38,10 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
   (:export #:damaged-table #:run-experiment #:merge-results #:processors)
   ;; fingerprint, shards
   (:export #:settle-fingerprints #:shard-directory #:directories-with-rows #:count-rows
-           #:missing-shards))
+           #:missing-shards)
+  ;; estimates, summary, report
+  (:export #:estimate-p #:estimate-name #:estimate-kind #:estimate-count #:estimate-value
+           #:estimate-low #:estimate-high #:estimate-left-out #:estimate-texts
+           #:summary-p #:summary-condition #:summary-texts #:summary-trials #:summary-failures
+           #:summary-limits #:summary-errors #:summary-confidence #:summary-success #:summary-ticks
+           #:summary-measures #:summary-reasons #:summarize-results #:print-results))

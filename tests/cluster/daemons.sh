@@ -1,4 +1,4 @@
-# daemons.sh -- what tests/cluster/run needs around it: packages, an ssh server, a Slurm of one node.
+# daemons.sh -- what tests/cluster/run needs: packages, an ssh server, a Slurm of one node.
 #
 # To be sourced with $root and $work set when the functions are called. No systemd is needed.
 

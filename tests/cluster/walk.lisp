@@ -11,4 +11,5 @@
         (run-ticks 40)
         (if (= 13 (random 1000)) (error "An error, on purpose") t))
   (:success (> (robot-x ars-worlds:dot) 7.5))
-  (:measure (x (robot-x ars-worlds:dot)) (in-words (format nil "at ~,1F, or so" (robot-x ars-worlds:dot)))))
+  (:measure (x (robot-x ars-worlds:dot))
+            (in-words (format nil "at ~,1F, or so" (robot-x ars-worlds:dot)))))
