@@ -240,7 +240,7 @@
                  (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
                  (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
-                 (:file "cli-debugger") (:file "cli-files") (:file "cli-plan-tree")
+                 (:file "cli-debugger") (:file "cli-files") (:file "cli-plan-tree") (:file "experiment-shell")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
                  (:file "rpl-seeing-truth")
                  (:file "kinds") (:file "digests") (:file "runs") (:file "outliving")

@@ -22,4 +22,5 @@ returns the status to exit with. What it does is said in usage-NAME.txt.")
 
 (defun run-command-called (name arguments)
   "Do the command NAME with ARGUMENTS. Return the status to exit with."
-  (funcall (second (find-command-called name)) arguments))
+  (let ((command (find-command-called name)) (*error-output* (text-output 2)))
+    (funcall (second command) arguments)))

@@ -7,12 +7,11 @@
 
 (defun say (control &rest arguments)
   "Tell the user something beside what he has asked for."
-  (let ((output (text-output 2)))
-    ;; A line that tells of progress may stand there.
-    (when (interactive-stream-p output)
-      (format output "~C~C[K" #\Return #\Escape))
-    (format output "ars-magna: ~?~%" control arguments)
-    (finish-output output)))
+  ;; A line that tells of progress may stand there.
+  (when (interactive-stream-p *error-output*)
+    (format *error-output* "~C~C[K" #\Return #\Escape))
+  (format *error-output* "ars-magna: ~?~%" control arguments)
+  (finish-output *error-output*))
 
 ;; A shell has no prompt that would show them.
 (defun tell-doubts ()
@@ -115,7 +114,7 @@
                     :until (option-value :until options)
                     :shard (option-value :shard options)
                     :directory directory
-                    :stream (and (not (option-value :quiet options)) (text-output 2)))))
+                    :stream (and (not (option-value :quiet options)) *error-output*))))
 
 (defun run-here (experiment options)
   "Run what OPTIONS want of EXPERIMENT in this process, and say what came of it."

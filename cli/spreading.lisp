@@ -4,9 +4,9 @@
 
 ;;; All that is done here is to write a script, and this program with the user's experiment, into
 ;;; the directory of the results, and to start the script: it can be read, changed and started by
-;;; itself. Shards are so large that starting one, a fifth of a second, is cheap beside what it does,
-;;; but enough for several cores; and no more than there may be tasks in an array of Slurm's. How
-;;; many they are depends on nothing but the experiment, so that starting again finds the same ones.
+;;; itself. Shards are so large that starting one, a fifth of a second, is cheap beside what it
+;;; does, but enough for several cores; and no more than there may be tasks in an array of Slurm's.
+;;; How many they are depends on nothing but the experiment, so that starting again finds the same.
 
 (defparameter *shards-of-scripts* '(("run.sh" 500 16) ("job.sh" 5000 1))
   "Lists (script trials least): for how many trials there is a shard, but at least so many shards.")
@@ -38,7 +38,7 @@
 
 (defun parallel-settings (experiment options directory)
   (append (common-settings experiment options "run.sh")
-          `(("jobs" ,(option-value :workers options "100%") "shards at a time on each machine")
+          `(("jobs" ,(option-value :workers options "100%") "at a time on each machine")
             ("hosts" ,(option-value :parallel options)
                      "for --sshlogin: 8/alice,bob ...; empty: this machine")
             ("place" ,(place-for directory) "the directory on other machines"))))
@@ -63,8 +63,8 @@
     path))
 
 (defun spread (experiment words options script template settings)
-  "Run EXPERIMENT, which WORDS, arguments of this program, stand for, by SCRIPT, made of TEMPLATE and
-what SETTINGS, a function, returns. Return the status to exit with."
+  "Run EXPERIMENT, which WORDS, arguments of this program, stand for, by SCRIPT, made of TEMPLATE
+and what SETTINGS, a function, returns. Return the status to exit with."
   (let ((directory (ensure-results-directory (option-value :out options))))
     (save-program-with words (native-name (merge-pathnames "ars-magna" directory)))
     (let ((path (write-script script
