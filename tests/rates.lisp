@@ -126,7 +126,7 @@
       (check-of (rates:is-success-rate (run:run-until (constantly nil) :limit 1000)
                  :robots ars-worlds:dot :limit 50))
     (is (not passed))
-    (is (mentions-p reason "trial 1, seed 1: limit"))))
+    (is (mentions-p reason "trial 1, seed 1: not done in 50 ticks"))))
 
 (test is-success-rate.begins-with-the-parameters-of-the-manual
   (let ((base:max-speed* 7) (base:motion-noise* 1/3))

@@ -98,8 +98,8 @@ where, and the rest their names."
   "Compare the conditions FIRST and SECOND of RESULTS, as RUN-EXPERIMENT and READ-RESULTS return
 them, seed by seed: how often they succeed, the ticks of trials that succeed in both, and all that
 is measured in numbers or as true or false; or, with MEASURE, a name or list of names, only that. A
-condition is given by its number, from 1, or by its name or a part of that, such as one value of what
-varies, as far as it is unambiguous; :ALL as SECOND compares FIRST with each of the others.
+condition is given by its number, from 1, or by its name or a part of that, such as one value of
+what varies, as far as it is unambiguous; :ALL as SECOND compares FIRST with each of the others.
 
 Only trials with seeds that both have are counted; a trial that broke off with an error, or came to
 its limit, did not succeed. Return a comparison, and write it to STREAM, if there is one, as

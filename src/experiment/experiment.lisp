@@ -31,6 +31,7 @@
   experiment-name "Return the symbol that the experiment is called."
   experiment-conditions "Return a list of the experiment's conditions."
   experiment-trials "Return how many trials of each condition there are unless somebody says."
+  experiment-limit "Return for how many ticks a trial may go on."
   experiment-package "Return the package in which the experiment was written.")
 
 (defmethod print-object ((experiment experiment) stream)

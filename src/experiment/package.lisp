@@ -15,7 +15,7 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
-           #:experiment-from #:experiment-package #:find-condition #:trial-values
+           #:experiment-from #:experiment-package #:experiment-limit #:find-condition #:trial-values
            #:condition-name #:condition-parameters)
   ;; trial, workers, description, values
   (:export #:run-trial #:call-in-silence #:call-by-workers #:form-text

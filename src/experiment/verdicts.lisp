@@ -49,7 +49,7 @@
 (defun p-words (difference tests)
   "Return how likely DIFFERENCE is by chance, and what that is worth among TESTS."
   (let ((p (paired-p difference)) (adjusted (paired-adjusted-p difference)))
-    (format nil "p ~A~:[ (~A as one of ~D tests)~]" (p-text p)
+    (format nil "p ~A~:[ (~A as one of ~D tests)~;~]" (p-text p)
             (string= (p-text p) (p-text adjusted)) (bare-p adjusted) tests)))
 
 (defun both-words (difference)

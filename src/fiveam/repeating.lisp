@@ -37,10 +37,11 @@
   "Return a form, as text, that repeats the trial of CHECK that RESULT is of."
   (let ((robots (check-robots check)))
     (if robots
-        (text-of `(with-simulation (,(if (rest robots) robots (first robots))
-                                    :seed ,(result-seed result) ,@(settings check))
-                    ,(check-form check))
-                 check)
+        (format nil "(~A ~A~%    ~A)" (text-of 'with-simulation check)
+                (text-of (list* (if (rest robots) robots (first robots))
+                                :seed (result-seed result) (settings check))
+                         check)
+                (text-of (check-form check) check))
         (format nil "(replay-trial '~A ~S ~D)"
                 (text-of (experiment-name (check-experiment check)) check)
                 (condition-name (check-condition check)) (result-trial result)))))

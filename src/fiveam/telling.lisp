@@ -15,18 +15,20 @@
   (let ((text (format nil "~,2F" (* 100 share))))
     (format nil "~A %" (string-right-trim "." (string-right-trim "0" text)))))
 
-(defun outcome-text (result)
-  "Return how the trial went that RESULT is of."
-  (format nil "~A~:[: ~A~;~*~]~:[: ~A~;~*~]" (result-outcome result)
-          (string= "" (result-reason result)) (result-reason result)
-          (string= "" (result-error result)) (result-error result)))
+(defun outcome-text (result check)
+  "Return how the trial of CHECK went that RESULT is of."
+  (if (string= "limit" (result-outcome result))
+      (format nil "not done in ~D ticks" (experiment-limit (check-experiment check)))
+      (format nil "~A~:[: ~A~;~*~]~:[: ~A~;~*~]" (result-outcome result)
+              (string= "" (result-reason result)) (result-reason result)
+              (string= "" (result-error result)) (result-error result))))
 
-(defun example-lines (bad)
-  "Return lines for the first of BAD, results of trials that did not succeed."
+(defun example-lines (bad check)
+  "Return lines for the first of BAD, results of trials of CHECK that did not succeed."
   (append (loop for result in bad
                 repeat *examples*
                 collect (format nil "  trial ~D, seed ~D: ~A" (result-trial result)
-                                (result-seed result) (outcome-text result)))
+                                (result-seed result) (outcome-text result check)))
           (when (> (length bad) *examples*)
             (list (format nil "  and ~D more" (- (length bad) *examples*))))))
 
@@ -53,7 +55,8 @@
     (format nil "~A~%succeeds less often than ~A: ~A.~%~A~%Of those that did not:~%~{~A~%~}To see ~
                  one:~%  ~A"
             (subject-text check) (per-cent (check-at-least check)) (numbers-text check)
-            (meaning-text check) (example-lines bad) (repetition-text check (first bad)))))
+            (meaning-text check) (example-lines bad check)
+            (repetition-text check (first bad)))))
 
 (defun success-text (check)
   (format nil "~A: ~A" (subject-text check) (numbers-text check)))
