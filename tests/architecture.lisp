@@ -61,7 +61,8 @@
 (test files.are-all-in-a-system
   (let ((systems (base:read-file-into-string (project-file "ars-magna.asd"))))
     (dolist (path (set-difference (lisp-files "src/" "rpl/" "cli/" "worlds/" "tests/")
-                                  (lisp-files "tests/benchmarks/" "tests/homes/")
+                                  (lisp-files "tests/benchmarks/" "tests/homes/"
+                                              "tests/cluster/")
                                   :test #'equal))
       (unless (equal (project-file "cli/build.lisp") path)
         (is (search (format nil "(:file \"~A\")" (pathname-name path)) systems)

@@ -269,9 +269,11 @@ output, and what to the error output."
     (lines-of text)))
 
 (test scripts.have-their-settings-quoted
-  (is (equal '("a=5                                     # what"
-               "b='8/ssh -p 2 x,y'\''s'                 # what" "c=                                      # what")
-             (script-settings '(("a" 5) ("b" "8/ssh -p 2 x,y's") ("c" "")))))
+  (loop for (word line) in '((5 "a=5") ("" "a=") ("two words" "a=\"two words\"")
+                             ("it's $x" "a=\"it's \\$x\"") ("8/ssh -p 2 x,`y`"
+                                                            "a=\"8/ssh -p 2 x,\\`y\\`\""))
+        for written = (first (script-settings `(("a" ,word))))
+        do (is (string= line (string-right-trim " " (subseq written 0 (search "#" written))))))
   (dolist (name '("spread-parallel.sh" "spread-slurm.sh"))
     (is-false (search "@SETTINGS@" (cli::with-settings (cli::text-called name) '(("a" 1 "one")))))
     (is-true (eql 0 (search (format nil "#!/bin/sh~%") (cli::text-called name))))))

@@ -25,7 +25,8 @@ numbers."
        (append (mapcar #'constant-meant (code-constants function))
                (when (sb-kernel:closurep function) (sb-kernel:%closure-values function))))))
 
-;;; From which file functions are. Where forms of a file are evaluated one by one, that must be said.
+;;; From which file functions are. Where the forms of one are evaluated one by one, that must be
+;;; said.
 
 (defvar *dates-of-files* (make-hash-table :test 'equal :synchronized t)
   "When files were written whose forms have been evaluated one by one, by what they are called.")

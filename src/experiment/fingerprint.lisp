@@ -12,7 +12,7 @@
   "Numbers of files by name: those that a saved Lisp was made of may be gone when it runs.")
 
 (defvar *digests-settled-p* nil
-  "True in a Lisp that was saved with its experiments: what becomes of their files does not matter.")
+  "True in a Lisp that was saved with its experiments: what becomes of their files is no matter.")
 
 (defun short-name (file)
   (file-namestring (native-path file)))
