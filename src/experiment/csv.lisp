@@ -10,10 +10,31 @@
              (format stream "No row of a table: ~A" (cut (broken-line-text condition) 200))))
   (:documentation "A line of a table cannot be taken apart."))
 
+;; Most texts need no quotes, and most lines have none; these are put together and taken apart here,
+;; in a tenth of the time.
+
+(defun quotable-p (text)
+  (declare (type string text))
+  (find-if (lambda (char) (member char '(#\, #\" #\Newline #\Return))) text))
+
+(defun line-of (texts)
+  (let ((line (make-string (loop for text in texts sum (1+ (length (the string text))))))
+        (place 0))
+    (declare (type fixnum place))
+    (dolist (text texts line)
+      (replace line (the string text) :start1 place)
+      (incf place (length (the string text)))
+      (setf (char line place) #\,)
+      (incf place))))
+
 (defun csv-line (texts)
   "Return TEXTS, strings, as a line of a table, with its end (RFC 4180, but for a plain newline)."
-  (with-output-to-string (line)
-    (cl-csv:write-csv-row texts :stream line :newline (string #\Newline))))
+  (if (some #'quotable-p texts)
+      (with-output-to-string (line)
+        (cl-csv:write-csv-row texts :stream line :newline (string #\Newline)))
+      (let ((line (line-of texts)))
+        (setf (char line (1- (length line))) #\Newline)
+        line)))
 
 (defun texts-between-commas (line)
   (loop with start = 0
@@ -24,7 +45,6 @@
 
 (defun csv-texts (line)
   "Return the texts in LINE, of a table. Signals BROKEN-LINE."
-  ;; Most lines have no quotes, and are so taken apart twenty times as fast.
   (if (find #\" line)
       (handler-case (cl-csv:read-csv-row line)
         (error () (error 'broken-line :line line)))

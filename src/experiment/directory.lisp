@@ -87,8 +87,27 @@
            (setf (store-rows store) (open-table (rows-file directory) (columns experiment))
                  (store-machine store) (open-table (machine-file directory) *machine-columns*))
            (funcall function store))
-      (when (store-rows store) (close (store-rows store)))
-      (when (store-machine store) (close (store-machine store))))))
+      (close-table (store-rows store))
+      (close-table (store-machine store)))))
+
+(defun close-table (stream)
+  "Close STREAM, to a table, or NIL. What cannot be written any more is no news by now."
+  (when stream
+    (ignore-errors (close stream))))
+
+(defun write-table-line (line stream &optional (finish #'finish-output))
+  "Write LINE to STREAM, a table, and FINISH that. Signals DAMAGED-TABLE if that cannot be."
+  (handler-case (progn (write-string line stream)
+                       (funcall finish stream))
+    (stream-error (condition)
+      (reject-table (pathname stream) nil
+                    "no more can be written (~A). What is there is kept; go on once there is room."
+                    (system-text condition)))))
+
+(defun system-text (condition)
+  "Return what the system says of a stream, without what CONDITION says of the stream itself."
+  (let* ((text (one-line (own-text condition))) (end (search ">: " text :from-end t)))
+    (if end (subseq text (+ 3 end)) text)))
 
 (defun keep-row (store result milliseconds worker)
   "Append to STORE the row for RESULT, which took MILLISECONDS of WORKER. It is there for good when
@@ -97,15 +116,14 @@ this returns."
         (machine-line (csv-line (machine-texts result milliseconds worker))))
     (with-lock ((store-lock store))
       (deferring-interrupts
-        (write-string line (store-rows store))
-        (finish-output (store-rows store))
-        (write-string machine-line (store-machine store))))))
+        (write-table-line line (store-rows store))
+        (write-table-line machine-line (store-machine store) #'identity)))))
 
 (defun machine-texts (result milliseconds worker)
   (list (condition-name (result-condition result))
         (princ-to-string (result-seed result)) (princ-to-string (result-trial result))
-        (format nil "~,3F" milliseconds) (princ-to-string worker)
-        (princ-to-string (process-number)) (host-name)))
+        (float-text (/ (round milliseconds 1/1000) 1000d0))
+        (princ-to-string worker) (princ-to-string (process-number)) (host-name)))
 
 ;;; What is there. For each condition the trials are a row of bits.
 

@@ -72,10 +72,9 @@
     (call-in-silence (lambda () (call-with-own-lisps-dice #'work)))))
 
 (defun run-queue (experiment queue keep progress workers)
-  "Run the trials of QUEUE by WORKERS threads. If this is left, no trial is begun any more; those
-under way are left."
-  (unwind-protect
-       (call-by-workers (lambda (worker) (work-off experiment queue keep progress worker))
-                        workers
-                        (lambda () (tell-progress progress)))
-    (close-queue queue)))
+  "Run the trials of QUEUE by WORKERS threads. If this is left, no trial is begun any more, and
+those under way are given a moment."
+  (call-by-workers (lambda (worker) (work-off experiment queue keep progress worker))
+                   workers
+                   :pulse (lambda () (tell-progress progress))
+                   :stop (lambda () (close-queue queue))))

@@ -2,6 +2,13 @@
 
 (in-package :ars-magna.experiment)
 
+(defun digest-text (digest)
+  "Return DIGEST as 16 hexadecimal digits."
+  (let ((text (make-string 16)))
+    (dotimes (place 16 text)
+      (setf (char text place)
+            (char "0123456789ABCDEF" (ldb (byte 4 (* 4 (- 15 place))) digest))))))
+
 (defun result-texts (experiment result)
   "Return the texts of the row for RESULT, of a trial of EXPERIMENT, in the order of its columns."
   (let ((condition (result-condition result)))
@@ -16,5 +23,5 @@
                   (princ-to-string (result-ticks result)))
             (or (result-measures result)
                 (make-list (length (experiment-measures experiment)) :initial-element ""))
-            (list (if (result-digest result) (format nil "~16,'0X" (result-digest result)) "")
+            (list (if (result-digest result) (digest-text (result-digest result)) "")
                   (result-error result)))))

@@ -8,33 +8,50 @@
   (let ((text (nth-value 1 (run-command "nproc" '() :output :string))))
     (max 1 (or (and text (parse-integer text :junk-allowed t)) 1))))
 
-(defun await-all (channel count pulse)
-  "Take COUNT results from CHANNEL, calling PULSE, a function, now and then meanwhile."
-  (loop with left = count
-        while (plusp left)
-        do (multiple-value-bind (value there-p)
-               (lparallel:try-receive-result channel :timeout 0.2)
-             (declare (ignore value))
-             (when there-p (decf left))
-             (funcall pulse))))
+(defun trouble-of (function)
+  "Call FUNCTION. Return the error that it ended in, or NIL."
+  (handler-case (progn (funcall function) nil)
+    ((or error storage-condition) (condition) condition)))
 
-(defun call-by-workers (function count pulse)
+(defun await-result (channel left)
+  "Take a result from CHANNEL if there is one soon. Return how many are LEFT then, and the result."
+  (multiple-value-bind (trouble there-p) (lparallel:try-receive-result channel :timeout 0.2)
+    (values (if there-p (1- left) left) trouble)))
+
+(defconstant +patience+ 10
+  "For how many fifths of a second threads that are to end may go on with what they do.")
+
+(defun end-workers (channel left)
+  "Let LEFT threads end that have not answered by CHANNEL, or end them."
+  (loop repeat +patience+
+        while (plusp left)
+        do (setf left (await-result channel left)))
+  (handler-bind ((warning #'muffle-warning))
+    (when (plusp left) (lparallel:kill-tasks :default))
+    (lparallel:end-kernel :wait t)))
+
+(defun call-by-workers (function count &key (pulse (constantly nil)) (stop (constantly nil)))
   "Call FUNCTION in each of COUNT threads, with its number from 1, and wait until all have returned.
-PULSE, a function, is called here now and then. If this is left, the threads are left too, whatever
-they do. What FUNCTION signals is signalled here."
+PULSE, a function, is called here now and then. If this is left, STOP is called, which should let
+them return; those that do not are ended. What FUNCTION signals is signalled here."
   (let* ((lparallel:*kernel* (lparallel:make-kernel
                               count :name "trials"
-                              ;; It would tell users that threads are left.
+                              ;; Threads that are ended would say so.
                               :bindings `((*standard-output* . ,*nowhere*)
                                           (*error-output* . ,*nowhere*))))
          (channel (lparallel:make-channel))
-         (done nil))
+         (left count))
     (unwind-protect
          (progn
            (loop for number from 1 to count
                  do (let ((number number))
-                      (lparallel:submit-task channel (lambda () (funcall function number)))))
-           (await-all channel count pulse)
-           (setf done t))
-      (unless done (lparallel:kill-tasks :default))
-      (lparallel:end-kernel :wait t))))
+                      (lparallel:submit-task
+                       channel
+                       (lambda () (trouble-of (lambda () (funcall function number)))))))
+           (loop with trouble
+                 while (plusp left)
+                 do (setf (values left trouble) (await-result channel left))
+                    (when trouble (error trouble))
+                    (funcall pulse)))
+      (funcall stop)
+      (end-workers channel left))))
