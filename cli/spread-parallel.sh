@@ -64,7 +64,8 @@ if [ -n "$left" ]; then
     if [ -t 2 ]; then bar=--bar; else bar=; fi
     # Words, on purpose.
     if [ -n "$hosts" ]; then there $left; else here $left; fi
-    ulimit -n 4096 2>/dev/null || :
+    # Merging opens all tables at once.
+    ulimit -S -n "$(ulimit -H -n)" 2>/dev/null || :
 fi
 ./ars-magna merge . --out . || exit 1
 

@@ -53,7 +53,8 @@ left=$(program --shards "$shards" --missing) || exit 1
 if [ -n "$left" ]; then
     command -v sbatch >/dev/null || { say "there is no Slurm here: sbatch is missing"; exit 1; }
     submit "$(printf '%s' "$left" | tr ' ' ',')"
-    ulimit -n 4096 2>/dev/null || :
+    # Merging opens all tables at once.
+    ulimit -S -n "$(ulimit -H -n)" 2>/dev/null || :
 fi
 ./ars-magna merge . --out . || exit 1
 
