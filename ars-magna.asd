@@ -269,6 +269,7 @@
                  (:file "manual-c") (:file "manual-c-plans") (:file "manual-d")
                  (:file "manual-e") (:file "hostile-numbers") (:file "ownership")
                  (:file "users-hands") (:file "src-readme") (:file "rpl-readme")
+                 (:file "experiments-readme")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
                  (:file "experiments-tables") (:file "experiment-compare")
                  (:file "experiment-compare-versions") (:file "rates") (:file "isolation")

@@ -195,6 +195,10 @@
                                      (loop until stop
                                            do (handler-case
                                                   (progn
+                                                    ;; Memory holds only so many that wait.
+                                                    (loop while (< 10000 (- accepted answered))
+                                                          until stop
+                                                          do (base:yield-thread))
                                                     (command:robot-turn
                                                      (mole) .01
                                                      (lambda (&rest answer)

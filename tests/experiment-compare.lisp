@@ -119,6 +119,14 @@
       (is (mentions-p way "p = 1; if there is one, it is at most 0.14."))
       (is (mentions-p found "found is true more often with patrol than with spiral")))))
 
+(test compare.says-what-is-equal-seed-by-seed
+  (with-made-up (results (append (rows-of-outcomes "a" "0" "+++-" :way #'identity)
+                                 (rows-of-outcomes "b" "0" "++-+" :way #'identity)))
+    (is (string= (format nil "noise=0: way of a and b is equal, seed by seed: 9.500 against 9.500 ~
+                              on average over 4 common seeds.")
+                 (third (experiment:comparison-verdicts
+                         (experiment:compare-conditions results 1 2 :stream nil)))))))
+
 (test compare.is-the-same-the-other-way-round
   (with-made-up (results (patrol-and-spiral))
     (let ((one (difference-in "success" (experiment:compare-conditions results 1 2 :stream nil)))
@@ -154,6 +162,16 @@
     (signals base:wrong-argument (experiment:compare-conditions results 1 2 :stream 5))
     (signals base:unknown-name (experiment:compare-levels results 'plans :stream nil))
     (signals base:misuse (experiment:compare-levels results 'noise :stream nil))))
+
+(test read-results.puts-in-order-what-a-run-under-way-has-written
+  (let ((rows (patrol-and-spiral)))
+    (flet ((verdicts (rows)
+             (with-made-up (results rows)
+               (is (= 2 (length (experiment:results-samples results))))
+               (experiment:comparison-verdicts
+                (experiment:compare-conditions results 'patrol 'spiral :stream nil)))))
+      (is (equal (verdicts rows)
+                 (verdicts (sort (copy-list rows) #'> :key #'third)))))))
 
 ;;; Several.
 

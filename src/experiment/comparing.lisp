@@ -4,15 +4,20 @@
 
 ;;; What is compared.
 
+(defun names-in-all (results)
+  "Return the names of what can be compared in all RESULTS, in order."
+  (let ((measures (remove-if-not (lambda (name)
+                                   (every (lambda (other)
+                                            (member name (results-measures other)
+                                                    :test #'string=))
+                                          results))
+                                 (results-measures (first results)))))
+    (remove-duplicates (list* "success" "ticks" measures) :test #'string= :from-end t)))
+
 (defun compared-names (operator results measure)
   "Return the names of what is to be compared in all RESULTS: what MEASURE, the argument of
 OPERATOR, says, or all that they have."
-  (let ((known (append '("success" "ticks")
-                       (reduce (lambda (names others)
-                                 (remove-if-not (lambda (name)
-                                                  (member name others :test #'string-equal))
-                                                names))
-                               (mapcar #'results-measures results)))))
+  (let ((known (names-in-all results)))
     (flet ((known-name (name)
              (unless (typep name '(or symbol string))
                (reject-argument operator 'measure name "the name of a measure, or a list of them"))

@@ -56,6 +56,12 @@
       (with-lock (*stores-lock*)
         (setf *stores-in-use* (remove path *stores-in-use* :test #'equal))))))
 
+(defun call-with-temporary-directory (function)
+  "Call FUNCTION with the path of a new directory, which is gone afterwards."
+  (let ((path (new-directory)))
+    (unwind-protect (funcall function path)
+      (uiop:delete-directory-tree path :validate t :if-does-not-exist :ignore))))
+
 ;;; Writing.
 
 (defun cut-broken-line (file)

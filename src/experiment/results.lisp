@@ -129,24 +129,48 @@ too. Signals UNKNOWN-NAME."
     (vector-push-extend (digest-in (nth measures rest)) (sample-digests sample))
     (vector-push-extend (shared-text (nth (1+ measures) rest) shared) (sample-errors sample))))
 
-(defun results-in (file)
-  "Return the results in the table FILE, which is in order."
+(defun of-sample-p (sample texts)
+  "True if the row TEXTS is one of SAMPLE."
+  (loop for text in (list* (sample-experiment sample) (sample-fingerprint sample)
+                           (sample-condition sample) (sample-texts sample))
+        for other in texts
+        always (string= text other)))
+
+(defun last-trial (sample)
+  (let ((count (length (sample-trials sample))))
+    (if (zerop count) -1 (aref (sample-trials sample) (1- count)))))
+
+;; A table is in order unless the run that writes it goes on, or was killed.
+(defun results-in-order (file)
+  "Return the results in the table FILE; NIL if it is not in order."
   (let* ((columns (header-of file))
          (results (%make-results columns))
          (seed (seed-column columns))
          (measures (length (measure-columns-of columns)))
          (shared (make-hash-table :test 'equal))
-         (samples '()) (key nil))
+         (samples '()))
     (map-rows (lambda (texts line start number)
-                (declare (ignore line start number))
-                (unless (and key (loop for text in key for other in texts
-                                       always (string= text other)))
-                  (setf key (subseq texts 0 seed))
+                (declare (ignore line start))
+                (unless (and samples (of-sample-p (first samples) texts))
+                  (when (some (lambda (sample) (of-sample-p sample texts)) samples)
+                    (return-from results-in-order nil))
                   (push (new-sample texts seed measures) samples))
+                (unless (< (last-trial (first samples))
+                           (trial-in (nth (1+ seed) texts) file number))
+                  (return-from results-in-order nil))
                 (note-row (first samples) (nthcdr seed texts) measures shared))
               file)
     (setf (results-samples results) (reverse samples))
     results))
+
+(defun results-in (file)
+  "Return the results in the table FILE. Signals DAMAGED-TABLE."
+  (or (results-in-order file)
+      (call-with-temporary-directory
+       (lambda (directory)
+         (let ((copy (rows-file directory)))
+           (write-in-order (list file) copy)
+           (results-in-order copy))))))
 
 (defun existing-table (directory)
   "Return the path of DIRECTORY, in which there is a table. Signals MISUSE."

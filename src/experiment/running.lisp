@@ -127,12 +127,6 @@ are those of the fingerprints of its conditions. Signals MISUSE for rows of othe
                                              (process-number) number))
         when (nth-value 1 (ensure-directories-exist path)) return path))
 
-(defun call-with-temporary-directory (function)
-  "Call FUNCTION with the path of a new directory, which is gone afterwards."
-  (let ((path (new-directory)))
-    (unwind-protect (funcall function path)
-      (uiop:delete-directory-tree path :validate t :if-does-not-exist :ignore))))
-
 (defun shard-p (shard)
   (or (null shard)
       (and (consp shard) (integerp (car shard)) (integerp (cdr shard))

@@ -98,6 +98,10 @@
             (cond ((or (null (paired-p difference)) (null (paired-low difference)))
                    (format nil "~A of ~A and ~A cannot be compared: ~A"
                            (paired-measure difference) first second (trials-words difference)))
+                  ((= 0 (paired-low difference) (paired-high difference))
+                   (format nil "~A of ~A and ~A is equal, seed by seed: ~A ~A"
+                           (paired-measure difference) first second (both-words difference)
+                           (trials-words difference)))
                   ((told-difference-p difference)
                    (format nil "~A: ~A" (direction-words difference first second)
                            (figures-words difference tests)))

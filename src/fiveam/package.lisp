@@ -10,7 +10,8 @@ experiments to their rates of success. Use it beside FIVEAM.")
   (:import-from :ars-magna.run #:variables-among #:with-simulation)
   (:import-from :ars-magna.experiment
                 #:experiment-from #:find-experiment #:experiment-name #:experiment-conditions
-                #:experiment-trials #:experiment-limit #:experiment-package #:find-condition #:condition-name
+                #:experiment-trials #:experiment-limit #:experiment-package
+                #:find-condition #:condition-name
                 #:condition-parameters #:run-trial #:call-in-silence #:call-by-workers #:form-text
                 #:result-trial #:result-seed #:result-outcome #:result-reason #:result-error)
   ;; deciding

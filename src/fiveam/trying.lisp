@@ -39,11 +39,12 @@
 ;; Which trials count is decided in their order, whoever runs them.
 (defun try-some (check first last)
   "Return what comes of the trials of CHECK from FIRST to LAST, in order."
-  (let ((results (make-array (- last first -1))) (workers (check-workers check)))
+  (let ((results (make-array (- last first -1))) (workers (check-workers check)) (stopped nil))
     (call-by-workers (lambda (worker)
                        (loop for trial from (+ first worker -1) to last by workers
+                             until stopped
                              do (setf (aref results (- trial first)) (try check trial))))
-                     workers (constantly nil))
+                     workers :stop (lambda () (setf stopped t)))
     (coerce results 'list)))
 
 (defun some-more (check first)

@@ -1,0 +1,15 @@
+;;;; experiments-readme.lisp -- what src/experiment/README.md shows is so.
+
+(in-package :ars-magna.tests)
+
+(def-suite* experiments-readme :in ars-magna)
+
+(test experiments-readme.shows-what-is-so
+  (let ((blocks (lisp-blocks (project-file "src/experiment/README.md")))
+        (*package* (find-package :ars-user))
+        (base:*message-queue* (base:make-message-queue)))
+    (is (<= 4 (length blocks)))
+    (unwind-protect
+         (base:with-own-definitions ()
+           (is (<= 4 (reduce #'+ (mapcar #'run-block blocks)))))
+      (when (find-package :question) (delete-package :question)))))
