@@ -50,6 +50,10 @@ here() {  # SHARD...
 # needs rsync and perl, nothing else.
 there() {  # SHARD...
     need ssh rsync
+    parallel --will-cite --nonall --sshlogin "$hosts" true </dev/null || {
+        say "not all of $hosts can be reached"
+        return
+    }
     heeding parallel --will-cite $bar --quote --jobs "$jobs" --joblog jobs.log \
         --sshlogin "$hosts" --workdir "$place" --basefile ars-magna \
         --return "shard-{}-of-$shards" --cleanup \
@@ -67,9 +71,10 @@ if [ -n "$left" ]; then
     # Merging opens all tables at once.
     ulimit -S -n "$(ulimit -H -n)" 2>/dev/null || :
 fi
-./ars-magna merge . --out . || exit 1
+./ars-magna merge . --out . $plot
+merged=$?
 
 left=$(program --shards "$shards" --missing) || exit 1
-[ -z "$left" ] && exit
+[ -z "$left" ] && exit $merged
 say "these shards lack rows: $left. jobs.log has their status; start this again to go on."
 exit 1

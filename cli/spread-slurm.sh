@@ -56,9 +56,10 @@ if [ -n "$left" ]; then
     # Merging opens all tables at once.
     ulimit -S -n "$(ulimit -H -n)" 2>/dev/null || :
 fi
-./ars-magna merge . --out . || exit 1
+./ars-magna merge . --out . $plot
+merged=$?
 
 left=$(program --shards "$shards" --missing) || exit 1
-[ -z "$left" ] && exit
+[ -z "$left" ] && exit $merged
 say "these tasks lack rows: $left. slurm.log says why; start this again to go on."
 exit 1

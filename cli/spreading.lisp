@@ -34,7 +34,8 @@
     `(("experiment" ,(string-downcase (experiment-name experiment)) "what is run")
       ("trials" ,trials "of each condition")
       ("shards" ,(or (option-value :shards options) (default-shards experiment trials script))
-                "into how many parts all trials are divided"))))
+                "into how many parts all trials are divided")
+      ("plot" ,(if (option-value :plot options) "--plot" "") "--plot: pictures, too"))))
 
 (defun parallel-settings (experiment options directory)
   (append (common-settings experiment options "run.sh")
