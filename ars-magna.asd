@@ -127,7 +127,7 @@
                  (:file "words") (:file "page") (:file "series") (:file "legend")
                  (:file "labels") (:file "plane") (:file "line-chart") (:file "curves")
                  (:file "survival-chart") (:file "rows") (:file "difference-chart")
-                 (:file "measure-chart") (:file "saving")))
+                 (:file "measure-chart") (:file "drawing-chart") (:file "saving")))
    (:module "src/experiment" :serial t
     :components ((:file "package") (:file "values") (:file "csv") (:file "condition")
                  (:file "experiment") (:file "clauses") (:file "defexperiment")
@@ -135,11 +135,13 @@
                  (:file "fingerprint") (:file "row") (:file "lines")
                  (:file "directory") (:file "workers") (:file "stopwatch") (:file "progress")
                  (:file "rounds") (:file "stopping") (:file "description") (:file "results")
-                 (:file "running") (:file "merging") (:file "shards") (:file "estimates")
-                 (:file "summary") (:file "text-table") (:file "remarks") (:file "report")
-                 (:file "differences") (:file "contrasts") (:file "verdicts")
-                 (:file "comparing") (:file "comparing-versions")
-                 (:file "comparison-picture")))
+                 (:file "running") (:file "merging") (:file "shards") (:file "differences")
+                 (:file "contrasts")
+                 (:file "verdicts") (:file "comparing") (:file "comparing-versions")
+                 (:file "comparison-picture") (:file "estimates") (:file "summary")
+                 (:file "text-table") (:file "remarks") (:file "report") (:file "panels")
+                 (:file "result-charts") (:file "pictures") (:file "ways")
+                 (:file "ways-picture")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.
@@ -161,6 +163,12 @@
                  (:file "plans-moving") (:file "plans-looking") (:file "plans-handling")
                  (:file "plans-errands") (:file "trials") (:file "plans-searching")
                  (:file "errand") (:file "experiments")))))
+
+;;; Loaded by worlds/figures.
+(defsystem "ars-magna/figures"
+  :description "Tables and pictures of the shipped experiments, for worlds/README.md."
+  :depends-on ("ars-magna/worlds")
+  :components ((:module "worlds" :components ((:file "figures")))))
 
 (defsystem "ars-magna/cli"
   :description "The prompt Robot>."
@@ -207,7 +215,8 @@
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
-  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/cli" "ars-magna/fiveam" "fiveam")
+  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/figures" "ars-magna/cli"
+               "ars-magna/fiveam" "fiveam")
   :serial t
   :components
   ((:module "tests" :serial t

@@ -30,7 +30,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:import-from :ars-magna.experiment
                 #:all-experiments #:experiment-name #:experiment-conditions #:experiment-trials
                 #:run-experiment #:merge-results #:processors #:settle-fingerprints
-                #:results-directory #:print-results
+                #:results-directory #:print-results #:save-result-pictures
                 #:read-results #:compare-conditions #:compare-results #:save-comparison-picture
                 #:shard-directory #:directories-with-rows #:count-rows #:missing-shards)
   ;; trivial-gray-streams

@@ -8,4 +8,4 @@
   (when (results-directory results)
     (call-replacing-file (lambda (out) (print-results results out))
                          (merge-pathnames "summary.txt" (results-directory results))))
-  (when plot (reject-line "There are no pictures of results yet.")))
+  (when plot (save-result-pictures results (results-directory results))))

@@ -4,9 +4,18 @@
   (:documentation "Controlled experiments: conditions, trials, tables that can be repeated and gone
 on with, on as many cores and machines as there are. Names cl-csv and lparallel.")
   (:use :cl :ars-magna.base :ars-magna.statistics :ars-magna.run)
-  (:import-from :ars-magna.plots #:difference-chart #:save-chart #:figure-text)
+  (:import-from :ars-magna.plots
+                #:figure-text #:line-chart #:survival-chart #:difference-chart #:measure-chart
+                #:drawing-chart #:look-color #:draw-marker #:save-chart)
+  (:import-from :ars-magna.canvas
+                #:draw-gcontext* #:graphics-scale* #:with-gcontext #:with-opacity #:draw-lines)
+  (:import-from :ars-magna.display
+                #:take-snapshot #:snapshot-map #:draw-terrain #:draw-movers #:picture-kind)
+  (:import-from :ars-magna.world #:map-width #:map-height)
   (:import-from :ars-magna.time #:current-simulation)
-  (:import-from :ars-magna.robot #:find-blueprint #:all-blueprints #:blueprint-name #:blueprint-map)
+  (:import-from :ars-magna.robot
+                #:robot-x #:robot-y #:find-blueprint #:all-blueprints #:blueprint-name
+                #:blueprint-map)
   (:import-from :ars-magna.rpl.tasks
                 #:procedure #:procedure-p #:procedure-source
                 #:plan-failure #:failure-class #:failure-text
@@ -44,4 +53,6 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:estimate-low #:estimate-high #:estimate-left-out #:estimate-texts
            #:summary-p #:summary-condition #:summary-texts #:summary-trials #:summary-failures
            #:summary-limits #:summary-errors #:summary-confidence #:summary-success #:summary-ticks
-           #:summary-measures #:summary-reasons #:summarize-results #:print-results))
+           #:summary-measures #:summary-reasons #:summarize-results #:print-results)
+  ;; pictures, ways-picture
+  (:export #:save-result-pictures #:save-ways-picture))

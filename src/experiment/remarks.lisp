@@ -1,4 +1,4 @@
-;;;; remarks.lisp -- what stands below a table of results: why trials failed, errors, which intervals.
+;;;; remarks.lisp -- what stands below a table: why trials failed, errors, which intervals.
 
 (in-package :ars-magna.experiment)
 
@@ -70,8 +70,8 @@ the index of a trial, and returns a text, or NIL if nothing did."
   (tally-text (stable-sort (reverse (occurrence-where occurrence)) #'> :key #'cdr) 3))
 
 (defun write-occurrences (title occurrences several-p stream)
-  "Write OCCURRENCES below TITLE, in which conditions each was if there are SEVERAL-P, and how to see
-one of each."
+  "Write OCCURRENCES below TITLE, under which conditions each was if there are SEVERAL-P, and how to
+see one of each."
   (when occurrences
     (let ((width (length (princ-to-string (occurrence-count (first occurrences))))))
       (format stream "~%~A~%" title)
@@ -149,7 +149,8 @@ one of each."
   (terpri stream)
   (write-wrapped (kinds-text summaries) stream)
   (when (plusp (reduce #'+ summaries :key #'summary-errors))
-    (write-wrapped "A trial that broke off with an error counts as one that did not succeed." stream))
+    (write-wrapped "A trial that broke off with an error counts as one that did not succeed."
+                   stream))
   (when (results-until results)
     (write-wrapped (looks-text (results-until results) summaries) stream))
   (dolist (text (apply #'mapcar (lambda (&rest estimates) (left-out-text estimates))

@@ -53,7 +53,6 @@ TEST."
                   when (funcall test outcome) collect value)
             'vector)))
 
-(defun succeeded-p (outcome) (string= "success" outcome))
 (defun failed-p (outcome) (string= "failure" outcome))
 
 (defun look-after (trials)
@@ -77,7 +76,7 @@ TEST."
      :errors (count-outcomes "error" sample)
      :confidence confidence
      :success (rate-estimate "success" (count-outcomes "success" sample) trials confidence)
-     :ticks (median-estimate "ticks" (values-where #'succeeded-p sample (sample-ticks sample))
+     :ticks (median-estimate "ticks" (values-where #'success-p sample (sample-ticks sample))
                              confidence)
      :measures (loop for name in names
                      for kind in kinds
