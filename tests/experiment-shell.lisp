@@ -159,6 +159,13 @@ output, and what to the error output."
                   (append (uiop:directory-files path) (uiop:subdirectories path)))
           #'string<)))
 
+(test pictures.are-drawn-where-that-is-wanted
+  (in-place
+    (run-stroll "--out" (placed "out") "--plot")
+    (is-true (uiop:directory-files (uiop:parse-native-namestring (placed "out/")) "*.svg"))
+    (is (eql 0 (shell "merge" (placed "out") "--out" (placed "all") "--plot")))
+    (is-true (uiop:directory-files (uiop:parse-native-namestring (placed "all/")) "*.svg"))))
+
 (test experiments.go-on-where-they-were-left
   (in-place
     (run-stroll "--out" (placed "whole"))
