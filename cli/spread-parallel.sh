@@ -68,9 +68,9 @@ if [ -n "$left" ]; then
     if [ -t 2 ]; then bar=--bar; else bar=; fi
     # Words, on purpose.
     if [ -n "$hosts" ]; then there $left; else here $left; fi
-    # Merging opens all tables at once.
-    ulimit -S -n "$(ulimit -H -n)" 2>/dev/null || :
 fi
+# Merging opens all tables at once.
+ulimit -S -n "$(ulimit -H -n)" 2>/dev/null || :
 ./ars-magna merge . --out . $plot
 merged=$?
 

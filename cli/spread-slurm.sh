@@ -53,9 +53,9 @@ left=$(program --shards "$shards" --missing) || exit 1
 if [ -n "$left" ]; then
     command -v sbatch >/dev/null || { say "there is no Slurm here: sbatch is missing"; exit 1; }
     submit "$(printf '%s' "$left" | tr ' ' ',')"
-    # Merging opens all tables at once.
-    ulimit -S -n "$(ulimit -H -n)" 2>/dev/null || :
 fi
+# Merging opens all tables at once.
+ulimit -S -n "$(ulimit -H -n)" 2>/dev/null || :
 ./ars-magna merge . --out . $plot
 merged=$?
 
