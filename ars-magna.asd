@@ -141,7 +141,8 @@
                  (:file "comparison-picture") (:file "estimates") (:file "summary")
                  (:file "text-table") (:file "remarks") (:file "report") (:file "panels")
                  (:file "result-charts") (:file "pictures") (:file "ways")
-                 (:file "ways-picture")))
+                 (:file "ways-picture") (:file "aside") (:file "replaying")
+                 (:file "failures")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.
@@ -180,13 +181,13 @@
                  (:file "console") (:file "user-names") (:file "session") (:file "line")
                  (:file "arguments") (:file "layout") (:file "errands") (:file "robot-lines")
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
-                 (:file "status-lines") (:file "running-lines") (:file "loading")
+                 (:file "status-lines") (:file "visits") (:file "running-lines") (:file "loading")
                  (:file "worlds") (:file "world-lines") (:file "plans") (:file "plan-lines")
-                 (:file "plan-views") (:file "picture-lines") (:file "debugger")
-                 (:file "prompt") (:file "options") (:file "texts") (:file "report")
-                 (:file "experiments") (:file "executable") (:file "spreading")
-                 (:file "experiment-command") (:file "table-commands") (:file "commands")
-                 (:file "main")))))
+                 (:file "plan-views") (:file "picture-lines") (:file "trial-lines")
+                 (:file "debugger") (:file "prompt") (:file "options") (:file "texts")
+                 (:file "report") (:file "experiments") (:file "executable")
+                 (:file "spreading") (:file "experiment-command")
+                 (:file "table-commands") (:file "commands") (:file "main")))))
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."
@@ -249,7 +250,8 @@
                  (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
                  (:file "clim") (:file "cli")
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
-                 (:file "cli-debugger") (:file "cli-files") (:file "cli-plan-tree")
+                 (:file "cli-debugger") (:file "experiment-replay")
+                 (:file "cli-trials") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "experiment-shell")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
                  (:file "rpl-seeing-truth")

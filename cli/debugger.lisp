@@ -131,7 +131,9 @@ user's."
   (let* ((calls (calls-under-way 100))
          (start (position 'invoke-debugger calls :key #'first))
          (user-calls (if start (nthcdr (1+ start) calls) calls)))
-    (subseq user-calls 0 (position-if (lambda (name) (member name '(eval-quietly call-user-code)))
+    (subseq user-calls 0 (position-if (lambda (name)
+                                        (member name
+                                                '(eval-quietly call-user-code call-until-error)))
                                       user-calls :key #'first))))
 
 (defun write-backtrace ()
@@ -161,8 +163,12 @@ user's."
 (defun debug-here (session breakage)
   "Read lines for BREAKAGE, of this thread, until one says how to go on."
   (tell-break session breakage)
-  (loop until (session-over-p session)
-        do (call-guarded session (lambda () (read-debug-line session breakage))))
+  (flet ((read-lines ()
+           (loop until (session-over-p session)
+                 do (call-guarded session (lambda () (read-debug-line session breakage))))))
+    (if (session-visit session)
+        (call-aside #'read-lines)
+        (read-lines)))
   (invoke-restart 'end-line))
 
 (defun debug-elsewhere (session breakage)

@@ -48,6 +48,8 @@
   "Let time pass until TEST, a function of no arguments, returns true between two ticks. Return
 NIL if it does not in good time, when nothing but the waiting lets time pass."
   (cond ((simulation-over *simulation*) (funcall test))
+        ((simulation-gate *simulation*)
+         (reject-line "In a trial time passes between lines only. STEP and RESUME let it pass."))
         ((live-p *simulation*) (await-live test *simulation*))
         (t (run-until test :limit *patience* :simulation *simulation*))))
 
@@ -92,6 +94,7 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
 (defun waits-p (session)
   "True if SESSION reads on when what was issued has completed."
   (and *simulation*
+       (null (session-visit session))
        (null (simulation-over *simulation*))
        (or (not (live-p *simulation*))
            (and (session-patient-p session) (not (paused-p *simulation*))))))

@@ -80,3 +80,18 @@ line has at most; and whether there were more."
   "Return what is typed into this process."
   (let ((octets (octet-input 0)))
     (make-instance 'typed-text :octets octets :by-hand-p (interactive-stream-p octets))))
+
+;;; Whether something has been typed can be found out, without waiting for it, of this process's own
+;;; streams only.
+
+(defun source-of (stream)
+  "Return the stream that what STREAM reads comes from."
+  (typecase stream
+    (typed-text (typed-octets stream))
+    (synonym-stream (source-of (symbol-value (synonym-stream-symbol stream))))
+    (t stream)))
+
+(defun typed-within-p (stream seconds)
+  "Wait until something is typed into STREAM, or it ends, for SECONDS at most. True if it is."
+  (or (and (typep stream 'typed-text) (< (typed-position stream) (length (typed-line stream))))
+      (octets-within-p (source-of stream) seconds)))

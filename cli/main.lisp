@@ -140,4 +140,5 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
 only asks whether the core starts."
   (when (equal (process-arguments) '("--probe")) (end-process 0))
   (die-of-termination)
+  (mind-interrupts)
   (end-process (call-holding-interrupts #'run-process)))

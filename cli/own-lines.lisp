@@ -31,11 +31,12 @@
 ;; As reading 204 says.
 (define-line "REPEAT" (session (num count "how often") (cmd :rest "a command, with its arguments"))
     (:general)
-    "Give the command CMD, NUM times over, each time when the last has completed."
+    "Give the command CMD, NUM times over, each time when the last has completed; in a
+trial without waiting."
   (loop repeat num
         until (session-over-p session)
         do (run-text session cmd)
-           (await-errands session)))
+           (unless (session-visit session) (await-errands session))))
 
 (define-line "QUIT" (session)
     (:general)

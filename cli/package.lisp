@@ -26,12 +26,19 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:rpl-init-robot #:rpl-robot #:rpl-runner
                 #:plan-ending-p #:begin-plan #:end-plan #:plans #:print-plans
                 #:call-with-plans-in-use)
+  (:import-from :ars-magna.rpl-robot #:*trace-plans*)
   (:import-from :ars-magna.rpl-pictures #:save-plan-timeline)
   (:import-from :ars-magna.experiment
-                #:all-experiments #:experiment-name #:experiment-conditions #:experiment-trials
+                #:find-experiment #:all-experiments #:experiment-name #:experiment-documentation
+                #:experiment-conditions #:experiment-trials #:experiment-limit
+                #:find-condition #:condition-name #:trial-seed
+                #:run-again #:call-until-error #:call-aside #:await-time
+                #:prepare-condition #:row-of-trial #:row-differences
+                #:result-outcome #:result-reason #:result-ticks #:result-error #:measured
+                #:print-failures
                 #:run-experiment #:merge-results #:processors #:settle-fingerprints
-                #:results-directory #:print-results #:save-result-pictures
-                #:read-results #:compare-conditions #:compare-results #:save-comparison-picture
+                #:results-directory #:print-results #:save-result-pictures #:read-results
+                #:compare-conditions #:compare-results #:save-comparison-picture
                 #:shard-directory #:directories-with-rows #:count-rows #:missing-shards)
   ;; trivial-gray-streams
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream

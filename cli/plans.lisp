@@ -95,8 +95,9 @@
          (find session *plan-errands* :key #'plan-errand-session))))
 
 (defun counts-p (message session)
-  "True if MESSAGE is an error that SESSION counts."
+  "True if MESSAGE is an error that SESSION counts. Those of a trial are the trial's."
   (and (eq :error (message-kind message))
+       (null (session-visit session))
        (or (verdict-p (first (message-items message)))
            (not (waiting-for-plan-p session)))))
 

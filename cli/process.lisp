@@ -21,12 +21,36 @@
   (sb-sys:make-fd-stream descriptor :output t :buffering :full
                                     :external-format '(:utf-8 :replacement #\?)))
 
+(deftype descriptor-stream ()
+  "A stream on a file, pipe or terminal of this process."
+  'sb-sys:fd-stream)
+
+(defun octets-within-p (stream seconds)
+  "Wait until STREAM, a descriptor-stream, can be read or is at its end, for SECONDS at most. True
+if so."
+  (or (listen stream)
+      (sb-sys:wait-until-fd-usable (sb-sys:fd-stream-fd stream) :input seconds)))
+
 ;;; Control C. It reaches this process's first thread, between any two of its instructions. So that
 ;;; it ends what the user wants to end and nothing else, the prompt holds it: see RUN-SESSION.
 
 (deftype user-interrupt ()
   "The condition that the user has pressed control C."
   'sb-sys:interactive-interrupt)
+
+(defun take-interrupt ()
+  "Let the handlers of this thread end what it is at, or let it go on, by the restart GO-ON."
+  (allowing-interrupts
+    (with-simple-restart (go-on "Go on.")
+      (error 'sb-sys:interactive-interrupt))))
+
+(defun mind-interrupts ()
+  "Let control C interrupt this thread, which is the process's first."
+  (let ((thread (current-thread)))
+    (sb-sys:enable-interrupt sb-unix:sigint
+                             (lambda (signal info context)
+                               (declare (ignore signal info context))
+                               (interrupt-thread thread #'take-interrupt)))))
 
 ;;; Other signals. There are states in which no Lisp runs any more that would heed one, so the
 ;;; system itself ends the process. (With a terminal that goes away it does so anyway, unless it was

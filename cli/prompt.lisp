@@ -10,7 +10,8 @@
   "Return the next line of SESSION, or NIL at the end. Show PROMPT unless it is a batch, and what
 comes of earlier lines if the session waits for that."
   (let ((console (session-console session)))
-    (unless (session-batch-p session)
+    (unless (or (session-batch-p session)
+                (and (unanswered-p console) (string= prompt (console-prompt console))))
       (with-lock ((session-lock session)) (show-prompt console prompt)))
     (catch-up session)
     (let* ((given (pop (session-lines session)))
@@ -60,7 +61,7 @@ comes of earlier lines if the session waits for that."
 (defun unhurried-p (line)
   "True if what LINE prints is to be seen as it comes."
   (or (line-full-name line)
-      (member (line-name line) '("EVAL" "REPEAT") :test #'string=)))
+      (member (line-name line) '("EVAL" "REPEAT" "TRIAL") :test #'string=)))
 
 (defun run-text (session text)
   "Do what TEXT, a line as typed, says; what it asks for, the prompt asks for."
@@ -106,7 +107,7 @@ simulator waiting is aborted, too."
   (when *simulation* (abort-hog *simulation*))
   (answered (session-console session))
   (format (session-console session) "~&Interrupted.~:[~; Plans go on; STOP-PLAN ends them.~]~%"
-          (notevery #'plan-ending-p (plans))))
+          (and (null (session-visit session)) (notevery #'plan-ending-p (plans)))))
 
 (defun do-next (session text)
   "Do what TEXT, a line, says, or let it answer the newest break, if a program waits for that."

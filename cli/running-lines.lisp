@@ -10,9 +10,10 @@
       (reject-line "Here time passes only as commands need it. STEP lets more of it pass."))
     simulation))
 
-(defun time-text (simulation)
+(defun time-text (session simulation)
   (format nil "Tick ~D, ~A." (simulation-tick simulation)
-          (cond ((simulation-over simulation) (simulation-over simulation))
+          (cond ((session-visit session) (visit-text (session-visit session)))
+                ((simulation-over simulation) (simulation-over simulation))
                 ((not (live-p simulation)) "headless")
                 ((paused-p simulation) "paused")
                 (t (rate-text (simulation-rate simulation))))))
@@ -24,23 +25,33 @@
 
 (define-line "PAUSE" (session) (:running)
     "Let time stand still until RESUME."
-  (let ((simulation (live-simulation)))
-    (pause simulation)
-    (format t "~A~%" (time-text simulation))))
+  (let ((simulation (current-simulation)))
+    (if (session-visit session)
+        (pause-visit (session-visit session))
+        (pause (live-simulation)))
+    (format t "~A~%" (time-text session simulation))))
 
 (define-line "RESUME" (session) (:running)
-    "Let time go on after PAUSE."
-  (resume (live-simulation)))
+    "Let time go on after PAUSE; in a trial up to its end, where nobody sits."
+  (if (session-visit session)
+      (resume-visit (session-visit session))
+      (resume (live-simulation))))
+
+(defun step-here (count)
+  "Let COUNT ticks pass, and say so."
+  (check-run)
+  (let* ((simulation (current-simulation))
+         (goal (+ (simulation-tick simulation) count)))
+    (step-ticks count simulation)
+    (await (lambda () (>= (simulation-tick simulation) goal)))
+    (format t "Tick ~D.~%" (simulation-tick simulation))))
 
 (define-line "STEP" (session (n integer "how many ticks; 1 if left out" :optional))
     (:running)
     "Let N ticks pass; a live simulator is paused after them."
-  (check-run)
-  (let* ((simulation (current-simulation))
-         (goal (+ (simulation-tick simulation) (or n 1))))
-    (step-ticks (or n 1) simulation)
-    (await (lambda () (>= (simulation-tick simulation) goal)))
-    (format t "Tick ~D.~%" (simulation-tick simulation))))
+  (if (session-visit session)
+      (step-visit (session-visit session) (or n 1))
+      (step-here (or n 1))))
 
 (defun parse-rate (text)
   "Return the rate that TEXT says: a number or :FREE. Signals BAD-LINE."
@@ -55,8 +66,11 @@
     (:running)
     "Set the pace of a live simulator; show what it is, and how many ticks have passed."
   (let ((simulation (current-simulation)))
-    (when x (set-rate (parse-rate x) (live-simulation)))
-    (format t "~A~%" (time-text simulation))))
+    (when x
+      (if (session-visit session)
+          (set-visit-rate (session-visit session) (parse-rate x))
+          (set-rate (parse-rate x) (live-simulation))))
+    (format t "~A~%" (time-text session simulation))))
 
 (define-line "SEED" (session (n integer "the seed"))
     (:running)

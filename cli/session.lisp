@@ -45,6 +45,8 @@
   (errands '() :type list)
   (lisp-p nil)
   (over-p nil)
+  ;; The trial that the prompt is in, or NIL.
+  (visit nil)
   ;; The robot to go on with, in batch mode, when this one's lines are over.
   (next-robot nil))
 
@@ -85,6 +87,11 @@ over."
 (defun terminal-p (session)
   "True if somebody sits at SESSION."
   (typed-by-hand-p (session-input session)))
+
+(defun watched-p (session)
+  "True if somebody sits at SESSION, and it can be found out whether he has typed something."
+  (and (terminal-p session)
+       (typep (source-of (session-input session)) 'descriptor-stream)))
 
 ;;; Complaints and messages.
 

@@ -4,7 +4,9 @@
 
 (defun start-robot (session robot-name)
   "Let SESSION go on with the robot ROBOT-NAME in its world, which starts anew."
-  (cond ((not (and *simulation* (headless-p *simulation*))) (start-live session robot-name))
+  (cond ((session-visit session)
+         (call-outside session (lambda () (start-robot session robot-name))))
+        ((not (and *simulation* (headless-p *simulation*))) (start-live session robot-name))
         ((session-batch-p session) (setf (session-next-robot session) robot-name))
         (t (reject-line "This prompt is in a headless simulation, which has one world."))))
 

@@ -73,7 +73,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; dice, random
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice
-           #:call-with-own-lisps-dice #:lisps-dice-p)
+           #:*lisps-dice* #:call-with-own-lisps-dice #:lisps-dice-p)
   ;; names
   (:export #:same-name-p #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables

@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.base)
 
+(defparameter *lisps-dice* 'cl:*random-state*
+  "The name of the variable whose value CL:RANDOM rolls.")
+
 (defun call-with-lisps-dice (function seed)
   "Call FUNCTION. What CL:RANDOM says in it depends on the integer SEED only."
   (let ((*random-state* (sb-ext:seed-random-state

@@ -14,7 +14,7 @@
 ;; in a tenth of the time.
 
 (defun quotable-p (text)
-  (declare (type string text))
+  (declare (type simple-string text))
   (find-if (lambda (char) (member char '(#\, #\" #\Newline #\Return))) text))
 
 (defun line-of (texts)
@@ -37,6 +37,7 @@
         line)))
 
 (defun texts-between-commas (line)
+  (declare #.*hot* (type (simple-array character (*)) line))
   (loop with start = 0
         for comma = (position #\, line :start start)
         collect (subseq line start comma)
@@ -45,7 +46,7 @@
 
 (defun csv-texts (line)
   "Return the texts in LINE, of a table. Signals BROKEN-LINE."
-  (if (find #\" line)
+  (if (find #\" (the simple-string line))
       (handler-case (cl-csv:read-csv-row line)
         (error () (error 'broken-line :line line)))
       (texts-between-commas line)))

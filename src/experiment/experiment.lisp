@@ -23,7 +23,9 @@
   (variables '() :type list)
   ;; All of its text, and what of it decides a trial.
   (form '() :type list)
-  (deciding '() :type list))
+  (deciding '() :type list)
+  ;; What came of it when it was run last in this Lisp, or NIL.
+  (results nil))
 
 (addition experiment-p experiment-name experiment-conditions experiment-trials)
 (document-functions
@@ -31,8 +33,10 @@
   experiment-name "Return the symbol that the experiment is called."
   experiment-conditions "Return a list of the experiment's conditions."
   experiment-trials "Return how many trials of each condition there are unless somebody says."
+  experiment-documentation "Return what the experiment asks, a string, or NIL."
   experiment-limit "Return for how many ticks a trial may go on."
-  experiment-package "Return the package in which the experiment was written.")
+  experiment-package "Return the package in which the experiment was written."
+  condition-name "Return what the condition is called, a string.")
 
 (defmethod print-object ((experiment experiment) stream)
   (print-unreadable-object (experiment stream :type t)
@@ -92,7 +96,7 @@ its number, from 1, or what it is called, as far as that is unambiguous. Signals
           ((= 1 (length called)) (first called))
           (t (reject-name "condition" (if (symbolp designator) designator
                                           (princ-to-string designator))
-                          (mapcar #'condition-name conditions))))))
+                          (mapcar #'condition-name (or called conditions)))))))
 
 ;;; Trials.
 

@@ -8,6 +8,7 @@
 
 (defun line-text (line)
   "Return the text that LINE, whose characters are octets, stands for."
+  (declare #.*hot* (type (simple-array character (*)) line))
   (if (every (lambda (char) (< (char-code char) 128)) line)
       line
       (decoded line)))

@@ -12,7 +12,8 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
   (:import-from :ars-magna.display
                 #:take-snapshot #:snapshot-map #:draw-terrain #:draw-movers #:picture-kind)
   (:import-from :ars-magna.world #:map-width #:map-height)
-  (:import-from :ars-magna.time #:current-simulation)
+  (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
+                #:seconds-now #:check-rate)
   (:import-from :ars-magna.robot
                 #:robot-x #:robot-y #:find-blueprint #:all-blueprints #:blueprint-name
                 #:blueprint-map)
@@ -20,7 +21,8 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
                 #:procedure #:procedure-p #:procedure-source
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
-  (:import-from :ars-magna.rpl-robot #:*plan-limit*)
+  (:import-from :ars-magna.rpl-robot #:*plan-limit* #:*trace-plans*)
+  (:import-from :ars-magna.display #:keep-history #:open-display #:*display-opener*)
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
@@ -55,4 +57,10 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:summary-limits #:summary-errors #:summary-confidence #:summary-success #:summary-ticks
            #:summary-measures #:summary-reasons #:summarize-results #:print-results)
   ;; pictures, ways-picture
-  (:export #:save-result-pictures #:save-ways-picture))
+  (:export #:save-result-pictures #:save-ways-picture)
+  ;; aside, replaying, failures
+  (:export #:run-again #:call-until-error #:call-aside #:await-time #:replay-trial
+           #:row-of-trial #:row-differences #:prepare-condition #:measured
+           #:trial-failures #:print-failures)
+  ;; what the prompt shows
+  (:export #:experiment-documentation #:trial-seed))

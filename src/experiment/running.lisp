@@ -178,8 +178,9 @@ An error in a trial is a row. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE and D
     (check-run trials workers directory until shard)
     (flet ((run (path)
              (run-and-read experiment path trials until shard workers stream)))
-      (if directory
-          (let* ((path (ensure-store-directory directory)) (results (run path)))
-            (setf (results-directory results) path)
-            results)
-          (call-with-temporary-directory #'run)))))
+      (setf (experiment-results experiment)
+            (if directory
+                (let* ((path (ensure-store-directory directory)) (results (run path)))
+                  (setf (results-directory results) path)
+                  results)
+                (call-with-temporary-directory #'run))))))

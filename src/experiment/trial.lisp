@@ -45,7 +45,7 @@ is a gate to ask besides, or NIL."
 (defun call-in-peace (function package)
   "Call FUNCTION with all that Lisp code may look at as it is in each trial."
   (let ((*package* package)
-        (*read-default-float-format* 'single-float)
+        (*readtable* (global-value '*readtable*)) (*read-default-float-format* 'single-float)
         (*read-base* 10) (*print-base* 10) (*print-radix* nil) (*print-case* :upcase)
         (*print-pretty* nil) (*print-readably* nil) (*print-escape* t) (*print-circle* nil)
         (*print-length* nil) (*print-level* nil) (*print-array* t) (*print-gensym* t))
@@ -66,9 +66,9 @@ is a gate to ask besides, or NIL."
       (call-with-lisps-dice function seed)
       (funcall function)))
 
-(defun call-in-trial (function experiment condition trial &key gate)
+(defun call-in-trial (function experiment condition trial &key gate journal)
   "Call FUNCTION in the fresh simulation of TRIAL of CONDITION of EXPERIMENT. GATE, if given, is a
-gate to be asked besides that of the limit."
+gate to be asked besides that of the limit. With JOURNAL the simulation keeps one."
   (let ((seed (trial-seed experiment trial))
         (limit (experiment-limit experiment)))
     (call-in-peace
@@ -82,8 +82,8 @@ gate to be asked besides that of the limit."
                (setf (simulation-gate (current-simulation)) (limit-gate limit gate))
                (call-with-dice-of condition seed function))
              (condition-robots condition)
-             :seed seed :variables (remove-if-not #'variable-name-p
-                                                  (condition-robots condition)))))))
+             :seed seed :journal journal
+             :variables (remove-if-not #'variable-name-p (condition-robots condition)))))))
      (experiment-package experiment))))
 
 ;;; What happens in it.
@@ -157,6 +157,21 @@ and :LIMIT if too few ticks were left."
       (when (string= "" (result-error result))
         (setf (result-error result) (error-in-plan values))))))
 
+(defvar *aside-p* nil
+  "True while somebody looks at a trial that stands still: what goes wrong is not the trial's.")
+
+(defun call-until-error (function)
+  "Call FUNCTION. Return the condition with which it broke off, or NIL."
+  (flet ((leave (condition)
+           (unless *aside-p*
+             (when (and *break-on-user-error* (not (typep condition 'storage-condition)))
+               (invoke-debugger condition))
+             (return-from call-until-error condition))))
+    (let ((*aside-p* nil))
+      (handler-bind (((or error storage-condition) #'leave))
+        (funcall function)))
+    nil))
+
 (defun call-noting-errors (function result)
   "Call FUNCTION. If it breaks off, enter that into RESULT; likewise the first error of other code
 of users'."
@@ -164,12 +179,9 @@ of users'."
                                   (when (string= "" (result-error result))
                                     (setf (result-error result) (plain-text text)))))
          (trouble (catch 'broken-off
-                    (restart-case
-                        (handler-case (progn (funcall function) nil)
-                          ((or error storage-condition) (condition)
-                            (regain-room condition)
-                            condition))
+                    (restart-case (call-until-error function)
                       (abort () :report "End this trial." "aborted")))))
+    (when (typep trouble 'condition) (regain-room trouble))
     (when trouble
       (note-error result (if (stringp trouble) trouble (text-of-condition trouble))))))
 

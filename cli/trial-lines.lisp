@@ -1,0 +1,208 @@
+;;;; trial-lines.lisp -- TRIAL and FAILURES: from a row of an experiment's table to its run.
+
+(in-package :ars-magna.cli)
+
+;;; Which trial is meant.
+
+(defun experiment-names (start)
+  "Return the names of the experiments that begin with START; of the very one if there is that."
+  (let ((experiment (find-experiment start nil)))
+    (if experiment
+        (list (experiment-name experiment))
+        (remove-if-not (lambda (name) (starts-with-subseq (string-upcase start) (string name)))
+                       (mapcar #'experiment-name (all-experiments))))))
+
+(defun experiment-meant (name)
+  "Return the experiment called NAME, or the only one whose name begins so. Signals BAD-LINE."
+  (let ((names (experiment-names name)))
+    (cond ((null names)
+           (reject-line "There is no experiment ~A.~@[ Did you mean ~A?~] TRIAL lists all; (load ~
+                         \"FILE\") loads others."
+                        (string-upcase name)
+                        (nearest-name name (mapcar #'experiment-name (all-experiments)))))
+          ((rest names)
+           (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it." (string-upcase name)
+                        names))
+          (t (find-experiment (first names))))))
+
+(defun condition-meant (experiment text)
+  "Return the condition of EXPERIMENT that TEXT means: its number, from 1, or a part of its name."
+  (find-condition experiment (or (ignore-errors (parse-integer text)) text)))
+
+;;; What is there.
+
+(defun write-experiments ()
+  (if (all-experiments)
+      (dolist (experiment (all-experiments))
+        (write-filled (whole-sentence (or (experiment-documentation experiment) "Not documented."))
+                      27 (format nil "  ~(~A~)" (experiment-name experiment))))
+      (format t "No experiment is defined. (load \"FILE\") loads a file that has some.~%")))
+
+(defun write-conditions (experiment)
+  (format t "~(~A~), ~D trials of each unless one says:~%" (experiment-name experiment)
+          (experiment-trials experiment))
+  (loop for condition in (experiment-conditions experiment)
+        for number from 1
+        do (put-line "  ~3D  ~A" number (condition-name condition))))
+
+(defun visit-name (visit)
+  (format nil "trial ~D of ~(~A~), ~A" (visit-trial visit)
+          (experiment-name (visit-experiment visit))
+          (condition-name (visit-condition visit))))
+
+(defun write-visit (session visit)
+  "Show which trial the prompt is in, and how far that has come."
+  (format t "~@(~A~).~%~A~%" (visit-name visit) (time-text session *simulation*))
+  (when (visit-changed visit)
+    (format t "Since tick ~D it is not the experiment's run any more.~%" (visit-changed visit))))
+
+;;; Its end.
+
+(defun measures-text (visit result)
+  (format nil "~:{~(~A~) ~A~:^, ~}"
+          (loop for (name value) in (measured (visit-experiment visit) result)
+                collect (list name (case value ((t) "yes") ((nil) "no") (:none "none")
+                                     (t (format-briefly nil "~A" value)))))))
+
+(defun write-result (visit result)
+  "Show what came of the trial of VISIT."
+  (format t "~&The trial is over at tick ~D: ~A~@[ (~A)~].~@[ ~A.~]~%" (result-ticks result)
+          (result-outcome result)
+          (and (string/= "" (result-reason result)) (result-reason result))
+          (let ((text (measures-text visit result))) (and (string/= "" text) text)))
+  (when (string/= "" (result-error result))
+    (format t "Its error: ~A~%" (complaint-text (result-error result))))
+  (when (visit-changed visit)
+    (format t "It is not what the experiment says: since tick ~D the run was another.~%"
+            (visit-changed visit))))
+
+(defun write-comparison (visit result parts row)
+  "Show in what RESULT differs from ROW, that of the trial of VISIT."
+  (let ((differences (row-differences (visit-experiment visit) result parts row
+                                      (visit-directory visit))))
+    (format t "~:[It is as in its row.~;~:*It differs from its row: ~{~A~^; ~}.~]~%"
+            differences)))
+
+(defun stay (session visit result parts row)
+  "Read lines of SESSION where the trial of VISIT has ended, with RESULT, until one leads out."
+  (setf (visit-result visit) result)
+  (pause-visit visit)
+  (call-aside (lambda ()
+                (show-messages session)
+                (write-result visit result)
+                (when row (write-comparison visit result parts row))))
+  (loop (visit-line session visit)))
+
+;;; Going there, and out again.
+
+(defun pause-soon (session visit restart)
+  "Let VISIT pause at its next tick, and what has been interrupted go on by RESTART."
+  (pause-visit visit)
+  (setf (visit-interrupted-p visit) t)
+  (format (session-console session)
+          "~&Interrupted: the trial pauses at its next tick. Control-C leaves it.~%")
+  (finish-output (session-console session))
+  (invoke-restart restart))
+
+(defun call-pausable (session visit function)
+  "Call FUNCTION. If somebody sits at SESSION and presses control C while ticks pass in VISIT, it
+pauses at the next one; if that does not come, and he does so again, it is left."
+  (flet ((heed (condition)
+           (let ((restart (find-restart 'go-on condition)))
+             (if (and restart (terminal-p session) (not (visit-interrupted-p visit)))
+                 (pause-soon session visit restart)
+                 (setf (visit-left-p visit) t)))))
+    (handler-bind ((user-interrupt #'heed))
+      (funcall function))))
+
+(defun run-visit (session visit)
+  "Run the trial of VISIT, with SESSION at its gate, and stay where it ends."
+  (let* ((experiment (visit-experiment visit))
+         (condition (visit-condition visit))
+         (trial (visit-trial visit))
+         (directory (visit-directory visit))
+         (parts (and directory (prepare-condition experiment condition)))
+         (row (and directory (row-of-trial experiment condition trial directory)))
+         (*trace-plans* t))
+    (run-again experiment condition trial
+               :journal t
+               :gate (visit-gate session visit)
+               :then (lambda (result) (stay session visit result parts row)))))
+
+(defun call-with-others-paused (function)
+  "Call FUNCTION, while the live simulation that is current here, if any, stands still."
+  (let ((simulation *simulation*))
+    (if (and simulation (live-p simulation) (not (paused-p simulation)))
+        (unwind-protect (progn (pause simulation) (funcall function))
+          (resume simulation))
+        (funcall function))))
+
+(defun enter-visit (session visit)
+  "Let SESSION be in VISIT until a line leads out. Return a function to call then."
+  (let ((*prompt-robot* nil) (left-p nil))
+    (setf (session-visit session) visit)
+    (unwind-protect
+         (prog1 (catch 'left-visit
+                  (call-pausable session visit (lambda () (run-visit session visit)))
+                  #'values)
+           (setf left-p t))
+      (setf (session-visit session) nil)
+      (drop-errands session)
+      (call-by-name (robots-here))
+      (unless left-p (format (session-console session) "~&The trial has been left.~%")))))
+
+(defun drop-errands (session)
+  "Forget what SESSION has asked for in a trial that is gone."
+  (dolist (errand (shiftf (session-errands session) '()))
+    (when (plan-errand-p errand) (close-errand errand))))
+
+(defun go-to-trial (session visit)
+  "Let SESSION go into VISIT, from wherever it is."
+  (call-outside session
+                (lambda ()
+                  (format t "~@(~A~): seed ~D, at most ~D ticks. STEP and RESUME let time pass, ~
+                             TRIAL OFF leads out.~%"
+                          (visit-name visit)
+                          (trial-seed (visit-experiment visit) (visit-trial visit))
+                          (experiment-limit (visit-experiment visit)))
+                  (unless (watched-p session) (setf (visit-rate visit) :free))
+                  (funcall (call-with-others-paused (lambda () (enter-visit session visit)))))))
+
+(defun leave-trial (session)
+  (unless (session-visit session) (reject-line "The prompt is in no trial."))
+  (leave-visit session
+               (lambda () (format t "Out of the trial~@[, in ~(~A~)~].~%"
+                                  (and *simulation* (simulation-name *simulation*))))))
+
+(define-line "TRIAL" (session (name :token "the name of an experiment, or OFF" :optional)
+                              (condition :token "the number of a condition, or a part of its name"
+                                         :optional)
+                              (number count "the number of the trial" :optional)
+                              (directory :token "the directory of its row" :optional))
+    (:running)
+    "Go into a trial of an experiment: the very run that its row is of, at tick 0. There STEP,
+RESUME and RATE let time pass, STATUS, PLAN-TREE, WHY and others look around, and SAVE-JOURNAL keeps
+it. Where nobody sits, RESUME lets it pass to its end. With DIRECTORY, what comes of it is compared
+with its row. TRIAL OFF leads out again, as do WORLD and another TRIAL. Without NUMBER, list the
+conditions; without NAME, the experiments, or say where the prompt is."
+  (cond ((and (null name) (session-visit session)) (write-visit session (session-visit session)))
+        ((null name) (write-experiments))
+        ((and (string-equal name "off") (null condition)) (leave-trial session))
+        ((null number)
+         (let ((experiment (experiment-meant name)))
+           (when condition (condition-meant experiment condition))
+           (write-conditions experiment)))
+        (t (let ((experiment (experiment-meant name)))
+             (go-to-trial session (make-visit experiment (condition-meant experiment condition)
+                                              number directory))))))
+
+(define-line "FAILURES" (session (name :token "a directory, or an experiment that was run here")
+                                 (condition :token "a part of a condition's name" :optional))
+    (:running)
+    "Show what went wrong in the trials of an experiment, by condition and reason, with a line that
+opens one of each."
+  (let ((names (experiment-names name)))
+    (print-failures (if (and names (null (rest names)) (not (existing-path (native-path name))))
+                        (first names)
+                        name)
+                    condition)))

@@ -1,0 +1,181 @@
+;;;; visits.lisp -- the prompt inside of a trial: lines are read between its ticks.
+
+(in-package :ars-magna.cli)
+
+;;; The prompt's own thread runs the trial, and reads lines at its gate, between two ticks. So what
+;;; lines look at stands still, and is the trial's own: robots, plans, variables. A line that wants
+;;; time to pass says so, and has it when it is done. Where somebody types, ticks pass at a pace
+;;; while nothing is typed. Whatever leads out of the trial, be it a line, an error or control C,
+;;; unwinds it; there is nothing else to be ended.
+
+(defstruct (visit (:constructor make-visit (experiment condition trial directory)) (:copier nil))
+  "A trial that the prompt is in."
+  (experiment nil :read-only t)
+  (condition nil :read-only t)
+  (trial 0 :type integer :read-only t)
+  ;; Where it has a row, or NIL.
+  (directory nil :type (or null string) :read-only t)
+  ;; A line has been read in it.
+  (begun-p nil :type boolean)
+  ;; How many ticks are to pass before the next line, and whether to say so when they have.
+  (steps 0 :type (integer 0))
+  (stepped-p nil :type boolean)
+  ;; Ticks pass by themselves, at RATE, the next when it is DUE.
+  (running-p nil :type boolean)
+  (rate *default-rate*)
+  (due 0d0 :type double-float)
+  ;; The user has pressed control C while ticks passed; it is being left.
+  (interrupted-p nil :type boolean)
+  (left-p nil :type boolean)
+  ;; What came of it, once it is over, and the tick from which on it was no longer the same run.
+  (result nil)
+  (changed nil :type (or null integer)))
+
+;;; Steering.
+
+(defun check-visit-goes-on (visit)
+  "Signal BAD-LINE if the trial of VISIT is over."
+  (when (visit-result visit)
+    (reject-line "The trial is over. TRIAL name condition number opens one, TRIAL OFF leads out.")))
+
+(defun pause-visit (visit)
+  (setf (visit-running-p visit) nil
+        (visit-steps visit) 0))
+
+(defun resume-visit (visit)
+  (check-visit-goes-on visit)
+  (setf (visit-running-p visit) t
+        (visit-due visit) (seconds-now)))
+
+(defun set-visit-rate (visit rate)
+  "Let ticks pass at RATE once they pass by themselves."
+  (check-visit-goes-on visit)
+  (setf (visit-rate visit) rate
+        (visit-due visit) (seconds-now)))
+
+(defun step-visit (visit count)
+  "Let COUNT more ticks pass before the next line."
+  (check-visit-goes-on visit)
+  (unless (whole-p count 1)
+    (reject-line "N cannot be ~D. Give a number of ticks, from 1 to 1e9." count))
+  (setf (visit-running-p visit) nil
+        (visit-stepped-p visit) t)
+  (incf (visit-steps visit) count))
+
+(defun visit-text (visit)
+  "Return in words how time passes in VISIT."
+  (cond ((visit-result visit) "over")
+        ((visit-running-p visit) (rate-text (visit-rate visit)))
+        (t "paused")))
+
+(defun leave-visit (session &optional (next #'values))
+  "Leave the trial that SESSION is in; then call NEXT, a function. Nobody hears what the trial has
+to say of that."
+  (setf (visit-left-p (session-visit session)) t)
+  (stop-listening session)
+  (throw 'left-visit next))
+
+(defun call-outside (session function)
+  "Call FUNCTION where SESSION is in no trial: if it is in one, leave that first."
+  (if (session-visit session)
+      (leave-visit session function)
+      (funcall function)))
+
+;;; Has a line changed the run? Then that is no longer the one of the experiment.
+
+(defun visit-state ()
+  "Return what decides how the current simulation goes on: a digest, and what has been asked of it."
+  (list (state-digest *simulation* t) (timeline-inbox (timeline-of *simulation*))))
+
+(defun note-if-changed (session visit before)
+  "Say so if the run in VISIT is no longer in the state BEFORE."
+  (unless (or (visit-changed visit) (every #'eql before (visit-state)))
+    (setf (visit-changed visit) (simulation-tick *simulation*))
+    (format (session-console session) "~&~:[From here on, this is not the experiment's run any ~
+                                       more~;Nothing comes of that: the trial is over~].~%"
+            (visit-result visit))))
+
+;;; Lines.
+
+(defun answer-others ()
+  "Answer what other threads, such as a window's, ask of the current simulation."
+  (answer-questions (timeline-custody (timeline-of *simulation*))))
+
+(defun show-prompt-once (session)
+  "Let the prompt of SESSION stand, if it has one."
+  (let ((console (session-console session)))
+    (unless (or (session-batch-p session) (unanswered-p console))
+      (with-lock ((session-lock session)) (show-prompt console "Robot> ")))))
+
+(defun typed-p (session seconds)
+  "Wait until somebody has typed a line for SESSION, for SECONDS at most. True if he has."
+  (show-prompt-once session)
+  (loop with end = (+ (seconds-now) seconds)
+        for left = (- end (seconds-now))
+        do (answer-others)
+        thereis (or (session-lines session)
+                    (typed-within-p (session-input session) (max 0 (min 0.05 left))))
+        while (plusp left)))
+
+(defun begin-visit (session visit)
+  "Let robots be called by their names, and be seen if there is a window to be had."
+  (unless (shiftf (visit-begun-p visit) t)
+    (call-by-name (mapcar #'robot-name (simulation-robots *simulation*)))
+    (when (and (terminal-p session) *display-opener*)
+      (announce-display (session-robot) '()))))
+
+(defun visit-line (session visit)
+  "Read a line of SESSION, which is in VISIT, and do what it says."
+  (call-aside
+   (lambda ()
+     (begin-visit session visit)
+     (let ((before (visit-state)))
+       (call-guarded session (lambda ()
+                               (when (watched-p session)
+                                 (loop until (typed-p session 1)))
+                               (next-line session)))
+       (note-if-changed session visit before))
+     (call-guarded session (lambda () (show-messages session)))
+     (when (session-over-p session) (leave-visit session)))))
+
+;;; Between ticks.
+
+(defun tell-stop (session visit)
+  "Say that the ticks which were to pass in VISIT have passed, or were stopped."
+  (when (shiftf (visit-interrupted-p visit) nil)
+    (answered (session-console session))
+    (setf (visit-stepped-p visit) t))
+  (when (and (zerop (visit-steps visit)) (shiftf (visit-stepped-p visit) nil))
+    (format (session-console session) "~&Tick ~D.~%" (simulation-tick *simulation*))))
+
+(defun next-due (visit)
+  "Return when the tick after the one of VISIT that is due now will be."
+  (let ((rate (visit-rate visit)))
+    (if (eq :free rate)
+        (seconds-now)
+        (+ (max (visit-due visit) (- (seconds-now) 0.25d0)) (/ 1d0 rate)))))
+
+(defun wait-for-tick (session visit)
+  "Wait until the next tick is due in VISIT. NIL if somebody has typed a line before."
+  (let ((left (if (eq :free (visit-rate visit)) 0 (- (visit-due visit) (seconds-now)))))
+    (if (watched-p session)
+        (unless (call-aside (lambda () (typed-p session left)))
+          (setf (visit-due visit) (next-due visit))
+          t)
+        (progn (when (plusp left) (await-time (visit-due visit) *simulation*))
+               (setf (visit-due visit) (next-due visit))
+               t))))
+
+(defun tick-passes-p (session visit)
+  "True if a tick is to pass in VISIT now."
+  (cond ((plusp (visit-steps visit)) (decf (visit-steps visit)) t)
+        ((visit-running-p visit) (wait-for-tick session visit))))
+
+(defun visit-gate (session visit)
+  "Return the gate of the trial of VISIT, at which SESSION reads lines."
+  (lambda (simulation)
+    (declare (ignore simulation))
+    (when (visit-left-p visit) (leave-visit session))
+    (tell-stop session visit)
+    (loop until (tick-passes-p session visit) do (visit-line session visit))
+    1))

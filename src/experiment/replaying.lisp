@@ -1,0 +1,203 @@
+;;;; replaying.lisp -- REPLAY-TRIAL: from a point in a picture to the run that it is of.
+
+(in-package :ars-magna.experiment)
+
+;;; How time passes: at the gate, between two ticks.
+
+(defun await-time (due simulation)
+  "Wait until the time DUE, in seconds; answer what other threads ask of SIMULATION meanwhile."
+  (loop with never = (make-semaphore "never")
+        for left = (- due (seconds-now))
+        do (answer-questions (timeline-custody (simulation-timeline simulation)))
+        while (plusp left)
+        do (wait-a-while never (min left 0.02))))
+
+(defun show-if-possible ()
+  "Open the display of the first robot of the current simulation, if something that can is loaded."
+  (when *display-opener*
+    (handler-case (open-display (first (simulation-robots (current-simulation))))
+      (error (condition) (warning-set (text-of-condition condition))))))
+
+(defun paced-gate (rate)
+  "Return a gate by which RATE ticks a second pass, for somebody to see."
+  (let ((due nil))
+    (lambda (simulation)
+      (unless due
+        (show-if-possible)
+        (setf due (seconds-now)))
+      (unless (eq rate :free)
+        (await-time due simulation)
+        (setf due (+ (max due (- (seconds-now) 0.25d0)) (/ 1d0 rate))))
+      1)))
+
+(defun asked-to-stop-p (step simulation)
+  "Call STEP, or ask the user if that is T. True if SIMULATION is to go no further."
+  (call-aside (lambda ()
+                (if (functionp step)
+                    (eq :stop (funcall step simulation))
+                    (not (y-or-n-p "Tick ~D. Let the next one pass?"
+                                   (simulation-tick simulation)))))))
+
+(defun looking-gate (until rate step stop)
+  "Return a gate for REPLAY-TRIAL; STOP is a function that leaves the trial."
+  (let ((pace (and rate (paced-gate rate))))
+    (lambda (simulation)
+      (let ((left (if until (- until (simulation-tick simulation)) most-positive-fixnum)))
+        (when (or (not (plusp left)) (and step (asked-to-stop-p step simulation)))
+          (funcall stop))
+        (when pace (funcall pace simulation))
+        (if (or pace step) 1 left)))))
+
+;;; Against the table.
+
+(defun row-of-trial (experiment condition trial directory)
+  "Return the texts of the row of TRIAL of CONDITION of EXPERIMENT in DIRECTORY. Signals MISUSE if
+there is none."
+  (let ((file (rows-file (existing-table directory)))
+        (place (1+ (seed-column (columns experiment))))
+        (number (princ-to-string trial)))
+    (check-columns experiment file)
+    (map-rows (lambda (texts line start line-number)
+                (declare (ignore line start line-number))
+                (when (and (string= number (nth place texts))
+                           (eq condition (condition-of-texts experiment texts)))
+                  (return-from row-of-trial texts)))
+              file)
+    (reject-use "There is no row of trial ~D of ~A in ~A." trial (condition-name condition)
+                (native-name (directory-called directory)))))
+
+(defun code-difference (condition parts directory)
+  "Return in words what of PARTS, of CONDITION, is not what the rows in DIRECTORY were made with."
+  (format nil "its code or configuration is another~@[; changed since: ~{~A~^, ~}~]"
+          (changes-since condition parts (directory-called directory))))
+
+(defun row-differences (experiment result parts row directory)
+  "Return in words, in a list, in what RESULT differs from ROW, which is in DIRECTORY."
+  (loop for column in (columns experiment)
+        for now in (result-texts experiment result)
+        for then in row
+        unless (string= now then)
+          collect (if (string= "fingerprint" column)
+                      (code-difference (result-condition result) parts directory)
+                      (format nil "~A is ~:[~A~;~*empty~], and ~:[~A~;~*empty~] in the row"
+                              column (string= "" now) now (string= "" then) then))))
+
+;;; The whole.
+
+(defstruct (replaying (:constructor make-replaying (experiment condition trial then journal))
+                      (:copier nil))
+  "A trial that is run again, and what comes of that. KEPT is its journal, if JOURNAL is true."
+  (experiment nil :type experiment :read-only t)
+  (condition nil :type trial-condition :read-only t)
+  (trial 0 :type integer :read-only t)
+  (then nil :type (or function symbol) :read-only t)
+  (journal nil :read-only t)
+  (stopped-p nil :type boolean)
+  (kept nil))
+
+(defun keep-journal (journal)
+  "Return the journal of the current simulation, if JOURNAL is true; save it if that is a name."
+  (when journal
+    (when (typep journal '(or string pathname)) (save-journal journal))
+    (end-of-journal (current-simulation))))
+
+(defun look-around (replaying)
+  "Do what is to be done where the trial of REPLAYING has ended or is stopped."
+  (call-aside (lambda ()
+                (setf (replaying-kept replaying) (keep-journal (replaying-journal replaying)))
+                (funcall (replaying-then replaying)))))
+
+(defun stop-replaying (replaying)
+  "Leave the trial of REPLAYING, which stands at its gate."
+  (let ((result (make-result (replaying-condition replaying) (replaying-trial replaying) 0)))
+    (note-end result)
+    (unless (shiftf (replaying-stopped-p replaying) t) (look-around replaying))
+    (throw 'stopped result)))
+
+(defun run-replaying (replaying until rate step)
+  "Run the trial of REPLAYING. Return its result."
+  (catch 'stopped
+    (run-again (replaying-experiment replaying) (replaying-condition replaying)
+               (replaying-trial replaying)
+               :gate (looking-gate until rate step (lambda () (stop-replaying replaying)))
+               :journal (and (replaying-journal replaying) t)
+               :then (lambda (result)
+                       (declare (ignore result))
+                       (look-around replaying)))))
+
+(defun run-comparing (replaying directory function)
+  "Call FUNCTION, which runs the trial of REPLAYING. Return its result, and in what that differs
+from the row in DIRECTORY, if that is given."
+  (let* ((experiment (replaying-experiment replaying))
+         (condition (replaying-condition replaying))
+         (parts (and directory (prepare-condition experiment condition)))
+         (row (and directory
+                   (row-of-trial experiment condition (replaying-trial replaying) directory)))
+         (result (funcall function)))
+    (values result
+            (and row
+                 (not (replaying-stopped-p replaying))
+                 (row-differences experiment result parts row directory)))))
+
+(defun measured (experiment result)
+  "Return lists (name value) of what was measured in RESULT, of EXPERIMENT."
+  (loop with shared = (make-hash-table :test 'equal)
+        for (name) in (experiment-measures experiment)
+        for text in (result-measures result)
+        collect (list name (value-in text shared))))
+
+(defun replaying-plist (replaying result differences)
+  "Return what REPLAY-TRIAL does."
+  (let ((over-p (not (replaying-stopped-p replaying))))
+    (list :outcome (and over-p (result-outcome result))
+          :reason (if over-p (result-reason result) "")
+          :ticks (result-ticks result)
+          :digest (result-digest result)
+          :measures (measured (replaying-experiment replaying) result)
+          :error (if over-p (result-error result) "")
+          :journal (replaying-kept replaying)
+          :differences differences)))
+
+(defun check-replay (trial until then step journal directory)
+  (check-argument replay-trial trial (and (integerp trial) (<= 0 trial +largest+))
+                  "the number of a trial")
+  (check-argument replay-trial until (or (null until) (whole-p until 0))
+                  "a tick, 0 or more, or NIL")
+  (check-argument replay-trial then (typep then '(or function (and symbol (not null))))
+                  "a function of no arguments")
+  (check-argument replay-trial step (typep step '(or function (member t nil)))
+                  "T, NIL, or a function of a simulation")
+  (check-argument replay-trial journal (typep journal '(or string pathname (member t nil)))
+                  "T, NIL, or the name of a file")
+  (check-argument replay-trial directory (typep directory '(or string pathname null))
+                  "the name of a directory, or NIL"))
+
+(addition replay-trial)
+(defun replay-trial (experiment condition trial
+                     &key until (then (constantly nil)) rate step journal trace directory)
+  "Run TRIAL, a number, of CONDITION of EXPERIMENT again: the very run that its row is of, its plans
+included. CONDITION is a number from 1, or what it is called as far as that is unambiguous. It runs
+in this thread and in the open: what it writes is seen, PRINT-PLANS, WHY and *BREAK-ON-USER-ERROR*
+do what they do elsewhere. THEN, a function of no arguments, is called where the trial has ended, or
+is stopped, before its simulation is gone: to look around, as by SAVE-PICTURE.
+
+  :until TICK   stops it there, in the middle of what it does
+  :rate R       passes R ticks a second, or :FREE, and opens a display if there is one
+  :step T       asks before each tick whether it may pass; a function is called there instead, with
+                the simulation, and stops the trial if it returns :STOP
+  :trace T      lets plans keep a trace, for WHY and SAVE-PLAN-TIMELINE
+  :journal T    keeps a journal, for REPLAY and SAVE-ANIMATION; a name of a file saves it there
+  :directory D  compares what comes of it with its row in D
+
+Return a plist: :outcome (\"success\", \"failure\", \"limit\", \"error\"; NIL if it was stopped),
+:reason, :ticks, :digest, :measures (lists (name value)), :error, :journal, and :differences, in
+words, from the row. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE (no such row), DAMAGED-TABLE."
+  (check-replay trial until then step journal directory)
+  (when rate (check-rate rate))
+  (let* ((experiment (find-experiment experiment))
+         (*trace-plans* (or trace *trace-plans*))
+         (replaying (make-replaying experiment (find-condition experiment condition)
+                                    trial then journal)))
+    (multiple-value-bind (result differences)
+        (run-comparing replaying directory (lambda () (run-replaying replaying until rate step)))
+      (replaying-plist replaying result differences))))
