@@ -127,17 +127,21 @@
                  (:file "words") (:file "page") (:file "series") (:file "legend")
                  (:file "labels") (:file "plane") (:file "line-chart") (:file "curves")
                  (:file "survival-chart") (:file "rows") (:file "difference-chart")
-                 (:file "measure-chart") (:file "saving")))
+                 (:file "measure-chart") (:file "drawing-chart") (:file "saving")))
    (:module "src/experiment" :serial t
     :components ((:file "package") (:file "values") (:file "csv") (:file "condition")
                  (:file "experiment") (:file "clauses") (:file "defexperiment")
                  (:file "outcome") (:file "trial") (:file "version") (:file "reaching")
                  (:file "fingerprint") (:file "row") (:file "lines")
                  (:file "directory") (:file "workers") (:file "stopwatch") (:file "progress")
-                 (:file "rounds") (:file "stopping") (:file "results") (:file "description")
-                 (:file "running") (:file "merging") (:file "differences") (:file "contrasts")
+                 (:file "rounds") (:file "stopping") (:file "description") (:file "results")
+                 (:file "running") (:file "merging") (:file "shards") (:file "differences")
+                 (:file "contrasts")
                  (:file "verdicts") (:file "comparing") (:file "comparing-versions")
-                 (:file "comparison-picture") (:file "aside") (:file "replaying")
+                 (:file "comparison-picture") (:file "estimates") (:file "summary")
+                 (:file "text-table") (:file "remarks") (:file "report") (:file "panels")
+                 (:file "result-charts") (:file "pictures") (:file "ways")
+                 (:file "ways-picture") (:file "aside") (:file "replaying")
                  (:file "failures")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
@@ -161,6 +165,12 @@
                  (:file "plans-errands") (:file "trials") (:file "plans-searching")
                  (:file "errand") (:file "experiments")))))
 
+;;; Loaded by worlds/figures.
+(defsystem "ars-magna/figures"
+  :description "Tables and pictures of the shipped experiments, for worlds/README.md."
+  :depends-on ("ars-magna/worlds")
+  :components ((:module "worlds" :components ((:file "figures")))))
+
 (defsystem "ars-magna/cli"
   :description "The prompt Robot>."
   :depends-on ("ars-magna" "ars-magna/worlds" "trivial-gray-streams")
@@ -173,8 +183,11 @@
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
                  (:file "status-lines") (:file "visits") (:file "running-lines") (:file "loading")
                  (:file "worlds") (:file "world-lines") (:file "plans") (:file "plan-lines")
-                 (:file "plan-views") (:file "picture-lines") (:file "trial-lines") (:file "debugger")
-                 (:file "prompt") (:file "options") (:file "main")))))
+                 (:file "plan-views") (:file "picture-lines") (:file "trial-lines")
+                 (:file "debugger") (:file "prompt") (:file "options") (:file "texts")
+                 (:file "report") (:file "experiments") (:file "executable")
+                 (:file "spreading") (:file "experiment-command")
+                 (:file "table-commands") (:file "commands") (:file "main")))))
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."
@@ -203,7 +216,8 @@
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
-  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/cli" "ars-magna/fiveam" "fiveam")
+  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/figures" "ars-magna/cli"
+               "ars-magna/fiveam" "fiveam")
   :serial t
   :components
   ((:module "tests" :serial t
@@ -238,6 +252,7 @@
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "experiment-replay")
                  (:file "cli-trials") (:file "cli-files") (:file "cli-plan-tree")
+                 (:file "experiment-shell")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
                  (:file "rpl-seeing-truth")
                  (:file "kinds") (:file "digests") (:file "runs") (:file "outliving")

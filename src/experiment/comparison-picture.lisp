@@ -28,12 +28,14 @@
             (and difference (eq :rate (paired-kind difference)))))
         (all-contrasts comparison)))
 
-(defun comparison-chart (comparison measure)
-  "Return the chart of what differs in MEASURE in COMPARISON, an SVG document."
+(defun comparison-chart (comparison measure &key (title (comparison-title comparison))
+                                               (contrasts (all-contrasts comparison)))
+  "Return the chart, below TITLE, of what differs in MEASURE in COMPARISON, or in those CONTRASTS of
+it, an SVG document."
   (difference-chart (remove nil (mapcar (lambda (contrast)
                                           (picture-row contrast measure comparison))
-                                        (all-contrasts comparison)))
-                    :title (comparison-title comparison)
+                                        contrasts))
+                    :title title
                     :subtitle "First less second, with 95 % intervals; p after Holm's correction"
                     :x-label (format nil "difference in ~A~:[~;, in points of 100~]"
                                      (string-downcase measure)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.experiment)
 
 ;;; It is for people, and nothing is read back but the parts of the fingerprints, to say which of
-;;; them have changed.
+;;; them have changed, and until when trials were added.
 
 (defun form-text (form package)
   "Return FORM as its author, in PACKAGE, would write it."
@@ -43,6 +43,20 @@ those of the fingerprints of its conditions, in order."
         do (format stream "~%~A~%= ~A~%~{  ~A~%~}" (condition-fingerprint condition)
                    (condition-name condition) (mapcar #'part-text its))))
 
+(defun description-lines (directory)
+  "Return the lines of the text in DIRECTORY; NIL if there is none."
+  (ignore-errors (uiop:split-string (file-text (description-file directory))
+                                    :separator '(#\Newline))))
+
+(defun until-described (directory)
+  "Return how wide the text in DIRECTORY says intervals were to be, or NIL."
+  (let* ((command (find-if (lambda (line) (starts-with-subseq "  ./cli/ars-magna experiment" line))
+                           (description-lines directory)))
+         (place (and command (search "--until " command))))
+    (and place
+         (number-in (subseq command (+ place (length "--until "))
+                            (position #\Space command :start (+ place (length "--until "))))))))
+
 (defun save-description (experiment parts trials until directory)
   (call-replacing-file (lambda (stream)
                          (write-description experiment parts trials until stream))
@@ -52,9 +66,7 @@ those of the fingerprints of its conditions, in order."
 
 (defun parts-described (condition directory)
   "Return the lines for the parts of CONDITION in the text in DIRECTORY; NIL if there are none."
-  (let ((lines (ignore-errors
-                (uiop:split-string (file-text (description-file directory))
-                                   :separator '(#\Newline))))
+  (let ((lines (description-lines directory))
         (title (format nil "= ~A" (condition-name condition))))
     (loop for line in (rest (member title lines :test #'string=))
           while (starts-with-subseq "  " line)

@@ -4,10 +4,19 @@
   (:documentation "Controlled experiments: conditions, trials, tables that can be repeated and gone
 on with, on as many cores and machines as there are. Names cl-csv and lparallel.")
   (:use :cl :ars-magna.base :ars-magna.statistics :ars-magna.run)
-  (:import-from :ars-magna.plots #:difference-chart #:save-chart)
+  (:import-from :ars-magna.plots
+                #:figure-text #:line-chart #:survival-chart #:difference-chart #:measure-chart
+                #:drawing-chart #:look-color #:draw-marker #:save-chart)
+  (:import-from :ars-magna.canvas
+                #:draw-gcontext* #:graphics-scale* #:with-gcontext #:with-opacity #:draw-lines)
+  (:import-from :ars-magna.display
+                #:take-snapshot #:snapshot-map #:draw-terrain #:draw-movers #:picture-kind)
+  (:import-from :ars-magna.world #:map-width #:map-height)
   (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
                 #:seconds-now #:check-rate)
-  (:import-from :ars-magna.robot #:find-blueprint #:all-blueprints #:blueprint-name #:blueprint-map)
+  (:import-from :ars-magna.robot
+                #:robot-x #:robot-y #:find-blueprint #:all-blueprints #:blueprint-name
+                #:blueprint-map)
   (:import-from :ars-magna.rpl.tasks
                 #:procedure #:procedure-p #:procedure-source
                 #:plan-failure #:failure-class #:failure-text
@@ -38,6 +47,17 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture)
   ;; lines, running, merging, workers
   (:export #:damaged-table #:run-experiment #:merge-results #:processors)
+  ;; fingerprint, shards
+  (:export #:settle-fingerprints #:shard-directory #:directories-with-rows #:count-rows
+           #:missing-shards)
+  ;; estimates, summary, report
+  (:export #:estimate-p #:estimate-name #:estimate-kind #:estimate-count #:estimate-value
+           #:estimate-low #:estimate-high #:estimate-left-out #:estimate-texts
+           #:summary-p #:summary-condition #:summary-texts #:summary-trials #:summary-failures
+           #:summary-limits #:summary-errors #:summary-confidence #:summary-success #:summary-ticks
+           #:summary-measures #:summary-reasons #:summarize-results #:print-results)
+  ;; pictures, ways-picture
+  (:export #:save-result-pictures #:save-ways-picture)
   ;; aside, replaying, failures
   (:export #:run-again #:call-until-error #:call-aside #:await-time #:replay-trial
            #:row-of-trial #:row-differences #:prepare-condition #:measured

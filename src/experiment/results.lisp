@@ -28,7 +28,9 @@
   (columns '() :type list :read-only t)
   (samples '() :type list)
   ;; Where the table is, or NIL if it has not been kept.
-  (directory nil :type (or null pathname)))
+  (directory nil :type (or null pathname))
+  ;; How wide intervals were to be, if trials were added until they were so narrow.
+  (until nil :type (or null real)))
 
 (addition results-p results-samples results-directory
           sample-p sample-experiment sample-condition sample-texts sample-trials
@@ -186,5 +188,6 @@ MISUSE if there are none, and DAMAGED-TABLE."
                   "the name of a directory")
   (let ((path (existing-table directory)))
     (let ((results (results-in (rows-file path))))
-      (setf (results-directory results) path)
+      (setf (results-directory results) path
+            (results-until results) (until-described path))
       results)))

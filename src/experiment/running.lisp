@@ -150,7 +150,9 @@ are those of the fingerprints of its conditions. Signals MISUSE for rows of othe
   (call-with-directory
    (lambda ()
      (run-in experiment directory trials until shard workers stream)
-     (results-in (rows-file directory)))
+     (let ((results (results-in (rows-file directory))))
+       (setf (results-until results) until)
+       results))
    directory))
 
 (addition run-experiment)

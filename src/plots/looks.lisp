@@ -30,7 +30,9 @@
   "Polygons x y ... around 0, 0.")
 
 (defun look (index vector) (svref vector (mod index (length vector))))
-(defun look-color (index) (look index *colors*))
+(defun look-color (index)
+  "Return the colour of the series INDEX, as a pixel's value."
+  (look index *colors*))
 
 (defun call-with-look (function index width)
   (let ((dashes (look index *dashes*)))

@@ -75,7 +75,7 @@ arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
   (check-argument measure-chart rows (listp rows) "a list of rows")
   (let* ((groups (mapcar #'checked-group rows))
          (table (plan-table (mapcar (lambda (group) (group-entry group middle-label)) groups)
-                            (mapcan #'group-values groups)
+                            (loop for group in groups append (group-values group))
                             :title title :subtitle subtitle :x-label x-label :width width
                             :least (+ +column-height+ 20) :log-x log-x)))
     (table-svg table

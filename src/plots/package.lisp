@@ -8,6 +8,8 @@ no experiment and no robot. Each chart is a function that returns an SVG documen
   ;; figures
   (:export #:figure-text)
   ;; charts
-  (:export #:line-chart #:survival-chart #:difference-chart #:measure-chart)
+  (:export #:line-chart #:survival-chart #:difference-chart #:measure-chart #:drawing-chart)
+  ;; looks
+  (:export #:look-color #:draw-marker)
   ;; saving
   (:export #:save-chart))

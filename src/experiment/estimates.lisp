@@ -1,0 +1,88 @@
+;;;; estimates.lisp -- what a column of a table comes to: a rate, a mean, a median, or texts.
+
+(in-package :ars-magna.experiment)
+
+;;; What was measured is a rate if it was always true or false. If there are numbers in it, it is
+;;; their mean: what else there is besides is left out, and counted. Else it is texts. This goes by
+;;; all conditions together, so that the same is said of each. :NONE was not measured.
+
+(defstruct (estimate (:constructor make-estimate
+                         (name kind count &key value low high (left-out 0) texts))
+                     (:copier nil))
+  "What COUNT values of NAME come to, a KIND: :RATE, :MEAN, :MEDIAN, :TEXTS, or :NOTHING."
+  (name "" :type string :read-only t)
+  (kind :nothing :type (member :rate :mean :median :texts :nothing) :read-only t)
+  (count 0 :type integer :read-only t)
+  (value nil :type (or null real) :read-only t)
+  (low nil :type (or null real) :read-only t)
+  (high nil :type (or null real) :read-only t)
+  (left-out 0 :type integer :read-only t)
+  (texts '() :type list :read-only t))
+
+(addition estimate-p estimate-name estimate-kind estimate-count estimate-value estimate-low
+          estimate-high estimate-left-out estimate-texts)
+(document-functions
+  estimate-p "True of what a column of the table comes to under one condition."
+  estimate-name "Return what was measured, a string: success, ticks, or the name of a measure."
+  estimate-kind "Return :RATE of what was always true or false, :MEAN of numbers, :MEDIAN of ticks,
+:TEXTS of all else, and :NOTHING of what was never measured, under any condition."
+  estimate-count "Return how many trials it was measured in; of ticks, how many succeeded."
+  estimate-value "Return the rate, from 0 to 1, the mean or the median; NIL of none, and of texts."
+  estimate-low "Return the low bound of the interval; NIL if there are too few values."
+  estimate-high "Return the high bound of the interval; NIL if there are too few values."
+  estimate-left-out "Return how many values beside numbers are no numbers, and left out."
+  estimate-texts "Return an alist from texts to how often there are such, commonest first.")
+
+(defmethod print-object ((estimate estimate) stream)
+  (print-unreadable-object (estimate stream)
+    (format stream "~A: ~(~A~) of ~D~@[, ~F~]" (estimate-name estimate) (estimate-kind estimate)
+            (estimate-count estimate) (estimate-value estimate))))
+
+;;; Kinds.
+
+(defun kind-of-values (columns)
+  "Return which kind of estimate is made of COLUMNS, of one measure under all conditions."
+  (flet ((some-value (test)
+           (some (lambda (column) (some test column)) columns)))
+    (cond ((some-value #'quantity-p) :mean)
+          ((some-value (lambda (value) (not (typep value '(or boolean (eql :none)))))) :texts)
+          ((some-value (lambda (value) (typep value 'boolean))) :rate)
+          (t :nothing))))
+
+(defun tally (texts)
+  "Return an alist from the strings TEXTS to how many there are, commonest first."
+  (let ((counts (make-hash-table :test 'equal)))
+    (cl:map nil (lambda (text) (incf (gethash text counts 0))) texts)
+    (sort (loop for text being the hash-keys of counts using (hash-value count)
+                collect (cons text count))
+          (lambda (a b)
+            (or (> (cdr a) (cdr b))
+                (and (= (cdr a) (cdr b)) (string< (car a) (car b))))))))
+
+;;; Estimates.
+
+(defun rate-estimate (name successes trials confidence)
+  (multiple-value-bind (low high) (wilson-interval successes trials :confidence confidence)
+    (make-estimate name :rate trials :value (if (zerop trials) nil (/ successes trials))
+                                     :low (if (zerop trials) nil low)
+                                     :high (if (zerop trials) nil high))))
+
+(defun mean-estimate (name numbers left-out confidence)
+  (multiple-value-bind (low high) (student-interval numbers :confidence confidence)
+    (make-estimate name :mean (length numbers) :value (mean numbers) :low low :high high
+                                               :left-out left-out)))
+
+(defun median-estimate (name numbers confidence)
+  (multiple-value-bind (low high) (median-interval numbers :confidence confidence)
+    (make-estimate name :median (length numbers) :value (median numbers) :low low :high high)))
+
+(defun estimate-of-values (name kind column confidence)
+  "Return the estimate of KIND of what stands in COLUMN, of the measure NAME."
+  (let ((values (remove :none column)))
+    (ecase kind
+      (:nothing (make-estimate name kind 0))
+      (:rate (rate-estimate name (count t values) (length values) confidence))
+      (:mean (let ((numbers (remove-if-not #'quantity-p values)))
+               (mean-estimate name numbers (- (length values) (length numbers)) confidence)))
+      (:texts (make-estimate name kind (length values)
+                             :texts (tally (cl:map 'list #'value-text values)))))))

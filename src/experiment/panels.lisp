@@ -1,0 +1,96 @@
+;;;; panels.lisp -- which conditions stand in which picture, and which of them as one series.
+
+(in-package :ars-magna.experiment)
+
+;;; The first factor whose values are numbers runs along a picture; the others tell series apart,
+;;; and where that makes too many of them, pictures. Factors go by their places in SAMPLE-TEXTS.
+
+(defconstant +most-series+ 6 "How many series there are in a picture at most.")
+
+(defstruct (panel (:constructor make-panel (where series)) (:copier nil))
+  "A picture's worth of conditions. WHERE says what these have in common, or is NIL; SERIES are
+lists (name sample...), with NIL as the name of a single one."
+  (where nil :type (or null string) :read-only t)
+  (series '() :type list :read-only t))
+
+;;; Factors.
+
+(defun text-at (place sample) (nth place (sample-texts sample)))
+
+(defun case-decides-p (place samples)
+  "True if the first factor, named cases, decides what the factor PLACE is in SAMPLES."
+  (loop for sample in samples
+        always (loop for other in samples
+                     always (or (string/= (text-at 0 sample) (text-at 0 other))
+                                (string= (text-at place sample) (text-at place other))))))
+
+(defun free-factors (results)
+  "Return the factors that make the conditions of RESULTS, by place."
+  (let ((samples (results-samples results)))
+    (loop with case-p = (equal "case" (first (results-factors results)))
+          for place from 0 below (length (results-factors results))
+          unless (or (null (rest (levels results place)))
+                     (and case-p (plusp place) (case-decides-p place samples)))
+            collect place)))
+
+(defun numeric-factor-p (results place)
+  (every #'number-in (levels results place)))
+
+(defun factor-across (results)
+  "Return the factor that runs along pictures of RESULTS, or NIL if nothing varies."
+  (let ((free (free-factors results)))
+    (or (find-if (lambda (place) (numeric-factor-p results place)) free)
+        (first free))))
+
+(defun factors-beside (results)
+  "Return the factors that tell series apart."
+  (remove (factor-across results) (free-factors results)))
+
+;;; Series and panels.
+
+(defun common-name (sample places factors)
+  "Return what SAMPLE is called by the factors at PLACES, or NIL if there are none."
+  (and places
+       (level-names (loop for place in places collect (nth place factors))
+                    (loop for place in places collect (text-at place sample)))))
+
+(defun grouped (samples key)
+  "Return lists of SAMPLES with equal KEY, in order of appearance."
+  (let ((groups '()))
+    (dolist (sample samples (mapcar #'reverse (reverse groups)))
+      (let ((group (find (funcall key sample) groups
+                         :key (lambda (group) (funcall key (first group))) :test #'equal)))
+        (if group
+            (setf (cdr group) (list* (first group) (rest group))
+                  (car group) sample)
+            (push (list sample) groups))))))
+
+(defun series-of (samples places factors)
+  (loop for group in (grouped samples (lambda (sample) (common-name sample places factors)))
+        collect (cons (common-name (first group) places factors) group)))
+
+(defun in-chunks (list most)
+  "Return LIST as lists of about equal length, at most MOST."
+  (let* ((count (length list)) (size (ceiling count (max 1 (ceiling count most)))))
+    (loop while list
+          collect (loop repeat size while list collect (pop list)))))
+
+(defun chunk-panels (series where)
+  (loop with chunks = (in-chunks series +most-series+)
+        for chunk in chunks
+        for number from 1
+        collect (make-panel (format nil "~@[~A, ~]~D of ~D" where number (length chunks)) chunk)))
+
+(defun joined (where more) (format nil "~@[~A ~]~A" where more))
+
+(defun panels (samples places factors &optional where)
+  "Return panels for SAMPLES, whose series the factors at PLACES of FACTORS tell apart: as few as
+hold all series."
+  (let ((series (series-of samples places factors)))
+    (cond ((<= (length series) +most-series+) (list (make-panel where series)))
+          ((null (rest places)) (chunk-panels series where))
+          (t (let ((last (last places)))
+               (loop for group in (grouped samples
+                                           (lambda (sample) (common-name sample last factors)))
+                     append (panels group (butlast places) factors
+                                    (joined where (common-name (first group) last factors)))))))))

@@ -1,0 +1,169 @@
+;;;; report.lisp -- PRINT-RESULTS: what came of an experiment, for people, at a glance.
+
+(in-package :ars-magna.experiment)
+
+;;; Numbers. Those of a column have equally many decimals, and stand below each other.
+
+(defun decimals-for (numbers)
+  "Return how many decimals NUMBERS are written with, so that the largest has four digits; NIL if
+they are too large or small for that."
+  (let ((largest (reduce #'max numbers :key #'abs :initial-value 0)))
+    (cond ((every #'integerp numbers) (if (< largest 1e9) 0 nil))
+          ((every (lambda (number) (= number (round number))) numbers) (if (< largest 1e9) 0 nil))
+          ((not (< 1/1000 largest 1e9)) nil)
+          (t (max 0 (- 3 (floor (log (double largest) 10d0))))))))
+
+(defun number-writer-for (numbers)
+  "Return a function that writes each of NUMBERS."
+  (let ((decimals (decimals-for numbers)))
+    (lambda (number)
+      (if decimals (fixed-text number decimals) (figure-text number)))))
+
+(defun fixed-text (number decimals)
+  "Return NUMBER with so many DECIMALS."
+  (multiple-value-bind (whole rest)
+      (truncate (abs (round (* (rational number) (expt 10 decimals)))) (expt 10 decimals))
+    (format nil "~:[~;-~]~D~:[~;.~V,'0D~]" (and (minusp number) (plusp (+ whole rest)))
+            whole (plusp decimals) decimals rest)))
+
+(defun percent-writer (trials)
+  "Return a function that writes a share seen in TRIALS in hundredths."
+  (let ((decimals (max 0 (- (length (princ-to-string (max 0 (1- trials)))) 2))))
+    (lambda (share) (fixed-text (* 100 (rational share)) decimals))))
+
+;;; Columns of estimates.
+
+(defun estimate-numbers (estimate)
+  (remove nil (list (estimate-value estimate) (estimate-low estimate) (estimate-high estimate))))
+
+(defun writer-for (estimates)
+  "Return a function that writes the numbers of ESTIMATES, which are of one kind."
+  (if (eq :rate (estimate-kind (first estimates)))
+      (percent-writer (reduce #'max estimates :key #'estimate-count))
+      (number-writer-for (mapcan #'estimate-numbers estimates))))
+
+(defun aligned-texts (numbers writer)
+  "Return NUMBERS, any of which may be NIL, as texts of equal length."
+  (let* ((texts (loop for number in numbers collect (if number (funcall writer number) "-")))
+         (width (reduce #'max texts :key #'length)))
+    (loop for text in texts collect (format nil "~V@A" width text))))
+
+(defun interval-texts (estimates)
+  "Return what is written of each of ESTIMATES: its value and its interval."
+  (let ((writer (writer-for estimates)))
+    (flet ((texts (reader) (aligned-texts (mapcar reader estimates) writer)))
+      (loop for estimate in estimates
+            for value in (texts #'estimate-value)
+            for low in (texts #'estimate-low)
+            for high in (texts #'estimate-high)
+            collect (format nil "~A~:[~; (~A to ~A)~]" value (estimate-low estimate) low high)))))
+
+(defun with-counts (texts estimates)
+  "Return TEXTS of equal length, with of how many trials each of ESTIMATES is."
+  (let ((width (reduce #'max texts :key #'length)))
+    (loop for text in texts
+          for estimate in estimates
+          collect (format nil "~VA  n=~D" width text (estimate-count estimate)))))
+
+(defun tally-text (tally most)
+  "Return TALLY, an alist from texts to counts, in one line, the MOST commonest first."
+  (let ((rest (nthcdr most tally)))
+    (format nil "~{~A~^, ~}~@[, others (~D)~]"
+            (loop for (text . count) in tally
+                  repeat most
+                  collect (format nil "~A (~D)" (cut text 60) count))
+            (and rest (reduce #'+ rest :key #'cdr)))))
+
+(defun kind-heading (estimate)
+  (ecase (estimate-kind estimate)
+    (:rate " %")
+    (:mean ", mean")
+    (:median " of successes, median")
+    ((:texts :nothing) "")))
+
+(defun estimates-column (estimates trials)
+  "Return the column of ESTIMATES, one for each condition, which have TRIALS."
+  (let ((heading (format nil "~A~A" (cut (estimate-name (first estimates)) 60)
+                         (kind-heading (first estimates)))))
+    (case (estimate-kind (first estimates))
+      (:nothing (make-text-column heading (mapcar (constantly "-") estimates)))
+      (:texts (make-text-column heading (loop for estimate in estimates
+                                              collect (tally-text (estimate-texts estimate) 3))))
+      (t (let ((texts (interval-texts estimates)))
+           (make-text-column heading
+                             (if (or (eq :median (estimate-kind (first estimates)))
+                                     (equal trials (mapcar #'estimate-count estimates)))
+                                 texts
+                                 (with-counts texts estimates))
+                             :whole-p t))))))
+
+(defun count-column (heading counts)
+  "Return a column of COUNTS in a list, or an empty list if all are 0."
+  (unless (every #'zerop counts)
+    (list (make-text-column heading (mapcar #'princ-to-string counts) :anchor :end))))
+
+;;; The table.
+
+(defun factor-column (name texts)
+  (make-text-column name texts :widest 40 :anchor (if (every #'number-in texts) :end :start)))
+
+(defun key-columns (factors summaries)
+  "Return columns that say of which condition a row is: the values of FACTORS if these fit, else its
+name."
+  (let ((columns (loop for name in factors
+                       for place from 0
+                       collect (factor-column name (loop for summary in summaries
+                                                         collect (nth place
+                                                                      (summary-texts summary)))))))
+    (if (and columns (<= (reduce #'+ columns :key (lambda (column)
+                                                    (+ 2 (text-column-width column))))
+                         44))
+        columns
+        (list (make-text-column "condition" (mapcar #'summary-condition summaries) :widest 40)))))
+
+(defun value-columns (summaries)
+  (flet ((all (reader) (mapcar reader summaries)))
+    (let ((trials (all #'summary-trials)))
+      (append (unless (= 1 (length (remove-duplicates trials))) (count-column "trials" trials))
+              (list (estimates-column (all #'summary-success) trials))
+              (count-column "limit" (all #'summary-limits))
+              (count-column "errors" (all #'summary-errors))
+              (list (estimates-column (all #'summary-ticks) trials))
+              (apply #'mapcar (lambda (&rest estimates) (estimates-column estimates trials))
+                     (all #'summary-measures))))))
+
+(defun trials-text (summaries)
+  (let ((counts (mapcar #'summary-trials summaries)))
+    (if (apply #'= counts)
+        (format nil "~D trial~:P~:[~; each~]" (first counts) (rest counts))
+        (format nil "~D to ~D trials each" (reduce #'min counts) (reduce #'max counts)))))
+
+(defun write-heading (results summaries stream)
+  (let* ((name (sample-experiment (first (results-samples results))))
+         (question (question-of name)))
+    (write-wrapped (format nil "~A: ~D condition~:P, ~A" name (length summaries)
+                           (trials-text summaries))
+                   stream)
+    (when question (write-wrapped question stream))))
+
+(addition print-results)
+(defun print-results (results &optional (stream *standard-output*))
+  "Write to STREAM, in lines of 100 characters at most, what came of an experiment, of which RESULTS
+are: for each condition how often it succeeded, how often it came to the limit of ticks or broke off
+with an error if it did, how many ticks success took, and all that was measured, as
+SUMMARIZE-RESULTS says; below that why trials failed and what errors there were, with an example
+each, and which intervals these are. Return RESULTS."
+  (check-argument print-results results (results-p results) "results")
+  (check-argument print-results stream (and (streamp stream) (output-stream-p stream))
+                  "an output stream")
+  (let ((summaries (summarize-results results)))
+    (cond (summaries
+           (write-heading results summaries stream)
+           (terpri stream)
+           (write-text-table (key-columns (results-factors results) summaries)
+                             (value-columns summaries) stream)
+           (write-reasons results stream)
+           (write-errors results stream)
+           (write-notes results summaries stream))
+          (t (format stream "There are no trials yet.~%"))))
+  results)

@@ -1,0 +1,214 @@
+;;;; result-charts.lisp -- the charts of an experiment's results, as SVG documents.
+
+(in-package :ars-magna.experiment)
+
+(defstruct (picture (:constructor make-picture (name where chart)) (:copier nil))
+  "A CHART, an SVG document, of what is called NAME, and of conditions that WHERE tells apart."
+  (name "" :type string :read-only t)
+  (where nil :type (or null string) :read-only t)
+  (chart "" :type string :read-only t))
+
+;;; What is written above.
+
+(defun title-of (results)
+  (let ((name (sample-experiment (first (results-samples results)))))
+    (or (question-of name) name)))
+
+(defun subtitle (panel &rest sentences)
+  "Return SENTENCES, which are strings or NIL, after what the conditions of PANEL have in common."
+  (format nil "~@[~A. ~]~{~A~^ ~}" (panel-where panel) (remove nil sentences)))
+
+(defun intervals-words (kind summaries)
+  "Return what the intervals of SUMMARIES are, of a KIND of estimates, in a sentence."
+  (format nil "~A intervals~:[ of 95 %~;, with the confidence of the look that was the last~]; ~A."
+          (ecase kind (:rate "Wilson's") (:mean "Student's") (:median "Rank"))
+          (some (lambda (summary) (/= .95d0 (summary-confidence summary))) summaries)
+          (trials-text summaries)))
+
+;;; Estimates against what varies.
+
+(defun x-value (text)
+  (or (number-in text) (if (string= "" text) "none" text)))
+
+(defun log-x-p (numbers)
+  "True if NUMBERS lie so far apart that they are seen only on a logarithmic scale."
+  (and (cddr numbers) (every #'realp numbers) (every #'plusp numbers)
+       (<= 50 (/ (reduce #'max numbers) (reduce #'min numbers)))))
+
+(defun point-of (sample place estimate)
+  (list (if place (x-value (text-at place sample)) "all")
+        (estimate-value estimate) (estimate-low estimate) (estimate-high estimate)))
+
+(defun chart-series (panel place estimate-of)
+  "Return the series of PANEL for LINE-CHART, along the factor PLACE. ESTIMATE-OF returns the
+estimate for a sample."
+  (loop for (name . samples) in (panel-series panel)
+        collect (cons name (loop for sample in samples
+                                 collect (point-of sample place (funcall estimate-of sample))))))
+
+(defun estimates-charts (results summaries name y-label words reader)
+  "Return pictures, called NAME, of the estimates that READER finds in SUMMARIES, those of RESULTS."
+  (let* ((place (factor-across results)) (factors (results-factors results))
+         (table (pairlis (results-samples results) summaries))
+         (kind (estimate-kind (funcall reader (first summaries)))))
+    (flet ((estimate-of (sample) (funcall reader (cdr (assoc sample table)))))
+      (loop for panel in (panels (results-samples results) (factors-beside results) factors)
+            for series = (chart-series panel place #'estimate-of)
+            collect (make-picture
+                     name (panel-where panel)
+                     (line-chart series
+                                 :percent (eq :rate kind)
+                                 :log-x (and place (log-x-p (mapcar #'x-value
+                                                                    (levels results place))))
+                                 :title (title-of results)
+                                 :subtitle (subtitle panel words (intervals-words kind summaries))
+                                 :x-label (and place (nth place factors))
+                                 :y-label y-label))))))
+
+(defun success-pictures (results summaries)
+  (estimates-charts results summaries "success" "trials that succeed" nil #'summary-success))
+
+(defun known-p (estimates) (some #'estimate-value estimates))
+
+(defun ticks-pictures (results summaries)
+  (when (known-p (mapcar #'summary-ticks summaries))
+    (estimates-charts results summaries "ticks" "ticks"
+                      "Ticks of the trials that succeed: median." #'summary-ticks)))
+
+;;; What was measured.
+
+(defun spread-row (results sample estimate)
+  "Return the row of MEASURE-CHART for all numbers of SAMPLE that ESTIMATE is of."
+  (list (sample-condition sample)
+        (remove-if-not #'quantity-p (sample-measure results sample (estimate-name estimate)))
+        (estimate-value estimate) (estimate-low estimate) (estimate-high estimate)))
+
+(defconstant +most-rows+ 30 "How many rows a picture has at most.")
+
+(defun spread-pictures (results summaries place)
+  "Return pictures of how the numbers of the measure at PLACE lie."
+  (loop with rows = (loop for sample in (results-samples results)
+                          for summary in summaries
+                          collect (spread-row results sample
+                                              (nth place (summary-measures summary))))
+        with name = (nth place (results-measures results))
+        with chunks = (in-chunks rows +most-rows+)
+        for chunk in chunks
+        for number from 1
+        collect (make-picture (format nil "spread-of-~A" name)
+                              (and (rest chunks) (princ-to-string number))
+                              (measure-chart chunk :middle-label "mean" :title (title-of results)
+                                                   :x-label name
+                                                   :subtitle (intervals-words :mean summaries)))))
+
+(defun measure-pictures (results summaries)
+  (loop for name in (results-measures results)
+        for place from 0
+        for estimates = (loop for summary in summaries
+                              collect (nth place (summary-measures summary)))
+        for kind = (estimate-kind (first estimates))
+        when (and (member kind '(:rate :mean)) (known-p estimates))
+          append (let ((place place))
+                   (estimates-charts results summaries (format nil "measure-~A" name) name
+                                     (format nil "~@(~A~): ~:[mean~;share of trials~]." name
+                                             (eq :rate kind))
+                                     (lambda (summary) (nth place (summary-measures summary)))))
+        when (and (eq :mean kind) (known-p estimates))
+          append (spread-pictures results summaries place)))
+
+;;; Until done. What has failed is never done: so it is still there at the end, and no trial is lost
+;;; sight of before.
+
+(defun limit-of (results)
+  "Return the limit of ticks, as far as it is known."
+  (let ((experiment (experiment-called (sample-experiment (first (results-samples results))))))
+    (if experiment
+        (experiment-limit experiment)
+        (loop for sample in (results-samples results)
+              maximize (reduce #'max (sample-ticks sample) :initial-value 0)))))
+
+(defun horizon (samples limit)
+  "Return until when curves are drawn: a little longer than any success of SAMPLES took."
+  (let ((last (loop for sample in samples
+                    maximize (reduce #'max (values-where #'success-p sample (sample-ticks sample))
+                                     :initial-value 0))))
+    (max last (min limit (ceiling (* 21/20 last))))))
+
+(defun curve-of (name sample horizon confidence band-p)
+  "Return the curve of SAMPLE for SURVIVAL-CHART, until the tick HORIZON, with bands if BAND-P."
+  (let* ((events (cl:map 'vector #'success-p (sample-outcomes sample)))
+         (times (cl:map 'vector (lambda (ticks done-p) (if done-p ticks horizon))
+                        (sample-ticks sample) events)))
+    (list name :times times
+               :steps (loop for (time nil nil survival low high)
+                              in (survival-curve times events :confidence confidence)
+                            collect (list time survival (and band-p low) (and band-p high))))))
+
+(defconstant +most-bands+ 4 "How many curves have bands at most; more would hide each other.")
+
+(defun survival-words (band-p limit)
+  (format nil "Kaplan and Meier's estimate~:[~;, with bands of 95 %~]. What failed, broke off or ~
+               came to the limit of ~D ticks is never done."
+          band-p limit))
+
+(defun survival-picture (results panel horizon)
+  (let ((band-p (<= (length (panel-series panel)) +most-bands+)))
+    (make-picture
+     "survival" (panel-where panel)
+     (survival-chart (loop for (name sample) in (panel-series panel)
+                           collect (curve-of name sample horizon (confidence-for results sample)
+                                             band-p))
+                     :title (title-of results)
+                     :subtitle (subtitle panel (survival-words band-p (limit-of results)))
+                     :x-label "ticks" :y-label "trials not yet done"
+                     :risk-label "trials not yet done"))))
+
+(defun survival-pictures (results summaries)
+  (let ((samples (results-samples results)))
+    (when (known-p (mapcar #'summary-ticks summaries))
+      (loop with horizon = (horizon samples (limit-of results))
+            for panel in (panels samples (free-factors results) (results-factors results))
+            collect (survival-picture results panel horizon)))))
+
+;;; Differences.
+
+(defun pairs-by (results place)
+  "Return lists of two samples of RESULTS that differ in the factor PLACE, all else equal if that
+can be, the second with its first value."
+  (or (level-pairs results place (first (levels results place)))
+      (loop with first = (first (results-samples results))
+            for other in (rest (results-samples results))
+            collect (list other first))))
+
+(defun comparison-by (results place)
+  "Return the comparison of RESULTS by the factor PLACE, or NIL if there is nothing to compare."
+  (let ((pairs (remove-if-not (lambda (pair) (apply #'common-trials pair))
+                              (pairs-by results place))))
+    (and pairs
+         (comparison-of-conditions results pairs
+                                   (compared-names 'save-result-pictures (list results) nil)
+                                   nil))))
+
+(defun difference-charts (comparison measure name title)
+  (loop with all = (remove-if-not (lambda (contrast)
+                                    (or (same-runs-p contrast)
+                                        (difference-called measure contrast)))
+                                  (comparison-contrasts comparison))
+        with chunks = (in-chunks all +most-rows+)
+        for chunk in chunks
+        for number from 1
+        collect (make-picture name (and (rest chunks) (princ-to-string number))
+                              (comparison-chart comparison measure
+                                                :title title :contrasts chunk))))
+
+(defun difference-pictures (results summaries)
+  (declare (ignore summaries))
+  (loop for place in (free-factors results)
+        for factor = (nth place (results-factors results))
+        for comparison = (comparison-by results place)
+        when comparison
+          append (loop for measure in '("success" "ticks")
+                       append (difference-charts comparison measure
+                                                 (format nil "difference-in-~A-by-~A"
+                                                         measure factor)
+                                                 (title-of results)))))

@@ -1,0 +1,88 @@
+;;;; text-table.lisp -- tables of text: columns side by side, in as many blocks as the page needs.
+
+(in-package :ars-magna.experiment)
+
+(defconstant +page-width+ 100 "How many characters a line has at most.")
+
+;;; Lines.
+
+(defun break-place (text width)
+  "Return where the first line of TEXT, WIDTH characters at most, ends."
+  (cond ((<= (length text) width) (length text))
+        ((position #\Space text :end (1+ width) :from-end t :start 1))
+        (t width)))
+
+(defun wrapped-text (text width)
+  "Return TEXT, of one line, as a list of lines of at most WIDTH characters, one at least."
+  (loop with rest = (string-trim " " text)
+        for end = (break-place rest width)
+        collect (string-right-trim " " (subseq rest 0 end))
+        do (setf rest (string-left-trim " " (subseq rest end)))
+        until (string= "" rest)))
+
+(defun write-wrapped (text stream &key (first "") (indent (length first)))
+  "Write TEXT to STREAM in lines that fit the page, the first one after FIRST, the others after
+INDENT spaces."
+  (loop for line in (wrapped-text text (- +page-width+ (max indent (length first))))
+        for start = first then (make-string indent :initial-element #\Space)
+        do (format stream "~A~A~%" start line)))
+
+;;; Columns. A cell is a list of lines.
+
+(defstruct (text-column (:constructor %make-text-column (heading cells anchor width))
+                        (:copier nil))
+  "CELLS below a HEADING, each a list of lines, WIDTH characters wide, at their :START or :END."
+  (heading '() :type list :read-only t)
+  (cells '() :type list :read-only t)
+  (anchor :start :type (member :start :end) :read-only t)
+  (width 0 :type integer :read-only t))
+
+(defun make-text-column (heading texts &key (anchor :start) (widest 30) whole-p)
+  "Return a column of TEXTS below HEADING, broken into lines of at most WIDEST characters; but TEXTS
+are left as they are if WHOLE-P."
+  (flet ((lines (text) (wrapped-text text widest)))
+    (let* ((cells (mapcar (if whole-p #'list #'lines) texts))
+           (heading (lines heading))
+           (width (reduce #'max (apply #'append heading cells) :key #'length)))
+      (%make-text-column heading cells anchor width))))
+
+(defun blocks (key columns)
+  "Return lists of columns that fit on the page: all of KEY, and as many of COLUMNS as go beside."
+  (flet ((width (columns) (reduce #'+ columns :key (lambda (column)
+                                                     (+ 2 (text-column-width column))))))
+    (loop with blocks = '() and block = '()
+          for column in columns
+          do (when (and block (> (width (append key block (list column))) +page-width+))
+               (push (append key block) blocks)
+               (setf block '()))
+             (setf block (append block (list column)))
+          finally (return (reverse (cons (append key block) blocks))))))
+
+;;; Writing.
+
+(defun padded (text column)
+  (if (eq :end (text-column-anchor column))
+      (format nil "~V@A" (text-column-width column) text)
+      (format nil "~VA" (text-column-width column) text)))
+
+(defun write-cells (cells columns stream)
+  "Write CELLS, one of each of COLUMNS, side by side."
+  (loop for number from 0 below (reduce #'max cells :key #'length)
+        do (format stream "~A~%"
+                   (string-right-trim " " (format nil "~{  ~A~}"
+                                                  (loop for cell in cells
+                                                        for column in columns
+                                                        collect (padded (or (nth number cell) "")
+                                                                        column)))))))
+
+(defun write-block (columns stream)
+  (write-cells (mapcar #'text-column-heading columns) columns stream)
+  (apply #'mapc (lambda (&rest cells) (write-cells cells columns stream))
+         (mapcar #'text-column-cells columns)))
+
+(defun write-text-table (key columns stream)
+  "Write KEY, columns that say what a row is of, and COLUMNS to STREAM: as many blocks below each
+other as are needed, each with KEY."
+  (loop for (block . more) on (blocks key columns)
+        do (write-block block stream)
+           (when more (terpri stream))))
