@@ -135,13 +135,14 @@
                  (:file "fingerprint") (:file "row") (:file "lines")
                  (:file "directory") (:file "workers") (:file "stopwatch") (:file "progress")
                  (:file "rounds") (:file "stopping") (:file "description") (:file "results")
-                 (:file "running") (:file "merging") (:file "differences") (:file "contrasts")
+                 (:file "running") (:file "merging") (:file "shards") (:file "differences")
+                 (:file "contrasts")
                  (:file "verdicts") (:file "comparing") (:file "comparing-versions")
-                 (:file "comparison-picture") (:file "aside") (:file "replaying")
-                 (:file "failures") (:file "estimates") (:file "summary")
+                 (:file "comparison-picture") (:file "estimates") (:file "summary")
                  (:file "text-table") (:file "remarks") (:file "report") (:file "panels")
                  (:file "result-charts") (:file "pictures") (:file "ways")
-                 (:file "ways-picture")))
+                 (:file "ways-picture") (:file "aside") (:file "replaying")
+                 (:file "failures")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.
@@ -182,8 +183,11 @@
                  (:file "evaluation") (:file "own-lines") (:file "help") (:file "part-lines")
                  (:file "status-lines") (:file "visits") (:file "running-lines") (:file "loading")
                  (:file "worlds") (:file "world-lines") (:file "plans") (:file "plan-lines")
-                 (:file "plan-views") (:file "picture-lines") (:file "trial-lines") (:file "debugger")
-                 (:file "prompt") (:file "options") (:file "main")))))
+                 (:file "plan-views") (:file "picture-lines") (:file "trial-lines")
+                 (:file "debugger") (:file "prompt") (:file "options") (:file "texts")
+                 (:file "report") (:file "experiments") (:file "executable")
+                 (:file "spreading") (:file "experiment-command")
+                 (:file "table-commands") (:file "commands") (:file "main")))))
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."
@@ -248,6 +252,7 @@
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "experiment-replay")
                  (:file "cli-trials") (:file "cli-files") (:file "cli-plan-tree")
+                 (:file "experiment-shell")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
                  (:file "rpl-seeing-truth")
                  (:file "kinds") (:file "digests") (:file "runs") (:file "outliving")

@@ -104,7 +104,7 @@ line."
         (1+ quote)
         (or (position-if #'blank-p text :start start) (length text)))))
 
-(defun unquoted (token)
+(defun without-quotes (token)
   "Return TOKEN without the double quotes around it, if any."
   (string-trim "\"" token))
 
@@ -145,7 +145,7 @@ line."
   (case (slot-type slot)
     (:rest (values (string-trim " " (subseq text start)) (length text)))
     (:token (let ((end (token-end text start)))
-              (values (unquoted (subseq text start end)) end)))
+              (values (without-quotes (subseq text start end)) end)))
     (t (multiple-value-bind (datum end) (read-datum text start line)
          (let ((value (read-argument (type-key (slot-type slot)) datum (reading-robot line))))
            (check-read value slot line)

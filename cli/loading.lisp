@@ -51,5 +51,5 @@
                              (multiple-value-bind (form end)
                                  (read-from-string text t nil :start position)
                                (setf start end)
-                               (eval-quietly form)))
+                               (call-as-from-file (lambda () (eval-quietly form)) path)))
                            file text position))))

@@ -75,14 +75,30 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
         (run-live session robot-name options))
     (if (and (session-batch-p session) (plusp (session-errors session))) 1 0)))
 
+(defun run-options (options)
+  "Do what OPTIONS say. Return the status to exit with."
+  (cond ((option-value :list options)
+         (when (option-value :world options) (world-robots-called (option-value :world options)))
+         (write-worlds)
+         0)
+        (t (run-prompt options))))
+
+(defun usage-wanted-p (arguments)
+  (intersection arguments '("--help" "-h") :test #'string=))
+
+(defun print-usage (arguments)
+  (write-string (usage-of-command (first arguments)))
+  0)
+
 (defun run-arguments (arguments)
   "Do what ARGUMENTS, a list of strings, say. Return the status to exit with."
-  (let ((options (parse-options arguments)))
-    (cond ((option-value :list options)
-           (when (option-value :world options) (world-robots-called (option-value :world options)))
-           (write-worlds)
-           0)
-          (t (run-prompt options)))))
+  (cond ((usage-wanted-p arguments) (print-usage arguments))
+        ((equal arguments '("--version"))
+         (format t "ARS MAGNA ~A~%" *version*)
+         0)
+        ((and arguments (not (option-p (first arguments))))
+         (run-command-called (first arguments) (rest arguments)))
+        (t (run-options (parse-options arguments)))))
 
 ;;; The process.
 

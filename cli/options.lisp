@@ -1,8 +1,9 @@
-;;;; options.lisp -- the arguments of ./cli/ars-magna.
+;;;; options.lisp -- the arguments of ./cli/ars-magna, taken apart.
 
 (in-package :ars-magna.cli)
 
-;;; What the options do is said in usage.txt, which the shell script prints.
+;;; What the options do is said in usage.txt and the other files of usage, which the shell script
+;;; prints.
 
 (define-condition usage-error (ars-magna-error)
   ((text :initarg :text :reader usage-error-text))
@@ -11,6 +12,8 @@
 
 (defun reject-usage (control &rest arguments)
   (error 'usage-error :text (format nil "~? Try --help." control arguments)))
+
+;;; Values of options.
 
 (defun parse-seed (text)
   (handler-case (parse-integer text)
@@ -25,30 +28,60 @@
   '(("--world" :world identity) ("--robot" :robot identity) ("--seed" :seed parse-seed)
     ("--rate" :rate parse-pace) ("--load" :load identity) ("--plan" :plan identity)
     ("--batch" :batch nil) ("--list" :list nil))
-  "Lists (option key parser); PARSER is NIL for an option without a value.")
+  "Lists (option key parser [:optional]); PARSER is NIL for an option without a value. If the value
+is optional, an empty one stands for none.")
 
-(defun find-option (name)
-  (or (find name *options* :key #'first :test #'string=)
+;;; Taking them apart.
+
+(defun option-p (argument)
+  (starts-with-subseq "--" argument))
+
+(defun find-option (name table)
+  (or (find name table :key #'first :test #'string=)
       (reject-usage "~A is no option.~@[ Did you mean ~A?~]" name
-                    (nearest-name name (mapcar #'first *options*)))))
+                    (nearest-name name (mapcar #'first table)))))
 
 (defun split-option (argument)
   "Return the name of the option in ARGUMENT, and its value if that follows a =."
   (let ((equals (position #\= argument)))
-    (if (and equals (starts-with-subseq "--" argument))
+    (if (and equals (option-p argument))
         (values (subseq argument 0 equals) (subseq argument (1+ equals)))
         (values argument nil))))
 
-(defun parse-options (arguments)
-  "Return a list of (key value) for ARGUMENTS, a list of strings. Signals USAGE-ERROR."
+(defun value-that-follows (option arguments table)
+  "Return the value that OPTION, an element of TABLE, has in ARGUMENTS, which follow it, and those
+that are left."
+  (destructuring-bind (name key parser &optional optional) option
+    (declare (ignore key))
+    (cond ((null parser) (values nil arguments))
+          ((and optional (or (null arguments)
+                             (find (split-option (first arguments)) table
+                                   :key #'first :test #'string=)))
+           (values "" arguments))
+          ((null arguments) (reject-usage "~A takes a value." name))
+          (t (values (first arguments) (rest arguments))))))
+
+(defun read-option (argument arguments table)
+  "Return a list (key value) for the option ARGUMENT, which ARGUMENTS follow, and those left."
+  (multiple-value-bind (name value) (split-option argument)
+    (let ((option (find-option name table)))
+      (destructuring-bind (name key parser &rest optional) option
+        (declare (ignore optional))
+        (when (and value (null parser)) (reject-usage "~A takes no value." name))
+        (multiple-value-bind (text left)
+            (if value (values value arguments) (value-that-follows option arguments table))
+          (values (list key (if parser (funcall parser text) t)) left))))))
+
+(defun parse-options (arguments &key (table *options*) others)
+  "Return a list of (key value) for ARGUMENTS, a list of strings, whose options are those of TABLE.
+If OTHERS is true, those that are none count as (:other argument). Signals USAGE-ERROR."
   (loop while arguments
-        collect (multiple-value-bind (name value) (split-option (pop arguments))
-                  (destructuring-bind (name key parser) (find-option name)
-                    (cond ((and (null parser) value) (reject-usage "~A takes no value." name))
-                          ((null parser) (list key t))
-                          (value (list key (funcall parser value)))
-                          ((null arguments) (reject-usage "~A takes a value." name))
-                          (t (list key (funcall parser (pop arguments)))))))))
+        collect (let ((argument (pop arguments)))
+                  (if (and others (not (option-p argument)))
+                      (list :other argument)
+                      (multiple-value-bind (entry left) (read-option argument arguments table)
+                        (setf arguments left)
+                        entry)))))
 
 (defun option-value (key options &optional default)
   "Return the last value that OPTIONS give for KEY."

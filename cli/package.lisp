@@ -35,7 +35,11 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:run-again #:call-until-error #:call-aside #:await-time
                 #:prepare-condition #:row-of-trial #:row-differences
                 #:result-outcome #:result-reason #:result-ticks #:result-error #:measured
-                #:print-failures)
+                #:print-failures
+                #:run-experiment #:merge-results #:processors #:settle-fingerprints
+                #:results-directory #:print-results #:save-result-pictures #:read-results
+                #:compare-conditions #:compare-results #:save-comparison-picture
+                #:shard-directory #:directories-with-rows #:count-rows #:missing-shards)
   ;; trivial-gray-streams
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream
            #:stream-line-column #:stream-write-char #:stream-write-string

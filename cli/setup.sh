@@ -120,7 +120,8 @@ with_lock() {  # COMMAND...
 }
 
 source_sums() {  # DIRECTORY...: a check sum of each source there, and its name.
-    ( cd "$root" && find ars-magna.asd "$@" \( -name '*.lisp' -o -name '*.asd' \) -exec cksum {} + |
+    ( cd "$root" && find ars-magna.asd "$@" \( -name '*.lisp' -o -name '*.asd' \
+                -o -name 'usage*.txt' -o -name 'spread-*.sh' \) -exec cksum {} + |
           LC_ALL=C sort -k 3 )
 }
 

@@ -61,7 +61,8 @@
 (test files.are-all-in-a-system
   (let ((systems (base:read-file-into-string (project-file "ars-magna.asd"))))
     (dolist (path (set-difference (lisp-files "src/" "rpl/" "cli/" "worlds/" "tests/")
-                                  (lisp-files "tests/benchmarks/" "tests/homes/")
+                                  (lisp-files "tests/benchmarks/" "tests/homes/"
+                                              "tests/cluster/")
                                   :test #'equal))
       (unless (equal (project-file "cli/build.lisp") path)
         (is (search (format nil "(:file \"~A\")" (pathname-name path)) systems)
@@ -100,7 +101,7 @@
   '("src/base/policy.lisp" "src/base/floats.lisp" "src/base/globals.lisp" "src/base/atomic.lisp"
     "src/base/packages.lisp" "src/base/environments.lisp" "src/base/interrupts.lisp"
     "src/base/debuggers.lisp" "src/base/files.lisp" "src/base/tables.lisp"
-    "src/base/random.lisp")
+    "src/base/random.lisp" "cli/executable.lisp")
   "The files that may name SB-EXT.")
 
 (defparameter *before-the-doors*

@@ -53,11 +53,17 @@
   (rejected-clause (b (base:braking* 1)) (:robots ars-worlds:dot) (:run t)
     (:conditions (a (base:max-speed* 1)) (b (base:braking* 1)))))
 
+(defun own-element ()
+  "Return a list that is an element of itself."
+  (let ((list (list 1 2))) (setf (second list) list) list))
+
 (test definition.shows-the-value-that-is-wrong
   (rejected-clause (base:motion-noise* -1) (:robots ars-worlds:dot) (:run t)
     (:vary (base:motion-noise* -1)))
   (rejected-clause (size 1 1) (:robots ars-worlds:dot) (:run size) (:vary (size 1 1)))
   (rejected-clause (size #'car) (:robots ars-worlds:dot) (:run size) (:vary (size #'car)))
+  (rejected-clause (size :in (list (own-element))) (:robots ars-worlds:dot) (:run size)
+    (:vary (size :in (list (own-element)))))
   (rejected-clause (size :in 3) (:robots ars-worlds:dot) (:run size) (:vary (size :in 3)))
   (rejected-clause ticks (:robots ars-worlds:dot) (:run ticks) (:vary (ticks 1 2)))
   (rejected-clause (t 3) (:robots ars-worlds:dot) (:run t) (:vary (t 3))))

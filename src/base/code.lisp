@@ -25,11 +25,29 @@ numbers."
        (append (mapcar #'constant-meant (code-constants function))
                (when (sb-kernel:closurep function) (sb-kernel:%closure-values function))))))
 
+;;; From which file functions are. Where the forms of one are evaluated one by one, that must be
+;;; said.
+
+(defvar *dates-of-files* (make-hash-table :test 'equal :synchronized t)
+  "When files were written whose forms have been evaluated one by one, by what they are called.")
+
+(defun date-of-file (name)
+  "Return when the file called NAME was written when its forms were evaluated one by one, or NIL."
+  (gethash name *dates-of-files*))
+
+(defun call-as-from-file (function path)
+  "Call FUNCTION, which evaluates forms that have been read from the file PATH: the functions that
+come of it are from there."
+  (let ((name (native-name path)))
+    (setf (gethash name *dates-of-files*) (file-write-date path))
+    (with-compilation-unit (:source-namestring name) (funcall function))))
+
 (defun function-file (function)
   "Return the file that FUNCTION was compiled from, as the system calls it, and the time at which
 that was written by then; NIL if it was typed."
   (let* ((source (ignore-errors (sb-introspect:find-definition-source function)))
          (path (and source (sb-introspect:definition-source-pathname source))))
     (and path
-         (values (native-name (translate-logical-pathname path))
-                 (sb-introspect:definition-source-file-write-date source)))))
+         (let ((name (native-name (translate-logical-pathname path))))
+           (values name (or (sb-introspect:definition-source-file-write-date source)
+                            (date-of-file name)))))))

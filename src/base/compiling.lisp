@@ -169,6 +169,13 @@ is not true, or else another."
                  (multiple-value-bind (warned-now failed-now) (end-unit unit)
                    (values output (or warned warned-now) (or failed failed-now)))))))))
 
+;; Who compiles or loads another file meanwhile has functions of that.
+(defun apply-in-own-file (function arguments)
+  "Apply FUNCTION, which compiles or loads a file, to ARGUMENTS."
+  (let ((name (compiler-variable '#:*source-namestring*)))
+    (progv (and (date-of-file (symbol-value name)) (list name)) '(nil)
+      (apply function arguments))))
+
 ;;; SBCL has no hook for the end of a unit.
 
 (defun watch-units ()
@@ -176,9 +183,9 @@ is not true, or else another."
   (flet ((wrap (name wrapper)
            (sb-int:encapsulate name 'ars-magna wrapper)))
     (wrap 'compile-file (lambda (function &rest arguments)
-                          (compile-in-unit (lambda () (apply function arguments)))))
+                          (compile-in-unit (lambda () (apply-in-own-file function arguments)))))
     (wrap 'load (lambda (function &rest arguments)
-                  (call-in-unit :load (lambda () (apply function arguments)))))
+                  (call-in-unit :load (lambda () (apply-in-own-file function arguments)))))
     (wrap (compiler-variable '#:%with-compilation-unit)
           (lambda (function body &rest options &key override &allow-other-keys)
             (apply function (lambda () (call-in-unit :compilation body override)) options)))))

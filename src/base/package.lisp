@@ -31,7 +31,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:memory-barrier)
   ;; classes, code, packages
   (:export #:define-function-class #:generic-name #:class-ancestors #:class-slot-names
-           #:code-references #:function-file
+           #:code-references #:function-file #:call-as-from-file #:date-of-file
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
   ;; files, processes
@@ -39,7 +39,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:unusable-file-text
            #:call-replacing-file #:decoded #:file-text #:cut-file #:call-with-file-lock
            #:host-name #:process-number
-           #:environment-value #:run-command)
+           #:environment-value #:run-command #:run-attached)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
            #:local-function-p #:known-function-p #:macro-expander

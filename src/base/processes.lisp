@@ -18,3 +18,15 @@ status, or NIL if it cannot be run, and as a string what it wrote if OUTPUT is :
         (declare (ignore errors))
         (values status text))
     (error () nil)))
+
+(defun run-attached (program arguments)
+  "Run PROGRAM, looked for where programs are, with the strings ARGUMENTS: it reads and writes what
+this process would. Wait for its end; if this is left, it is told to end. Return its exit status, or
+NIL if it cannot be run."
+  (let ((process (handler-case (uiop:launch-program (cons program arguments)
+                                                    :input :interactive :output :interactive
+                                                    :error-output :interactive)
+                   (error () (return-from run-attached nil))))
+        (status nil))
+    (unwind-protect (setf status (uiop:wait-process process))
+      (unless status (uiop:terminate-process process)))))

@@ -11,6 +11,9 @@
 (defparameter *file-digests* (make-hash-table :test 'equal :synchronized t)
   "Numbers of files by name: those that a saved Lisp was made of may be gone when it runs.")
 
+(defvar *digests-settled-p* nil
+  "True in a Lisp that was saved with its experiments: what becomes of their files is no matter.")
+
 (defun short-name (file)
   (file-namestring (native-path file)))
 
@@ -23,7 +26,8 @@
   "Return a number for the code in FILE, which was loaded as WRITTEN at that time. Signals MISUSE if
 it has been changed since."
   (let ((now (ignore-errors (file-write-date (native-path file)))))
-    (cond ((and now (or (null written) (= now written)))
+    (cond ((and *digests-settled-p* (gethash file *file-digests*)))
+          ((and now (or (null written) (= now written)))
            (setf (gethash file *file-digests*) (file-digest (native-path file) "defexperiment")))
           ((gethash file *file-digests*))
           (now (reject-newer-file file))
@@ -117,3 +121,10 @@ may use Lisp's own dice."
 loaded, and what the making of its worlds signals."
   (dolist (condition (experiment-conditions experiment) experiment)
     (prepare-condition experiment condition)))
+
+(defun settle-fingerprints ()
+  "Let what the experiments' files say now be what their fingerprints say from now on, whatever
+becomes of the files: for a Lisp that is saved with all that is in it. Signals MISUSE if a file is
+not as it was loaded."
+  (mapc #'prepare-experiment (all-experiments))
+  (setf *digests-settled-p* t))

@@ -48,12 +48,9 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture)
   ;; lines, running, merging, workers
   (:export #:damaged-table #:run-experiment #:merge-results #:processors)
-  ;; aside, replaying, failures
-  (:export #:run-again #:call-until-error #:call-aside #:await-time #:replay-trial
-           #:row-of-trial #:row-differences #:prepare-condition #:measured
-           #:trial-failures #:print-failures)
-  ;; what the prompt shows
-  (:export #:experiment-documentation #:trial-seed)
+  ;; fingerprint, shards
+  (:export #:settle-fingerprints #:shard-directory #:directories-with-rows #:count-rows
+           #:missing-shards)
   ;; estimates, summary, report
   (:export #:estimate-p #:estimate-name #:estimate-kind #:estimate-count #:estimate-value
            #:estimate-low #:estimate-high #:estimate-left-out #:estimate-texts
@@ -61,4 +58,10 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:summary-limits #:summary-errors #:summary-confidence #:summary-success #:summary-ticks
            #:summary-measures #:summary-reasons #:summarize-results #:print-results)
   ;; pictures, ways-picture
-  (:export #:save-result-pictures #:save-ways-picture))
+  (:export #:save-result-pictures #:save-ways-picture)
+  ;; aside, replaying, failures
+  (:export #:run-again #:call-until-error #:call-aside #:await-time #:replay-trial
+           #:row-of-trial #:row-differences #:prepare-condition #:measured
+           #:trial-failures #:print-failures)
+  ;; what the prompt shows
+  (:export #:experiment-documentation #:trial-seed))

@@ -47,12 +47,15 @@ same in each run."
   "True if VALUE is a number that a table can have."
   (and (realp value) (finite-p value)))
 
-(defun value-p (value)
-  "True if VALUE may stand in a table: a number, symbol, string, character, or list of such."
+(defun plain-part-p (value)
   (typecase value
     (number (finite-value-p value))
     ((or symbol string character) t)
-    (cons (and (proper-list-p value) (every #'value-p value)))))
+    (cons (and (proper-list-p value) (every #'plain-part-p value)))))
+
+(defun value-p (value)
+  "True if VALUE may stand in a table: a number, symbol, string, character, or list of such."
+  (and (tree-p value) (plain-part-p value)))
 
 (defun value-text (value)
   "Return how VALUE stands in a table."

@@ -135,11 +135,11 @@ the same runs, else NIL."
     (if (= same trials)
         (format nil "All ~D trials that both have are the same to the last bit." trials)
         (format nil "Of ~D condition~:P ~[none succeeds~;1 succeeds~:;~:*~D succeed~] more often ~
-                     than before, ~[none~:;~:*~D~] less often~[~:;, ~:*~D ~[~;is~:;are~] the ~
+                     than before, ~[none~:;~:*~D~] less often~[~:;, ~:*~D ~:*~[~;is~:;are~] the ~
                      same~]~[~:;, and of ~:*~D no difference can be told~]. Of ~D trials that ~
                      both have, ~D are the same to the last bit."
                 (length found) (count :better found) (count :worse found)
-                (count :same found) (count :same found) (count nil found) trials same))))
+                (count :same found) (count nil found) trials same))))
 
 (addition comparison-verdicts)
 (defun comparison-verdicts (comparison)

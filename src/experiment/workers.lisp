@@ -34,7 +34,11 @@
   "Call FUNCTION in each of COUNT threads, with its number from 1, and wait until all have returned.
 PULSE, a function, is called here now and then. If this is left, STOP is called, which should let
 them return; those that do not are ended. What FUNCTION signals is signalled here."
-  (let* ((lparallel:*kernel* (lparallel:make-kernel count :name "trials"))
+  (let* ((lparallel:*kernel* (lparallel:make-kernel
+                              count :name "trials"
+                              ;; Threads that are ended would say so.
+                              :bindings `((*standard-output* . ,*nowhere*)
+                                          (*error-output* . ,*nowhere*))))
          (channel (lparallel:make-channel))
          (left count))
     (unwind-protect

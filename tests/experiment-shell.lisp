@@ -1,0 +1,306 @@
+;;;; experiment-shell.lisp -- experiments at a shell: options, files, tables, shards, scripts.
+
+(in-package :ars-magna.tests)
+
+(def-suite* experiment-shell :in ars-magna)
+
+;;; A directory to work in, with a name that a shell would take apart.
+
+(defvar *place* nil "The name of the directory that a test works in.")
+
+(defun placed (name) (uiop:strcat *place* name))
+
+(defun call-in-place (function)
+  (let* ((dice (base:make-dice (base:process-number) "places"))
+         (*place* (format nil "~Aars magna 'é' ~36R/" (uiop:native-namestring
+                                                       (uiop:temporary-directory))
+                          (base:roll-index 1000000 dice)))
+         (path (uiop:parse-native-namestring *place*)))
+    (ensure-directories-exist path)
+    (unwind-protect (base:with-own-definitions () (funcall function))
+      (uiop:delete-directory-tree path :validate t))))
+
+(defun write-file (name control &rest arguments)
+  "Write a file NAME into the place of the test. Return its whole name."
+  (with-open-file (out (base:native-path (placed name)) :direction :output :if-exists :supersede
+                                                        :external-format :utf-8)
+    (format out "~?" control arguments))
+  (placed name))
+
+(defparameter *stroll*
+  "(defun far () (+ 4 (random 2)))
+   (defexperiment stroll
+     (:robots ars-worlds:dot) (:vary (motion-noise* 0 0.1)) (:trials 12) (:limit 60)
+     (:run (robot-go-forward ars-worlds:dot (far)) (run-ticks 20)
+           (if (= 0 (random 9)) (error \"no, not that\") t))
+     (:success (> (robot-x ars-worlds:dot) 7))
+     (:measure (x (robot-x ars-worlds:dot))))"
+  "An experiment, some of whose trials break off.")
+
+(defun shell (&rest arguments)
+  "Do what ./cli/ars-magna does with ARGUMENTS. Return its status, what it writes to the standard
+output, and what to the error output."
+  (let* ((errors (make-string-output-stream)) (status nil)
+         (written (with-output-to-string (*standard-output*)
+                    (let ((*error-output* errors)
+                          (base:*message-queue* (base:make-message-queue))
+                          (command (cli::find-command-called (first arguments))))
+                      (setf status (funcall (second command) (rest arguments)))))))
+    (values status written (get-output-stream-string errors))))
+
+(defun run-stroll (&rest options)
+  (apply #'shell "experiment" (placed "a stroll.lisp") "--quiet" options))
+
+(defmacro in-place (&body body)
+  `(call-in-place (lambda () (write-file "a stroll.lisp" "~A" *stroll*) ,@body)))
+
+(defun text-in (name) (base:file-text (base:native-path (placed name))))
+
+(defun lines-in (name) (length (lines-of (text-in name))))
+
+(defun said-by (function)
+  "Return what the error says that FUNCTION signals."
+  (handler-case (progn (funcall function) "nothing")
+    (base:ars-magna-error (condition) (princ-to-string condition))))
+
+;;; Options.
+
+(test options-of-experiments.are-read
+  (is (equal '((:other "a.lisp") (:trials 20) (:until 0.02d0) (:shard (3 . 8)) (:parallel "")
+               (:out "x y") (:slurm "--time=5 -p all") (:parallel "8/alice,bob") (:other "b"))
+             (cli::parse-options '("a.lisp" "--trials" "20" "--until" ".02" "--shard=3/8"
+                                   "--parallel" "--out" "x y" "--slurm" "--time=5 -p all"
+                                   "--parallel" "8/alice,bob" "b")
+                                 :table cli::*experiment-options* :others t))))
+
+(test options-of-experiments.that-make-no-sense-are-usage-errors
+  (dolist (arguments '(("experiment") ("experiment" "a" "b" "c") ("experiment" "a" "--trails" "3")
+                       ("experiment" "a" "--trials" "0") ("experiment" "a" "--trials" "many")
+                       ("experiment" "a" "--trials") ("experiment" "a" "--until" "2")
+                       ("experiment" "a" "--shard" "3/3" "--out" "x")
+                       ("experiment" "a" "--shard" "3" "--out" "x")
+                       ("experiment" "a" "--shard" "0/3") ("experiment" "a" "--parallel")
+                       ("experiment" "a" "--plot") ("experiment" "a" "--missing" "--out" "x")
+                       ("experiment" "a" "--out" "") ("experiment" "a" "--quiet=1")
+                       ("experiment" "a" "--shard" "0/3" "--until" ".1" "--out" "x")
+                       ("experiment" "a" "--parallel" "--slurm" "--out" "x")
+                       ("merge" "a") ("merge" "--out" "x") ("compare" "1") ("frob") ("frob" "x")))
+    (signals cli::usage-error (cli::run-arguments arguments))))
+
+(test options-of-commands.are-all-in-their-usage
+  (loop for (command options) in `(("experiment" ,cli::*experiment-options*)
+                                   ("merge" ,cli::*merge-options*)
+                                   ("compare" ,cli::*compare-options*))
+        for usage = (with-output-to-string (*standard-output*)
+                      (is (eql 0 (cli::run-arguments (list command "--help")))))
+        do (is (eql 0 (search (format nil "Usage: ars-magna ~A" command) usage)))
+           (loop for (option) in options
+                 do (is-true (search option usage) "~A of ~A" option command)))
+  (loop for (command) in cli::*shell-commands*
+        do (is-true (search command (cli::usage-of-command nil)) "~A" command)))
+
+(test commands.that-are-unknown-name-the-nearest
+  (is-true (has-words-p (said-by (lambda () (cli::run-arguments '("expriment" "a"))))
+                        "expriment" "Did you mean experiment")))
+
+;;; Files and names.
+
+(test files.without-an-experiment-or-with-several-say-so
+  (in-place
+    (write-file "none.lisp" "(defun nothing () 1)")
+    (write-file "two.lisp" "~A (defexperiment trip (:robots ars-worlds:dot) (:run t))" *stroll*)
+    (is-true (has-words-p (said-by (lambda () (shell "experiment" (placed "none.lisp"))))
+                          "none.lisp" "defexperiment"))
+    (is-true (has-words-p (said-by (lambda () (shell "experiment" (placed "two.lisp"))))
+                          "several" "stroll" "trip"))
+    (is-true (has-words-p (said-by (lambda () (shell "experiment" (placed "two") "strol")))
+                          "strol" "Did you mean stroll" "trip"))
+    (is (eql 0 (shell "experiment" (placed "two") "Trip" "--quiet" "--trials" "2")))))
+
+(test files.with-an-error-name-its-line
+  (in-place
+    (write-file "bad.lisp" "(defun far () 3)~%~%(defexperiment wrong (:robots dot) (:runs t))")
+    (is-true (has-words-p (said-by (lambda () (shell "experiment" (placed "bad.lisp"))))
+                          "bad.lisp" "line 3" ":runs"))
+    (is-true (has-words-p (said-by (lambda () (shell "experiment" (placed "no-such.lisp"))))
+                          "no-such.lisp" "no file"))))
+
+(test experiments.are-known-by-name-before-files-without-their-type
+  (in-place
+    (cli::load-experiments (base:native-path (placed "a stroll.lisp")))
+    (let ((known (cli::experiment-called "stroll")))
+      (write-file "stroll.lisp" "(error \"this must not be loaded\")")
+      (uiop:with-current-directory ((uiop:parse-native-namestring *place*))
+        (is (eq known (cli::experiment-called "stroll")))
+        (signals cli::file-trouble (cli::experiment-called "stroll.lisp"))))
+    (is-true (has-words-p (said-by (lambda () (cli::experiment-called "strll")))
+                          "strll" "Did you mean stroll"))))
+
+;;; Tables.
+
+(test experiments.are-kept-where-that-is-wanted
+  (in-place
+    (multiple-value-bind (status written errors) (run-stroll "--out" (placed "out put"))
+      (is (eql 0 status))
+      (is (string= "" errors))
+      (is (string= written (text-in "out put/summary.txt")))
+      (is (= 25 (lines-in "out put/rows.csv")))
+      (is-true (search "no, not that" (text-in "out put/rows.csv")))
+      (is-true (has-words-p written "12" "motion-noise*" "error"))
+      (is (= 24 (ars-magna.experiment:count-rows (placed "out put")))))
+    (let ((before (in-place-now)))
+      (is (eql 0 (run-stroll)))
+      (is (equal before (in-place-now))))))
+
+(defun in-place-now ()
+  "Return the names of all that is in the place of the test, in order."
+  (let ((path (uiop:parse-native-namestring *place*)))
+    (sort (mapcar #'uiop:native-namestring
+                  (append (uiop:directory-files path) (uiop:subdirectories path)))
+          #'string<)))
+
+(test pictures.are-drawn-where-that-is-wanted
+  (in-place
+    (run-stroll "--out" (placed "out") "--plot")
+    (is-true (uiop:directory-files (uiop:parse-native-namestring (placed "out/")) "*.svg"))
+    (is (eql 0 (shell "merge" (placed "out") "--out" (placed "all") "--plot")))
+    (is-true (uiop:directory-files (uiop:parse-native-namestring (placed "all/")) "*.svg"))))
+
+(test experiments.go-on-where-they-were-left
+  (in-place
+    (run-stroll "--out" (placed "whole"))
+    (run-stroll "--out" (placed "parts") "--trials" "5" "--workers" "1")
+    (run-stroll "--out" (placed "parts") "--workers" "2")
+    (is (string= (text-in "whole/rows.csv") (text-in "parts/rows.csv")))))
+
+(defun missing-of (count)
+  (string-trim '(#\Newline) (nth-value 1 (run-stroll "--out" (placed "parts") "--missing"
+                                                     "--shards" count))))
+
+(test shards.make-the-same-table
+  (in-place
+    (run-stroll "--out" (placed "whole"))
+    (is (string= "0 1 2" (missing-of "3")))
+    (is (string= "" (nth-value 1 (run-stroll "--out" (placed "parts") "--shard" "1/3"))))
+    (is (= 9 (lines-in "parts/shard-1-of-3/rows.csv")))
+    (is (string= "0 2" (missing-of "3")))
+    (dolist (shard '("0/3" "2/3")) (run-stroll "--out" (placed "parts") "--shard" shard))
+    (is (string= "" (missing-of "3")))
+    (is (string= "" (missing-of "5")) "what other shards have is there")
+    (is (eql 0 (shell "merge" (placed "parts") "--out" (placed "parts"))))
+    (is (string= (text-in "whole/rows.csv") (text-in "parts/rows.csv")))
+    (is (string= (text-in "whole/summary.txt") (text-in "parts/summary.txt")))))
+
+(test shards.that-are-cut-short-are-missing
+  (in-place
+    (run-stroll "--out" (placed "parts") "--shard" "0/2")
+    (let* ((file (base:native-path (placed "parts/shard-0-of-2/rows.csv")))
+           (size (with-open-file (in file :element-type '(unsigned-byte 8)) (file-length in))))
+      (is (string= "1" (missing-of "2")))
+      (base:cut-file file (- size 3))
+      (is (string= "0 1" (missing-of "2")))
+      (is (= size (progn (run-stroll "--out" (placed "parts") "--shard" "0/2")
+                         (with-open-file (in file :element-type '(unsigned-byte 8))
+                           (file-length in))))))))
+
+(test merging.says-where-nothing-is
+  (in-place
+    (is-true (has-words-p (said-by (lambda () (shell "merge" (placed "none") "--out" *place*)))
+                          "none" "no rows"))))
+
+(test comparing.takes-conditions-and-directories
+  (in-place
+    (run-stroll "--out" (placed "one"))
+    (run-stroll "--out" (placed "two"))
+    (flet ((compared (&rest arguments) (nth-value 1 (apply #'shell "compare" arguments))))
+      (is-true (has-words-p (compared "=0.1" "1" (placed "one") "--measure" "success")
+                            "motion-noise*=0.1" "motion-noise*=0" "12 common seeds"))
+      (is-true (has-words-p (compared "1" "all" (placed "a stroll.lisp") "--quiet") "12 common"))
+      (is-true (has-words-p (compared (placed "one") (placed "two")) "24" "the same"))
+      (is-true (has-words-p (said-by (lambda () (compared "1" "none" (placed "one"))))
+                            "none" "motion-noise*=0.1")))))
+
+;;; What decides the rows.
+
+(defun fingerprints-now ()
+  (let ((experiment (first (cli::load-experiments (base:native-path (placed "a stroll.lisp"))))))
+    (ars-magna.experiment::prepare-experiment experiment)
+    (mapcar #'ars-magna.experiment::condition-fingerprint
+            (ars-magna.experiment:experiment-conditions experiment))))
+
+(test fingerprints.know-the-functions-of-the-file-and-of-those-that-it-loads
+  (in-place
+    (write-file "far.lisp" "(defun far () 4)")
+    (flet ((fingerprints (more)
+             (write-file "a stroll.lisp" "~A~%(load (merge-pathnames \"far.lisp\" *load-truename*))"
+                         more)
+             (with-open-file (out (base:native-path (placed "a stroll.lisp")) :direction :output
+                                                                             :if-exists :append)
+               (write-string (subseq *stroll* (search "(defexperiment" *stroll*)) out))
+             (fingerprints-now)))
+      (let ((first (fingerprints "(defun unused () 1)")))
+        (is (equal first (fingerprints ";; Other words.
+ (defun unused  () 1)")))
+        (write-file "far.lisp" "(defun far () 5)")
+        (is (not (equal first (fingerprints "(defun unused () 1)"))))
+        (write-file "far.lisp" "(defun far () 4)")
+        (is (equal first (fingerprints "(defun unused () 1)")))))))
+
+(test fingerprints.know-the-functions-of-the-file
+  (in-place
+    (let ((first (fingerprints-now)))
+      (is (equal first (fingerprints-now)))
+      (write-file "a stroll.lisp" "~A~%" (substitute #\5 #\4 *stroll* :count 1))
+      (is (not (equal first (fingerprints-now)))))))
+
+(test fingerprints.are-settled-in-a-saved-program
+  (in-place
+    (let ((first (fingerprints-now)) (ars-magna.experiment::*digests-settled-p* nil))
+      (ars-magna.experiment:settle-fingerprints)
+      (delete-file (base:native-path (placed "a stroll.lisp")))
+      (let ((experiment (ars-magna.experiment:find-experiment 'ars-user::stroll)))
+        (flet ((now ()
+                 (ars-magna.experiment::prepare-experiment experiment)
+                 (mapcar #'ars-magna.experiment::condition-fingerprint
+                         (ars-magna.experiment:experiment-conditions experiment))))
+          (is (equal first (now)))
+          (write-file "a stroll.lisp" "(defun other () 1)")
+          (is (equal first (now))))))))
+
+;;; Scripts.
+
+(defun script-settings (settings)
+  "Return what a shell makes of SETTINGS, a list of lists (variable value)."
+  (let ((text (cli::with-settings "@SETTINGS@" (loop for (variable value) in settings
+                                                     collect (list variable value "what")))))
+    (lines-of text)))
+
+(test scripts.have-their-settings-quoted
+  (loop for (word line) in '((5 "a=5") ("" "a=") ("two words" "a=\"two words\"")
+                             ("it's $x" "a=\"it's \\$x\"") ("8/ssh -p 2 x,`y`"
+                                                            "a=\"8/ssh -p 2 x,\\`y\\`\""))
+        for written = (first (script-settings `(("a" ,word))))
+        do (is (string= line (string-right-trim " " (subseq written 0 (search "#" written))))))
+  (dolist (name '("spread-parallel.sh" "spread-slurm.sh"))
+    (is-false (search "@SETTINGS@" (cli::with-settings (cli::text-called name) '(("a" 1 "one")))))
+    (is-true (eql 0 (search (format nil "#!/bin/sh~%") (cli::text-called name))))))
+
+(test shards.are-of-a-size-that-pays
+  (in-place
+    (let ((experiment (cli::experiment-called (placed "a stroll.lisp"))))
+      (loop for (trials script shards) in '((5 "run.sh" 5) (100 "run.sh" 16) (10000 "run.sh" 40)
+                                            (1000000 "run.sh" 1000) (100 "job.sh" 1)
+                                            (100000 "job.sh" 40) (10000000 "job.sh" 1000))
+            do (is (= shards (cli::default-shards experiment trials script))
+                   "~D trials by ~A" trials script)))))
+
+(test scripts.that-somebody-has-changed-are-kept
+  (in-place
+    (flet ((write-script (text)
+             (with-output-to-string (*error-output*)
+               (cli::write-script "run.sh" text (uiop:parse-native-namestring *place*)))))
+      (is (string= "" (write-script "one")))
+      (is (string= "" (write-script "one")))
+      (is-true (has-words-p (write-script "two") "run.sh~"))
+      (is (string= "two" (text-in "run.sh")))
+      (is (string= "one" (text-in "run.sh~"))))))
