@@ -56,6 +56,14 @@
       (with-lock (*stores-lock*)
         (setf *stores-in-use* (remove path *stores-in-use* :test #'equal))))))
 
+(defun new-directory ()
+  "Return the path of a new directory among the system's temporary ones."
+  (loop for number from 0
+        for path = (directory-called (format nil "~Aars-magna-~D-~D/"
+                                             (native-name (uiop:temporary-directory))
+                                             (process-number) number))
+        when (nth-value 1 (ensure-directories-exist path)) return path))
+
 (defun call-with-temporary-directory (function)
   "Call FUNCTION with the path of a new directory, which is gone afterwards."
   (let ((path (new-directory)))

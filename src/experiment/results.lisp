@@ -85,7 +85,9 @@
 (defun sample-measure (results sample measure)
   "Return a vector of what was measured as MEASURE, a string or symbol, in the trials of SAMPLE, one
 of those of RESULTS: numbers, T, NIL, strings, and :NONE where nothing was. MEASURE may be ticks,
-too. Signals UNKNOWN-NAME."
+too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
+  (check-argument sample-measure measure (typep measure '(or string symbol))
+                  "the name of a measure, a string or symbol")
   (let ((place (position (string measure) (results-measures results) :test #'string-equal)))
     (cond (place (nth place (sample-measures sample)))
           ((string-equal measure "ticks") (sample-ticks sample))

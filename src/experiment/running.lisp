@@ -119,14 +119,6 @@ are those of the fingerprints of its conditions. Signals MISUSE for rows of othe
        experiment directory)
       (write-in-order (list (rows-file directory)) (rows-file directory)))))
 
-(defun new-directory ()
-  "Return the path of a new directory among the system's temporary ones."
-  (loop for number from 0
-        for path = (directory-called (format nil "~Aars-magna-~D-~D/"
-                                             (native-name (uiop:temporary-directory))
-                                             (process-number) number))
-        when (nth-value 1 (ensure-directories-exist path)) return path))
-
 (defun shard-p (shard)
   (or (null shard)
       (and (consp shard) (integerp (car shard)) (integerp (cdr shard))

@@ -1,4 +1,4 @@
-;;;; walk.lisp -- the walk across a room as its peers do it, by commands and continuations.
+;;;; walk.lisp -- the walk across a room as its peers do it, by continuations, as an experiment.
 
 ;;; Lines are counted by ./run under the names after "== ", as in trials.py.
 
@@ -53,38 +53,24 @@
     (run-until (lambda () ended))
     (at-goal-p robot)))
 
-(defparameter *noises* '(0 .1 .2 .4 .6))
-
-(defun trial (noise seed)
-  (with-simulation (walker :seed seed :clean t
-                           :parameters `((max-turn-angle* ,pi) (robot-turn-delay* 0)
-                                         (robot-move-delay* 0)))
-    (walked-p walker noise 40)))
-
-(defun results (first step)
-  "Return a list of how many trials of every STEPth seed from FIRST succeed at each noise."
-  (loop for noise in *noises*
-        collect (loop for seed from first to 1000 by step
-                      count (trial noise seed))))
-
-;; == 2 cores
-(defun results-of-threads (cores)
-  "Return the sums of what as many threads as CORES count."
-  (let* ((parts (make-list cores))
-         (threads (loop for part on parts
-                        for first from 1
-                        collect (let ((part part) (first first))
-                                  (bordeaux-threads:make-thread
-                                   (lambda () (setf (first part) (results first cores))))))))
-    (mapc #'bordeaux-threads:join-thread threads)
-    (apply #'mapcar #'+ parts)))
+(defexperiment walking
+  "How often does a walker get across the room, the more of its steps are random?"
+  (:robots walker)
+  (:clean)
+  (:parameters (max-turn-angle* pi) (robot-turn-delay* 0) (robot-move-delay* 0))
+  (:vary (noise 0 1/10 2/10 4/10 6/10))
+  (:trials 1000)
+  (:run (walked-p walker noise 40)))
 
 ;; == measuring
-(defun measure (cores)
-  "Do all trials on CORES cores; print the figures that ./run wants."
+(defun success-rate (sample)
+  (/ (count "success" (sample-outcomes sample) :test #'string=)
+     (float (length (sample-outcomes sample)))))
+
+(defun measure (cores directory)
+  "Do all trials on CORES cores, with a table in DIRECTORY; print the figures that ./run wants."
   (let* ((start (get-internal-real-time))
-         (successes (results-of-threads cores))
+         (results (run-experiment 'walking :workers cores :directory directory :stream nil))
          (seconds (/ (- (get-internal-real-time) start) internal-time-units-per-second 1.0)))
     (format t "~&~{~A~^|~}~%"
-            (list* "ARS MAGNA" cores seconds
-                   (loop for count in successes collect (/ count 1000.0))))))
+            (list* "ARS MAGNA" cores seconds (mapcar #'success-rate (results-samples results))))))
