@@ -129,20 +129,31 @@
                  (:file "survival-chart") (:file "rows") (:file "difference-chart")
                  (:file "measure-chart") (:file "drawing-chart") (:file "saving")))
    (:module "src/experiment" :serial t
-    :components ((:file "package") (:file "values") (:file "csv") (:file "condition")
-                 (:file "experiment") (:file "clauses") (:file "defexperiment")
-                 (:file "outcome") (:file "trial") (:file "version") (:file "reaching")
-                 (:file "fingerprint") (:file "row") (:file "lines")
-                 (:file "directory") (:file "workers") (:file "stopwatch") (:file "progress")
-                 (:file "rounds") (:file "stopping") (:file "description") (:file "results")
-                 (:file "running") (:file "merging") (:file "shards") (:file "differences")
-                 (:file "contrasts")
-                 (:file "verdicts") (:file "comparing") (:file "comparing-versions")
-                 (:file "comparison-picture") (:file "estimates") (:file "summary")
-                 (:file "text-table") (:file "remarks") (:file "report") (:file "panels")
-                 (:file "result-charts") (:file "pictures") (:file "ways")
-                 (:file "ways-picture") (:file "aside") (:file "replaying")
-                 (:file "failures")))
+    :components ((:file "package")))
+   (:module "src/experiment/question" :serial t
+    :components ((:file "values") (:file "condition") (:file "experiment") (:file "clauses")
+                 (:file "defexperiment")))
+   (:module "src/experiment/trial" :serial t
+    :components ((:file "outcome") (:file "trial") (:file "version") (:file "reaching")
+                 (:file "fingerprint")))
+   (:module "src/experiment/table" :serial t
+    :components ((:file "csv") (:file "row") (:file "lines") (:file "directory")
+                 (:file "description") (:file "results") (:file "merging") (:file "shards")))
+   (:module "src/experiment/running" :serial t
+    :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "rounds")
+                 (:file "stopping") (:file "running")))
+   (:module "src/experiment/comparison" :serial t
+    :components ((:file "differences") (:file "contrasts") (:file "verdicts")
+                 (:file "comparing") (:file "comparing-versions")
+                 (:file "comparison-picture")))
+   (:module "src/experiment/report" :serial t
+    :components ((:file "estimates") (:file "summary") (:file "text-table")
+                 (:file "remarks") (:file "report")))
+   (:module "src/experiment/pictures" :serial t
+    :components ((:file "panels") (:file "result-charts") (:file "pictures") (:file "ways")
+                 (:file "ways-picture")))
+   (:module "src/experiment/replay" :serial t
+    :components ((:file "aside") (:file "replaying") (:file "failures")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
   ;; The packages are locked once they are loaded.

@@ -165,7 +165,7 @@ project's systems has been loaded.")
   (is (null (files-mentioning '("(random " "(sleep ") '("src/" "rpl/" "cli/" "worlds/"))))
   (is (equal '("src/base/random.lisp")
              (files-mentioning '("*random-state*") '("src/" "rpl/" "cli/" "worlds/"))))
-  (is (equal '("src/experiment/stopwatch.lisp" "src/time/pacing.lisp")
+  (is (equal '("src/experiment/running/stopwatch.lisp" "src/time/pacing.lisp")
              (files-mentioning '("get-internal-real-time" "get-universal-time"
                                  "get-time-of-day" "get-internal-run-time")
                                '("src/" "rpl/" "worlds/")))))

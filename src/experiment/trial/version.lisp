@@ -21,7 +21,7 @@
 (defparameter *simulator-digest*
   (macrolet ((digest ()
                (digest-of-folders
-                (merge-pathnames "../../" (or *compile-file-truename* *load-truename*)))))
+                (merge-pathnames "../../../" (or *compile-file-truename* *load-truename*)))))
     (digest))
   "A number for the simulator's own code.")
 

@@ -89,7 +89,8 @@ The CLAUSES are:
   (:clean)                   no noise, but where :parameters and what varies say so. (With noise in
                              perception give NO-SENSOR-ERROR* the value NIL.)
   (:until form)              ticks pass after :run until FORM is true, for what continuations do
-  (:success form)            whether the trial succeeded, asked at its end; see TRIAL-VALUES
+  (:success form)            whether the trial succeeded, asked at its end; see TRIAL-VALUES. If
+                             only :run says so, it is a failure with the reason only-believed
   (:measure (name form)...)  what is measured at its end: numbers, T or NIL, symbols, strings, or
                              :NONE where there is nothing to be measured
 Without :success and :until, the values of :run say how the trial went: those of RUN-PLAN what

@@ -117,13 +117,14 @@ and :LIMIT if too few ticks were left."
             values))))
   (list nil :limit))
 
-(defun decide (experiment condition outcome)
-  "Return the outcome of a trial of CONDITION that so far is OUTCOME."
+(defun decide (experiment condition outcome reason)
+  "Return outcome and reason of a trial of CONDITION that so far are OUTCOME and REASON. What :run
+took for a success and :success does not is one that was only believed."
   (let ((success (experiment-success experiment)))
-    (cond ((null success) outcome)
-          ((call-form success condition) "success")
-          ((string= outcome "success") "failure")
-          (t outcome))))
+    (cond ((null success) (values outcome reason))
+          ((call-form success condition) (values "success" ""))
+          ((string= outcome "success") (values "failure" "only-believed"))
+          (t (values outcome reason)))))
 
 (defun measure (experiment condition)
   "Return the texts of what EXPERIMENT measures. Signals WRONG-ARGUMENT if a table cannot have one."
@@ -151,8 +152,8 @@ and :LIMIT if too few ticks were left."
          (*trial-values* '())
          (values (run-forms experiment condition)))
     (multiple-value-bind (outcome reason) (apply #'outcome-of-values values)
-      (setf (result-outcome result) (decide experiment condition outcome)
-            (result-reason result) (if (string= "success" (result-outcome result)) "" reason)
+      (setf (values (result-outcome result) (result-reason result))
+            (decide experiment condition outcome reason)
             (result-measures result) (measure experiment condition))
       (when (string= "" (result-error result))
         (setf (result-error result) (error-in-plan values))))))
