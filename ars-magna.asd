@@ -132,7 +132,7 @@
     :components ((:file "package")))
    (:module "src/experiment/question" :serial t
     :components ((:file "values") (:file "condition") (:file "experiment") (:file "clauses")
-                 (:file "defexperiment")))
+                 (:file "defexperiment") (:file "question")))
    (:module "src/experiment/trial" :serial t
     :components ((:file "outcome") (:file "trial") (:file "version") (:file "reaching")
                  (:file "fingerprint")))
@@ -142,13 +142,14 @@
    (:module "src/experiment/running" :serial t
     :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "rounds")
                  (:file "stopping") (:file "running")))
-   (:module "src/experiment/comparison" :serial t
-    :components ((:file "differences") (:file "contrasts") (:file "verdicts")
-                 (:file "comparing") (:file "comparing-versions")
-                 (:file "comparison-picture")))
    (:module "src/experiment/report" :serial t
     :components ((:file "estimates") (:file "summary") (:file "text-table")
                  (:file "remarks") (:file "report")))
+   (:module "src/experiment/comparison" :serial t
+    :components ((:file "differences") (:file "contrasts") (:file "overall") (:file "verdicts")
+                 (:file "comparison-table") (:file "levels") (:file "meaning")
+                 (:file "comparing") (:file "changes") (:file "comparing-versions")
+                 (:file "comparison-picture")))
    (:module "src/experiment/pictures" :serial t
     :components ((:file "panels") (:file "result-charts") (:file "pictures") (:file "ways")
                  (:file "ways-picture")))
@@ -295,7 +296,7 @@
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
                  (:file "experiments-tables") (:file "experiments-report")
                  (:file "experiments-pictures") (:file "experiment-compare")
-                 (:file "experiment-compare-versions") (:file "rates") (:file "isolation")
+                 (:file "experiment-compare-levels") (:file "experiment-compare-versions") (:file "rates") (:file "isolation")
                  (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))

@@ -38,7 +38,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:print-failures
                 #:run-experiment #:merge-results #:processors #:settle-fingerprints
                 #:results-directory #:print-results #:save-result-pictures #:read-results
-                #:compare-conditions #:compare-results #:save-comparison-picture
+                #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture
                 #:shard-directory #:directories-with-rows #:count-rows #:missing-shards)
   ;; trivial-gray-streams
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream

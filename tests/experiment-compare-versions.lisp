@@ -45,7 +45,7 @@ would be beyond doubt, and three seeds are p = 1/4."
                                           (repeated #\- bad #\+ (- 30 bad))))))
     (let* ((comparison (compare-tables (rows 0) (rows 3) :measure 'success))
            (overall (first (experiment:contrast-differences
-                            (experiment::comparison-overall comparison)))))
+                            (first (experiment:comparison-overall comparison))))))
       (is (= 30 (experiment:paired-trials overall)))
       (is (near-p -1/10 (experiment:paired-estimate overall)))
       (is (near-p 1/4 (experiment:paired-p overall)))

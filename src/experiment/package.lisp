@@ -38,13 +38,15 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:read-results #:sample-p #:sample-experiment #:sample-condition #:sample-texts
            #:sample-trials #:sample-outcomes #:sample-reasons #:sample-ticks #:sample-errors
            #:sample-measure)
-  ;; differences, contrasts, verdicts, comparing, comparing-versions, comparison-picture
+  ;; differences, contrasts, verdicts, comparison-table, comparing, comparing-versions,
+  ;; comparison-picture
   (:export #:paired-difference-p #:paired-measure #:paired-trials #:paired-first #:paired-second
            #:paired-estimate #:paired-low #:paired-high #:paired-p #:paired-adjusted-p
            #:paired-table
            #:contrast-p #:contrast-first #:contrast-second #:contrast-where #:contrast-trials
            #:contrast-same #:contrast-differences
-           #:comparison-p #:comparison-contrasts #:comparison-verdicts #:print-comparison
+           #:comparison-p #:comparison-contrasts #:comparison-overall #:comparison-changes
+           #:comparison-verdicts #:print-comparison
            #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture)
   ;; lines, running, merging, workers
   (:export #:damaged-table #:run-experiment #:merge-results #:processors)

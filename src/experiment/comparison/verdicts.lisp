@@ -42,15 +42,16 @@
   "Return by how much DIFFERENCE is, with its interval, as a verdict says it."
   (let ((write (number-writer difference)))
     (flet ((text (value) (funcall write value)))
-      (format nil "difference ~A~:[~; point~:P~] (~A to ~A, 95 %)"
+      (format nil "difference ~A~:[~; point~:P~] (95 % interval ~A to ~A)"
               (text (paired-estimate difference)) (eq :rate (paired-kind difference))
               (text (paired-low difference)) (text (paired-high difference))))))
 
 (defun p-words (difference tests)
-  "Return how likely DIFFERENCE is by chance, and what that is worth among TESTS."
+  "Return how likely DIFFERENCE is by chance, as one of TESTS, and if it were the only one."
   (let ((p (paired-p difference)) (adjusted (paired-adjusted-p difference)))
-    (format nil "p ~A~:[ (~A as one of ~D tests)~;~]" (p-text p)
-            (string= (p-text p) (p-text adjusted)) (bare-p adjusted) tests)))
+    (format nil "p ~A~:[~; as one of ~D tests~@[ (~A alone)~]~]" (p-text adjusted)
+            (< 1 tests) tests
+            (and (string/= (p-text p) (p-text adjusted)) (bare-p p)))))
 
 (defun both-words (difference)
   "Return the two rates or means of DIFFERENCE."
@@ -66,8 +67,8 @@
           (string= "ticks" (paired-measure difference)) (paired-trials difference)))
 
 (defun figures-words (difference tests)
-  (format nil "~A ~A, ~A, ~A" (both-words difference) (trials-words difference)
-          (interval-words difference) (p-words difference tests)))
+  (format nil "~A, ~A ~A, ~A" (p-words difference tests) (both-words difference)
+          (trials-words difference) (interval-words difference)))
 
 ;;; Verdicts.
 
@@ -84,12 +85,19 @@
           (t (format nil "~A is ~:[less~;more~] with ~A than with ~A"
                      measure more first second)))))
 
-(defun largest-words (difference)
-  "Return how large DIFFERENCE, if there is one, can be."
-  (format nil "if there is one, it is at most ~A~:[~; points~]"
-          (funcall (number-writer difference)
-                   (max (abs (paired-low difference)) (abs (paired-high difference))))
-          (eq :rate (paired-kind difference))))
+(defun leaves-out-zero-p (difference)
+  (not (<= (paired-low difference) 0 (paired-high difference))))
+
+(defun doubt-words (difference tests)
+  "Return how large DIFFERENCE can be if there is one; or why it is none in spite of its interval."
+  (if (and (leaves-out-zero-p difference) (< 1 tests))
+      (format nil "the interval is of this difference alone: where ~D are tested, one that leaves ~
+                   out 0 is no proof"
+              tests)
+      (format nil "if there is one, it is at most ~A~:[~; points~]"
+              (funcall (number-writer difference)
+                       (max (abs (paired-low difference)) (abs (paired-high difference))))
+              (eq :rate (paired-kind difference)))))
 
 (defun verdict (difference contrast tests)
   "Return in words what DIFFERENCE, of CONTRAST, tells, as one of TESTS."
@@ -107,7 +115,7 @@
                            (figures-words difference tests)))
                   (t (format nil "No difference in ~A between ~A and ~A can be told: ~A; ~A"
                              (paired-measure difference) first second
-                             (figures-words difference tests) (largest-words difference)))))))
+                             (figures-words difference tests) (doubt-words difference tests)))))))
 
 (defun success-verdict (contrast)
   "Return :BETTER or :WORSE if the first of CONTRAST succeeds more or less often, :SAME if both are
@@ -145,9 +153,10 @@ the same runs, else NIL."
 (defun comparison-verdicts (comparison)
   "Return what COMPARISON tells, a list of sentences: of two versions first how many conditions got
 better or worse and how many trials are the same to the last bit; and then, for each pair of
-conditions, which succeeds more often, takes more ticks and so on, with both rates or means, the
-difference with its 95 % interval, and p. A difference is called one if p, as it counts among all
-tests of COMPARISON (Holm), is at most .05; else it is said how large it can be."
+conditions, and over all where these are several, which succeeds more often, takes more ticks and so
+on, with p, both rates or means, and the difference with its 95 % interval. A difference is called
+one if p, as it counts among all tests of COMPARISON (Holm), is at most .05; else it is said how
+large it can be. Intervals are of one difference alone."
   (check-argument comparison-verdicts comparison (comparison-p comparison) "a comparison")
   (let ((all (loop for contrast in (all-contrasts comparison)
                    append (contrast-verdicts contrast (comparison-tests comparison)))))
@@ -176,68 +185,14 @@ tests of COMPARISON (Holm), is at most .05; else it is said how large it can be.
                  (list (format nil "Broke off with an error, and counted as not succeeded: ~A."
                                errors))))))
 
+(defun seeds-note (comparison)
+  "Return how seeds count in what COMPARISON says over all, in a list; NIL if it does not."
+  (and (comparison-overall comparison)
+       (list "Over all, each seed counts once, with its mean over the conditions.")))
+
 (defun comparison-remarks (comparison)
-  "Return sentences on what COMPARISON had to leave out."
-  (append (comparison-notes comparison)
+  "Return sentences on what COMPARISON had to leave out, and how seeds count."
+  (append (seeds-note comparison)
+          (comparison-notes comparison)
           (loop for contrast in (comparison-contrasts comparison)
                 append (left-out-notes contrast))))
-
-;;; The table.
-
-(defparameter *headings* '("measure" "seeds" "first" "second" "difference" "p" "Holm"))
-
-(defun table-row (difference)
-  "Return the texts of the table for DIFFERENCE."
-  (let ((write (number-writer difference)) (rate-p (eq :rate (paired-kind difference))))
-    (flet ((text (value) (if value (funcall write value) "-")))
-      (list (paired-measure difference) (princ-to-string (paired-trials difference))
-            (format nil "~A~:[~; %~]" (text (paired-first difference)) rate-p)
-            (format nil "~A~:[~; %~]" (text (paired-second difference)) rate-p)
-            (format nil "~A (~A to ~A)" (text (paired-estimate difference))
-                    (text (paired-low difference)) (text (paired-high difference)))
-            (bare-p (paired-p difference)) (bare-p (paired-adjusted-p difference))))))
-
-(defun contrast-heading (contrast)
-  (let ((table (let ((success (difference-called "success" contrast)))
-                 (and success (paired-table success)))))
-    (format nil "~@[~A: ~]~A (first) against ~A~:[~; (the same)~]~@[: ~{both ~D, only the first ~
-                 ~D, only the second ~D, neither ~D~}~]"
-            (contrast-where contrast) (contrast-first contrast) (contrast-second contrast)
-            (same-runs-p contrast) table)))
-
-(defun write-columns (rows widths stream)
-  (dolist (row rows)
-    (format stream "  ~VA~{  ~V@A~}~%" (first widths) (first row)
-            (loop for text in (rest row)
-                  for width in (rest widths)
-                  collect width collect text))))
-
-(defun write-table (comparison stream)
-  (let* ((groups (loop for contrast in (all-contrasts comparison)
-                       collect (mapcar #'table-row (contrast-differences contrast))))
-         (widths (apply #'mapcar (lambda (&rest texts) (reduce #'max texts :key #'length))
-                        *headings* (apply #'append groups))))
-    (write-columns (list *headings*) widths stream)
-    (loop for contrast in (all-contrasts comparison)
-          for rows in groups
-          do (format stream "~A~%" (contrast-heading contrast))
-             (write-columns rows widths stream))))
-
-(addition print-comparison)
-(defun print-comparison (comparison &optional (stream *standard-output*))
-  "Write COMPARISON to STREAM: a line that says what is compared; the verdicts (see
-COMPARISON-VERDICTS), a line each; what was left out, if anything; and a table, with a line for each
-pair of conditions, how many trials succeeded in both, one and neither of them, and below it a row
-for each measure: over how many seeds, both rates or means, the difference (of rates in points) with
-its 95 % interval, and p before and after Holm's correction for all tests. Return COMPARISON."
-  (check-argument print-comparison comparison (comparison-p comparison) "a comparison")
-  (format stream "~A~2%~{~A~%~}" (comparison-title comparison) (comparison-verdicts comparison))
-  (format stream "~@[~%~{~A~%~}~]" (comparison-remarks comparison))
-  (when (plusp (comparison-tests comparison))
-    (terpri stream)
-    (write-table comparison stream)
-    (format stream "~%Differences are first less second, seed by seed, with 95 % intervals: of ~
-                    rates Newcombe's~%and McNemar's exact test, of means Student's and a ~
-                    permutation test. Holm: p as one of ~D test~:P.~%"
-            (comparison-tests comparison)))
-  comparison)
