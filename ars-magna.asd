@@ -295,7 +295,7 @@
                  (:file "experiments-readme")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
                  (:file "experiments-tables") (:file "experiments-report")
-                 (:file "experiments-pictures") (:file "experiment-compare")
+                 (:file "experiment-compare") (:file "experiments-pictures")
                  (:file "experiment-compare-levels") (:file "experiment-compare-versions") (:file "rates") (:file "isolation")
                  (:file "main"))))
   :perform (test-op (operation system)

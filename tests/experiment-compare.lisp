@@ -113,8 +113,8 @@
                                 difference 13.0 points (95 % interval 7.2 to 19.0).")
                    success))
       (is (mentions-p ticks (format nil "patrol takes fewer ticks than spiral: p < .001 as one of ~
-                                         4 tests, 82.50 against 85.50 on average where both succeed, ~
-                                         150 common seeds, difference -3")))
+                                         4 tests, 82.50 against 85.50 on average where both ~
+                                         succeed, 150 common seeds, difference -3")))
       (is (mentions-p way (format nil "No difference in way between patrol and spiral can be told: ~
                                        p = 1 as one of 4 tests, 4.00 against")))
       (is (mentions-p way "; if there is one, it is at most 0.14."))

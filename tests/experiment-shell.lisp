@@ -84,7 +84,9 @@ output, and what to the error output."
                        ("experiment" "a" "--out" "") ("experiment" "a" "--quiet=1")
                        ("experiment" "a" "--shard" "0/3" "--until" ".1" "--out" "x")
                        ("experiment" "a" "--parallel" "--slurm" "--out" "x")
-                       ("merge" "a") ("merge" "--out" "x") ("compare" "1") ("frob") ("frob" "x")))
+                       ("merge" "a") ("merge" "--out" "x") ("compare" "1")
+                       ("compare" "1" "2" "x" "--against" "3")
+                       ("compare" "--by" "a") ("compare" "x" "y" "z" "--by" "a") ("frob") ("frob" "x")))
     (signals cli::usage-error (cli::run-arguments arguments))))
 
 (test options-of-commands.are-all-in-their-usage
@@ -218,7 +220,27 @@ output, and what to the error output."
       (is-true (has-words-p (compared "1" "all" (placed "a stroll.lisp") "--quiet") "12 common"))
       (is-true (has-words-p (compared (placed "one") (placed "two")) "24" "the same"))
       (is-true (has-words-p (said-by (lambda () (compared "1" "none" (placed "one"))))
-                            "none" "motion-noise*=0.1")))))
+                            "none" "motion-noise*=0.1"))
+      (is-true (has-words-p (compared "--by" "motion-noise*" (placed "one") "--measure" "success")
+                            "motion-noise*=0.1 against motion-noise*=0" "12 common seeds"))
+      (is-true (has-words-p (compared "--by" "motion-noise*" "--against" "0.1"
+                                      (placed "a stroll.lisp") "stroll" "--quiet")
+                            "motion-noise*=0 against motion-noise*=0.1")))))
+
+(test comparing.takes-values-that-several-conditions-have
+  (in-place
+    (write-file "steps.lisp" "(defexperiment steps (:robots ars-worlds:dot) (:trials 6)
+       (:vary (motion-noise* 0 0.1) (way 'short 'long)) (:limit 60)
+       (:run (robot-go-forward ars-worlds:dot (if (eq way 'long) 4 3)) (run-ticks 20))
+       (:success (> (robot-x ars-worlds:dot) 7)))")
+    (flet ((compared (&rest arguments) (nth-value 1 (apply #'shell "compare" arguments))))
+      (shell "experiment" (placed "steps.lisp") "--quiet" "--out" (placed "out"))
+      (is-true (has-words-p (compared "long" "short" (placed "out") "--measure" "success"
+                                      "--plot" (placed "steps.svg"))
+                            "long against short" "over all: " "motion-noise*=0.1: "))
+      (is-true (probe-file (base:native-path (placed "steps.svg"))))
+      (is-true (has-words-p (said-by (lambda () (compared "1" "long" (placed "out"))))
+                            "long is ambiguous: it could be" "way=long")))))
 
 ;;; What decides the rows.
 

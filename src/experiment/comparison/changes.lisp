@@ -33,9 +33,9 @@ and BEFORE; :UNKNOWN if these do not say."
   "Return lines that warn that the experiment's own text is another in the directory AFTER than in
 BEFORE."
   (let ((now (form-described after)) (then (form-described before)))
-    (cons (format nil "WARNING: the experiment itself is not the same in both tables. What it does, ~
-                       measures or counts as success may be another thing in each, so what differs ~
-                       below need not be due to the code.")
+    (cons (format nil "WARNING: the experiment itself is not the same in both tables. What it ~
+                       does, measures or counts as success may be another thing in each, so what ~
+                       differs below need not be due to the code.")
           (append (lines-only-in then now "before") (lines-only-in now then "now")))))
 
 (defun parts-words (parts conditions)
@@ -60,8 +60,8 @@ in the directories AFTER and BEFORE, which may be NIL."
     (cond ((null changed)
            (list "Both tables are of the same code and configuration: the fingerprints are equal."))
           ((null parts)
-           (list (format nil "What differs between the tables is not known: the fingerprints do, but ~
-                              no experiment.txt beside them says of what.")))
+           (list (format nil "What differs between the tables is not known: the fingerprints do, ~
+                              but no experiment.txt beside them says of what.")))
           (t (append (and (some (lambda (part) (part-of-kind-p "experiment" part)) parts)
                           (ruler-changes after before))
                      (list (parts-words parts (length changed))))))))

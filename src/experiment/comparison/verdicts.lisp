@@ -152,13 +152,14 @@ the same runs, else NIL."
 (addition comparison-verdicts)
 (defun comparison-verdicts (comparison)
   "Return what COMPARISON tells, a list of sentences: of two versions first how many conditions got
-better or worse and how many trials are the same to the last bit; and then, for each pair of
-conditions, and over all where these are several, which succeeds more often, takes more ticks and so
+better or worse and how many trials are the same to the last bit; and then, over all where there are
+several conditions, and for each pair of these, which succeeds more often, takes more ticks and so
 on, with p, both rates or means, and the difference with its 95 % interval. A difference is called
 one if p, as it counts among all tests of COMPARISON (Holm), is at most .05; else it is said how
 large it can be. Intervals are of one difference alone."
   (check-argument comparison-verdicts comparison (comparison-p comparison) "a comparison")
-  (let ((all (loop for contrast in (all-contrasts comparison)
+  (let ((all (loop for contrast in (append (comparison-overall comparison)
+                                           (comparison-contrasts comparison))
                    append (contrast-verdicts contrast (comparison-tests comparison)))))
     (cond ((not (eq :versions (comparison-kind comparison))) all)
           ((every #'same-runs-p (comparison-contrasts comparison))
