@@ -86,7 +86,8 @@ output, and what to the error output."
                        ("experiment" "a" "--parallel" "--slurm" "--out" "x")
                        ("merge" "a") ("merge" "--out" "x") ("compare" "1")
                        ("compare" "1" "2" "x" "--against" "3")
-                       ("compare" "--by" "a") ("compare" "x" "y" "z" "--by" "a") ("frob") ("frob" "x")))
+                       ("compare" "--by" "a") ("compare" "x" "y" "z" "--by" "a") ("frob")
+                       ("frob" "x")))
     (signals cli::usage-error (cli::run-arguments arguments))))
 
 (test options-of-commands.are-all-in-their-usage

@@ -127,7 +127,7 @@ where there is nothing to be compared."
 named conditions, with the value AGAINST, the first in the table unless given; and, where that makes
 several comparisons of the same two values, these over all, each seed counting once, with its mean
 over the conditions. MEASURE, STREAM, the value and the errors are those of COMPARE-CONDITIONS; p is
-corrected for all tests together."
+corrected for all tests together, those over all apart."
   (check-argument compare-levels results (results-p results) "results")
   (check-stream 'compare-levels stream)
   (let* ((names (compared-names 'compare-levels (list results) measure))

@@ -39,24 +39,27 @@
   (let ((least (reduce #'min numbers)) (most (reduce #'max numbers)))
     (format nil "~D~:[ to ~D~;~]" least (= least most) most)))
 
-(defun tests-words (differences comparison)
-  "Return as one of how many tests p counts in the picture of DIFFERENCES, of COMPARISON."
-  (let ((all (comparison-tests comparison)) (shown (count-if #'paired-p differences)))
-    (format nil "p as one of ~D test~:P (Holm)~:[, ~D of them of what is shown~;~]"
-            all (= all shown) shown)))
+(defun shown-differences (contrasts measure)
+  (remove nil (mapcar (lambda (contrast) (difference-called measure contrast)) contrasts)))
+
+(defun tests-words (contrasts measure)
+  "Return as one of how many tests p of CONTRASTS counts in the picture of MEASURE; NIL if none is."
+  (let ((tested (remove nil (shown-differences contrasts measure) :key #'paired-p)))
+    (when tested
+      (let ((tests (paired-tests (first tested))))
+        (format nil "one of ~D test~:P~:[, ~D of them shown~;~]" tests (= tests (length tested))
+                (length tested))))))
 
 (defun comparison-subtitle (comparison measure)
   "Return what is said below the title of the picture of MEASURE in COMPARISON."
-  (let* ((differences (remove nil (mapcar (lambda (contrast) (difference-called measure contrast))
-                                          (all-contrasts comparison))))
-         (trials (mapcar #'paired-trials differences)))
-    (format nil "~@[~A~], seed by seed: first less second, with 95 % intervals~@[; ~A~].~@[ ~A ~
-                 seeds each~:[~;, those where both succeeded~].~]~:[~; Over all, each seed counts ~
-                 once.~]"
+  (let ((trials (mapcar #'paired-trials (shown-differences (all-contrasts comparison) measure))))
+    (format nil "~@[~A~], seed by seed: first less second, with 95 % intervals~@[; p as ~A ~
+                 (Holm)~].~@[ ~A seeds each~:[~;, those where both succeeded~].~]~@[ Over all, each seed ~
+                 counts once; p as ~A.~]"
             (or (comparison-sides comparison) "Conditions")
-            (and differences (tests-words differences comparison))
+            (tests-words (comparison-contrasts comparison) measure)
             (and trials (range-text trials)) (string-equal "ticks" measure)
-            (comparison-overall comparison))))
+            (tests-words (comparison-overall comparison) measure))))
 
 (defun comparison-chart (comparison measure &key (contrasts (all-contrasts comparison)))
   "Return the chart of what differs in MEASURE in COMPARISON, or in those CONTRASTS of it, an SVG

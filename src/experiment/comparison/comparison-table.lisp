@@ -48,8 +48,11 @@
 (defun method-words (comparison)
   (format nil "Differences are first less second, seed by seed, each with its own 95 % interval: ~
                of rates Newcombe's and McNemar's exact test, of means Student's and a permutation ~
-               test. p: as one of ~D test~:P, by Holm's correction~:[~; (alone: without it)~]."
-          (comparison-tests comparison) (< 1 (comparison-tests comparison))))
+               test. p: as one of ~D test~:P~@[, over all of ~D~], by Holm's correction (alone: ~
+               without it)."
+          (length (tested-differences (comparison-contrasts comparison)))
+          (and (comparison-overall comparison)
+               (length (tested-differences (comparison-overall comparison))))))
 
 (addition print-comparison)
 (defun print-comparison (comparison &optional (stream *standard-output*))
@@ -67,7 +70,7 @@ p after and before Holm's correction for all tests. Return COMPARISON."
   (dolist (text (comparison-changes comparison)) (write-wrapped text stream))
   (format stream "~%~{~A~%~}" (comparison-verdicts comparison))
   (format stream "~@[~%~{~A~%~}~]" (comparison-remarks comparison))
-  (when (plusp (comparison-tests comparison))
+  (when (tested-differences (all-contrasts comparison))
     (terpri stream)
     (write-table comparison stream)
     (terpri stream)

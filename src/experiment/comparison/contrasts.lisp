@@ -28,8 +28,7 @@ SIDES says which, in words, or is NIL. OVERALL are contrasts over several condit
   (overall '() :type list :read-only t)
   ;; Sentences on what decides the trials of one version but not of the other.
   (changes '() :type list :read-only t)
-  (notes '() :type list :read-only t)
-  (tests 0 :type integer))
+  (notes '() :type list :read-only t))
 
 (addition contrast-p contrast-first contrast-second contrast-where contrast-trials contrast-same
           contrast-differences comparison-p comparison-contrasts comparison-overall
@@ -171,10 +170,14 @@ say. Return CONTRAST."
 (defun all-contrasts (comparison)
   (append (comparison-contrasts comparison) (comparison-overall comparison)))
 
+;; What is so over all is one question, and where it is so another: who asks in twelve conditions as
+;; well need not be less sure of the whole.
 (defun finish-comparison (comparison)
-  "Let all differences of COMPARISON know how many they are. Return it."
-  (setf (comparison-tests comparison)
-        (adjust-for-all
-         (loop for contrast in (all-contrasts comparison)
-               append (contrast-differences contrast))))
-  comparison)
+  "Let all differences of COMPARISON know among how many their tests count. Return it."
+  (dolist (contrasts (list (comparison-contrasts comparison) (comparison-overall comparison))
+                     comparison)
+    (adjust-for-all (loop for contrast in contrasts append (contrast-differences contrast)))))
+
+(defun tested-differences (contrasts)
+  (loop for contrast in contrasts
+        append (remove nil (contrast-differences contrast) :key #'paired-p)))

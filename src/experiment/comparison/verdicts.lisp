@@ -46,9 +46,10 @@
               (text (paired-estimate difference)) (eq :rate (paired-kind difference))
               (text (paired-low difference)) (text (paired-high difference))))))
 
-(defun p-words (difference tests)
-  "Return how likely DIFFERENCE is by chance, as one of TESTS, and if it were the only one."
-  (let ((p (paired-p difference)) (adjusted (paired-adjusted-p difference)))
+(defun p-words (difference)
+  "Return how likely DIFFERENCE is by chance, as one of several tests, and if it were the only one."
+  (let ((p (paired-p difference)) (adjusted (paired-adjusted-p difference))
+        (tests (paired-tests difference)))
     (format nil "p ~A~:[~; as one of ~D tests~@[ (~A alone)~]~]" (p-text adjusted)
             (< 1 tests) tests
             (and (string/= (p-text p) (p-text adjusted)) (bare-p p)))))
@@ -66,8 +67,8 @@
   (format nil "~:[over~;where both succeed,~] ~D common seed~:P"
           (string= "ticks" (paired-measure difference)) (paired-trials difference)))
 
-(defun figures-words (difference tests)
-  (format nil "~A, ~A ~A, ~A" (p-words difference tests) (both-words difference)
+(defun figures-words (difference)
+  (format nil "~A, ~A ~A, ~A" (p-words difference) (both-words difference)
           (trials-words difference) (interval-words difference)))
 
 ;;; Verdicts.
@@ -88,19 +89,19 @@
 (defun leaves-out-zero-p (difference)
   (not (<= (paired-low difference) 0 (paired-high difference))))
 
-(defun doubt-words (difference tests)
+(defun doubt-words (difference)
   "Return how large DIFFERENCE can be if there is one; or why it is none in spite of its interval."
-  (if (and (leaves-out-zero-p difference) (< 1 tests))
+  (if (and (leaves-out-zero-p difference) (< 1 (paired-tests difference)))
       (format nil "the interval is of this difference alone: where ~D are tested, one that leaves ~
                    out 0 is no proof"
-              tests)
+              (paired-tests difference))
       (format nil "if there is one, it is at most ~A~:[~; points~]"
               (funcall (number-writer difference)
                        (max (abs (paired-low difference)) (abs (paired-high difference))))
               (eq :rate (paired-kind difference)))))
 
-(defun verdict (difference contrast tests)
-  "Return in words what DIFFERENCE, of CONTRAST, tells, as one of TESTS."
+(defun verdict (difference contrast)
+  "Return in words what DIFFERENCE, of CONTRAST, tells."
   (let ((first (contrast-first contrast)) (second (contrast-second contrast)))
     (format nil "~@[~A: ~]~A." (contrast-where contrast)
             (cond ((or (null (paired-p difference)) (null (paired-low difference)))
@@ -112,10 +113,10 @@
                            (trials-words difference)))
                   ((told-difference-p difference)
                    (format nil "~A: ~A" (direction-words difference first second)
-                           (figures-words difference tests)))
+                           (figures-words difference)))
                   (t (format nil "No difference in ~A between ~A and ~A can be told: ~A; ~A"
                              (paired-measure difference) first second
-                             (figures-words difference tests) (doubt-words difference tests)))))))
+                             (figures-words difference) (doubt-words difference)))))))
 
 (defun success-verdict (contrast)
   "Return :BETTER or :WORSE if the first of CONTRAST succeeds more or less often, :SAME if both are
@@ -126,13 +127,13 @@ the same runs, else NIL."
           ((told-difference-p difference)
            (if (plusp (paired-estimate difference)) :better :worse)))))
 
-(defun contrast-verdicts (contrast tests)
+(defun contrast-verdicts (contrast)
   (if (same-runs-p contrast)
       (list (format nil "~@[~A: ~]~A and ~A are the same in all ~D trials, to the last bit."
                     (contrast-where contrast) (contrast-first contrast) (contrast-second contrast)
                     (contrast-trials contrast)))
       (loop for difference in (contrast-differences contrast)
-            collect (verdict difference contrast tests))))
+            collect (verdict difference contrast))))
 
 (defun versions-verdict (comparison)
   "Return in words how many conditions got better and worse, and how many rows are the same."
@@ -156,11 +157,11 @@ better or worse and how many trials are the same to the last bit; and then, over
 several conditions, and for each pair of these, which succeeds more often, takes more ticks and so
 on, with p, both rates or means, and the difference with its 95 % interval. A difference is called
 one if p, as it counts among all tests of COMPARISON (Holm), is at most .05; else it is said how
-large it can be. Intervals are of one difference alone."
+large it can be. What is said over all counts apart. Intervals are of one difference alone."
   (check-argument comparison-verdicts comparison (comparison-p comparison) "a comparison")
   (let ((all (loop for contrast in (append (comparison-overall comparison)
                                            (comparison-contrasts comparison))
-                   append (contrast-verdicts contrast (comparison-tests comparison)))))
+                   append (contrast-verdicts contrast))))
     (cond ((not (eq :versions (comparison-kind comparison))) all)
           ((every #'same-runs-p (comparison-contrasts comparison))
            (list (versions-verdict comparison)))
@@ -189,7 +190,8 @@ large it can be. Intervals are of one difference alone."
 (defun seeds-note (comparison)
   "Return how seeds count in what COMPARISON says over all, in a list; NIL if it does not."
   (and (comparison-overall comparison)
-       (list "Over all, each seed counts once, with its mean over the conditions.")))
+       (list "Over all, each seed counts once, with its mean over the conditions."
+             "What is tested over all counts apart from what is tested in each condition.")))
 
 (defun comparison-remarks (comparison)
   "Return sentences on what COMPARISON had to leave out, and how seeds count."
