@@ -88,6 +88,11 @@ are none."
                                        (set-difference now before :test #'string=)))
                        :test #'string= :from-end t)))
 
+(defun conditions-described (directory)
+  "Return the names of the conditions in the text in DIRECTORY, in order; NIL if there is none."
+  (loop for line in (description-lines directory)
+        when (starts-with-subseq "= " line) collect (subseq line 2)))
+
 (defun changes-since (condition parts directory)
   "Return in words, in a list, what of PARTS, of CONDITION, is not as the text in DIRECTORY says."
   (let ((before (parts-described (condition-name condition) directory)))
