@@ -50,16 +50,21 @@
         (format nil "one of ~D test~:P~:[, ~D of them shown~;~]" tests (= tests (length tested))
                 (length tested))))))
 
+(defun seeds-words (comparison measure)
+  "Return over how many seeds MEASURE is compared in the picture of COMPARISON; NIL if it is not."
+  (let ((trials (mapcar #'paired-trials (shown-differences (all-contrasts comparison) measure))))
+    (and trials
+         (format nil "~A seeds each~:[~;, those where both succeeded~]" (range-text trials)
+                 (string-equal "ticks" measure)))))
+
 (defun comparison-subtitle (comparison measure)
   "Return what is said below the title of the picture of MEASURE in COMPARISON."
-  (let ((trials (mapcar #'paired-trials (shown-differences (all-contrasts comparison) measure))))
-    (format nil "~@[~A~], seed by seed: first less second, with 95 % intervals~@[; p as ~A ~
-                 (Holm)~].~@[ ~A seeds each~:[~;, those where both succeeded~].~]~@[ Over all, each seed ~
-                 counts once; p as ~A.~]"
-            (or (comparison-sides comparison) "Conditions")
-            (tests-words (comparison-contrasts comparison) measure)
-            (and trials (range-text trials)) (string-equal "ticks" measure)
-            (tests-words (comparison-overall comparison) measure))))
+  (format nil "~A, seed by seed: first less second, with 95 % intervals~@[; p as ~A (Holm)~].~
+               ~@[ ~A.~]~@[ Over all, each seed counts once; p as ~A.~]"
+          (or (comparison-sides comparison) "Conditions")
+          (tests-words (comparison-contrasts comparison) measure)
+          (seeds-words comparison measure)
+          (tests-words (comparison-overall comparison) measure)))
 
 (defun comparison-chart (comparison measure &key (contrasts (all-contrasts comparison)))
   "Return the chart of what differs in MEASURE in COMPARISON, or in those CONTRASTS of it, an SVG

@@ -38,13 +38,18 @@
 (defun bare-p (p)
   (string-left-trim "= " (p-text p)))
 
+(defun amount-words (difference value)
+  "Return VALUE, which is of DIFFERENCE, with its unit, if that is points of 100."
+  (let ((text (funcall (number-writer difference) value)))
+    (format nil "~A~:[~; point~:[s~;~]~]" text (eq :rate (paired-kind difference))
+            (member text '("1" "-1") :test #'string=))))
+
 (defun interval-words (difference)
   "Return by how much DIFFERENCE is, with its interval, as a verdict says it."
   (let ((write (number-writer difference)))
-    (flet ((text (value) (funcall write value)))
-      (format nil "difference ~A~:[~; point~:P~] (95 % interval ~A to ~A)"
-              (text (paired-estimate difference)) (eq :rate (paired-kind difference))
-              (text (paired-low difference)) (text (paired-high difference))))))
+    (format nil "difference ~A (95 % interval ~A to ~A)"
+            (amount-words difference (paired-estimate difference))
+            (funcall write (paired-low difference)) (funcall write (paired-high difference)))))
 
 (defun p-words (difference)
   "Return how likely DIFFERENCE is by chance, as one of several tests, and if it were the only one."
@@ -95,10 +100,9 @@
       (format nil "the interval is of this difference alone: where ~D are tested, one that leaves ~
                    out 0 is no proof"
               (paired-tests difference))
-      (format nil "if there is one, it is at most ~A~:[~; points~]"
-              (funcall (number-writer difference)
-                       (max (abs (paired-low difference)) (abs (paired-high difference))))
-              (eq :rate (paired-kind difference)))))
+      (format nil "if there is one, it is at most ~A"
+              (amount-words difference (max (abs (paired-low difference))
+                                            (abs (paired-high difference)))))))
 
 (defun verdict (difference contrast)
   "Return in words what DIFFERENCE, of CONTRAST, tells."

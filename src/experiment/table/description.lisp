@@ -75,7 +75,8 @@ are none."
 
 (defun form-described (directory)
   "Return the lines of the experiment's own text in the text in DIRECTORY."
-  (loop for line in (member-if (lambda (line) (starts-with-subseq "(" line))
+  (loop for line in (member-if (lambda (line)
+                                 (and (starts-with-subseq "(" line) (search "defexperiment" line)))
                                (description-lines directory))
         until (starts-with-subseq "What decides" line)
         unless (string= "" line) collect (string-trim " " line)))
