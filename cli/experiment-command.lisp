@@ -135,10 +135,10 @@
 (defun call-stoppable (function command arguments options)
   "Call FUNCTION, which does COMMAND with ARGUMENTS, and return the status that it returns, or that
 of what has been interrupted."
-  (handler-case (funcall function)
-    (user-interrupt ()
-      (tell-stopped command arguments options)
-      130)))
+  (call-until-interrupted function
+                          (lambda ()
+                            (tell-stopped command arguments options)
+                            130)))
 
 (defun print-missing (experiment options)
   "Print the numbers of the shards that lack rows, in a line, or none."

@@ -30,7 +30,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:import-from :ars-magna.rpl-pictures #:save-plan-timeline)
   (:import-from :ars-magna.experiment
                 #:find-experiment #:all-experiments #:experiment-name #:experiment-documentation
-                #:experiment-conditions #:experiment-trials #:experiment-limit
+                #:experiment-conditions #:experiment-trials #:experiment-limit #:experiment-file
                 #:find-condition #:condition-name #:trial-seed
                 #:run-again #:call-until-error #:call-aside #:await-time
                 #:prepare-condition #:row-of-trial #:row-differences

@@ -30,7 +30,7 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:experiment-from #:experiment-package #:experiment-limit #:find-condition #:trial-values
            #:condition-name #:condition-parameters)
   ;; trial, workers, description, values
-  (:export #:run-trial #:call-in-silence #:call-by-workers #:form-text
+  (:export #:run-trial #:call-in-silence #:call-by-workers #:form-text #:experiment-file
            #:result-trial #:result-seed #:result-outcome #:result-reason #:result-ticks
            #:result-digest #:result-error)
   ;; results
