@@ -134,7 +134,7 @@
     :components ((:file "values") (:file "condition") (:file "experiment") (:file "clauses")
                  (:file "defexperiment")))
    (:module "src/experiment/trial" :serial t
-    :components ((:file "outcome") (:file "trial") (:file "version") (:file "reaching")
+    :components ((:file "outcome") (:file "data") (:file "trial") (:file "version") (:file "reaching")
                  (:file "fingerprint")))
    (:module "src/experiment/table" :serial t
     :components ((:file "csv") (:file "row") (:file "lines") (:file "directory")

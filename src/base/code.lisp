@@ -42,12 +42,30 @@ come of it are from there."
     (setf (gethash name *dates-of-files*) (file-write-date path))
     (with-compilation-unit (:source-namestring name) (funcall function))))
 
-(defun function-file (function)
-  "Return the file that FUNCTION was compiled from, as the system calls it, and the time at which
-that was written by then; NIL if it was typed."
-  (let* ((source (ignore-errors (sb-introspect:find-definition-source function)))
-         (path (and source (sb-introspect:definition-source-pathname source))))
+(defun file-of-source (source)
+  "Return which file SOURCE, what SBCL knows of a definition, is from, as the system calls it, and
+the time at which that was written by then; NIL if it was typed."
+  (let ((path (and source (sb-introspect:definition-source-pathname source))))
     (and path
          (let ((name (native-name (translate-logical-pathname path))))
            (values name (or (sb-introspect:definition-source-file-write-date source)
                             (date-of-file name)))))))
+
+(defun function-file (function)
+  "Return the file that FUNCTION was compiled from, as the system calls it, and the time at which
+that was written by then; NIL if it was typed."
+  (file-of-source (ignore-errors (sb-introspect:find-definition-source function))))
+
+(defparameter *kinds-besides-functions*
+  '(:variable :constant :symbol-macro :compiler-macro :setf-expander :type :class :structure
+    :condition)
+  "As what a symbol may be defined that is no function, by the names that SBCL has for that.")
+
+(defun files-besides-functions (symbol)
+  "Return lists (file written), as FUNCTION-FILE returns them, of definitions of SYMBOL as anything
+but a function."
+  (loop for kind in *kinds-besides-functions*
+        append (loop for source in (ignore-errors
+                                    (sb-introspect:find-definition-sources-by-name symbol kind))
+                     for file = (multiple-value-list (file-of-source source))
+                     when (first file) collect file)))
