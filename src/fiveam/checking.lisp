@@ -54,8 +54,8 @@ it is none, or OPTIONS are given that the experiment decides."
 
 (define-user-macro is-success-rate
     (form &rest options
-          &key robots (at-least .95) trials (level .05) (seed 0) parameters clean (limit +usual-limit+)
-          (workers 1))
+          &key robots (at-least .95) trials (level .05) (seed 0) parameters clean
+          (limit +usual-limit+) (workers 1))
   "Check, in a test of FiveAM, that FORM succeeds in a share AT-LEAST of trials, .95 unless given.
 Each trial evaluates FORM in a fresh headless simulation with ROBOTS, the name of a robot or a list
 of names, which are bound to the robots. As in an experiment's :run, the values of RUN-PLAN, or else
@@ -81,7 +81,8 @@ more trials make it likelier. With an AT-LEAST of 1 all trials must succeed.
 Seeds are fixed, so the same code has the same answer each time, by however many WORKERS, threads;
 with several of them FORM does not see what the test has bound. The reason of a failure gives the
 numbers, the first trials that did not succeed and why, and a form that repeats one, by
-REPEAT-TRIAL or REPLAY-TRIAL, in any Lisp that has the same code. Return true if the check passes. Signals MALFORMED-DEFINITION, WRONG-ARGUMENT and UNKNOWN-NAME."
+REPEAT-TRIAL or REPLAY-TRIAL, in any Lisp that has the same code. Return true if the
+check passes. Signals MALFORMED-DEFINITION, WRONG-ARGUMENT and UNKNOWN-NAME."
   (if (and (consp form) (eq :experiment (first form)))
       (destructuring-bind (name condition)
           (experiment-clause form (intersection '(:robots :seed :parameters :clean :limit) options))

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.fiveam)
 
-(defstruct (subject (:constructor make-subject (function form package robots parameters clean limit))
+(defstruct (subject (:constructor make-subject
+                        (function form package robots parameters clean limit))
                     (:copier nil))
   "FUNCTION, made of FORM, which somebody wrote in PACKAGE, is tried with ROBOTS under PARAMETERS,
 lists (name value), without noise if CLEAN is true, for LIMIT ticks."

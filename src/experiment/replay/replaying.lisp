@@ -191,7 +191,8 @@ is stopped, before its simulation is gone: to look around, as by SAVE-PICTURE.
 
 Return a plist: :outcome (\"success\", \"failure\", \"limit\", \"error\"; NIL if it was stopped),
 :reason, :ticks, :digest (as in the row), :measures (lists (name value)), :error, :journal, and
-:differences, in words, from the row. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE (no such row), DAMAGED-TABLE."
+:differences, in words, from the row. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE (no such row),
+DAMAGED-TABLE."
   (check-replay trial until then step journal directory)
   (when rate (check-rate rate))
   (let* ((experiment (find-experiment experiment))
