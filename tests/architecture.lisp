@@ -85,7 +85,6 @@
                                    (named-readtables "named-readtables")
                                    (lparallel "lparallel")
                                    (closer-mop "closer-mop")
-                                   (cl-csv "cl-csv")
                                    (trivial-gray-streams "trivial-gray-streams"))
         for files = (files-mentioning words '("src/" "rpl/" "cli/" "worlds/"))
         do (is (<= (length files) 1) "~A is named in ~S" library files))

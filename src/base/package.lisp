@@ -31,13 +31,15 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:memory-barrier)
   ;; classes, code, packages
   (:export #:define-function-class #:generic-name #:class-ancestors #:class-slot-names
-           #:code-references #:function-file #:files-besides-functions #:call-as-from-file #:date-of-file
+           #:code-references #:function-file #:files-besides-functions
+           #:call-as-from-file #:date-of-file
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
   ;; files, processes
   (:export #:native-name #:native-path #:existing-path #:replace-file #:plain-file-p 
            #:unusable-file-text
-           #:call-replacing-file #:decoded #:file-text #:cut-file #:call-with-file-lock
+           #:call-replacing-file #:decoded #:file-text #:cut-file
+           #:call-with-file-lock #:make-directories
            #:host-name #:process-number
            #:environment-value #:run-command #:run-attached)
   ;; environments

@@ -43,12 +43,11 @@ each table that has it."
   (let ((seed (seed-column (columns experiment))))
     (when (equal (columns experiment) (header-of file))
       (map-rows (lambda (texts line start number)
-                  (declare (ignore line start))
+                  (declare (ignore line start number))
                   (let ((condition (condition-of-texts experiment texts)))
                     (when (and condition
                                (string= (second texts) (condition-fingerprint condition)))
-                      (note-present condition (trial-in (nth (1+ seed) texts) file number)
-                                    presence))))
+                      (note-present condition (parse-integer (nth (1+ seed) texts)) presence))))
                 file))))
 
 (defun missing-shards (experiment trials count directory)

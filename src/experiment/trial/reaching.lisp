@@ -60,11 +60,14 @@ variables."
         (note-file file written reach)
         (note-part :typed (safe-text name) (typed-number function) reach))))
 
+(defun has-global-value-p (symbol)
+  (ignore-errors (global-value symbol) t))
+
 (defun visit-variable (symbol reach)
   "Visit the special variable SYMBOL and its value, which is a part if it is data. NIL counts as no
 data, since it often stands where a table or structure is to be."
   (push symbol (reach-variables reach))
-  (let ((value (ignore-errors (global-value symbol))))
+  (let ((value (global-value symbol)))
     (when (and value (data-p value))
       (note-part :variable (qualified symbol) (data-number value) reach))
     (visit value reach)))
@@ -115,7 +118,7 @@ data, since it often stands where a table or structure is to be."
            (visit-function (fdefinition symbol) symbol reach)))
     (loop for (file written) in (files-besides-functions symbol)
           do (note-file file written reach))
-    (when (and (null entries) (special-p symbol) (variable-in-use-p symbol))
+    (when (and (null entries) (special-p symbol) (has-global-value-p symbol))
       (visit-variable symbol reach))))
 
 (defun visit-symbol (symbol reach)
