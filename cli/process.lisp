@@ -69,15 +69,24 @@ if so."
         ((< (incf *interrupts-while-ending*) +patience-of-users+))
         (t (end-interrupted))))
 
+(defvar *hearer* nil "The stream that hears this thread's error output until it begins to end.")
+
+(defun begin-to-end (condition)
+  "Let nothing come between what CONDITION, an interrupt, leaves and what is said of it: the
+compiler would say that it has been left."
+  (declare (ignore condition))
+  (setf *interrupts-while-ending* 0
+        *hearer* (make-broadcast-stream)))
+
 (defun call-until-interrupted (function then)
   "Call FUNCTION and return its values. If control C ends it, this process is ending: return the
 values of THEN, another function, which is not interrupted."
-  (handler-case
-      (handler-bind ((user-interrupt (lambda (condition)
-                                       (declare (ignore condition))
-                                       (setf *interrupts-while-ending* 0))))
-        (funcall function))
-    (user-interrupt () (funcall then))))
+  (let ((*hearer* *error-output*))
+    (handler-case
+        (handler-bind ((user-interrupt #'begin-to-end))
+          (let ((*error-output* (make-synonym-stream '*hearer*)))
+            (funcall function)))
+      (user-interrupt () (funcall then)))))
 
 (defun mind-interrupts ()
   "Let control C interrupt this thread, which is the process's first."
