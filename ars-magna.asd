@@ -293,7 +293,7 @@
                  (:file "users-hands") (:file "src-readme") (:file "rpl-readme")
                  (:file "experiments-readme")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
-                 (:file "experiments-tables") (:file "experiments-report")
+                 (:file "experiments-tables") (:file "experiments-fingerprints") (:file "experiments-report")
                  (:file "experiments-pictures") (:file "experiment-compare")
                  (:file "experiment-compare-versions") (:file "rates") (:file "isolation")
                  (:file "main"))))

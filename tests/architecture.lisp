@@ -100,7 +100,7 @@
   '("src/base/policy.lisp" "src/base/floats.lisp" "src/base/globals.lisp" "src/base/atomic.lisp"
     "src/base/packages.lisp" "src/base/environments.lisp" "src/base/interrupts.lisp"
     "src/base/debuggers.lisp" "src/base/files.lisp" "src/base/tables.lisp"
-    "src/base/random.lisp" "cli/executable.lisp")
+    "src/base/random.lisp" "src/base/processes.lisp" "cli/executable.lisp")
   "The files that may name SB-EXT.")
 
 (defparameter *before-the-doors*
@@ -164,7 +164,7 @@ project's systems has been loaded.")
   (is (null (files-mentioning '("(sleep ") '("src/" "rpl/" "cli/" "worlds/"))))
   (is (equal '("src/base/random.lisp")
              (files-mentioning '("(random " "*random-state*") '("src/" "rpl/" "cli/" "worlds/"))))
-  (is (equal '("src/experiment/running/stopwatch.lisp" "src/time/pacing.lisp")
+  (is (equal '("src/base/processes.lisp" "src/time/pacing.lisp")
              (files-mentioning '("get-internal-real-time" "get-universal-time"
                                  "get-time-of-day" "get-internal-run-time")
                                '("src/" "rpl/" "worlds/")))))

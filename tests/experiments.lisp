@@ -276,3 +276,12 @@
                       (run:state-digest))
                     (experiment::result-digest
                      (experiment::run-trial experiment condition trial)))))))
+
+(test progress.names-what-has-been-under-way-for-long
+  (define-for-test (:robots ars-worlds:dot) (:run t))
+  (let ((progress (experiment::make-progress nil nil 10 2))
+        (condition (first (experiment:experiment-conditions
+                           (experiment:find-experiment 'question)))))
+    (is (null (experiment::longest-under-way progress)))
+    (setf (svref (experiment::progress-under-way progress) 2) (list condition 3 0))
+    (is (search "trial 3 of all" (experiment::longest-under-way progress)))))

@@ -14,6 +14,11 @@
       (sb-kernel:fdefn-name constant)
       constant))
 
+(defun method-code (method)
+  "Return the function that was compiled from the body of METHOD."
+  (or (uiop:symbol-call :sb-pcl :safe-method-fast-function method)
+      (method-function method)))
+
 (defun code-references (function)
   "Return a list of what FUNCTION refers to: names of functions, which are symbols or lists,
 symbols, other functions, and whatever else stands in its code or was closed over. In it are no
@@ -21,7 +26,7 @@ numbers."
   (remove-if
    (lambda (object) (typep object '(or number character string bit-vector null)))
    (if (typep function 'generic-function)
-       (method-functions function)
+       (mapcar #'method-code (methods-of-generic function))
        (append (mapcar #'constant-meant (code-constants function))
                (when (sb-kernel:closurep function) (sb-kernel:%closure-values function))))))
 

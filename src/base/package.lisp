@@ -41,7 +41,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:call-replacing-file #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories
            #:host-name #:process-number
-           #:environment-value #:run-command #:run-attached)
+           #:environment-value #:real-microseconds #:run-command #:run-attached)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
            #:local-function-p #:known-function-p #:macro-expander

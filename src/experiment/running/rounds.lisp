@@ -78,9 +78,14 @@
   (flet ((work ()
            (loop (multiple-value-bind (condition trial) (next-trial queue)
                    (unless condition (return))
+                   (setf (svref (progress-under-way progress) worker)
+                         (list condition trial (moment)))
                    (run-and-keep experiment condition trial keep worker)
+                   (setf (svref (progress-under-way progress) worker) nil)
                    (atomic-incf (progress-done progress))))))
-    (call-in-silence (lambda () (call-with-own-lisps-dice #'work)))))
+    (call-in-silence
+     (lambda ()
+       (call-plainly (lambda () (call-with-own-lisps-dice #'work)))))))
 
 (defun run-queue (experiment queue keep progress workers)
   "Run the trials of QUEUE by WORKERS threads. If this is left, no trial is begun any more, and

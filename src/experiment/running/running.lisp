@@ -100,12 +100,14 @@ least one is tried, and others as long as there is time."
   "Run the trials up to LAST of CONDITIONS that are not there."
   (let* ((queue (make-queue conditions 1 last presence shard))
          (missing (count-missing queue))
-         (progress (make-progress stream (and stream (interactive-stream-p stream)) missing)))
+         (workers (min workers missing))
+         (progress (make-progress stream (and stream (interactive-stream-p stream))
+                                  missing workers)))
     (when (plusp missing)
       (run-queue experiment queue
                  (lambda (result milliseconds worker)
                    (keep-row store result milliseconds worker))
-                 progress (min workers missing))
+                 progress workers)
       (tell-progress progress t))))
 
 (defun run-all (experiment trials presence shard store workers stream)
@@ -164,13 +166,12 @@ least one is tried, and others as long as there is time."
     (reject-use "A shard cannot know when intervals are narrow enough: give :until or :shard.")))
 
 (defun run-and-read (experiment directory trials until shard workers stream)
-  (call-with-directory
-   (lambda ()
-     (run-in experiment directory trials until shard workers stream)
-     (let ((results (results-in (rows-file directory))))
-       (setf (results-until results) until)
-       results))
-   directory))
+  (flet ((run ()
+           (run-in experiment directory trials until shard workers stream)
+           (let ((results (results-in (rows-file directory))))
+             (setf (results-until results) until)
+             results)))
+    (call-with-directory (lambda () (call-plainly #'run)) directory)))
 
 (addition run-experiment)
 (defun run-experiment (name &key trials (workers (processors)) directory until shard

@@ -45,8 +45,10 @@ their fingerprints do; TO is then as it was."
          (sources (remove-duplicates (append there sources) :test #'equal :from-end t)))
     (call-with-directory
      (lambda ()
-       (write-in-order (mapcar #'rows-file sources) (rows-file target)
-                       (order-of-conditions sources))
+       (call-plainly
+        (lambda ()
+          (write-in-order (mapcar #'rows-file sources) (rows-file target)
+                          (order-of-conditions sources))))
        (join-machine-tables sources target)
        (copy-description sources target))
      target)

@@ -190,7 +190,7 @@ MISUSE if there are none, and DAMAGED-TABLE."
   (check-argument read-results directory (typep directory '(or string pathname))
                   "the name of a directory")
   (let ((path (existing-table directory)))
-    (let ((results (results-in (rows-file path))))
+    (let ((results (call-plainly (lambda () (results-in (rows-file path))))))
       (setf (results-directory results) path
             (results-until results) (until-described path))
       results)))

@@ -2,19 +2,6 @@
 
 (in-package :ars-magna.experiment)
 
-;;; Reader and printer.
-
-(defun call-in-peace (function package)
-  "Call FUNCTION with the reader and the printer as they are in each trial, in PACKAGE."
-  (let ((*package* package)
-        (*readtable* (global-value '*readtable*)) (*read-default-float-format* 'single-float)
-        (*read-base* 10) (*print-base* 10) (*print-radix* nil) (*print-case* :upcase)
-        (*print-pretty* nil) (*print-readably* nil) (*print-escape* t) (*print-circle* nil)
-        (*print-length* nil) (*print-level* nil) (*print-array* t) (*print-gensym* t))
-    (funcall function)))
-
-;;; Data.
-
 (defconstant +deepest-data+ 50 "How deep data stand in data at most.")
 (defconstant +largest-data+ 1000000 "How many parts data have at most.")
 
