@@ -36,7 +36,8 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:prepare-condition #:row-of-trial #:row-differences
                 #:result-outcome #:result-reason #:result-ticks #:result-error #:measured
                 #:print-failures
-                #:run-experiment #:merge-results #:processors #:settle-fingerprints
+                #:run-experiment #:trial-under-way #:merge-results #:processors
+                #:settle-fingerprints
                 #:results-directory #:print-results #:save-result-pictures #:read-results
                 #:compare-conditions #:compare-results #:save-comparison-picture
                 #:shard-directory #:directories-with-rows #:count-rows #:missing-shards)

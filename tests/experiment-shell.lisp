@@ -159,6 +159,27 @@ output, and what to the error output."
         (is (= 1 (length (lines-of errors))))
         (is-true (search "stopped" errors))))))
 
+(defun stopped-after (seconds)
+  "Return what is said when an experiment is stopped that has had a trial under way for SECONDS."
+  (let* ((condition (first (ars-magna.experiment:experiment-conditions
+                            (cli::experiment-called (placed "a stroll.lisp")))))
+         (progress (ars-magna.experiment::make-progress nil nil 10 2))
+         (*error-output* (make-string-output-stream)))
+    (setf (svref (ars-magna.experiment::progress-under-way progress) 2)
+          (list condition 7 (- (ars-magna.experiment::moment)
+                               (* seconds internal-time-units-per-second))))
+    (cli::call-stoppable (lambda ()
+                           (let ((ars-magna.experiment::*progress* progress))
+                             (error 'sb-sys:interactive-interrupt)))
+                         "experiment" '() '())
+    (get-output-stream-string *error-output*)))
+
+(test interrupts.name-the-trial-that-does-not-end
+  (let ((cli::*interrupts-while-ending* nil))
+    (in-place
+      (is-true (has-words-p (stopped-after 600) "stopped; trial 7 of" "under way for 10 min"))
+      (is-false (search "trial" (stopped-after 1))))))
+
 (test interrupts.of-what-ends-already-let-it-be-put-in-order
   (let ((cli::*interrupts-while-ending* nil) (log '()))
     (is (eql 130 (cli::call-until-interrupted

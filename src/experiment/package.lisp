@@ -46,8 +46,9 @@ on with, on as many cores and machines as there are. Names lparallel.")
            #:contrast-same #:contrast-differences
            #:comparison-p #:comparison-contrasts #:comparison-verdicts #:print-comparison
            #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture)
-  ;; lines, running, merging, workers
-  (:export #:damaged-table #:ensure-store-directory #:run-experiment #:merge-results #:processors)
+  ;; lines, progress, running, merging, workers
+  (:export #:damaged-table #:ensure-store-directory #:run-experiment #:merge-results #:processors
+           #:trial-under-way)
   ;; fingerprint, shards
   (:export #:settle-fingerprints #:shard-directory #:directories-with-rows #:count-rows
            #:missing-shards)
