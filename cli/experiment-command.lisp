@@ -139,7 +139,9 @@ of what has been interrupted."
                                 (handler-bind ((user-interrupt #'look))
                                   (funcall function)))
                               (lambda ()
-                                (tell-stopped command arguments options under-way)
+                                ;; Who would read it may have been stopped, too.
+                                (ignore-errors
+                                 (tell-stopped command arguments options under-way))
                                 130)))))
 
 (defun print-missing (experiment options)
