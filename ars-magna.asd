@@ -217,8 +217,8 @@
   :serial t
   :components
   ((:module "src/fiveam" :serial t
-    :components ((:file "package") (:file "deciding") (:file "trying") (:file "repeating")
-                 (:file "telling") (:file "checking")))))
+    :components ((:file "package") (:file "deciding") (:file "subject") (:file "trying")
+                 (:file "repeating") (:file "telling") (:file "checking")))))
 
 ;;; Loaded by tests/clim.lisp, after the package of the tests, where McCLIM is found.
 (defsystem "ars-magna/clim-tests"

@@ -30,7 +30,7 @@ on with, on as many cores and machines as there are. Names lparallel.")
            #:experiment-from #:experiment-package #:experiment-limit #:find-condition #:trial-values
            #:condition-name #:condition-parameters)
   ;; trial, workers, description, values
-  (:export #:run-trial #:call-in-silence #:call-by-workers #:form-text
+  (:export #:run-trial #:call-in-silence #:call-by-workers #:form-text #:experiment-file
            #:result-trial #:result-seed #:result-outcome #:result-reason #:result-ticks
            #:result-digest #:result-error)
   ;; results
@@ -48,8 +48,9 @@ on with, on as many cores and machines as there are. Names lparallel.")
            #:comparison-p #:comparison-contrasts #:comparison-overall #:comparison-changes
            #:comparison-verdicts #:print-comparison
            #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture)
-  ;; lines, running, merging, workers
-  (:export #:damaged-table #:ensure-store-directory #:run-experiment #:merge-results #:processors)
+  ;; lines, progress, running, merging, workers
+  (:export #:damaged-table #:ensure-store-directory #:run-experiment #:merge-results #:processors
+           #:trial-under-way)
   ;; fingerprint, shards
   (:export #:settle-fingerprints #:shard-directory #:directories-with-rows #:count-rows
            #:missing-shards)

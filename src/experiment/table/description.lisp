@@ -11,11 +11,16 @@
         (*print-length* nil) (*print-level* nil) (*print-circle* nil) (*print-readably* nil))
     (prin1-to-string form)))
 
-(defun file-of-experiment (experiment)
-  "Return the name of the file that EXPERIMENT is from, without its directory, or NIL."
+(defun experiment-file (experiment)
+  "Return the name of the file that EXPERIMENT is from, or NIL."
   (let* ((entry (lookup-entry (experiment-name experiment) *experiments*))
          (file (and entry (source-file (entry-source entry)))))
-    (and file (short-name (native-name file)))))
+    (and file (native-name file))))
+
+(defun file-of-experiment (experiment)
+  "Return the name of the file that EXPERIMENT is from, without its directory, or NIL."
+  (let ((file (experiment-file experiment)))
+    (and file (short-name file))))
 
 (defun repetition-text (experiment trials until)
   "Return how to run EXPERIMENT again."
