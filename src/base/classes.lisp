@@ -17,6 +17,12 @@
   "Return a list of the methods of the generic FUNCTION."
   (closer-mop:generic-function-methods function))
 
+(defun methods-on-class (name)
+  "Return a list of the methods, of whatever generic functions, that are for objects of the class
+called NAME, if there is one."
+  (let ((class (find-class name nil)))
+    (and class (closer-mop:specializer-direct-methods class))))
+
 (defun method-function (method)
   "Return the function that METHOD has by the protocol: one around its code, perhaps."
   (closer-mop:method-function method))

@@ -31,7 +31,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:memory-barrier)
   ;; classes, code, packages
   (:export #:define-function-class #:generic-name #:class-ancestors #:class-slot-names
-           #:code-references #:function-file #:files-besides-functions
+           #:code-references #:method-code #:methods-on-class
+           #:function-file #:files-besides-functions
            #:call-as-from-file #:date-of-file
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
@@ -39,7 +40,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:native-name #:native-path #:existing-path #:replace-file #:plain-file-p 
            #:unusable-file-text
            #:call-replacing-file #:decoded #:file-text #:cut-file
-           #:call-with-file-lock #:make-directories
+           #:call-with-file-lock #:make-directories #:make-new-directory
            #:host-name #:process-number
            #:environment-value #:real-microseconds #:run-command #:run-attached)
   ;; environments

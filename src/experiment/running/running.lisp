@@ -59,13 +59,42 @@ there."
 (defparameter *seconds-for-checks* 10
   "For how long trials that have rows are run again before an experiment goes on.")
 
-(defun check-samples (experiment rows)
+(defun check-samples (experiment rows seconds)
   "Signal MISUSE if one of ROWS, of different conditions of EXPERIMENT, comes out otherwise now. At
-least one is tried, and others as long as there is time."
+least one is tried, and others as long as less than SECONDS have passed."
   (loop with begun = (moment)
         for texts in rows
         do (check-repeatable experiment texts)
-        until (> (seconds-since begun) *seconds-for-checks*)))
+        until (> (seconds-since begun) seconds)))
+
+(defun part-name (part)
+  "Return PART, of a fingerprint, without its number."
+  (format nil "~(~A~) ~A" (first part) (second part)))
+
+(defun check-unchanged (experiment parts directory)
+  "Signal MISUSE if the fingerprints of EXPERIMENT, of PARTS, are no longer what they were."
+  (loop for condition in (experiment-conditions experiment)
+        for before in parts
+        for now = (prepare-condition experiment condition)
+        unless (equal before now)
+          do (reject-use "Code or data have been changed while the experiment ran: ~{~A~^, ~}. The ~
+                          rows in ~A may be of either. Begin in another directory."
+                         (remove-duplicates
+                          (mapcar #'part-name (set-exclusive-or before now :test #'equal))
+                          :test #'string=)
+                         (native-name directory))))
+
+(defun check-run-again (store parts seconds)
+  "Signal MISUSE if what was kept in STORE, in so many SECONDS, cannot be had again: if its
+experiment, of PARTS, is no longer what it was, or a trial comes out otherwise. This takes a
+twentieth of that time, or one trial."
+  (let ((experiment (store-experiment store)))
+    (check-unchanged experiment parts (store-path store))
+    (check-samples experiment
+                   (loop for condition in (experiment-conditions experiment)
+                         for texts = (gethash condition (store-samples store))
+                         when texts collect texts)
+                   (/ seconds 20))))
 
 ;;; Looking at intervals.
 
@@ -136,13 +165,15 @@ least one is tried, and others as long as there is time."
   (let ((parts (loop for condition in (experiment-conditions experiment)
                      collect (prepare-condition experiment condition))))
     (multiple-value-bind (presence samples) (rows-there experiment parts directory)
-      (check-samples experiment samples)
+      (check-samples experiment samples *seconds-for-checks*)
       (save-description experiment parts trials until directory)
       (call-with-store
        (lambda (store)
-         (if until
-             (run-until-narrow experiment until trials directory store workers stream)
-             (run-all experiment trials presence shard store workers stream)))
+         (let ((begun (moment)))
+           (if until
+               (run-until-narrow experiment until trials directory store workers stream)
+               (run-all experiment trials presence shard store workers stream))
+           (check-run-again store parts (seconds-since begun))))
        experiment directory)
       (write-in-order (list (rows-file directory)) (rows-file directory)
                       (mapcar #'condition-name (experiment-conditions experiment))))))

@@ -12,7 +12,9 @@
   (experiment nil :type experiment :read-only t)
   (lock (make-lock "rows") :read-only t)
   (rows nil)
-  (machine nil))
+  (machine nil)
+  ;; The texts of the first row of each condition that was kept, by condition.
+  (samples (make-hash-table :test 'eq) :read-only t))
 
 (defun file-in (directory name)
   (merge-pathnames (native-path name) directory))
@@ -66,9 +68,7 @@
         for path = (directory-called (format nil "~Atrials-~D-~D/"
                                              (native-name (uiop:temporary-directory))
                                              (process-number) number))
-        unless (uiop:directory-exists-p path)
-          do (make-directories path)
-             (return path)))
+        when (make-new-directory path) return path))
 
 (defun call-with-temporary-directory (function)
   "Call FUNCTION with the path of a new directory, which is gone afterwards."
@@ -156,14 +156,18 @@ anything is left. Signals DAMAGED-TABLE if FILE is something else; then it is as
 (defun keep-row (store result milliseconds worker)
   "Append to STORE the row for RESULT, which took MILLISECONDS of WORKER. It is there for good when
 this returns."
-  (let ((line (csv-line (result-texts (store-experiment store) result)))
-        (machine-line (csv-line (machine-texts result milliseconds worker))))
+  (let* ((texts (result-texts (store-experiment store) result))
+         (line (csv-line texts))
+         (machine-line (csv-line (machine-texts result milliseconds worker)))
+         (condition (result-condition result)))
     (with-lock ((store-lock store))
       (deferring-interrupts
         (write-table-line line (store-rows store))
         (write-table-line machine-line (store-machine store)
                           ;; What was quick is written together.
-                          (if (> milliseconds 1) #'finish-output #'identity))))))
+                          (if (> milliseconds 1) #'finish-output #'identity))
+        (unless (gethash condition (store-samples store))
+          (setf (gethash condition (store-samples store)) texts))))))
 
 (defun machine-texts (result milliseconds worker)
   (list (condition-name (result-condition result))

@@ -28,10 +28,3 @@ is of a bounded size."
   "Return a number for VALUE, which is data: for its text, with the packages of names."
   (call-in-peace (lambda () (text-checksum (prin1-to-string value)))
                  (find-package :keyword)))
-
-(defun own-copy (value)
-  "Return VALUE, or a copy of it if it is data that could be changed in place."
-  (cond ((not (data-p value)) value)
-        ((consp value) (copy-tree value))
-        ((vectorp value) (copy-seq value))
-        (t value)))

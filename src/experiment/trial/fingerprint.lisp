@@ -39,9 +39,10 @@ it has been changed since."
     (loop for (file written) in files
           for part = (find (short-name file) parts :key #'second :test #'string=)
           for number = (digest-of-file file written)
-          do (if part
-                 (setf (third part) (ldb (byte 64 0) (+ number (third part))))
-                 (push (list :file (short-name file) number) parts)))
+          ;; Those of Lisp's own are not there.
+          do (cond ((zerop number))
+                   (part (setf (third part) (ldb (byte 64 0) (+ number (third part)))))
+                   (t (push (list :file (short-name file) number) parts))))
     parts))
 
 (defun configuration-parts (experiment condition)
@@ -109,8 +110,9 @@ reach."
               (loop for char across (part-text part) do (digest-add digest char)))
             (digest-value digest))))
 
-(defun prepare-condition (experiment condition)
-  "Give CONDITION of EXPERIMENT its fingerprint. Return the parts of that."
+(defun look-up-fingerprint (experiment condition)
+  "Give CONDITION of EXPERIMENT its fingerprint, and what else its trials need. Return the parts of
+the fingerprint."
   (multiple-value-bind (parts reach) (fingerprint-parts experiment condition)
     (setf (condition-random-p condition) (reach-random-p reach)
           (condition-variables condition)
@@ -118,6 +120,10 @@ reach."
                 collect (list symbol (global-value symbol)))
           (condition-fingerprint condition) (fingerprint-of parts))
     parts))
+
+(defun prepare-condition (experiment condition)
+  "Do as LOOK-UP-FINGERPRINT, whatever reader and printer are set to."
+  (call-plainly (lambda () (look-up-fingerprint experiment condition))))
 
 (defun prepare-experiment (experiment)
   "Give the conditions of EXPERIMENT their fingerprints. Signals MISUSE if a file is not as it was

@@ -70,7 +70,8 @@ data, since it often stands where a table or structure is to be."
   (let ((value (global-value symbol)))
     (when (and value (data-p value))
       (note-part :variable (qualified symbol) (data-number value) reach))
-    (visit value reach)))
+    (cond ((functionp value) (visit-function value symbol reach))
+          ((tree-p value) (visit value reach)))))
 
 ;; What an experiment varies, and how often it is tried, decides no trial.
 (defun visit-definition (entry reach)
@@ -116,6 +117,7 @@ data, since it often stands where a table or structure is to be."
           ((macro-function symbol) (visit-function (macro-function symbol) symbol reach))
           ((and (fboundp symbol) (notany #'procedure-p (mapcar #'entry-object entries)))
            (visit-function (fdefinition symbol) symbol reach)))
+    (dolist (method (methods-on-class symbol)) (visit-function (method-code method) symbol reach))
     (loop for (file written) in (files-besides-functions symbol)
           do (note-file file written reach))
     (when (and (null entries) (special-p symbol) (has-global-value-p symbol))

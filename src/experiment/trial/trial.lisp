@@ -57,7 +57,7 @@ is a gate to ask besides, or NIL."
   "Call FUNCTION with the variables that trials of CONDITION can reach bound to what they were when
 it was looked up: what a trial sets, no other sees."
   (progv (mapcar #'first (condition-variables condition))
-      (mapcar (lambda (variable) (own-copy (second variable))) (condition-variables condition))
+      (mapcar #'second (condition-variables condition))
     (funcall function)))
 
 (defun call-with-dice-of (condition seed function)
