@@ -14,6 +14,7 @@
                  (:file "classes") (:file "packages") (:file "files") (:file "code")
                  (:file "processes") (:file "environments") (:file "compiling") (:file "interrupts")
                  (:file "stacks") (:file "debuggers") (:file "abridging") (:file "conditions")
+                 (:file "exits")
                  (:file "telling") (:file "threads") (:file "dice") (:file "random") (:file "names")
                  (:file "digest") (:file "sources") (:file "places-in-text")
                  (:file "variables") (:file "definitions") (:file "user-macros")

@@ -12,11 +12,17 @@
 (defun experiment-among (name experiments)
   (find name experiments :key #'experiment-name :test #'same-name-p))
 
+(defun load-aside (path)
+  "Load the Lisp file at PATH. What it writes goes to the error output. It is not to end us."
+  (let ((*standard-output* *error-output*))
+    (unwind-protect (call-refusing-exits (lambda () (load-lisp path)))
+      (finish-output *error-output*))))
+
 (defun load-experiments (path)
   "Load the Lisp file at PATH. Return the experiments that it defines. Signals BAD-LINE if there are
 none."
   (let ((before (all-experiments)))
-    (load-lisp path)
+    (load-aside path)
     (or (set-difference (all-experiments) before)
         (reject-line "~A defines no experiment; a file of experiments has a DEFEXPERIMENT."
                      (native-name path)))))

@@ -80,6 +80,9 @@ output, and what to the error output."
                        ("experiment" "a" "--shard" "3/3" "--out" "x")
                        ("experiment" "a" "--shard" "3" "--out" "x")
                        ("experiment" "a" "--shard" "0/3") ("experiment" "a" "--parallel")
+                       ("experiment" "a" "--shards" "3" "--out" "x")
+                       ("experiment" "a" "--shard" "5/99999999999" "--out" "x")
+                       ("experiment" "a" "--shards" "1000000000" "--missing" "--out" "x")
                        ("experiment" "a" "--plot") ("experiment" "a" "--missing" "--out" "x")
                        ("experiment" "a" "--out" "") ("experiment" "a" "--quiet=1")
                        ("experiment" "a" "--shard" "0/3" "--until" ".1" "--out" "x")
@@ -219,6 +222,67 @@ output, and what to the error output."
       (is-true (has-words-p (compared (placed "one") (placed "two")) "24" "the same"))
       (is-true (has-words-p (said-by (lambda () (compared "1" "none" (placed "one"))))
                             "none" "motion-noise*=0.1")))))
+
+;;; Code that would end the program, or does not end itself.
+
+(defun write-stroll-that (form &rest more)
+  "Write an experiment whose trials evaluate FORM, and after it the forms MORE, as a file."
+  (write-file "leaver.lisp" "(defexperiment leaver (:robots ars-worlds:dot) (:trials 2) (:run ~A))~
+                             ~{~%~A~}"
+              form more))
+
+(test trials.that-would-end-the-program-break-off
+  (in-place
+    (dolist (form '("(sb-ext:exit :code 0)" "(sb-ext:exit :code 0 :abort t)" "(uiop:quit 0 nil)"))
+      (write-stroll-that form)
+      (multiple-value-bind (status text) (shell "experiment" (placed "leaver.lisp") "--quiet")
+        (is (eql 0 status))
+        (is-true (has-words-p text "2 trials" "0 to" "exit would end"))))
+    (is-true (has-words-p (getf (ars-magna.experiment:replay-trial 'ars-user::leaver 1 1) :error)
+                          "exit would end"))))
+
+(test files.that-would-end-the-program-say-where
+  (in-place
+    (write-stroll-that "t" "(warn \"Mind the step\")" "(sb-ext:exit)")
+    (let* ((said nil)
+           (errors (with-output-to-string (*error-output*)
+                     (setf said (said-by (lambda ()
+                                           (cli::experiment-called (placed "leaver.lisp"))))))))
+      (is-true (has-words-p said "leaver.lisp" "line 3" "exit would end"))
+      ;; The compiler has nothing to say of that.
+      (is-true (has-words-p errors "Mind the step"))
+      (is-false (has-words-p errors "compilation")))))
+
+;;; Shards without trials, and directories of other code.
+
+(test shards.without-trials-say-so
+  (in-place
+    (multiple-value-bind (status text errors)
+        (run-stroll "--trials" "3" "--shard" "7/9" "--out" (placed "few"))
+      (is (eql 0 status))
+      (is (string= "" text))
+      (is-true (has-words-p errors "shard 7 of 9 has no trials" "only 3")))
+    (is-false (uiop:directory-exists-p (base:native-path (placed "few/"))))
+    (is (string= (format nil "1 2 3~%")
+                 (nth-value 1 (run-stroll "--trials" "3" "--shards" "9" "--missing"
+                                          "--out" (placed "few")))))
+    (run-stroll "--trials" "3" "--shard" "3/9" "--out" (placed "few"))
+    (is (= 3 (lines-in "few/shard-3-of-9/rows.csv")))
+    (run-stroll "--trials" "9" "--shard" "0/9" "--out" (placed "few"))
+    (is (= 3 (lines-in "few/shard-0-of-9/rows.csv")))))
+
+(test directories.with-rows-of-other-code-are-not-spread-into
+  (in-place
+    (run-stroll "--out" (placed "there") "--shard" "0/2")
+    (flet ((check ()
+             (said-by (lambda ()
+                        (ars-magna.experiment:check-same-code
+                         (cli::experiment-called (placed "a stroll.lisp")) (placed "there"))))))
+      (is (string= "nothing" (check)))
+      (write-file "a stroll.lisp" "~A~%" (substitute #\5 #\4 *stroll* :count 1))
+      (is-true (has-words-p (check) "shard-0-of-2" "other code" "far" "another directory"))
+      (write-file "a stroll.lisp" "~A" (substitute #\y #\x *stroll* :from-end t :count 1))
+      (is-true (has-words-p (check) "shard-0-of-2" "columns")))))
 
 ;;; What decides the rows.
 

@@ -8,23 +8,13 @@
 
 ;;; What is there already.
 
-(defun reject-foreign (experiment condition parts directory)
-  (declare (ignore experiment))
-  (reject-use "~A has rows of the condition ~A that other code or another configuration has made~
-               ~@[; changed since: ~{~A~^, ~}~]. Give another directory, or delete these rows."
-              (native-name directory) (condition-name condition)
-              (changes-since condition parts directory)))
-
 (defun rows-there (experiment parts directory)
   "Return the presence of rows of EXPERIMENT in DIRECTORY, and the texts of the last of them. PARTS
 are those of the fingerprints of its conditions. Signals MISUSE for rows of other code."
   (present-rows experiment directory
                 (lambda (condition texts)
                   (declare (ignore texts))
-                  (reject-foreign experiment condition
-                                  (nth (position condition (experiment-conditions experiment))
-                                       parts)
-                                  directory))))
+                  (reject-foreign experiment condition parts directory))))
 
 (defun check-repeatable (experiment texts)
   "Signal MISUSE if the trial of EXPERIMENT whose row is TEXTS, if any, comes out otherwise now."

@@ -81,3 +81,13 @@ those of the fingerprints of its conditions, in order."
            (remove-duplicates
             (mapcar #'without-number (set-exclusive-or before now :test #'string=))
             :test #'string=)))))
+
+(defun reject-foreign (experiment condition parts directory)
+  "Say that DIRECTORY has rows of CONDITION of EXPERIMENT that cannot be gone on with. PARTS are
+those of the fingerprints of all conditions."
+  (let ((its (nth (position condition (experiment-conditions experiment)) parts)))
+    (reject-use "~A has rows of the condition ~A that other code or another configuration has ~
+                 made~@[; changed since: ~{~A~^, ~}~]. Give another directory, or delete these ~
+                 rows."
+                (native-name directory) (condition-name condition)
+                (changes-since condition its directory))))
