@@ -4,7 +4,7 @@
   :description "An abstract robot simulator for people who build reactive planners."
   :version "1.0.0"
   :license "MIT"
-  :depends-on ("alexandria" "bordeaux-threads" "closer-mop" "cl-csv" "lparallel"
+  :depends-on ("alexandria" "bordeaux-threads" "closer-mop" "lparallel"
                "named-readtables" "sb-cltl2" "sb-introspect" "sb-posix")
   :serial t
   :components
@@ -135,10 +135,10 @@
     :components ((:file "values") (:file "condition") (:file "experiment") (:file "clauses")
                  (:file "defexperiment")))
    (:module "src/experiment/trial" :serial t
-    :components ((:file "outcome") (:file "trial") (:file "version") (:file "reaching")
+    :components ((:file "outcome") (:file "data") (:file "trial") (:file "version") (:file "reaching")
                  (:file "fingerprint")))
    (:module "src/experiment/table" :serial t
-    :components ((:file "csv") (:file "row") (:file "lines") (:file "directory")
+    :components ((:file "csv") (:file "row") (:file "checking") (:file "lines") (:file "directory")
                  (:file "description") (:file "results") (:file "merging") (:file "shards")))
    (:module "src/experiment/running" :serial t
     :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "rounds")
@@ -294,7 +294,7 @@
                  (:file "users-hands") (:file "src-readme") (:file "rpl-readme")
                  (:file "experiments-readme")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
-                 (:file "experiments-tables") (:file "experiments-report")
+                 (:file "experiments-tables") (:file "experiments-fingerprints") (:file "experiments-report")
                  (:file "experiments-pictures") (:file "experiment-compare")
                  (:file "experiment-compare-versions") (:file "rates") (:file "isolation")
                  (:file "main"))))

@@ -104,13 +104,8 @@
 
 (defun ensure-results-directory (name)
   "Return the path of the directory NAME, made if there is none."
-  (let ((path (uiop:ensure-directory-pathname
-               (merge-pathnames (uiop:parse-native-namestring name :ensure-directory t)
-                                (uiop:getcwd)))))
-    (handler-case (ensure-directories-exist path)
-      (error () (reject-line "~A cannot be made; give the name of a directory that can be."
-                             (native-name path))))
-    path))
+  (handler-case (ensure-store-directory name)
+    (misuse (condition) (reject-line "~A" condition))))
 
 (defun directory-for-rows (options)
   "Return the name of the directory that OPTIONS want rows in, or NIL."

@@ -32,7 +32,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:find-experiment #:all-experiments #:experiment-name #:experiment-documentation
                 #:experiment-conditions #:experiment-trials #:experiment-limit
                 #:find-condition #:condition-name #:trial-seed
-                #:run-again #:call-until-error #:call-aside #:await-time
+                #:ensure-store-directory #:run-again #:call-until-error #:call-aside #:await-time
                 #:prepare-condition #:row-of-trial #:row-differences
                 #:result-outcome #:result-reason #:result-ticks #:result-error #:measured
                 #:print-failures

@@ -9,8 +9,9 @@
 
 (defun made-up-line (row fingerprint)
   (destructuring-bind (plan noise seed outcome ticks way digest) row
-    (format nil "search,~A,plan=~A noise=~A,~A,~A,~D,~D,~A,,~D,~A,~A,~16,'0X,~A"
-            fingerprint plan noise plan noise seed (- seed 7) outcome ticks way
+    (format nil "search,~A~8,'0X,plan=~A noise=~A,~A,~A,~D,~D,~A,,~D,~A,~A,~16,'0X,~A"
+            fingerprint (ldb (byte 32 0) (sxhash (format nil "~A ~A" plan noise)))
+            plan noise plan noise seed (- seed 7) outcome ticks way
             (if (equal way "") "" (if (string= outcome "success") "TRUE" "FALSE"))
             digest (if (string= outcome "error") "boom" ""))))
 

@@ -297,3 +297,80 @@
   (signals base:misuse (walk "/proc/nothing/here/"))
   (signals base:wrong-argument (experiment:merge-results '()))
   (signals base:unknown-name (experiment:run-experiment 'no-such-question)))
+
+;;; What is no table of ours, or has been changed.
+
+(defun write-raw (path text)
+  (ensure-directories-exist path)
+  (with-open-file (out path :direction :output :if-exists :supersede :external-format :latin-1)
+    (write-string text out)))
+
+(defun raw-text (path)
+  (base:read-file-into-string path :external-format :latin-1))
+
+(test tables.of-others-are-left-alone
+  (define-walk)
+  (with-directories (directory)
+    (dolist (text (list "my precious text" (format nil "name,age~%bob,3") (format nil "a~%b~%")
+                        (format nil "experiment~%") (string (code-char 0))))
+      (write-raw (rows-path directory) text)
+      (signals experiment:damaged-table (walk directory :trials 1))
+      (is (string= text (raw-text (rows-path directory)))))))
+
+(test tables.saved-by-spreadsheets-are-told
+  (define-walk)
+  (with-directories (directory merged)
+    (walk directory :trials 2)
+    (let ((lines (table-lines directory)))
+      (dolist (text (list (format nil (format nil "~~{~~A~C~~%~~}" #\Return) lines)
+                          (format nil "~A~{~A~%~}" (map 'string #'code-char '(#xEF #xBB #xBF))
+                                  lines)))
+        (write-raw (rows-path directory) text)
+        (dolist (form (list (lambda () (walk directory :trials 2))
+                            (lambda () (experiment:merge-results (list directory) :to merged))))
+          (handler-case (progn (funcall form) (fail "it was taken"))
+            (experiment:damaged-table (condition)
+              (is (search "editor" (princ-to-string condition))))))
+        (is (string= text (raw-text (rows-path directory))))))))
+
+(defun changed-cell (line column text)
+  "Return LINE, of a table, with TEXT for the cell numbered COLUMN."
+  (let ((texts (experiment::csv-texts line)))
+    (setf (nth column texts) text)
+    (string-right-trim '(#\Newline) (experiment::csv-line texts))))
+
+(test rows.that-cannot-be-are-told
+  (define-walk)
+  (with-directories (directory merged)
+    (walk directory :trials 4)
+    (let ((lines (table-lines directory)))
+      (loop for (column text) in '((0 "wolk") (2 "max-speed*=7") (3 "7") (4 "9") (5 "0") (5 "-1")
+                                   (5 "1000000000000") (5 "x") (6 "bogus") (8 "abc") (8 "-3")
+                                   (11 "no digest"))
+            do (write-table directory
+                            (substitute (changed-cell (third lines) column text) (third lines)
+                                        lines :test #'string=))
+               (signals base:ars-magna-error (walk directory :trials 4))
+               (unless (member column '(4))
+                 (signals base:ars-magna-error
+                   (experiment:merge-results (list directory) :to merged)))))))
+
+(test merging.refuses-other-experiments
+  (define-walk)
+  (with-directories (a b)
+    (walk a :trials 2)
+    (eval '(experiment:defexperiment walk-too (:robots ars-worlds:dot)
+            (:vary (base:max-speed* 1 2)) (:run t) (:measure (way 1) (wet nil))))
+    (experiment:run-experiment 'walk-too :trials 2 :directory b :stream nil)
+    (let ((before (table-text b)))
+      (signals base:misuse (experiment:merge-results (list a) :to b))
+      (is (string= before (table-text b))))))
+
+(test directories.have-the-names-that-they-are-given
+  (define-walk)
+  (with-directories (directory)
+    (dolist (name '("a*b" "a[b" "a?b" "a\\b" "a b" "ü"))
+      (let ((path (concatenate 'string directory name "/")))
+        (experiment:run-experiment 'walk :trials 1 :directory path :stream nil)
+        (is-true (probe-file (base:native-path (concatenate 'string path "rows.csv")))
+                 "~A" name)))))

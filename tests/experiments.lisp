@@ -167,11 +167,11 @@
     (:vary (what 'succeed 'fail 'err 'wait 'last))
     (:run (driver:run-plan 'outcome-plan what)))
   (let ((outcomes (outcomes)))
-    (is (equal '(("failure" "lisp-failure") ("failure" "no-way") ("limit" "") ("success" "")
-                 ("failure" "deadlock"))
+    (is (equal '(("success" "") ("failure" "no-way") ("failure" "lisp-failure")
+                 ("failure" "deadlock") ("limit" ""))
                (mapcar (lambda (outcome) (subseq outcome 0 2)) outcomes)))
-    (is (search "in Lisp" (fourth (first outcomes))))
-    (is (= 30 (third (third outcomes))))))
+    (is (search "in Lisp" (fourth (third outcomes))))
+    (is (= 30 (third (fifth outcomes))))))
 
 (test outcomes.are-what-run-returns
   (define-for-test (:robots ars-worlds:dot) (:vary (number 1 2 3 4))
@@ -276,3 +276,12 @@
                       (run:state-digest))
                     (experiment::result-digest
                      (experiment::run-trial experiment condition trial)))))))
+
+(test progress.names-what-has-been-under-way-for-long
+  (define-for-test (:robots ars-worlds:dot) (:run t))
+  (let ((progress (experiment::make-progress nil nil 10 2))
+        (condition (first (experiment:experiment-conditions
+                           (experiment:find-experiment 'question)))))
+    (is (null (experiment::longest-under-way progress)))
+    (setf (svref (experiment::progress-under-way progress) 2) (list condition 3 0))
+    (is (search "trial 3 of all" (experiment::longest-under-way progress)))))

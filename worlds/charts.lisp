@@ -111,17 +111,15 @@ of walls, one cell wide, is around them all, so that each cell has neighbours on
         (when (plusp (cost-at chart x y))
           (setf (aref (chart-costs chart) (cell-number chart x y)) (cell-cost chart x y)))))))
 
-(defvar *last-chart* nil
-  "The chart that was made last. Whoever needs one of that map shares it.")
+(defvar *charts* (make-hash-table :test 'eq :weakness :key :synchronized t)
+  "Charts by their maps. Whoever needs one of a map shares it.")
 
 (defun chart-of (map)
   "Return a chart of MAP as it is now."
-  (let ((chart *last-chart*))
-    (if (and chart
-             (eq map (chart-map chart))
-             (eq (ars-magna.world:map-places map) (chart-places chart)))
+  (let ((chart (gethash map *charts*)))
+    (if (and chart (eq (ars-magna.world:map-places map) (chart-places chart)))
         chart
-        (setf *last-chart* (make-chart map)))))
+        (setf (gethash map *charts*) (make-chart map)))))
 
 (defun with-barred (chart barred)
   "Return the costs of CHART and of BARRED, a list of (cell cost), together."

@@ -132,7 +132,7 @@ plans, mean this one."
           (procedure-stub procedure) stub
           (documentation name 'function) documentation)
     (reinstate procedure)
-    (let ((*definition* (make-defining source (list "def-interp-proc" name))))
+    (let ((*definition* (make-defining source (or text (list "def-interp-proc" name)))))
       (register *procedures* name procedure))
     name))
 

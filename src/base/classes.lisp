@@ -13,9 +13,13 @@
   "Return the name of the generic FUNCTION, a symbol or (SETF symbol)."
   (closer-mop:generic-function-name function))
 
-(defun method-functions (function)
-  "Return a list of the functions of the methods of the generic FUNCTION."
-  (mapcar #'closer-mop:method-function (closer-mop:generic-function-methods function)))
+(defun methods-of-generic (function)
+  "Return a list of the methods of the generic FUNCTION."
+  (closer-mop:generic-function-methods function))
+
+(defun method-function (method)
+  "Return the function that METHOD has by the protocol: one around its code, perhaps."
+  (closer-mop:method-function method))
 
 (defun class-ancestors (class)
   "Return a list of CLASS and those it inherits from, those that are more special first."

@@ -14,6 +14,11 @@
       (sb-kernel:fdefn-name constant)
       constant))
 
+(defun method-code (method)
+  "Return the function that was compiled from the body of METHOD."
+  (or (uiop:symbol-call :sb-pcl :safe-method-fast-function method)
+      (method-function method)))
+
 (defun code-references (function)
   "Return a list of what FUNCTION refers to: names of functions, which are symbols or lists,
 symbols, other functions, and whatever else stands in its code or was closed over. In it are no
@@ -21,7 +26,7 @@ numbers."
   (remove-if
    (lambda (object) (typep object '(or number character string bit-vector null)))
    (if (typep function 'generic-function)
-       (method-functions function)
+       (mapcar #'method-code (methods-of-generic function))
        (append (mapcar #'constant-meant (code-constants function))
                (when (sb-kernel:closurep function) (sb-kernel:%closure-values function))))))
 
@@ -45,12 +50,30 @@ come of it are from there."
       (with-compilation-unit (:source-namestring name)
         (let ((*error-output* errors)) (funcall function))))))
 
-(defun function-file (function)
-  "Return the file that FUNCTION was compiled from, as the system calls it, and the time at which
-that was written by then; NIL if it was typed."
-  (let* ((source (ignore-errors (sb-introspect:find-definition-source function)))
-         (path (and source (sb-introspect:definition-source-pathname source))))
+(defun file-of-source (source)
+  "Return which file SOURCE, what SBCL knows of a definition, is from, as the system calls it, and
+the time at which that was written by then; NIL if it was typed."
+  (let ((path (and source (sb-introspect:definition-source-pathname source))))
     (and path
          (let ((name (native-name (translate-logical-pathname path))))
            (values name (or (sb-introspect:definition-source-file-write-date source)
                             (date-of-file name)))))))
+
+(defun function-file (function)
+  "Return the file that FUNCTION was compiled from, as the system calls it, and the time at which
+that was written by then; NIL if it was typed."
+  (file-of-source (ignore-errors (sb-introspect:find-definition-source function))))
+
+(defparameter *kinds-besides-functions*
+  '(:variable :constant :symbol-macro :compiler-macro :setf-expander :type :class :structure
+    :condition)
+  "As what a symbol may be defined that is no function, by the names that SBCL has for that.")
+
+(defun files-besides-functions (symbol)
+  "Return lists (file written), as FUNCTION-FILE returns them, of definitions of SYMBOL as anything
+but a function."
+  (loop for kind in *kinds-besides-functions*
+        append (loop for source in (ignore-errors
+                                    (sb-introspect:find-definition-sources-by-name symbol kind))
+                     for file = (multiple-value-list (file-of-source source))
+                     when (first file) collect file)))

@@ -97,12 +97,23 @@ octets that are no text in UTF-8."
   (sb-posix:truncate (native-name path) length)
   (values))
 
-(defun call-with-file-lock (function path)
+(defun make-directories (path)
+  "Make the directory PATH and those that it is in, as far as there are none."
+  ;; Lisp's own function makes others where a name has a star or the like.
+  (unless (uiop:directory-exists-p path)
+    (let ((parent (uiop:pathname-parent-directory-pathname path)))
+      (unless (equal parent path) (make-directories parent)))
+    (handler-case (sb-posix:mkdir (string-right-trim "/" (native-name path)) #o777)
+      (sb-posix:syscall-error (condition)
+        (unless (uiop:directory-exists-p path) (error condition))))))
+
+(defun call-with-file-lock (function path refused)
   "Call FUNCTION while no other process that asks so has the file PATH, which is made if there is
 none; the system lets go of it when this process ends, in whatever way. Return true and what
-FUNCTION returns, or NIL if another has it."
-  (let ((descriptor (sb-posix:open (native-name path)
-                                   (logior sb-posix:o-creat sb-posix:o-rdwr) #o644)))
+FUNCTION returns, or NIL if another has it. If PATH cannot be written, call REFUSED instead."
+  (let ((descriptor (handler-case (sb-posix:open (native-name path)
+                                                 (logior sb-posix:o-creat sb-posix:o-rdwr) #o644)
+                      (sb-posix:syscall-error () (funcall refused)))))
     (unwind-protect
          (when (handler-case (sb-posix:lockf descriptor sb-posix:f-tlock 0)
                  (sb-posix:syscall-error () nil))

@@ -31,15 +31,17 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:memory-barrier)
   ;; classes, code, packages
   (:export #:define-function-class #:generic-name #:class-ancestors #:class-slot-names
-           #:code-references #:function-file #:call-as-from-file #:date-of-file
+           #:code-references #:function-file #:files-besides-functions
+           #:call-as-from-file #:date-of-file
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
   ;; files, processes
   (:export #:native-name #:native-path #:existing-path #:replace-file #:plain-file-p 
            #:unusable-file-text
-           #:call-replacing-file #:decoded #:file-text #:cut-file #:call-with-file-lock
+           #:call-replacing-file #:decoded #:file-text #:cut-file
+           #:call-with-file-lock #:make-directories
            #:host-name #:process-number
-           #:environment-value #:run-command #:run-attached)
+           #:environment-value #:real-microseconds #:run-command #:run-attached)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
            #:local-function-p #:known-function-p #:macro-expander
@@ -75,7 +77,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; dice, random
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice
-           #:*lisps-dice* #:call-with-own-lisps-dice #:lisps-dice-p)
+           #:*lisps-dice* #:call-with-own-lisps-dice #:lisps-dice-p #:unheard-of-number)
   ;; names
   (:export #:same-name-p #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables

@@ -6,6 +6,12 @@
   "Return the value of the environment's variable called NAME, a string, or NIL if it is not set."
   (uiop:getenv name))
 
+(defun real-microseconds ()
+  "Return the real time in microseconds since some moment. No result may depend on it."
+  ;; What Lisp itself has for that goes on in steps of 4000.
+  (multiple-value-bind (seconds microseconds) (sb-ext:get-time-of-day)
+    (+ (* 1000000 seconds) microseconds)))
+
 (defun run-command (program arguments &key input output)
   "Run PROGRAM, looked for where programs are, with the strings ARGUMENTS, and wait for its end.
 INPUT is a stream for it to read, :INTERACTIVE to read what this Lisp would, or NIL. Return its exit

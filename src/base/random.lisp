@@ -15,6 +15,10 @@
   "Call FUNCTION. CL:RANDOM has dice of its own in it, which no other thread rolls."
   (let ((*random-state* (make-random-state nil))) (funcall function)))
 
+(defun unheard-of-number ()
+  "Return a number of 64 bits that no other process comes upon, if chance allows."
+  (random (expt 2 64) (make-random-state t)))
+
 (defun lisps-dice-p (symbol)
   "True if SYMBOL is a name by which Lisp's own dice are rolled."
   (and (member symbol '(cl:random cl:*random-state* cl:make-random-state)) t))

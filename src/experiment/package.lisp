@@ -2,7 +2,7 @@
 
 (defpackage :ars-magna.experiment
   (:documentation "Controlled experiments: conditions, trials, tables that can be repeated and gone
-on with, on as many cores and machines as there are. Names cl-csv and lparallel.")
+on with, on as many cores and machines as there are. Names lparallel.")
   (:use :cl :ars-magna.base :ars-magna.statistics :ars-magna.run)
   (:import-from :ars-magna.plots
                 #:figure-text #:line-chart #:survival-chart #:difference-chart #:measure-chart
@@ -47,7 +47,7 @@ on with, on as many cores and machines as there are. Names cl-csv and lparallel.
            #:comparison-p #:comparison-contrasts #:comparison-verdicts #:print-comparison
            #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture)
   ;; lines, running, merging, workers
-  (:export #:damaged-table #:run-experiment #:merge-results #:processors)
+  (:export #:damaged-table #:ensure-store-directory #:run-experiment #:merge-results #:processors)
   ;; fingerprint, shards
   (:export #:settle-fingerprints #:shard-directory #:directories-with-rows #:count-rows
            #:trials-in-shard-p #:missing-shards #:check-same-code)

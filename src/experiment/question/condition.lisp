@@ -29,6 +29,8 @@
   (arguments '() :type list)
   ;; What decides its trials, as far as that has been looked up, and whether CL:RANDOM is there.
   (fingerprint nil :type (or null string))
+  ;; Lists (symbol value): users' special variables that its trials can reach, and their values.
+  (variables '() :type list)
   (random-p t :type boolean))
 
 (document-functions

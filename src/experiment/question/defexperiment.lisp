@@ -181,7 +181,8 @@ not. See RUN-EXPERIMENT for what is kept. Signals MALFORMED-DEFINITION. Return N
           (experiment-form experiment) form
           (experiment-deciding experiment) deciding
           (experiment-conditions experiment)
-          (all-conditions experiment clean (settings-from definition parameters)))
+          (let ((settings (settings-from definition parameters)))
+            (call-plainly (lambda () (all-conditions experiment clean settings)))))
     experiment))
 
 (defun define-experiment (name &rest options)

@@ -5,6 +5,23 @@
 ;;; Whatever reads the table, R, pandas or sqlite, must take a number for a number. So floats have
 ;;; no exponent marker of Lisp's, ratios become floats, and truth is TRUE or FALSE.
 
+;;; Reader and printer.
+
+(defun call-in-peace (function package)
+  "Call FUNCTION with the reader and the printer as they are in each trial, in PACKAGE."
+  (let ((*package* package)
+        (*readtable* (global-value '*readtable*)) (*read-default-float-format* 'single-float)
+        (*read-base* 10) (*print-base* 10) (*print-radix* nil) (*print-case* :upcase)
+        (*print-pretty* nil) (*print-readably* nil) (*print-escape* t) (*print-circle* nil)
+        (*print-length* nil) (*print-level* nil) (*print-array* t) (*print-gensym* t))
+    (funcall function)))
+
+(defun call-plainly (function)
+  "Call FUNCTION with the reader and the printer as they are in each trial."
+  (call-in-peace function *package*))
+
+;;; Values.
+
 (defconstant +longest-text+ 500
   "How many characters a text in a table has at most.")
 

@@ -56,7 +56,7 @@ there is none."
   (let ((file (rows-file (existing-table directory)))
         (place (1+ (seed-column (columns experiment))))
         (number (princ-to-string trial)))
-    (check-columns experiment file)
+    (check-beginning file (columns experiment))
     (map-rows (lambda (texts line start line-number)
                 (declare (ignore line start line-number))
                 (when (and (string= number (nth place texts))

@@ -4,12 +4,17 @@
 
 ;;; On a terminal there is one line that changes; elsewhere a line now and then.
 
-(defstruct (progress (:constructor make-progress (stream terminal-p total)) (:copier nil))
+(defstruct (progress (:constructor make-progress
+                               (stream terminal-p total workers
+                                &aux (under-way (make-array (1+ workers) :initial-element nil))))
+                     (:copier nil))
   "How far an experiment has come, of TOTAL trials, and who is told so."
   (stream nil :read-only t)
   (terminal-p nil :read-only t)
   (total 0 :type integer)
   (done 0 :type atomic-count)
+  ;; By worker: what it is at, a list (condition trial moment), or NIL.
+  (under-way #() :type simple-vector :read-only t)
   (begun (moment) :read-only t)
   (told (moment) :type integer))
 
@@ -31,6 +36,18 @@
             (and (plusp rate) (rate-text rate))
             (and (plusp rate) (< done total) (duration-text (/ (- total done) rate))))))
 
+(defconstant +long+ 10 "After how many seconds a trial is named that is not over.")
+
+(defun longest-under-way (progress)
+  "Return in words which trial of PROGRESS has been under way longest, if that is long; or NIL."
+  (let ((oldest (first (sort (remove nil (coerce (progress-under-way progress) 'list)) #'<
+                             :key #'third))))
+    (when oldest
+      (destructuring-bind (condition trial moment) oldest
+        (when (> (seconds-since moment) +long+)
+          (format nil "trial ~D of ~A has been under way for ~A" trial (condition-name condition)
+                  (duration-text (seconds-since moment))))))))
+
 (defun tell-progress (progress &optional last)
   "Say how far PROGRESS has come, if it is time to, or this is the LAST time."
   (let ((stream (progress-stream progress)))
@@ -40,6 +57,8 @@
                       (if (progress-terminal-p progress) 0.5 10))))
       (setf (progress-told progress) (moment))
       (if (progress-terminal-p progress)
-          (format stream "~C~A~C[K~:[~;~%~]" #\Return (progress-text progress) #\Escape last)
-          (format stream "~&~A~%" (progress-text progress)))
+          (format stream "~C~A~@[; ~A~]~C[K~:[~;~%~]" #\Return (progress-text progress)
+                  (longest-under-way progress) #\Escape last)
+          (format stream "~&~A~@[; ~A~]~%" (progress-text progress)
+                  (longest-under-way progress)))
       (finish-output stream))))

@@ -47,12 +47,23 @@
   "Let nobody get another trial of QUEUE."
   (setf (queue-closed-p queue) t))
 
+(defun count-in-shard (first last shard)
+  "Return how many numbers from FIRST to LAST are of trials in SHARD."
+  (if shard
+      (flet ((up-to (number)
+               (destructuring-bind (index . count) shard
+                 (if (< number index) 0 (1+ (floor (- number index) count))))))
+        (- (up-to last) (up-to (1- first))))
+      (max 0 (- last first -1))))
+
 (defun count-missing (queue)
   "Return how many trials there are in QUEUE, of which none has been taken."
-  (loop for trial from (queue-first queue) to (queue-last queue)
-        when (in-shard-p trial (queue-shard queue))
-          sum (count-if-not (lambda (condition) (present-p condition trial (queue-presence queue)))
-                            (queue-conditions queue))))
+  (let ((first (queue-first queue)) (last (queue-last queue)) (shard (queue-shard queue)))
+    (loop for condition in (queue-conditions queue)
+          for bits = (bits-of condition (queue-presence queue))
+          sum (- (count-in-shard first last shard)
+                 (loop for trial from first below (min (1+ last) (length bits))
+                       count (and (plusp (aref bits trial)) (in-shard-p trial shard)))))))
 
 ;;; Running them.
 
@@ -67,9 +78,14 @@
   (flet ((work ()
            (loop (multiple-value-bind (condition trial) (next-trial queue)
                    (unless condition (return))
+                   (setf (svref (progress-under-way progress) worker)
+                         (list condition trial (moment)))
                    (run-and-keep experiment condition trial keep worker)
+                   (setf (svref (progress-under-way progress) worker) nil)
                    (atomic-incf (progress-done progress))))))
-    (call-in-silence (lambda () (call-with-own-lisps-dice #'work)))))
+    (call-in-silence
+     (lambda ()
+       (call-plainly (lambda () (call-with-own-lisps-dice #'work)))))))
 
 (defun run-queue (experiment queue keep progress workers)
   "Run the trials of QUEUE by WORKERS threads. If this is left, no trial is begun any more, and

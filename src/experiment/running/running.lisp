@@ -9,29 +9,53 @@
 ;;; What is there already.
 
 (defun rows-there (experiment parts directory)
-  "Return the presence of rows of EXPERIMENT in DIRECTORY, and the texts of the last of them. PARTS
-are those of the fingerprints of its conditions. Signals MISUSE for rows of other code."
-  (present-rows experiment directory
-                (lambda (condition texts)
-                  (declare (ignore texts))
-                  (reject-foreign experiment condition parts directory))))
+  "Return the presence of rows of EXPERIMENT in DIRECTORY, and a list of the texts of one of each
+condition. PARTS are those of the fingerprints of its conditions. Signals MISUSE for rows of other
+code."
+  (let ((samples (make-hash-table :test 'eq)))
+    (values (present-rows experiment directory
+                          (lambda (condition texts)
+                            (declare (ignore texts))
+                            (reject-foreign experiment condition parts directory))
+                          (lambda (condition texts) (setf (gethash condition samples) texts)))
+            (loop for condition in (experiment-conditions experiment)
+                  for texts = (gethash condition samples)
+                  when texts collect texts))))
+
+(defun differing-column (columns texts others)
+  "Return the name of the first of COLUMNS in which the rows TEXTS and OTHERS differ, and both texts
+there."
+  (loop for column in columns
+        for text in texts
+        for other in others
+        unless (string= text other) return (list column other text)))
 
 (defun check-repeatable (experiment texts)
-  "Signal MISUSE if the trial of EXPERIMENT whose row is TEXTS, if any, comes out otherwise now."
-  (let ((condition (and texts (condition-of-texts experiment texts))))
-    (when condition
-      (let* ((trial (parse-integer (nth (1+ (seed-column (columns experiment))) texts)))
-             (again (result-texts experiment
-                                  (call-in-silence
-                                   (lambda () (run-trial experiment condition trial))))))
-        (unless (equal texts again)
-          (reject-use "Trial ~D of the condition ~A has a row already, and comes out differently ~
-                       now: ~A instead of ~A. Something that is not in its fingerprint decides ~
-                       it, such as a variable that trials change, the clock, or a file. Mend ~
-                       that, and begin in another directory."
-                      trial (condition-name condition)
-                      (first (set-difference again texts :test #'string=))
-                      (first (set-difference texts again :test #'string=))))))))
+  "Signal MISUSE if the trial of EXPERIMENT whose row is TEXTS comes out otherwise now."
+  (let* ((condition (condition-of-texts experiment texts))
+         (columns (columns experiment))
+         (trial (parse-integer (nth (1+ (seed-column columns)) texts)))
+         (again (result-texts experiment
+                              (call-in-silence
+                               (lambda () (run-trial experiment condition trial))))))
+    (unless (equal texts again)
+      (reject-use "Trial ~D of the condition ~A has a row already, and comes out differently now: ~
+                   ~{its ~A is ~A, and ~A in the row~}. Either the row has been changed, or ~
+                   something that is not in the fingerprint decides the trial, such as a structure ~
+                   that trials change, the clock, or a file. Mend that, and begin in another ~
+                   directory."
+                  trial (condition-name condition) (differing-column columns texts again)))))
+
+(defparameter *seconds-for-checks* 10
+  "For how long trials that have rows are run again before an experiment goes on.")
+
+(defun check-samples (experiment rows)
+  "Signal MISUSE if one of ROWS, of different conditions of EXPERIMENT, comes out otherwise now. At
+least one is tried, and others as long as there is time."
+  (loop with begun = (moment)
+        for texts in rows
+        do (check-repeatable experiment texts)
+        until (> (seconds-since begun) *seconds-for-checks*)))
 
 ;;; Looking at intervals.
 
@@ -66,12 +90,14 @@ are those of the fingerprints of its conditions. Signals MISUSE for rows of othe
   "Run the trials up to LAST of CONDITIONS that are not there."
   (let* ((queue (make-queue conditions 1 last presence shard))
          (missing (count-missing queue))
-         (progress (make-progress stream (and stream (interactive-stream-p stream)) missing)))
+         (workers (min workers missing))
+         (progress (make-progress stream (and stream (interactive-stream-p stream))
+                                  missing workers)))
     (when (plusp missing)
       (run-queue experiment queue
                  (lambda (result milliseconds worker)
                    (keep-row store result milliseconds worker))
-                 progress (min workers missing))
+                 progress workers)
       (tell-progress progress t))))
 
 (defun run-all (experiment trials presence shard store workers stream)
@@ -98,8 +124,8 @@ are those of the fingerprints of its conditions. Signals MISUSE for rows of othe
   "Run the trials of EXPERIMENT that DIRECTORY has no rows of, and put the table in order."
   (let ((parts (loop for condition in (experiment-conditions experiment)
                      collect (prepare-condition experiment condition))))
-    (multiple-value-bind (presence last-texts) (rows-there experiment parts directory)
-      (check-repeatable experiment last-texts)
+    (multiple-value-bind (presence samples) (rows-there experiment parts directory)
+      (check-samples experiment samples)
       (save-description experiment parts trials until directory)
       (call-with-store
        (lambda (store)
@@ -107,7 +133,8 @@ are those of the fingerprints of its conditions. Signals MISUSE for rows of othe
              (run-until-narrow experiment until trials directory store workers stream)
              (run-all experiment trials presence shard store workers stream)))
        experiment directory)
-      (write-in-order (list (rows-file directory)) (rows-file directory)))))
+      (write-in-order (list (rows-file directory)) (rows-file directory)
+                      (mapcar #'condition-name (experiment-conditions experiment))))))
 
 (defun shard-p (shard)
   (or (null shard)
@@ -129,13 +156,12 @@ are those of the fingerprints of its conditions. Signals MISUSE for rows of othe
     (reject-use "A shard cannot know when intervals are narrow enough: give :until or :shard.")))
 
 (defun run-and-read (experiment directory trials until shard workers stream)
-  (call-with-directory
-   (lambda ()
-     (run-in experiment directory trials until shard workers stream)
-     (let ((results (results-in (rows-file directory))))
-       (setf (results-until results) until)
-       results))
-   directory))
+  (flet ((run ()
+           (run-in experiment directory trials until shard workers stream)
+           (let ((results (results-in (rows-file directory))))
+             (setf (results-until results) until)
+             results)))
+    (call-with-directory (lambda () (call-plainly #'run)) directory)))
 
 (addition run-experiment)
 (defun run-experiment (name &key trials (workers (processors)) directory until shard

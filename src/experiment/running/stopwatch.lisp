@@ -4,10 +4,10 @@
 
 (defun moment ()
   "Return this moment, for SECONDS-SINCE."
-  (get-internal-real-time))
+  (real-microseconds))
 
 (defun seconds-since (moment)
-  (/ (- (moment) moment) (float internal-time-units-per-second 1d0)))
+  (/ (- (moment) moment) 1d6))
 
 (defun milliseconds-since (moment)
   (* 1000 (seconds-since moment)))

@@ -72,6 +72,11 @@ those of the fingerprints of its conditions, in order."
           while (starts-with-subseq "  " line)
           collect (string-trim " " line))))
 
+(defun conditions-described (directory)
+  "Return the names of the conditions in the text in DIRECTORY, in order; NIL if there is none."
+  (loop for line in (description-lines directory)
+        when (starts-with-subseq "= " line) collect (subseq line 2)))
+
 (defun changes-since (condition parts directory)
   "Return in words, in a list, what of PARTS, of CONDITION, is not as the text in DIRECTORY says."
   (flet ((without-number (line) (subseq line 0 (position #\Space line :from-end t))))

@@ -30,7 +30,7 @@
 (defun ensure-store-directory (name)
   "Return the path of the directory NAME, made if there is none. Signals MISUSE."
   (let ((path (directory-called name)))
-    (handler-case (progn (ensure-directories-exist path) path)
+    (handler-case (progn (make-directories path) path)
       (error () (reject-use "~A cannot be made; give the name of a directory that can be."
                             (native-name path))))))
 
@@ -50,7 +50,11 @@
                        (native-name path))))
     (unless (claim-directory path) (reject))
     (unwind-protect
-         (multiple-value-bind (done value) (call-with-file-lock function (file-in path ".lock"))
+         (multiple-value-bind (done value)
+             (call-with-file-lock function (file-in path ".lock")
+                                  (lambda ()
+                                    (reject-use "~A cannot be written to. Is it read-only?"
+                                                (native-name path))))
            (unless done (reject))
            value)
       (with-lock (*stores-lock*)
@@ -62,7 +66,9 @@
         for path = (directory-called (format nil "~Aars-magna-~D-~D/"
                                              (native-name (uiop:temporary-directory))
                                              (process-number) number))
-        when (nth-value 1 (ensure-directories-exist path)) return path))
+        unless (uiop:directory-exists-p path)
+          do (make-directories path)
+             (return path)))
 
 (defun call-with-temporary-directory (function)
   "Call FUNCTION with the path of a new directory, which is gone afterwards."
@@ -72,18 +78,47 @@
 
 ;;; Writing.
 
-(defun cut-broken-line (file)
-  "Cut off what a process that was killed has begun to write to FILE. True if anything is left."
+(defun check-beginning (file columns)
+  "Signal DAMAGED-TABLE unless FILE begins as a table with COLUMNS does, as far as it goes."
+  (multiple-value-bind (line cut-off-p) (first-line file)
+    (let* ((header (string-right-trim '(#\Newline) (csv-line columns)))
+           (text (and line (line-text line))))
+      (when text
+        (check-header-line line file)
+        (unless (if cut-off-p (starts-with-subseq text header) (string= text header))
+          (reject-table file 1 "its columns are ~A, and those of the table to be written are ~A. ~
+                                Give another directory."
+                        (cut text 200) header))))))
+
+(defun call-writing (function file)
+  "Call FUNCTION, which opens or changes FILE. Signals DAMAGED-TABLE if the system refuses."
+  (handler-case (funcall function)
+    (ars-magna-error (condition) (error condition))
+    (error (condition)
+      (reject-table file nil "it cannot be written (~A). Is it, or its directory, read-only?"
+                    (system-text condition)))))
+
+(defun cut-broken-line (file columns)
+  "Cut off what a process that was killed has begun to write to FILE, a table with COLUMNS. True if
+anything is left. Signals DAMAGED-TABLE if FILE is something else; then it is as it was."
   (when (existing-path file)
+    (check-beginning file columns)
     (let ((end (map-lines (constantly nil) file)))
-      (cut-file file end)
+      (unless (= end (file-size file))
+        (call-writing (lambda () (cut-file file end)) file))
       (plusp end))))
+
+(defun file-size (file)
+  (with-open-file (in file :element-type '(unsigned-byte 8)) (file-length in)))
 
 (defun open-table (file columns)
   "Return a stream that appends to the table FILE, which is begun with COLUMNS if it has no lines."
-  (let ((new (not (cut-broken-line file)))
-        (stream (open file :direction :output :if-exists :append :if-does-not-exist :create
-                           :external-format :utf-8)))
+  (let ((new (not (cut-broken-line file columns)))
+        (stream (call-writing
+                 (lambda ()
+                   (open file :direction :output :if-exists :append :if-does-not-exist :create
+                              :external-format :utf-8))
+                 file)))
     (when new
       (write-string (csv-line columns) stream)
       (finish-output stream))
@@ -118,11 +153,6 @@
                     "no more can be written (~A). What is there is kept; go on once there is room."
                     (system-text condition)))))
 
-(defun system-text (condition)
-  "Return what the system says of a stream, without what CONDITION says of the stream itself."
-  (let* ((text (one-line (own-text condition))) (end (search ">: " text :from-end t)))
-    (if end (subseq text (+ 3 end)) text)))
-
 (defun keep-row (store result milliseconds worker)
   "Append to STORE the row for RESULT, which took MILLISECONDS of WORKER. It is there for good when
 this returns."
@@ -131,7 +161,9 @@ this returns."
     (with-lock ((store-lock store))
       (deferring-interrupts
         (write-table-line line (store-rows store))
-        (write-table-line machine-line (store-machine store) #'identity)))))
+        (write-table-line machine-line (store-machine store)
+                          ;; What was quick is written together.
+                          (if (> milliseconds 1) #'finish-output #'identity))))))
 
 (defun machine-texts (result milliseconds worker)
   (list (condition-name (result-condition result))
@@ -168,29 +200,39 @@ this returns."
   (find (third texts) (experiment-conditions experiment)
         :key #'condition-name :test #'string=))
 
-(defun check-columns (experiment file)
-  (let ((columns (header-of file)))
-    (unless (equal columns (columns experiment))
-      (reject-table file 1 "its columns are ~{~A~^, ~}, and those of ~(~A~) are ~{~A~^, ~}. Give ~
-                            another directory."
-                    columns (experiment-name experiment) (columns experiment)))))
+(defun check-row (experiment condition texts file number)
+  "Signal DAMAGED-TABLE unless TEXTS, the line NUMBER of FILE, can be a row of CONDITION, or NIL if
+EXPERIMENT has none of its name."
+  (let* ((seed (seed-column (columns experiment)))
+         (trial (parse-integer (nth (1+ seed) texts))))
+    (unless (string= (first texts) (column-name (experiment-name experiment)))
+      (reject-table file number "this is a row of another experiment, ~A. Give another directory."
+                    (first texts)))
+    (when (or (and condition (not (equal (condition-texts condition) (subseq texts 3 seed))))
+              (and (null condition)
+                   (find (second texts) (experiment-conditions experiment)
+                         :key #'condition-fingerprint :test #'equal)))
+      (reject-row file number "What it says of its condition does not fit together."))
+    (unless (= (trial-seed experiment trial) (parse-integer (nth seed texts)))
+      (reject-row file number "Trial ~D has the seed ~D, not ~A." trial
+                  (trial-seed experiment trial) (nth seed texts)))))
 
-(defun present-rows (experiment directory foreign)
-  "Return the presence of the rows in DIRECTORY, of trials of EXPERIMENT, and the texts of the last
-of them. FOREIGN is called with the condition and the texts of a row of another fingerprint. What a
+(defun present-rows (experiment directory foreign &optional (sample (constantly nil)))
+  "Return the presence of the rows in DIRECTORY, of trials of EXPERIMENT. FOREIGN is called with the
+condition and the texts of a row of another fingerprint, SAMPLE with those of all others. What a
 process that was killed has begun to write is cut off. Signals DAMAGED-TABLE."
-  (let ((presence (make-presence)) (last nil) (file (rows-file directory)))
-    (when (cut-broken-line file)
-      (check-columns experiment file)
-      (let ((seed (seed-column (columns experiment))))
-        (map-rows (lambda (texts line start number)
-                    (declare (ignore line start))
-                    (let ((condition (condition-of-texts experiment texts)))
-                      (when condition
-                        (setf last texts)
-                        (unless (string= (second texts) (condition-fingerprint condition))
-                          (funcall foreign condition texts))
-                        (note-present condition (trial-in (nth (1+ seed) texts) file number)
-                                      presence))))
-                  file)))
-    (values presence last)))
+  (let ((presence (make-presence)) (file (rows-file directory))
+        (place (1+ (seed-column (columns experiment)))))
+    (when (cut-broken-line file (columns experiment))
+      (map-rows (lambda (texts line start number)
+                  (declare (ignore line start))
+                  (let ((condition (condition-of-texts experiment texts)))
+                    (when (and condition
+                               (string/= (second texts) (condition-fingerprint condition)))
+                      (funcall foreign condition texts))
+                    (check-row experiment condition texts file number)
+                    (when condition
+                      (funcall sample condition texts)
+                      (note-present condition (parse-integer (nth place texts)) presence))))
+                file))
+    presence))

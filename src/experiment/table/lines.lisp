@@ -6,13 +6,6 @@
 ;;; a time, so that a table may be larger than memory. The last line counts only if it is whole:
 ;;; what a process that was killed has written is cut there.
 
-(defun line-text (line)
-  "Return the text that LINE, whose characters are octets, stands for."
-  (declare #.*hot* (type (simple-array character (*)) line))
-  (if (every (lambda (char) (< (char-code char) 128)) line)
-      line
-      (decoded line)))
-
 (defun call-with-octets (function path)
   "Call FUNCTION with a stream from which the octets of the file PATH are read as characters."
   (with-open-file (in path :external-format :latin-1)
@@ -31,38 +24,16 @@ from 1. Return where the last one ends."
                 (incf start (1+ (length line))))))
    path))
 
-(addition damaged-table)
-(define-condition damaged-table (ars-magna-error)
-  ((file :initarg :file :reader damaged-table-file)
-   (line :initarg :line :initform nil :reader damaged-table-line)
-   (trouble :initarg :trouble :reader damaged-table-trouble))
-  (:report (lambda (condition stream)
-             (format stream "~A~@[, line ~D~]: ~A"
-                     (native-name (damaged-table-file condition))
-                     (damaged-table-line condition)
-                     (damaged-table-trouble condition))))
-  (:documentation "A table of an experiment cannot be used as it is."))
-
-(defun reject-table (file line control &rest arguments)
-  (error 'damaged-table :file file :line line
-                        :trouble (apply #'format nil control arguments)))
-
-(defun row-texts (line columns file number)
-  "Return the texts of LINE, of octets, which is the line NUMBER of FILE, a table with COLUMNS.
-Signals DAMAGED-TABLE."
-  (let ((texts (handler-case (csv-texts (line-text line))
-                 (broken-line () '()))))
-    (unless (= (length texts) (length columns))
-      (reject-table file number "this is no row with ~D columns. Delete the line; its trial will ~
-                                 be run again."
-                    (length columns)))
-    texts))
+(defun first-line (file)
+  "Return the first line of FILE, of octets, and whether its end is missing; NIL if it is empty."
+  (call-with-octets (lambda (in) (read-line in nil nil)) file))
 
 (defun header-of (file)
   "Return the names of the columns of the table FILE. Signals DAMAGED-TABLE."
-  (let ((line (call-with-octets (lambda (in) (read-line in nil nil)) file)))
-    (or (and line (ignore-errors (csv-texts (line-text line))))
-        (reject-table file nil "it is empty; delete it."))))
+  (let ((line (first-line file)))
+    (if line
+        (columns-in line file)
+        (reject-table file nil "it is empty. Delete it."))))
 
 (defun map-rows (function file)
   "Call FUNCTION with the texts of each row of the table FILE, its line of octets, where that begins
@@ -94,15 +65,6 @@ they stand among the others."
   (start 0 :type integer :read-only t)
   (number 0 :type fixnum :read-only t))
 
-(defun seed-column (columns)
-  (or (position "seed" columns :test #'string=)
-      (reject-use "A table of an experiment has a column seed, but there are only ~{~A~^, ~}."
-                  columns)))
-
-(defun trial-in (text file number)
-  (or (ignore-errors (parse-integer text))
-      (reject-table file number "~A is no number of a trial. Delete the line." text)))
-
 (defun index-rows (files)
   "Return a vector of the rows in FILES, tables with the same columns, in no order, and a list of
 their groups."
@@ -119,7 +81,7 @@ their groups."
                          (group (or (gethash key groups)
                                     (setf (gethash key groups) (make-group key)))))
                     (vector-push-extend
-                     (make-indexed-row group (trial-in (nth (1+ seed) texts) file number)
+                     (make-indexed-row group (parse-integer (nth (1+ seed) texts))
                                        file start number)
                      rows)))
                 file))
@@ -134,10 +96,14 @@ their groups."
                       (append (list other-experiment) others
                               (list other-condition other-fingerprint))))))
 
-(defun rank-groups (groups)
-  (loop for group in (sort (copy-list groups) #'group-before-p)
-        for rank from 0
-        do (setf (group-rank group) rank)))
+(defun rank-groups (groups order)
+  "Give GROUPS their ranks: those of the conditions in ORDER, a list of names, by that, and then the
+others."
+  (flet ((place (group) (or (position (third (group-key group)) order :test #'string=)
+                            (length order))))
+    (loop for group in (stable-sort (sort (copy-list groups) #'group-before-p) #'< :key #'place)
+          for rank from 0
+          do (setf (group-rank group) rank))))
 
 (defun row-before-p (a b)
   (let ((rank (group-rank (indexed-group a))) (other (group-rank (indexed-group b))))
@@ -148,7 +114,50 @@ their groups."
   (and (eq (indexed-group a) (indexed-group b))
        (= (indexed-trial a) (indexed-trial b))))
 
+;;; Which rows belong together.
+
+(defun check-groups (groups)
+  "Signal MISUSE unless GROUPS are of one experiment, and each of their conditions has one
+fingerprint and one value of each thing that varies."
+  (let ((conditions (make-hash-table :test 'equal)) (fingerprints (make-hash-table :test 'equal))
+        (experiment (and groups (first (group-key (first groups))))))
+    (dolist (group groups)
+      (destructuring-bind (its-experiment fingerprint condition &rest texts) (group-key group)
+        (unless (string= experiment its-experiment)
+          (reject-use "There are rows of the experiments ~A and ~A, which do not belong together."
+                      experiment its-experiment))
+        (let ((other (shiftf (gethash condition conditions) (cons fingerprint texts))))
+          (when other (reject-groups condition fingerprint other texts)))
+        (let ((other (shiftf (gethash fingerprint fingerprints) condition)))
+          (when other
+            (reject-use "The conditions ~A and ~A have the same fingerprint, ~A: one of the rows ~
+                         has been changed."
+                        other condition fingerprint)))))))
+
+(defun reject-groups (condition fingerprint other texts)
+  "Signal MISUSE: rows of CONDITION have FINGERPRINT and TEXTS, others OTHER, a list of both."
+  (if (string= fingerprint (first other))
+      (reject-use "Rows of the condition ~A differ in what varies: ~{~A~^, ~} and ~{~A~^, ~}. Some ~
+                   have been changed."
+                  condition texts (rest other))
+      (reject-use "There are rows of the condition ~A with the fingerprints ~A and ~A: they are of ~
+                   different code or configurations, and do not belong together."
+                  condition (first other) fingerprint)))
+
 ;;; Writing them in order.
+
+(defun system-text (condition)
+  "Return what the system says of a stream, without what CONDITION says of the stream itself."
+  (let* ((text (one-line (own-text condition))) (end (search ">: " text :from-end t)))
+    (if end (subseq text (+ 3 end)) text)))
+
+(defun call-replacing-table (function file)
+  "Call FUNCTION with a stream to a file that takes the place of the table FILE. Signals
+DAMAGED-TABLE if that cannot be written; FILE is then as it was."
+  (handler-case (call-replacing-file function file)
+    ((or stream-error file-error) (condition)
+      (reject-table file nil "it cannot be written anew (~A). It is as it was."
+                    (system-text condition)))))
 
 (defun call-with-line-reader (function files)
   "Call FUNCTION with a function that returns the line of a row in one of FILES."
@@ -192,32 +201,21 @@ Signals DAMAGED-TABLE if two of one trial differ. Return how many were written."
            (setf last row last-line line)
         finally (return count)))
 
-(defun write-in-order (files file)
-  "Write the rows of FILES, tables, to FILE, in order, and each once; FILE may be one of them.
-Return how many there are. Signals DAMAGED-TABLE and MISUSE; then FILE is as it was."
+(defun write-in-order (files file order)
+  "Write the rows of FILES, tables, to FILE, in order, and each once; FILE may be one of them. ORDER
+is a list of the names of conditions. Return how many rows there are. Signals DAMAGED-TABLE and
+MISUSE; then FILE is as it was."
   (multiple-value-bind (rows groups) (index-rows files)
-    (rank-groups groups)
     (check-groups groups)
+    (rank-groups groups order)
     (let ((columns (header-of (first files))) (count (length rows)))
       (unless (and (equal files (list file)) (in-order-p rows))
         (setf rows (stable-sort rows #'row-before-p))
         (call-with-line-reader
          (lambda (line-of)
-           (call-replacing-file (lambda (out)
-                                  (write-string (csv-line columns) out)
-                                  (setf count (write-rows rows line-of out)))
-                                file))
+           (call-replacing-table (lambda (out)
+                                   (write-string (csv-line columns) out)
+                                   (setf count (write-rows rows line-of out)))
+                                 file))
          files))
       count)))
-
-(defun check-groups (groups)
-  "Signal MISUSE if GROUPS have rows of one condition with different fingerprints."
-  (let ((known (make-hash-table :test 'equal)))
-    (dolist (group groups)
-      (destructuring-bind (experiment fingerprint &rest rest) (group-key group)
-        (let ((other (shiftf (gethash (cons experiment rest) known) fingerprint)))
-          (when other
-            (reject-use "There are rows of the experiment ~A, condition ~A, with the fingerprints ~
-                         ~A and ~A: they are of different code or configurations, and do not ~
-                         belong together."
-                        experiment (first rest) other fingerprint)))))))

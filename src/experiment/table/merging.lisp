@@ -2,16 +2,18 @@
 
 (in-package :ars-magna.experiment)
 
-(defun description-in (directories)
-  "Return the text of what decides the tables in DIRECTORIES, the first one that there is, or NIL."
-  (loop for directory in directories
-        for file = (description-file directory)
-        when (existing-path file) return (file-text file)))
-
 (defun copy-description (directories target)
-  (let ((text (description-in directories)))
-    (when text
-      (call-replacing-file (lambda (out) (write-string text out)) (description-file target)))))
+  "Let TARGET have the text of what decides a table that one of DIRECTORIES has, the first one."
+  (let ((file (find-if #'existing-path (mapcar #'description-file directories)))
+        (own (description-file target)))
+    (when (and file (not (equal file own)))
+      (uiop:copy-file file own))))
+
+(defun order-of-conditions (directories)
+  "Return the names of all conditions in the tables in DIRECTORIES, in order."
+  (remove-duplicates (loop for directory in directories
+                           append (conditions-described directory))
+                     :test #'string= :from-end t))
 
 (defun join-machine-tables (directories target)
   "Put the tables of what differs from run to run into one, in any order."
@@ -43,7 +45,10 @@ their fingerprints do; TO is then as it was."
          (sources (remove-duplicates (append there sources) :test #'equal :from-end t)))
     (call-with-directory
      (lambda ()
-       (write-in-order (mapcar #'rows-file sources) (rows-file target))
+       (call-plainly
+        (lambda ()
+          (write-in-order (mapcar #'rows-file sources) (rows-file target)
+                          (order-of-conditions sources))))
        (join-machine-tables sources target)
        (copy-description sources target))
      target)

@@ -152,13 +152,13 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
          (shared (make-hash-table :test 'equal))
          (samples '()))
     (map-rows (lambda (texts line start number)
-                (declare (ignore line start))
+                (declare (ignore line start number))
                 (unless (and samples (of-sample-p (first samples) texts))
                   (when (some (lambda (sample) (of-sample-p sample texts)) samples)
                     (return-from results-in-order nil))
                   (push (new-sample texts seed measures) samples))
                 (unless (< (last-trial (first samples))
-                           (trial-in (nth (1+ seed) texts) file number))
+                           (parse-integer (nth (1+ seed) texts)))
                   (return-from results-in-order nil))
                 (note-row (first samples) (nthcdr seed texts) measures shared))
               file)
@@ -171,7 +171,8 @@ too. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
       (call-with-temporary-directory
        (lambda (directory)
          (let ((copy (rows-file directory)))
-           (write-in-order (list file) copy)
+           (write-in-order (list file) copy
+                           (conditions-described (uiop:pathname-directory-pathname file)))
            (results-in-order copy))))))
 
 (defun existing-table (directory)
@@ -189,7 +190,7 @@ MISUSE if there are none, and DAMAGED-TABLE."
   (check-argument read-results directory (typep directory '(or string pathname))
                   "the name of a directory")
   (let ((path (existing-table directory)))
-    (let ((results (results-in (rows-file path))))
+    (let ((results (call-plainly (lambda () (results-in (rows-file path))))))
       (setf (results-directory results) path
             (results-until results) (until-described path))
       results)))

@@ -51,11 +51,11 @@ Tables with other columns have none."
       (let ((file (rows-file (directory-called name))))
         (when (equal columns (header-of file))
           (map-rows (lambda (texts line start number)
-                      (declare (ignore line start))
+                      (declare (ignore line start number))
                       (let ((condition (condition-of-texts experiment texts)))
                         (when condition
                           (funcall function condition
-                                   (trial-in (nth (1+ seed) texts) file number)
+                                   (parse-integer (nth (1+ seed) texts))
                                    (second texts) name))))
                     file))))))
 
@@ -91,7 +91,7 @@ now, could not be gone on with, and DAMAGED-TABLE if they have other columns."
   (let ((parts (loop for condition in (experiment-conditions experiment)
                      collect (prepare-condition experiment condition))))
     (dolist (name (directories-with-rows directory))
-      (check-columns experiment (rows-file (directory-called name))))
+      (check-beginning (rows-file (directory-called name)) (columns experiment)))
     (map-rows-there (lambda (condition trial fingerprint name)
                       (declare (ignore trial))
                       (unless (own-fingerprint-p condition fingerprint)

@@ -50,7 +50,7 @@ it has been changed since."
         (list :experiment (string-downcase (experiment-name experiment))
               (form-digest (experiment-deciding experiment)))
         (list :condition (condition-name condition)
-              (form-digest (list (condition-robots condition)
+              (data-number (list (condition-robots condition)
                                  (coerce (condition-parameters condition) 'list)
                                  (condition-arguments condition))))))
 
@@ -82,8 +82,8 @@ it has been changed since."
     reach))
 
 (defun fingerprint-parts (experiment condition)
-  "Return the parts of the fingerprint of CONDITION of EXPERIMENT, in order, and whether its trials
-may use Lisp's own dice."
+  "Return the parts of the fingerprint of CONDITION of EXPERIMENT, in order, and what its trials can
+reach."
   (let* ((definitions (definitions-in-trial experiment condition))
          (reach (reach-of experiment condition definitions)))
     (values
@@ -93,7 +93,7 @@ may use Lisp's own dice."
                                       (file-parts (reach-files reach)))
                               :test #'equal)
            #'string< :key #'part-text)
-     (reach-random-p reach))))
+     reach)))
 
 (defun part-text (part)
   "Return PART as one line."
@@ -111,8 +111,11 @@ may use Lisp's own dice."
 
 (defun prepare-condition (experiment condition)
   "Give CONDITION of EXPERIMENT its fingerprint. Return the parts of that."
-  (multiple-value-bind (parts random-p) (fingerprint-parts experiment condition)
-    (setf (condition-random-p condition) random-p
+  (multiple-value-bind (parts reach) (fingerprint-parts experiment condition)
+    (setf (condition-random-p condition) (reach-random-p reach)
+          (condition-variables condition)
+          (loop for symbol in (reach-variables reach)
+                collect (list symbol (global-value symbol)))
           (condition-fingerprint condition) (fingerprint-of parts))
     parts))
 

@@ -21,7 +21,7 @@
     (:limit (values "limit" ""))
     (t (values "failure" (value-text state)))))
 
-(defun outcome-of-values (result &optional reason &rest others)
+(defun outcome-of-values (&optional result reason &rest others)
   "Return outcome and reason of a trial whose form :run returned RESULT, REASON and OTHERS."
   (declare (ignore others))
   (cond ((member reason *plan-states*) (plan-outcome result reason))

@@ -9,10 +9,12 @@
 ;;; reached.
 
 (defstruct (reach (:constructor make-reach ()) (:copier nil))
-  "What has been reached: definitions, lists (kind name number); the files that it is from."
+  "What has been reached: definitions, lists (kind name number); the files that it is from; special
+variables."
   (seen (make-hash-table :test 'eq) :read-only t)
   (parts '() :type list)
   (files '() :type list)
+  (variables '() :type list)
   (random-p nil :type boolean))
 
 (defun lisps-own-package-p (package)
@@ -31,29 +33,44 @@
     (cond ((null known) (push (list file written) (reach-files reach)))
           (written (setf (second known) written)))))
 
+;;; What was typed has no file. Of a function nothing is left then but what it does. So each counts
+;;; as itself: typed anew, it is another, and in another Lisp, too.
+
+(defvar *typed-functions* (make-hash-table :test 'eq :weakness :key :synchronized t)
+  "Numbers of functions that were typed.")
+
+(defun typed-number (function)
+  (or (gethash function *typed-functions*)
+      (setf (gethash function *typed-functions*) (unheard-of-number))))
+
 ;;; Visiting.
 
 (defun visit-function (function name reach)
   "Visit FUNCTION, called NAME, or NIL if it is only a part of another."
   (unless (gethash function (reach-seen reach))
     (setf (gethash function (reach-seen reach)) t)
-    (when name
-      (multiple-value-bind (file written) (function-file function)
-        (if file
-            (note-file file written reach)
-            (note-part :typed (safe-text name) 0 reach))))
-    (dolist (object (code-references function)) (visit object reach))))
+    (cond ((typep function 'generic-function)
+           (dolist (method (code-references function)) (visit-function method name reach)))
+          (t (when name (note-origin function name reach))
+             (dolist (object (code-references function)) (visit object reach))))))
 
-(defun plain-value-p (value)
-  (typep value '(or number string character symbol cons)))
+(defun note-origin (function name reach)
+  (multiple-value-bind (file written) (function-file function)
+    (if file
+        (note-file file written reach)
+        (note-part :typed (safe-text name) (typed-number function) reach))))
+
+(defun has-global-value-p (symbol)
+  (ignore-errors (global-value symbol) t))
 
 (defun visit-variable (symbol reach)
-  "Visit the value of the special variable SYMBOL; if that is plain, it is a part."
-  (let ((value (ignore-errors (global-value symbol))))
-    (cond ((functionp value) (visit-function value nil reach))
-          ((and (plain-value-p value) (value-p value))
-           (note-part :variable (qualified symbol) (form-digest value) reach)
-           (visit value reach)))))
+  "Visit the special variable SYMBOL and its value, which is a part if it is data. NIL counts as no
+data, since it often stands where a table or structure is to be."
+  (push symbol (reach-variables reach))
+  (let ((value (global-value symbol)))
+    (when (and value (data-p value))
+      (note-part :variable (qualified symbol) (data-number value) reach))
+    (visit value reach)))
 
 ;; What an experiment varies, and how often it is tried, decides no trial.
 (defun visit-definition (entry reach)
@@ -99,7 +116,10 @@
           ((macro-function symbol) (visit-function (macro-function symbol) symbol reach))
           ((and (fboundp symbol) (notany #'procedure-p (mapcar #'entry-object entries)))
            (visit-function (fdefinition symbol) symbol reach)))
-    (when (boundp symbol) (visit-variable symbol reach))))
+    (loop for (file written) in (files-besides-functions symbol)
+          do (note-file file written reach))
+    (when (and (null entries) (special-p symbol) (has-global-value-p symbol))
+      (visit-variable symbol reach))))
 
 (defun visit-symbol (symbol reach)
   (unless (gethash symbol (reach-seen reach))
@@ -114,6 +134,11 @@
              (visit (pop list) reach))
     (visit list reach)))
 
+(defun visit-vector (vector reach)
+  (unless (gethash vector (reach-seen reach))
+    (setf (gethash vector (reach-seen reach)) t)
+    (loop for element across vector do (visit element reach))))
+
 (defun visit-setter (name reach)
   "Visit the function called NAME, as (setf symbol)."
   (when (and (symbolp (second name)) (users-symbol-p (second name)) (fboundp name))
@@ -125,6 +150,7 @@
     (null)
     (symbol (visit-symbol object reach))
     (function (visit-function object nil reach))
+    (simple-vector (visit-vector object reach))
     (cons (if (and (eq 'setf (first object)) (proper-list-p object) (= 2 (length object))
                    (symbolp (second object)))
               (visit-setter object reach)

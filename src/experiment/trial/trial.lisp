@@ -42,23 +42,23 @@ is a gate to ask besides, or NIL."
 
 (defvar *nowhere* (make-broadcast-stream) "Where what trials write goes.")
 
-(defun call-in-peace (function package)
-  "Call FUNCTION with all that Lisp code may look at as it is in each trial."
-  (let ((*package* package)
-        (*readtable* (global-value '*readtable*)) (*read-default-float-format* 'single-float)
-        (*read-base* 10) (*print-base* 10) (*print-radix* nil) (*print-case* :upcase)
-        (*print-pretty* nil) (*print-readably* nil) (*print-escape* t) (*print-circle* nil)
-        (*print-length* nil) (*print-level* nil) (*print-array* t) (*print-gensym* t))
-    (funcall function)))
-
 (defun call-in-silence (function)
   "Call FUNCTION; what it writes is lost, and what enters a debugger is an error."
-  (let ((*standard-output* *nowhere*) (*error-output* *nowhere*) (*trace-output* *nowhere*)
-        (*break-on-user-error* nil))
+  (let* ((nobody (make-two-way-stream (make-concatenated-stream) *nowhere*))
+         (*standard-output* *nowhere*) (*error-output* *nowhere*) (*trace-output* *nowhere*)
+         (*query-io* nobody) (*debug-io* nobody) (*terminal-io* nobody)
+         (*break-on-user-error* nil))
     (answering-debugger ((lambda (condition there-p)
                            (declare (ignore there-p))
                            (throw 'broken-off condition)))
       (funcall function))))
+
+(defun call-with-variables-of (condition function)
+  "Call FUNCTION with the variables that trials of CONDITION can reach bound to what they were when
+it was looked up: what a trial sets, no other sees."
+  (progv (mapcar #'first (condition-variables condition))
+      (mapcar (lambda (variable) (own-copy (second variable))) (condition-variables condition))
+    (funcall function)))
 
 (defun call-with-dice-of (condition seed function)
   "Call FUNCTION with what CL:RANDOM says decided by SEED, if a trial of CONDITION may ask it."
@@ -80,7 +80,9 @@ gate to be asked besides that of the limit. With JOURNAL the simulation keeps on
             (call-with-simulation
              (lambda ()
                (setf (simulation-gate (current-simulation)) (limit-gate limit gate))
-               (call-with-dice-of condition seed function))
+               (call-with-dice-of
+                condition seed
+                (lambda () (call-with-variables-of condition function))))
              (condition-robots condition)
              :seed seed :journal journal
              :variables (remove-if-not #'variable-name-p (condition-robots condition)))))))

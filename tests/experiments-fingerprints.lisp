@@ -1,0 +1,168 @@
+;;;; experiments-fingerprints.lisp -- what decides a trial is noticed, and nothing else matters.
+
+(in-package :ars-magna.tests)
+
+(def-suite* experiments-fingerprints :in ars-magna)
+
+;;; What the experiments here can reach.
+
+(defvar *question-data* 1 "A user's data.")
+(defvar *question-cache* nil "What a user's code keeps for later.")
+(defvar *question-count* 0 "What a user's code counts.")
+
+(defgeneric question-step (kind) (:documentation "A user's generic function."))
+
+(defmacro define-reaching (form)
+  "Define the experiment QUESTION, which evaluates FORM."
+  `(eval '(experiment:defexperiment question (:robots ars-worlds:dot) (:run ,form))))
+
+(defun question-fingerprints ()
+  (let ((experiment (experiment:find-experiment 'question)))
+    (loop for condition in (experiment:experiment-conditions experiment)
+          do (experiment:prepare-condition experiment condition)
+          collect (experiment::condition-fingerprint condition))))
+
+(defun noticed-p (change)
+  "True if the fingerprints of QUESTION are others once the function CHANGE has been called."
+  (let ((before (question-fingerprints)))
+    (is (equal before (question-fingerprints)))
+    (funcall change)
+    (not (equal before (question-fingerprints)))))
+
+(defmacro changes (&body forms)
+  "True if FORMS, evaluated as they are typed, change the fingerprint of QUESTION."
+  `(noticed-p (lambda () ,@(loop for form in forms collect `(eval ',form)))))
+
+;;; Code.
+
+(test typed-code.is-noticed
+  (eval '(defun question-help () 1))
+  (eval '(defun question-work () (question-help)))
+  (define-reaching (question-work))
+  (is-true (changes (defun question-help () 2)))
+  (is-true (changes (setf (symbol-function 'question-work) (lambda () (question-help)))))
+  (is-false (changes (defun question-idle () 2))))
+
+(test plans.are-noticed
+  (eval '(rpl:def-interp-proc question-part (n) (rpl:wait-time n)))
+  (eval '(rpl:def-interp-proc question-plan () (question-part 1) t))
+  (define-reaching (driver:run-plan 'question-plan))
+  (is-false (changes (rpl:def-interp-proc question-part (n) (rpl:wait-time n))))
+  (is-true (changes (rpl:def-interp-proc question-part (n) (rpl:wait-time (* 2 n)))))
+  (is-true (changes (rpl:def-interp-proc question-plan () (question-part 3) t))))
+
+(test methods.are-noticed
+  (eval '(defmethod question-step ((kind integer)) 1))
+  (define-reaching (question-step 3))
+  (is-true (changes (defmethod question-step ((kind integer)) 2)))
+  (is-true (changes (defmethod question-step ((kind string)) 2))))
+
+(test files.are-noticed-by-their-code
+  (uiop:with-temporary-file (:pathname path :type "lisp")
+    (flet ((write-code (text)
+             (with-open-file (out path :direction :output :if-exists :supersede)
+               (format out "(in-package :ars-magna.tests)~%~A" text))
+             (handler-bind ((warning #'muffle-warning)) (load path))))
+      (write-code "(defun question-work () 1)")
+      (define-reaching (question-work))
+      (is-false (noticed-p (lambda () (write-code "; another
+ (defun question-work ()
+    1)"))))
+      (is-false (noticed-p (lambda () (write-code "(defun question-work () 1)
+ (experiment:defexperiment other-question (:robots ars-worlds:dot) (:run t))"))))
+      (is-true (noticed-p (lambda () (write-code "(defun question-work () 2)")))))))
+
+;;; Data.
+
+(test data.of-every-kind-are-noticed
+  (define-reaching (identity *question-data*))
+  (let ((*question-data* 1) (old *question-data*))
+    (unwind-protect
+         (loop for (value other)
+                 in `((1 2) (1 1.0) (1.0 1d0) (a b) ("a" "b") (#\a #\b) ((1 . 2) (1 . 3))
+                      ((a (1 . b)) (a (1 . c))) (,(vector 1 2) ,(vector 1 3)) (#*01 #*11)
+                      (#c(1 2) #c(1 3)) (#p"a" #p"b")
+                      (,(make-array '(2 2) :initial-element 0)
+                       ,(make-array '(2 2) :initial-element 1))
+                      (car ,(intern "CAR" :keyword)))
+               do (setf (base:global-value '*question-data*) value)
+                  (is-true (noticed-p (lambda ()
+                                        (setf (base:global-value '*question-data*) other)))
+                           "~S, ~S" value other))
+      (setf (base:global-value '*question-data*) old))))
+
+(test caches.make-no-difference
+  (define-reaching (identity *question-cache*))
+  (unwind-protect
+       (is-false (noticed-p (lambda () (setf (base:global-value '*question-cache*)
+                                             (make-hash-table)))))
+    (setf (base:global-value '*question-cache*) nil)))
+
+(test values.of-conditions-have-packages
+  (flet ((fingerprint (symbol)
+           (eval `(experiment:defexperiment question (:robots ars-worlds:dot)
+                    (:vary (way '(,symbol))) (:run way)))
+           (question-fingerprints)))
+    (is (equal (fingerprint 'base:chance) (fingerprint 'base:chance)))
+    (is (not (equal (fingerprint 'base:chance) (fingerprint (intern "CHANCE" :keyword)))))))
+
+;;; What trials set.
+
+(test variables.are-bound-for-each-trial
+  (eval '(experiment:defexperiment question (:robots ars-worlds:dot)
+          (:run (incf *question-count*) (push 1 *question-cache*) t)
+          (:measure (count *question-count*) (length (length *question-cache*)))))
+  (let ((results (experiment:run-experiment 'question :trials 30 :workers 3 :stream nil)))
+    (is (equal (make-list 30 :initial-element 1) (measured results 'count)))
+    (is (equal (make-list 30 :initial-element 1) (measured results 'length))))
+  (is (eql 0 *question-count*))
+  (is (null *question-cache*)))
+
+(test variables.of-the-manuals-style-do-not-meet
+  "A continuation that sets a global variable, and :until that asks it, by several workers."
+  (eval '(defun question-drive (robot legs)
+          (if (zerop legs)
+              (setf *question-cache* t)
+              (command:robot-go-forward
+               robot 1 (lambda (err robot) (declare (ignore err))
+                         (question-drive robot (1- legs)))))))
+  (eval '(experiment:defexperiment question (:robots ars-worlds:dot) (:limit 200)
+          (:vary (legs 2 4)) (:run (question-drive ars-worlds:dot legs))
+          (:until *question-cache*)))
+  (flet ((rows (workers)
+           (rows-of (experiment:run-experiment 'question :trials 40 :workers workers
+                                                         :stream nil))))
+    (let ((one (rows 1)))
+      (is (= 80 (length one)))
+      (is-true (every (lambda (row) (string= "success" (third row))) one))
+      (is (equal one (rows 4))))))
+
+;;; The printer, and the order.
+
+(test tables.do-not-depend-on-the-printer
+  (define-walk)
+  (with-directories (plain odd)
+    (walk plain :trials 12)
+    (let ((*print-base* 16) (*print-radix* t) (*read-base* 8) (*print-case* :downcase)
+          (*print-length* 2) (*read-default-float-format* 'double-float))
+      (walk odd :trials 5)
+      (walk odd :trials 12)
+      (is (= 2 (length (experiment:results-samples (experiment:read-results odd))))))
+    (is (string= (table-text plain) (table-text odd)))))
+
+(test conditions.have-one-order-everywhere
+  (eval '(experiment:defexperiment walk (:robots ars-worlds:dot)
+          (:conditions (calm (base:max-speed* 1)) (rough (base:max-speed* 3))
+           (brisk (base:max-speed* 2)))
+          (:run (command:robot-go-forward ars-worlds:dot 3) (run:run-ticks 5) t)))
+  (with-directories (directory shard-0 shard-1 merged)
+    (flet ((names (results)
+             (mapcar #'experiment:sample-condition (experiment:results-samples results))))
+      (is (equal '("calm" "rough" "brisk") (names (walk directory :trials 4))))
+      (is (equal '("calm" "rough" "brisk") (names (experiment:read-results directory))))
+      (walk shard-0 :trials 4 :shard '(0 . 2))
+      (walk shard-1 :trials 4 :shard '(1 . 2))
+      (is (equal '("calm" "rough" "brisk")
+                 (names (experiment:merge-results (list shard-1 shard-0) :to merged))))
+      (is (string= (table-text directory) (table-text merged)))
+      (is (string= "rough" (experiment:condition-name (experiment:find-condition 'walk 2)))))))
