@@ -181,5 +181,6 @@ of what has been interrupted."
       (reject-usage "experiment takes a file or the name of an experiment, and one more name at ~
                      most~@[, not ~{~A~^ ~}~].~@[ Known: ~{~A~^, ~}.~]"
                     words (experiment-words (all-experiments))))
+    (when (option-value :save-executable options) (die-of-interrupts))
     (call-stoppable (lambda () (conduct-experiment (known-experiment words) words options))
                     "experiment" arguments options)))

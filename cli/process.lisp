@@ -59,3 +59,7 @@ if so."
 (defun die-of-termination ()
   "Let this process end at once when it is told to terminate."
   (sb-sys:enable-interrupt sb-unix:sigterm :default))
+
+(defun die-of-interrupts ()
+  "Let control C end this process at once, as when its memory is being saved."
+  (sb-sys:enable-interrupt sb-unix:sigint :default))
