@@ -133,7 +133,7 @@
     :components ((:file "package")))
    (:module "src/experiment/question" :serial t
     :components ((:file "values") (:file "condition") (:file "experiment") (:file "clauses")
-                 (:file "defexperiment")))
+                 (:file "defexperiment") (:file "question")))
    (:module "src/experiment/trial" :serial t
     :components ((:file "outcome") (:file "data") (:file "trial") (:file "version") (:file "reaching")
                  (:file "fingerprint")))
@@ -143,13 +143,14 @@
    (:module "src/experiment/running" :serial t
     :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "rounds")
                  (:file "stopping") (:file "running")))
-   (:module "src/experiment/comparison" :serial t
-    :components ((:file "differences") (:file "contrasts") (:file "verdicts")
-                 (:file "comparing") (:file "comparing-versions")
-                 (:file "comparison-picture")))
    (:module "src/experiment/report" :serial t
     :components ((:file "estimates") (:file "summary") (:file "text-table")
                  (:file "remarks") (:file "report")))
+   (:module "src/experiment/comparison" :serial t
+    :components ((:file "differences") (:file "contrasts") (:file "overall") (:file "verdicts")
+                 (:file "comparison-table") (:file "levels") (:file "meaning")
+                 (:file "comparing") (:file "changes") (:file "comparing-versions")
+                 (:file "comparison-picture")))
    (:module "src/experiment/pictures" :serial t
     :components ((:file "panels") (:file "result-charts") (:file "pictures") (:file "ways")
                  (:file "ways-picture")))
@@ -217,8 +218,8 @@
   :serial t
   :components
   ((:module "src/fiveam" :serial t
-    :components ((:file "package") (:file "deciding") (:file "trying") (:file "repeating")
-                 (:file "telling") (:file "checking")))))
+    :components ((:file "package") (:file "deciding") (:file "subject") (:file "trying")
+                 (:file "repeating") (:file "telling") (:file "checking")))))
 
 ;;; Loaded by tests/clim.lisp, after the package of the tests, where McCLIM is found.
 (defsystem "ars-magna/clim-tests"
@@ -294,8 +295,9 @@
                  (:file "users-hands") (:file "src-readme") (:file "rpl-readme")
                  (:file "experiments-readme")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
-                 (:file "experiments-tables") (:file "experiments-fingerprints") (:file "experiments-report")
-                 (:file "experiments-pictures") (:file "experiment-compare")
+                 (:file "experiments-tables") (:file "experiments-fingerprints")
+                 (:file "experiments-report") (:file "experiment-compare")
+                 (:file "experiments-pictures") (:file "experiment-compare-levels")
                  (:file "experiment-compare-versions") (:file "rates") (:file "isolation")
                  (:file "main"))))
   :perform (test-op (operation system)

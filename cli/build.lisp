@@ -118,6 +118,7 @@ commands beside it."
   ;; What is in the core is not to be compiled again under its user.
   (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))
   (uiop:call-image-dump-hook)
+  (uiop:symbol-call :ars-magna.cli :make-process-own)
   (sb-ext:save-lisp-and-die (path-in-environment "ARS_MAGNA_CORE")
                             :toplevel (uiop:find-symbol* :main :ars-magna.cli)))
 

@@ -220,13 +220,26 @@ threads, until that goes on."
                         (make-breakage condition (restarts-to-offer condition session)
                                        (current-thread)))))))
 
+(defvar *own-process-p* nil "True in a process that does nothing but this program.")
+
+(defun make-process-own ()
+  "Let this Lisp, which is to be saved, do nothing but this program."
+  (setf *own-process-p* t
+        (debugger-hook) 'debugger-disabled-hook))
+
+(defun end-unheard (condition)
+  "End this process, which is starting or ending, as nothing handles CONDITION."
+  (when (typep condition 'user-interrupt) (end-interrupted))
+  (say-on-error-output (condition-text condition))
+  (end-process 1))
+
 ;; By this name the rest of the program knows that there is none.
 (defun debugger-disabled-hook (condition hook)
   "Say what CONDITION is and go on, if it is no error, or give up what this thread is at. Called
 instead of Lisp's debugger where nobody sits, or a break is being answered."
   (declare (ignore hook))
-  (when *session*
-    (complain *session* (format nil "Break: ~A" (condition-text condition))))
+  (cond (*session* (complain *session* (format nil "Break: ~A" (condition-text condition))))
+        (*own-process-p* (end-unheard condition)))
   (unless (typep condition 'serious-condition) (continue condition))
   (give-up condition))
 

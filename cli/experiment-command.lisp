@@ -134,22 +134,31 @@
                   (car shard) (cdr shard) trials)))
     0))
 
-(defun tell-stopped (command arguments options)
-  "Say what is there when COMMAND with ARGUMENTS has been interrupted, and how to go on."
+(defun tell-stopped (command arguments options under-way)
+  "Say what is there when COMMAND with ARGUMENTS has been interrupted, and how to go on; UNDER-WAY
+tells what trial took long, or is NIL."
   (let* ((out (option-value :out options))
          (rows (and out (ignore-errors (count-rows out)))))
     (if out
-        (say "stopped with ~D row~:P in ~A. To go on:~%  ~A" (or rows 0) out
+        (say "stopped with ~D row~:P in ~A~@[; ~A~]. To go on:~%  ~A" (or rows 0) out under-way
              (command-text (append (program-words) (list command) arguments)))
-        (say "stopped; nothing is kept without --out DIR."))))
+        (say "stopped; ~@[~A; ~]nothing is kept without --out DIR." under-way))))
 
 (defun call-stoppable (function command arguments options)
   "Call FUNCTION, which does COMMAND with ARGUMENTS, and return the status that it returns, or that
 of what has been interrupted."
-  (handler-case (funcall function)
-    (user-interrupt ()
-      (tell-stopped command arguments options)
-      130)))
+  (let ((under-way nil))
+    (flet ((look (condition)
+             (declare (ignore condition))
+             (setf under-way (trial-under-way))))
+      (call-until-interrupted (lambda ()
+                                (handler-bind ((user-interrupt #'look))
+                                  (funcall function)))
+                              (lambda ()
+                                ;; Who would read it may have been stopped, too.
+                                (ignore-errors
+                                 (tell-stopped command arguments options under-way))
+                                130)))))
 
 (defun print-missing (experiment options)
   "Print the numbers of the shards that lack rows, in a line, or none."

@@ -18,12 +18,18 @@
     (unwind-protect (call-refusing-exits (lambda () (load-lisp path)))
       (finish-output *error-output*))))
 
+(defun experiments-of (file experiments)
+  "Return those of EXPERIMENTS, of what was loaded with FILE, that are meant by it: its own, or if
+it has none, those of the files that it loads."
+  (or (remove (native-name (truename file)) experiments :key #'experiment-file :test-not #'equal)
+      experiments))
+
 (defun load-experiments (path)
   "Load the Lisp file at PATH. Return the experiments that it defines. Signals BAD-LINE if there are
 none."
   (let ((before (all-experiments)))
     (load-aside path)
-    (or (set-difference (all-experiments) before)
+    (or (experiments-of path (set-difference (all-experiments) before))
         (reject-line "~A defines no experiment; a file of experiments has a DEFEXPERIMENT."
                      (native-name path)))))
 

@@ -104,18 +104,19 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
 
 (defun give-reason (condition status)
   "Say on the error output what CONDITION says; return STATUS."
-  (ignore-errors
-   (let ((output (text-output 2)))
-     (format output "ars-magna: ~A~%" (complaint-text (condition-text condition)))
-     (finish-output output)))
+  (ignore-errors (say-on-error-output (complaint-text (condition-text condition))))
   status)
 
 (defun call-for-status (function)
   "Call FUNCTION, which returns a status to exit with; return a status whatever happens."
   (catch 'leave
-    (handler-case (let ((*leave-unheard-p* t)) (call-open-to-interrupts function))
+    (handler-case
+        (call-until-interrupted
+         (lambda () (let ((*leave-unheard-p* t)) (call-open-to-interrupts function)))
+         (lambda ()
+           (say-on-error-output "stopped.")
+           130))
       (usage-error (condition) (give-reason condition 2))
-      (user-interrupt () 130)
       ((or error storage-condition) (condition)
         (regain-room condition)
         (give-reason condition 1)))))
@@ -141,4 +142,5 @@ only asks whether the core starts."
   (when (equal (process-arguments) '("--probe")) (end-process 0))
   (die-of-termination)
   (mind-interrupts)
-  (end-process (call-holding-interrupts #'run-process)))
+  ;; An interrupt that still waits when all is done is not to be taken then.
+  (call-holding-interrupts (lambda () (end-process (run-process)))))

@@ -30,15 +30,16 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:import-from :ars-magna.rpl-pictures #:save-plan-timeline)
   (:import-from :ars-magna.experiment
                 #:find-experiment #:all-experiments #:experiment-name #:experiment-documentation
-                #:experiment-conditions #:experiment-trials #:experiment-limit
+                #:experiment-conditions #:experiment-trials #:experiment-limit #:experiment-file
                 #:find-condition #:condition-name #:trial-seed
                 #:ensure-store-directory #:run-again #:call-until-error #:call-aside #:await-time
                 #:prepare-condition #:row-of-trial #:row-differences
                 #:result-outcome #:result-reason #:result-ticks #:result-error #:measured
                 #:print-failures
-                #:run-experiment #:merge-results #:processors #:settle-fingerprints
+                #:run-experiment #:trial-under-way #:merge-results #:processors
+                #:settle-fingerprints
                 #:results-directory #:print-results #:save-result-pictures #:read-results
-                #:compare-conditions #:compare-results #:save-comparison-picture
+                #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture
                 #:shard-directory #:directories-with-rows #:count-rows #:trials-in-shard-p
                 #:missing-shards #:check-same-code)
   ;; trivial-gray-streams

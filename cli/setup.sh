@@ -25,6 +25,7 @@ heeding() {  # COMMAND...: run it, and end it if this shell is told to end meanw
 end_by() {  # SIGNAL: end the child and this shell, as if nothing heeded the signal.
     trap '' HUP INT TERM
     [ -z "$watching" ] || { kill -s KILL "$!" && wait "$!"; } 2>/dev/null
+    [ "$1" != INT ] || say stopped.
     trap - "$1"
     kill -s "$1" $$
 }

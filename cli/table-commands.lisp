@@ -25,10 +25,12 @@
     0))
 
 ;;; Comparing. Two words are directories, of two versions of the code; what else follows says in
-;;; which results or experiment they are conditions.
+;;; which results or experiment they are conditions, or values of what varies. With --by, all words
+;;; say that.
 
 (defparameter *compare-options*
-  '(("--measure" :measure identity) ("--plot" :plot parse-path) ("--trials" :trials parse-count)
+  '(("--by" :by identity) ("--against" :against identity)
+    ("--measure" :measure identity) ("--plot" :plot parse-path) ("--trials" :trials parse-count)
     ("--workers" :workers parse-count) ("--out" :out parse-path) ("--quiet" :quiet nil))
   "The options of the command COMPARE, as in *OPTIONS*.")
 
@@ -48,22 +50,37 @@
       (read-results (first words))
       (results-of (known-experiment words) options)))
 
+(defun comparison-of-words (words options measure)
+  (destructuring-bind (first second &rest where) words
+    (if where
+        (compare-conditions (results-meant where options)
+                            (condition-word first) (condition-word second) :measure measure)
+        (compare-results first second :measure measure))))
+
 (defun comparison-wanted (words options)
   "Return the comparison of what WORDS and OPTIONS say, printed."
-  (let ((measure (option-values :measure options)))
-    (destructuring-bind (first second &rest where) words
-      (if where
-          (compare-conditions (results-meant where options)
-                              (condition-word first) (condition-word second) :measure measure)
-          (compare-results first second :measure measure)))))
+  (let ((measure (option-values :measure options)) (factor (option-value :by options)))
+    (if factor
+        (compare-levels (results-meant words options) factor
+                        :against (option-value :against options) :measure measure)
+        (comparison-of-words words options measure))))
+
+(defun check-words (words options)
+  "Signal USAGE-ERROR unless there are as many WORDS as the command COMPARE takes with OPTIONS."
+  (cond ((option-value :by options)
+         (unless (<= 1 (length words) 2)
+           (reject-usage "compare --by FACTOR takes a directory with results, or an experiment.")))
+        ((option-value :against options)
+         (reject-usage "--against VALUE goes with --by FACTOR."))
+        ((not (<= 2 (length words) 4))
+         (reject-usage "compare takes two directories with results; or two conditions, or values, ~
+                        and the directory or experiment they are in; or --by FACTOR and that."))))
 
 (defun compare-command (arguments)
   "Do what ./cli/ars-magna compare ARGUMENTS does. Return the status to exit with."
   (let* ((options (parse-options arguments :table *compare-options* :others t))
          (words (option-values :other options)))
-    (unless (<= 2 (length words) 4)
-      (reject-usage "compare takes two directories with results; or two conditions, and the ~
-                     directory or experiment they are in."))
+    (check-words words options)
     (call-stoppable
      (lambda ()
        (let ((comparison (comparison-wanted words options)))

@@ -32,8 +32,9 @@
     (is (equal '(100 80 80 98)
                (mapcar #'experiment:contrast-same (experiment:comparison-contrasts comparison))))
     (is (mentions-p text "plan=a noise=0: dir 1 and dir 0 are the same in all 100 trials"))
-    (is (mentions-p text "noise=1: dir 1 succeeds less often than dir 0: 80 % against 100 %"))
-    (is (mentions-p text "plan=b noise=0: dir 1 succeeds more often than dir 0: 70 % against 50 %"))
+    (is (mentions-p text (format nil "noise=1: dir 1 succeeds less often than dir 0: p < .001 as ~
+                                      one of 12 tests, 80 % against 100 %")))
+    (is (mentions-p text "plan=b noise=0: dir 1 succeeds more often than dir 0: p < .001"))
     (is (mentions-p text "over all: No difference in success between dir 1 and dir 0 can be"))))
 
 (test compare-results.counts-a-seed-once-over-all-conditions
@@ -45,7 +46,7 @@ would be beyond doubt, and three seeds are p = 1/4."
                                           (repeated #\- bad #\+ (- 30 bad))))))
     (let* ((comparison (compare-tables (rows 0) (rows 3) :measure 'success))
            (overall (first (experiment:contrast-differences
-                            (experiment::comparison-overall comparison)))))
+                            (first (experiment:comparison-overall comparison))))))
       (is (= 30 (experiment:paired-trials overall)))
       (is (near-p -1/10 (experiment:paired-estimate overall)))
       (is (near-p 1/4 (experiment:paired-p overall)))
@@ -101,6 +102,49 @@ would be beyond doubt, and three seeds are p = 1/4."
       (is (equal '("max-speed*=2") (mapcar #'experiment:contrast-first
                                            (experiment:comparison-contrasts comparison))))
       (is (= 20 (experiment:paired-trials (difference-in "way" comparison)))))))
+
+;;; What has changed.
+
+(defun define-ruled (length &key (speed 1))
+  "Define the experiment RULED, whose trials succeed if they come so far."
+  (eval `(experiment:defexperiment ruled
+           (:robots ars-worlds:dot)
+           (:parameters (base:max-speed* ,speed))
+           (:vary (steps 3 4))
+           (:run (command:robot-go-forward ars-worlds:dot steps) (run:run-ticks 5))
+           (:success (< ,length (robot:robot-x ars-worlds:dot))))))
+
+(defun ruled-against (first-arguments second-arguments)
+  "Return what is said of RULED, run as it is defined by these arguments in turn."
+  (base:with-own-definitions ()
+    (with-directories (before after)
+      (loop for arguments in (list first-arguments second-arguments)
+            for directory in (list before after)
+            do (apply #'define-ruled arguments)
+               (experiment:run-experiment 'ruled :directory directory :stream nil :trials 5
+                                                 :workers 1))
+      (let ((comparison (experiment:compare-results before after :stream nil)))
+        (values (format nil "~{~A~%~}" (experiment:comparison-changes comparison))
+                (with-output-to-string (out) (experiment:print-comparison comparison out)))))))
+
+(test compare-results.warns-that-the-ruler-has-changed
+  (multiple-value-bind (changes text) (ruled-against '(4) '(5))
+    (is (eql 0 (search "WARNING: the experiment itself is not the same" changes)))
+    (is (mentions-p text "WARNING: the experiment itself is not the same"))
+    (is (has-words-p (substitute #\Space #\No-break_space changes)
+                     "before: (:success (< 4 (" "now: (:success (< 5 ("))
+    (is (mentions-p changes "between the tables, under 2 conditions: experiment ruled."))
+    (is (not (mentions-p changes "(:vary")))))
+
+(test compare-results.says-what-else-has-changed
+  (let ((changes (ruled-against '(4) '(4 :speed 2))))
+    (is (mentions-p changes "the parameters, robots or values of conditions")))
+  (is (string= (format nil "Both tables are of the same code and configuration: the fingerprints ~
+                            are equal.~%")
+               (ruled-against '(4) '(4))))
+  (is (mentions-p (nth-value 1 (compare-tables (rows-of-outcomes "a" "0" "++-")
+                                               (rows-of-outcomes "a" "0" "+-+")))
+                  "What differs between the tables is not known")))
 
 ;;; Pictures.
 

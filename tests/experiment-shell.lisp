@@ -87,7 +87,10 @@ output, and what to the error output."
                        ("experiment" "a" "--out" "") ("experiment" "a" "--quiet=1")
                        ("experiment" "a" "--shard" "0/3" "--until" ".1" "--out" "x")
                        ("experiment" "a" "--parallel" "--slurm" "--out" "x")
-                       ("merge" "a") ("merge" "--out" "x") ("compare" "1") ("frob") ("frob" "x")))
+                       ("merge" "a") ("merge" "--out" "x") ("compare" "1")
+                       ("compare" "1" "2" "x" "--against" "3")
+                       ("compare" "--by" "a") ("compare" "x" "y" "z" "--by" "a") ("frob")
+                       ("frob" "x")))
     (signals cli::usage-error (cli::run-arguments arguments))))
 
 (test options-of-commands.are-all-in-their-usage
@@ -120,6 +123,17 @@ output, and what to the error output."
                           "strol" "Did you mean stroll" "trip"))
     (is (eql 0 (shell "experiment" (placed "two") "Trip" "--quiet" "--trials" "2")))))
 
+(test files.mean-their-own-experiments-before-those-that-they-load
+  (in-place
+    (flet ((name-of (file)
+             (ars-magna.experiment:experiment-name (cli::experiment-called (placed file)))))
+      (write-file "own.lisp" "(load (merge-pathnames \"a stroll.lisp\" *load-truename*))
+                              (defexperiment trip (:robots ars-worlds:dot) (:run t))")
+      (write-file "lent.lisp" "(load (merge-pathnames \"a stroll.lisp\" *load-truename*))")
+      (is (string= "TRIP" (name-of "own.lisp")))
+      (is (string= "STROLL" (name-of "lent.lisp")))
+      (is (eql 0 (shell "experiment" (placed "own.lisp") "stroll" "--quiet" "--trials" "2"))))))
+
 (test files.with-an-error-name-its-line
   (in-place
     (write-file "bad.lisp" "(defun far () 3)~%~%(defexperiment wrong (:robots dot) (:runs t))")
@@ -138,6 +152,64 @@ output, and what to the error output."
         (signals cli::file-trouble (cli::experiment-called "stroll.lisp"))))
     (is-true (has-words-p (said-by (lambda () (cli::experiment-called "strll")))
                           "strll" "Did you mean stroll"))))
+
+;;; Control C.
+
+(test interrupts.while-an-experiment-is-loaded-stop-it
+  (let ((cli::*interrupts-while-ending* nil))
+    (in-place
+      (write-file "slow.lisp" "(error 'sb-sys:interactive-interrupt)")
+      (multiple-value-bind (status written errors) (shell "experiment" (placed "slow.lisp"))
+        (is (eql 130 status))
+        (is (string= "" written))
+        (is (= 1 (length (lines-of errors))))
+        (is-true (search "stopped" errors))))))
+
+(defun stopped-after (seconds)
+  "Return what is said when an experiment is stopped that has had a trial under way for SECONDS."
+  (let* ((condition (first (ars-magna.experiment:experiment-conditions
+                            (cli::experiment-called (placed "a stroll.lisp")))))
+         (progress (ars-magna.experiment::make-progress nil nil 10 2))
+         (*error-output* (make-string-output-stream)))
+    (setf (svref (ars-magna.experiment::progress-under-way progress) 2)
+          (list condition 7 (- (ars-magna.experiment::moment)
+                               (* seconds internal-time-units-per-second))))
+    (cli::call-stoppable (lambda ()
+                           (let ((ars-magna.experiment::*progress* progress))
+                             (error 'sb-sys:interactive-interrupt)))
+                         "experiment" '() '())
+    (get-output-stream-string *error-output*)))
+
+(test interrupts.name-the-trial-that-does-not-end
+  (let ((cli::*interrupts-while-ending* nil))
+    (in-place
+      (is-true (has-words-p (stopped-after 600) "stopped; trial 7 of" "under way for 10 min"))
+      (is-false (search "trial" (stopped-after 1))))))
+
+(test interrupts.of-what-ends-already-let-it-be-put-in-order
+  (let ((cli::*interrupts-while-ending* nil) (log '()))
+    (is (eql 130 (cli::call-until-interrupted
+                  (lambda ()
+                    (unwind-protect (cli::take-interrupt)
+                      (cli::take-interrupt)
+                      (push :in-order log)))
+                  (lambda ()
+                    (cli::take-interrupt)
+                    (push :told log)
+                    130))))
+    (is (equal '(:told :in-order) log))))
+
+(test interrupts.that-somebody-heeds-end-nothing
+  (let ((cli::*interrupts-while-ending* nil))
+    (is (eql 7 (cli::call-until-interrupted
+                (lambda ()
+                  (handler-bind ((cli::user-interrupt (lambda (condition)
+                                                        (invoke-restart
+                                                         (find-restart 'cli::go-on condition)))))
+                    (cli::take-interrupt)
+                    7))
+                (constantly 130))))
+    (is (null cli::*interrupts-while-ending*))))
 
 ;;; Tables.
 
@@ -221,7 +293,27 @@ output, and what to the error output."
       (is-true (has-words-p (compared "1" "all" (placed "a stroll.lisp") "--quiet") "12 common"))
       (is-true (has-words-p (compared (placed "one") (placed "two")) "24" "the same"))
       (is-true (has-words-p (said-by (lambda () (compared "1" "none" (placed "one"))))
-                            "none" "motion-noise*=0.1")))))
+                            "none" "motion-noise*=0.1"))
+      (is-true (has-words-p (compared "--by" "motion-noise*" (placed "one") "--measure" "success")
+                            "motion-noise*=0.1 against motion-noise*=0" "12 common seeds"))
+      (is-true (has-words-p (compared "--by" "motion-noise*" "--against" "0.1"
+                                      (placed "a stroll.lisp") "stroll" "--quiet")
+                            "motion-noise*=0 against motion-noise*=0.1")))))
+
+(test comparing.takes-values-that-several-conditions-have
+  (in-place
+    (write-file "steps.lisp" "(defexperiment steps (:robots ars-worlds:dot) (:trials 6)
+       (:vary (motion-noise* 0 0.1) (way 'short 'long)) (:limit 60)
+       (:run (robot-go-forward ars-worlds:dot (if (eq way 'long) 4 3)) (run-ticks 20))
+       (:success (> (robot-x ars-worlds:dot) 7)))")
+    (flet ((compared (&rest arguments) (nth-value 1 (apply #'shell "compare" arguments))))
+      (shell "experiment" (placed "steps.lisp") "--quiet" "--out" (placed "out"))
+      (is-true (has-words-p (compared "long" "short" (placed "out") "--measure" "success"
+                                      "--plot" (placed "steps.svg"))
+                            "long against short" "over all: " "motion-noise*=0.1: "))
+      (is-true (probe-file (base:native-path (placed "steps.svg"))))
+      (is-true (has-words-p (said-by (lambda () (compared "1" "long" (placed "out"))))
+                            "long is ambiguous: it could be" "way=long")))))
 
 ;;; Code that would end the program, or does not end itself.
 

@@ -136,6 +136,45 @@
       (is (search "0: 100 % (72.25 % to 100 %)" chart))
       (is (search "1: 0 % (0 % to 27.75 %)" chart)))))
 
+(defun written-in (file) (format nil "~{~A ~}" (chart-texts (base:file-text file))))
+
+(defun p-written (difference)
+  (format nil "p ~A" (experiment::p-text (experiment:paired-adjusted-p difference))))
+
+(test pictures.of-differences-count-the-tests-they-show
+  (with-made-up (results (append (four-plans "0") (four-plans "0.5")))
+    (with-directories (pictures)
+      (loop for (name measure seeds)
+              in '(("success" success
+                    "60 seeds each. Over all, each seed counts once; p as one of 3 tests.")
+                   ("ticks" ticks "42 to 54 seeds each, those where both succeeded."))
+            for file = (find (format nil "difference-in-~A-by-plan" name)
+                             (experiment:save-result-pictures results pictures
+                                                              :which '(:differences))
+                             :key #'pathname-name :test #'string=)
+            for words = (written-in file)
+            for comparison = (experiment:compare-levels results 'plan :measure measure :stream nil)
+            do (is (mentions-p words (format nil "each plan against a, seed by seed: first less ~
+                                                  second, with 95 % intervals; p as one of 6 ~
+                                                  tests (Holm). ~A"
+                                             seeds)))
+               (loop for contrast in (append (experiment:comparison-contrasts comparison)
+                                             (experiment:comparison-overall comparison))
+                     for (difference) = (experiment:contrast-differences contrast)
+                     do (is (mentions-p words (p-written difference))))))))
+
+(test pictures.say-what-their-series-are
+  (with-report (results '("way" "noise") '() (grid '("a" "b") '("0" "1")))
+    (is (member "way" (chart-texts (picture-text results :success)) :test #'string=))
+    (is (not (member "way" (chart-texts (picture-text results :survival)) :test #'string=))))
+  (with-report (results '("noise" "kick") '() (grid '("0" "1") '("0.5" "0.7")))
+    (let ((texts (chart-texts (picture-text results :success))))
+      (is (member "kick" texts :test #'string=))
+      (is (member "0.7" texts :test #'string=))
+      (is (not (member "kick=0.7" texts :test #'string=)))))
+  (with-report (results '("noise") '() (grid '("0" "1")))
+    (is (member "noise" (chart-texts (picture-text results :survival)) :test #'string=))))
+
 (test pictures.of-survival-never-end-what-failed
   (with-report (results '("noise") '()
                         `((("0") ("success" :ticks 100) ("failure" :ticks 5)

@@ -217,6 +217,25 @@ And more."
   (with-report (results '() '() '((() ("success"))))
     (signals base:wrong-argument (experiment:print-results results nil))))
 
+(test report.breaks-lines-between-conditions-and-not-in-them
+  (let ((way "((1.0 8) (2.5 3.25) (7.75 1.0))"))
+    (with-report (results '("way" "noise") '()
+                          (loop for noise in '("0" "0.1" "0.25" "0.5" "0.75")
+                                collect `((,way ,noise)
+                                          ,@(times 9 '("failure" :reason "lost its way")))))
+      (let ((text (report-text results)))
+        (is (legible-p text))
+        (loop for noise in '("0" "0.1" "0.25")
+              do (is (search (format nil "way=~A noise=~A (9)" way noise) text)))
+        (is (search (format nil "\"way=~A noise=0\"" way) text))))))
+
+(test report.breaks-what-is-longer-than-a-line
+  (is (equal '("aaa bbb" "ccc") (experiment::wrapped-text "aaa bbb ccc" 8)))
+  (is (equal '("x," "aaa bbb") (experiment::wrapped-text
+                                (format nil "x, ~A" (experiment::unbroken "aaa bbb")) 8)))
+  (is (equal '("aaa bbb" "ccc") (experiment::wrapped-text (experiment::unbroken "aaa bbb ccc") 8)))
+  (is (equal '("aaaa" "aa") (experiment::wrapped-text "aaaaaa" 4))))
+
 ;;; Trials added until intervals are narrow.
 
 (test report.has-the-confidence-of-the-last-look
@@ -232,6 +251,9 @@ And more."
         (is (>= 2/10 (- (experiment:estimate-high (experiment:summary-success summary))
                         (experiment:estimate-low (experiment:summary-success summary)))))
         (is (search "Look K spends .05 / (K (K + 1))" (report-text results)))
+        (is (has-words-p (substitute #\Space #\Newline (report-text results))
+                         "the intervals of one condition, at all its looks together, err in at most"
+                         "each of these 2 conditions by itself"))
         (is (legible-p (report-text results)))))
     (walk directory :trials 410)
     (let ((summary (first (experiment:summarize-results (experiment:read-results directory)))))

@@ -94,7 +94,7 @@
     (is (mentions-p reason "(if (chance-p 1/2) t (values nil :slipped))"))
     (is (mentions-p reason "succeeds less often than 90 %"))
     (is (mentions-p reason "failure: slipped"))
-    (is (mentions-p reason "with-simulation"))))
+    (is (mentions-p reason "repeat-trial"))))
 
 (test is-success-rate.stops-when-it-knows
   (let ((bad (seeds-seen (check-of (rates:is-success-rate (progn (note-trial) nil)
@@ -142,24 +142,75 @@
 (defun form-told-in (reason)
   "Return the form that a check's REASON ends with."
   (let ((*package* (find-package :ars-magna.tests)))
-    (read-from-string reason t nil :start (search "(run:with-simulation" reason))))
+    (read-from-string reason t nil :start (search "(rates:repeat-trial" reason))))
 
 (defvar *digest* nil)
 
+(defun digest-of-failure (reason)
+  "Return the digest of the trial that a check's REASON repeats, where all has been set otherwise."
+  (setf *digest* nil)
+  (let ((base:braking* 9) (base:motion-noise* .9)
+        (*random-state* (make-random-state t)))
+    (eval (form-told-in reason))
+    *digest*))
+
+(defmacro repeats-p (&body check)
+  "Make CHECK, which fails. The trial that it repeats must be the very same run."
+  `(let ((reason (nth-value 1 (check-of ,@check))) (digest *digest*))
+     (is (integerp digest))
+     (is (eql digest (digest-of-failure reason)))))
+
 (test is-success-rate.tells-how-to-repeat-a-trial
   "With and without noise, whatever the parameters are here: the run is the same to the last bit."
-  (flet ((repeats-p (reason)
-           (let ((digest *digest*))
-             (setf *digest* nil)
-             (eval (form-told-in reason))
-             (is (eql digest *digest*)))))
-    (let ((base:max-speed* 1/2))
-      (setf *digest* nil)
-      (repeats-p (nth-value 1 (check-of (rates:is-success-rate (note-digest)
-                                         :robots ars-worlds:dot :trials 5 :at-least 1))))
-      (repeats-p (nth-value 1 (check-of (rates:is-success-rate (note-digest)
-                                         :robots ars-worlds:dot :trials 5 :at-least 1 :clean t
-                                         :parameters '((base:braking* 2)))))))))
+  (let ((base:max-speed* 1/2))
+    (repeats-p (rates:is-success-rate (note-digest) :robots ars-worlds:dot :trials 5 :at-least 1))
+    (repeats-p (rates:is-success-rate (note-digest) :robots ars-worlds:dot :trials 5 :at-least 1
+                                                    :clean t :parameters '((base:braking* 2))))
+    (repeats-p (rates:is-success-rate (note-digest) :robots (ars-worlds:dot) :trials 5 :at-least 1
+                                                    :seed -30
+                                                    :parameters ((base:motion-noise* (/ 4 5)))))))
+
+(test is-success-rate.repeats-what-lisps-dice-say
+  (repeats-p (rates:is-success-rate (progn (command:robot-go-forward
+                                            (robot:find-robot 'ars-worlds:dot) (+ 1 (random 3.0)))
+                                           (run:run-ticks 20)
+                                           (setf *digest* (run:state-digest))
+                                           nil)
+               :robots ars-worlds:dot :trials 5 :at-least 1)))
+
+(test is-success-rate.repeats-trials-that-do-not-end
+  (multiple-value-bind (passed reason)
+      (check-of (rates:is-success-rate (loop (run:run-ticks 1))
+                  :robots ars-worlds:dot :limit 30))
+    (is (not passed))
+    (let ((plist (eval (form-told-in reason))))
+      (is (string= "limit" (getf plist :outcome)))
+      (is (= 30 (getf plist :ticks))))))
+
+(test is-success-rate.takes-parameters-as-experiments-do
+  (flet ((speed (passed) (is-true passed)))
+    (speed (check-of (rates:is-success-rate (= 5 base:max-speed*)
+                       :robots ars-worlds:dot :trials 3 :parameters ((base:max-speed* (+ 2 3))))))
+    (let ((parameters '((base:max-speed* 5))))
+      (speed (check-of (rates:is-success-rate (= 5 base:max-speed*)
+                         :robots ars-worlds:dot :trials 3 :parameters parameters)))))
+  (signals base:malformed-definition
+    (eval '(rates:is-success-rate t :robots ars-worlds:dot :parameters ((base:max-speed* 5 6)))))
+  (signals base:unknown-name
+    (eval '(rates:is-success-rate t :robots ars-worlds:dot :parameters ((max-sped 5)))))
+  (signals base:wrong-argument
+    (eval '(rates:is-success-rate t :robots ars-worlds:dot :parameters 5))))
+
+(test repeat-trial.can-be-looked-at-as-any-other
+  (let ((plist (rates:repeat-trial (progn (run:run-ticks 20) (values nil :tired))
+                 :robots ars-worlds:dot :seed 3 :until 7)))
+    (is (= 7 (getf plist :ticks)))
+    (is (null (getf plist :outcome))))
+  (is (string= "tired" (getf (rates:repeat-trial (values nil :tired) :robots ars-worlds:dot)
+                             :reason)))
+  (signals base:malformed-definition (eval '(rates:repeat-trial t)))
+  (signals base:malformed-definition (eval '(rates:repeat-trial t :robots ars-worlds:dot :sed 3)))
+  (signals base:wrong-argument (eval '(rates:repeat-trial t :robots ars-worlds:dot :seed .5))))
 
 (defun note-digest ()
   (command:robot-go-forward (robot:find-robot 'ars-worlds:dot) 3)
@@ -184,7 +235,7 @@
                  :at-least .95 :trials 50))
     (is (not passed))
     (is (mentions-p reason "walk, max-speed*=2"))
-    (is (mentions-p reason "(replay-trial 'walk \"max-speed*=2\" ")))
+    (is (mentions-p reason "replay-trial 'walk \"max-speed*=2\" ")))
   (signals base:misuse (rates:is-success-rate (:experiment 'walk)))
   (signals base:unknown-name (rates:is-success-rate (:experiment 'walk :condition 3)))
   (signals base:unknown-name (rates:is-success-rate (:experiment 'no-walk))))

@@ -294,3 +294,12 @@
   "Manual 5.3."
   (is (equalp '(8 8 2) (loop for key in '(:capacity :size :weight)
                              collect (world:get-attribute ars-worlds:box* key)))))
+
+(test experiments.that-are-shipped-can-be-named
+  (let ((names (remove (find-package :ars-worlds)
+                       (mapcar #'ars-magna.experiment:experiment-name
+                               (ars-magna.experiment:all-experiments))
+                       :key #'symbol-package :test-not #'eq)))
+    (is (<= 3 (length names)))
+    (dolist (name names)
+      (is (eq :external (nth-value 1 (find-symbol (symbol-name name) :ars-worlds))) "~A" name))))

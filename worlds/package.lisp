@@ -41,6 +41,9 @@ and programs for the robots there. Written as users write theirs.")
   (:export #:watson-lookouts* #:look-near-and-far #:look-round #:make-out #:find-from-here
            #:go-and-look #:travel-watching #:look-on-the-way #:search-by-chance #:search-nearest
            #:search-watchfully)
+  ;; experiments
+  (:export #:fetching-against-motion-noise #:fetching-against-blindness-and-kicks
+           #:three-ways-of-searching)
   ;; an errand with continuations
   (:export #:run-errand))
 

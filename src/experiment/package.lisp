@@ -30,7 +30,7 @@ on with, on as many cores and machines as there are. Names lparallel.")
            #:experiment-from #:experiment-package #:experiment-limit #:find-condition #:trial-values
            #:condition-name #:condition-parameters)
   ;; trial, workers, description, values
-  (:export #:run-trial #:call-in-silence #:call-by-workers #:form-text
+  (:export #:run-trial #:call-in-silence #:call-by-workers #:form-text #:experiment-file
            #:result-trial #:result-seed #:result-outcome #:result-reason #:result-ticks
            #:result-digest #:result-error)
   ;; results
@@ -38,16 +38,19 @@ on with, on as many cores and machines as there are. Names lparallel.")
            #:read-results #:sample-p #:sample-experiment #:sample-condition #:sample-texts
            #:sample-trials #:sample-outcomes #:sample-reasons #:sample-ticks #:sample-errors
            #:sample-measure)
-  ;; differences, contrasts, verdicts, comparing, comparing-versions, comparison-picture
+  ;; differences, contrasts, verdicts, comparison-table, comparing, comparing-versions,
+  ;; comparison-picture
   (:export #:paired-difference-p #:paired-measure #:paired-trials #:paired-first #:paired-second
            #:paired-estimate #:paired-low #:paired-high #:paired-p #:paired-adjusted-p
            #:paired-table
            #:contrast-p #:contrast-first #:contrast-second #:contrast-where #:contrast-trials
            #:contrast-same #:contrast-differences
-           #:comparison-p #:comparison-contrasts #:comparison-verdicts #:print-comparison
+           #:comparison-p #:comparison-contrasts #:comparison-overall #:comparison-changes
+           #:comparison-verdicts #:print-comparison
            #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture)
-  ;; lines, running, merging, workers
-  (:export #:damaged-table #:ensure-store-directory #:run-experiment #:merge-results #:processors)
+  ;; lines, progress, running, merging, workers
+  (:export #:damaged-table #:ensure-store-directory #:run-experiment #:merge-results #:processors
+           #:trial-under-way)
   ;; fingerprint, shards
   (:export #:settle-fingerprints #:shard-directory #:directories-with-rows #:count-rows
            #:trials-in-shard-p #:missing-shards #:check-same-code)

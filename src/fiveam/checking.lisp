@@ -2,29 +2,6 @@
 
 (in-package :ars-magna.fiveam)
 
-;;; What is tried: a form, with an experiment of its own, or an experiment that there is.
-
-(defun parameter-parts (parameters)
-  "Return PARAMETERS, lists (name value), as EXPERIMENT-FROM takes them."
-  (check-argument is-success-rate parameters
-                  (and (proper-list-p parameters)
-                       (every (lambda (part) (and (proper-list-p part) (= 2 (length part))))
-                              parameters))
-                  "a list of lists (name value)")
-  (loop for (name value) in parameters
-        for symbol = (parameter-symbol (find-parameter name))
-        collect (list (list symbol value) value)))
-
-(defun experiment-of-form (function robots package seed limit parameters clean)
-  "Return an experiment whose trials call FUNCTION, written in PACKAGE, with ROBOTS."
-  (check-argument is-success-rate seed (integerp seed) "an integer")
-  (check-argument is-success-rate limit (whole-p limit 1) "a number of ticks from 1 to 1e9")
-  (let ((experiment (experiment-from 'is-success-rate "is-success-rate"
-                                     :robots robots :run function :seed seed :limit limit
-                                     :parameters (parameter-parts parameters) :clean clean)))
-    (setf (experiment-package experiment) (find-package package))
-    experiment))
-
 (defun condition-given (experiment condition)
   "Return the condition of EXPERIMENT that CONDITION means; its only one if that is NIL."
   (let ((all (experiment-conditions experiment)))
@@ -38,12 +15,12 @@
 
 ;;; Checking.
 
-(defun call-check (experiment condition robots form at-least trials level workers)
-  "Check by up to TRIALS of CONDITION of EXPERIMENT that AT-LEAST so many succeed. ROBOTS and FORM
-are what its author wrote. True if they do."
+(defun call-check (experiment condition subject at-least trials level workers)
+  "Check by up to TRIALS of CONDITION of EXPERIMENT, that of SUBJECT or NIL, that AT-LEAST so many
+succeed. True if they do."
   (check-rates 'is-success-rate at-least trials level)
   (check-argument is-success-rate workers (whole-p workers 1 1000) "how many threads, 1 to 1000")
-  (let ((check (run-check (make-check experiment condition robots form (exact-rate at-least) trials
+  (let ((check (run-check (make-check experiment condition subject (exact-rate at-least) trials
                                       (exact-rate level) workers))))
     (cond ((eq :passed (check-verdict check))
            (pass "~A" (success-text check))
@@ -51,17 +28,16 @@ are what its author wrote. True if they do."
           (t (fail "~A" (failure-text check))
              nil))))
 
-(defun hold-form (function robots form package at-least trials level workers
-                  seed limit parameters clean)
-  "Check FUNCTION, made of FORM, as IS-SUCCESS-RATE does."
-  (let ((experiment (experiment-of-form function robots package seed limit parameters clean)))
-    (call-check experiment (first (experiment-conditions experiment)) robots form
+(defun hold-form (subject at-least trials level workers seed)
+  "Check SUBJECT as IS-SUCCESS-RATE does."
+  (let ((experiment (experiment-of subject 'is-success-rate seed)))
+    (call-check experiment (first (experiment-conditions experiment)) subject
                 at-least trials level workers)))
 
 (defun hold-experiment (name condition at-least trials level workers)
   "Check CONDITION of the experiment NAME as IS-SUCCESS-RATE does."
   (let ((experiment (find-experiment name)))
-    (call-check experiment (condition-given experiment condition) '() nil
+    (call-check experiment (condition-given experiment condition) nil
                 at-least (or trials (experiment-trials experiment)) level workers)))
 
 (defun experiment-clause (form options)
@@ -76,28 +52,23 @@ it is none, or OPTIONS are given that the experiment decides."
                            (first options))))
   (list (second form) (fourth form)))
 
-(defun robot-names (robots form)
-  "Return the names in ROBOTS, a name or a list. Signals MALFORMED-DEFINITION if there is none."
-  (let ((names (ensure-list (if (and (consp robots) (eq 'quote (first robots)))
-                                (second robots)
-                                robots))))
-    (unless (and (proper-list-p names) names (every #'symbolp names))
-      (reject-clause "is-success-rate" form
-                     "an option :robots, with the name of a robot or a list of names of one map"))
-    names))
-
 (define-user-macro is-success-rate
     (form &rest options
-          &key robots (at-least .95) trials (level .05) (seed 0) parameters clean (limit 100000)
-          (workers 1))
+          &key robots (at-least .95) trials (level .05) (seed 0) parameters clean
+          (limit +usual-limit+) (workers 1))
   "Check, in a test of FiveAM, that FORM succeeds in a share AT-LEAST of trials, .95 unless given.
 Each trial evaluates FORM in a fresh headless simulation with ROBOTS, the name of a robot or a list
 of names, which are bound to the robots. As in an experiment's :run, the values of RUN-PLAN, or else
 the first value, say whether it succeeded; errors, and trials that take more than LIMIT ticks, did
 not. So a LIMIT of 300 with :at-least 1/2 holds the median of ticks to 300. Trial T has the seed
-SEED + T, and the manual's parameters but for PARAMETERS, a list of lists (name value), and without
-noise if CLEAN is true. FORM may instead be (:experiment NAME) or (:experiment NAME :condition C):
-then trials are those of that experiment, which says the rest.
+SEED + T, and the manual's parameters but for PARAMETERS, lists (name form) as in DEFEXPERIMENT or
+a form that returns lists (name value), and is without noise if CLEAN is true:
+
+  (is-success-rate (run-plan 'fetch-thing '((:color blue)) '((109 24)))
+    :robots marvin :at-least .9 :trials 60 :parameters ((motion-noise* .2) (max-speed* 2)))
+
+FORM may instead be (:experiment NAME) or (:experiment NAME :condition C): then trials are those of
+that experiment, which says the rest.
 
 At most TRIALS are run, 200 unless given, or as many as the experiment says, and no more than are
 needed: the check fails as soon as it is plain that the rate is lower than AT-LEAST, and passes as
@@ -109,15 +80,12 @@ more trials make it likelier. With an AT-LEAST of 1 all trials must succeed.
 
 Seeds are fixed, so the same code has the same answer each time, by however many WORKERS, threads;
 with several of them FORM does not see what the test has bound. The reason of a failure gives the
-numbers, the first trials that did not succeed and why, and a form that repeats one. Return true if
-the check passes. Signals MALFORMED-DEFINITION, WRONG-ARGUMENT and UNKNOWN-NAME."
+numbers, the first trials that did not succeed and why, and a form that repeats one, by
+REPEAT-TRIAL or REPLAY-TRIAL, in any Lisp that has the same code. Return true if the
+check passes. Signals MALFORMED-DEFINITION, WRONG-ARGUMENT and UNKNOWN-NAME."
   (if (and (consp form) (eq :experiment (first form)))
       (destructuring-bind (name condition)
           (experiment-clause form (intersection '(:robots :seed :parameters :clean :limit) options))
         `(hold-experiment ,name ,condition ,at-least ,trials ,level ,workers))
-      (let ((names (robot-names robots form)))
-        `(hold-form (lambda ()
-                      (declare (special ,@(variables-among names)))
-                      ,form)
-                    ',names ',form ,(package-name *package*) ,at-least ,(or trials 200) ,level
-                    ,workers ,seed ,limit ,parameters ,clean))))
+      `(hold-form ,(subject-maker "is-success-rate" form robots parameters clean limit)
+                  ,at-least ,(or trials 200) ,level ,workers ,seed)))

@@ -7,14 +7,16 @@ experiments to their rates of success. Use it beside FIVEAM.")
   (:use :cl :ars-magna.base)
   (:import-from :fiveam #:pass #:fail)
   (:import-from :ars-magna.statistics #:rate-verdict #:exact-interval)
-  (:import-from :ars-magna.run #:variables-among #:with-simulation)
+  (:import-from :ars-magna.run #:variables-among)
   (:import-from :ars-magna.experiment
                 #:experiment-from #:find-experiment #:experiment-name #:experiment-conditions
                 #:experiment-trials #:experiment-limit #:experiment-package
                 #:find-condition #:condition-name
-                #:condition-parameters #:run-trial #:call-in-silence #:call-by-workers #:form-text
+                #:run-trial #:replay-trial #:call-in-silence #:call-by-workers #:form-text
                 #:result-trial #:result-seed #:result-outcome #:result-reason #:result-error)
   ;; deciding
   (:export #:pass-probability)
   ;; checking
-  (:export #:is-success-rate))
+  (:export #:is-success-rate)
+  ;; repeating
+  (:export #:repeat-trial))

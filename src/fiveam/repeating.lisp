@@ -1,47 +1,69 @@
-;;;; repeating.lisp -- how to repeat a trial of a check, as a text.
+;;;; repeating.lisp -- REPEAT-TRIAL: a trial of a check again, in the open, from its text alone.
 
 (in-package :ars-magna.fiveam)
 
-;;; WITH-SIMULATION begins with the parameters as they are there, a trial with the manual's. So what
-;;; differs is written out; and :CLEAN where that says the same in less.
+;;; A check ends in a log that is read elsewhere, perhaps long after. So what it says repeats a
+;;; trial in any Lisp that has the same code, whatever has been set there.
 
-(defun noiseless-p (parameter value)
-  (or (not (eq :noise (parameter-kind parameter)))
-      (eql value (parameter-clean parameter))))
+(defun replay-subject (subject seed options)
+  "Run the trial of SUBJECT with SEED as REPLAY-TRIAL does with OPTIONS."
+  (unless (integerp seed) (reject-argument 'repeat-trial 'seed seed "an integer"))
+  (apply #'replay-trial (experiment-of subject 'repeat-trial (1- seed)) 1 1 options))
 
-(defun clean-p (parameters values)
-  "True if VALUES, of PARAMETERS, are without noise, and what they are now is not."
-  (and (every #'noiseless-p parameters values)
-       (notevery #'noiseless-p parameters (mapcar #'parameter-value parameters))))
+(define-user-macro repeat-trial
+    (form &rest options
+          &key robots (seed 1) parameters clean (limit +usual-limit+)
+          until then rate step journal trace)
+  "Run the trial with SEED of a check of FORM by IS-SUCCESS-RATE again, the other arguments being
+those of the check: the very run that it was, but in the open. It is what a check that fails prints:
 
-(defun settings (check)
-  "Return the options of WITH-SIMULATION by which its parameters are those of the trials of CHECK."
-  (let* ((parameters (all-parameters))
-         (values (coerce (condition-parameters (check-condition check)) 'list))
-         (clean (clean-p parameters values))
-         (settings (loop for parameter in parameters
-                         for value in values
-                         unless (or (and clean (eq :noise (parameter-kind parameter)))
-                                    (eql value (parameter-value parameter)))
-                           collect (list (parameter-symbol parameter) value))))
-    (append (and clean '(:clean t))
-            (and settings `(:parameters ',settings)))))
+  (repeat-trial (run-plan 'fetch-thing '((:color blue)) '((109 24)))
+    :robots marvin :seed 7 :parameters ((motion-noise* 0.2)))
 
-(defun text-of (form check)
-  "Return FORM as the author of CHECK would write it, on one line if it is short."
-  (let* ((text (form-text form (experiment-package (check-experiment check))))
+UNTIL, THEN, RATE, STEP, JOURNAL and TRACE are as for REPLAY-TRIAL: to see it at a pace, to stop it
+in the middle, and so on. Return a plist, and signal errors, as that does; MALFORMED-DEFINITION,
+too."
+  (declare (ignore until then rate step journal trace))
+  `(replay-subject ,(subject-maker "repeat-trial" form robots parameters clean limit) ,seed
+                   (list ,@(loop for (key value) on options by #'cddr
+                                 unless (member key '(:robots :seed :parameters :clean :limit))
+                                   append (list key value)))))
+
+;;; As a text.
+
+(defun text-in (package form)
+  "Return FORM as its author, in PACKAGE, would write it, on one line if it is short."
+  (let* ((text (form-text form package))
          (line (one-line text)))
     (if (< (length line) 90) line text)))
 
+(defun text-of (form check)
+  (text-in (experiment-package (check-experiment check)) form))
+
+(defun literal (value)
+  "Return a form that returns VALUE."
+  (if (or (consp value) (and (symbolp value) (not (keywordp value)) (not (member value '(t nil)))))
+      `',value
+      value))
+
+(defun repetition-options (subject seed)
+  "Return the options with which REPEAT-TRIAL repeats the trial of SUBJECT with SEED."
+  (let ((robots (subject-robots subject)) (parameters (subject-parameters subject)))
+    `(:robots ,(if (rest robots) robots (first robots))
+      :seed ,seed
+      ,@(unless (= +usual-limit+ (subject-limit subject)) `(:limit ,(subject-limit subject)))
+      ,@(when parameters
+          `(:parameters ,(loop for (name value) in parameters
+                               collect (list name (literal value)))))
+      ,@(when (subject-clean subject) '(:clean t)))))
+
 (defun repetition-text (check result)
   "Return a form, as text, that repeats the trial of CHECK that RESULT is of."
-  (let ((robots (check-robots check)))
-    (if robots
-        (format nil "(~A ~A~%    ~A)" (text-of 'with-simulation check)
-                (text-of (list* (if (rest robots) robots (first robots))
-                                :seed (result-seed result) (settings check))
-                         check)
-                (text-of (check-form check) check))
-        (format nil "(replay-trial '~A ~S ~D)"
-                (text-of (experiment-name (check-experiment check)) check)
-                (condition-name (check-condition check)) (result-trial result)))))
+  (let ((subject (check-subject check)))
+    (flet ((text (form) (text-of form check)))
+      (if subject
+          (format nil "(~A ~A~%    ~{~A ~A~^ ~})" (text 'repeat-trial) (text (subject-form subject))
+                  (mapcar #'text (repetition-options subject (result-seed result))))
+          (format nil "(~A '~A ~S ~D)" (text 'replay-trial)
+                  (text (experiment-name (check-experiment check)))
+                  (condition-name (check-condition check)) (result-trial result))))))

@@ -6,8 +6,8 @@
 
 (defun subject-text (check)
   "Return what CHECK is about."
-  (if (check-robots check)
-      (text-of (check-form check) check)
+  (if (check-subject check)
+      (text-of (subject-form (check-subject check)) check)
       (format nil "~(~A~), ~A" (experiment-name (check-experiment check))
               (condition-name (check-condition check)))))
 
@@ -53,9 +53,10 @@
   "Return why CHECK failed, in lines."
   (let ((bad (bad-results check)))
     (format nil "~A~%succeeds less often than ~A: ~A.~%~A~%Of those that did not:~%~{~A~%~}To see ~
-                 one:~%  ~A"
+                 one, in the package ~A:~%  ~A"
             (subject-text check) (per-cent (check-at-least check)) (numbers-text check)
             (meaning-text check) (example-lines bad check)
+            (package-name (experiment-package (check-experiment check)))
             (repetition-text check (first bad)))))
 
 (defun success-text (check)

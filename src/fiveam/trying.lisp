@@ -3,15 +3,14 @@
 (in-package :ars-magna.fiveam)
 
 (defstruct (rate-check (:conc-name check-)
-                       (:constructor make-check (experiment condition robots form at-least trials
+                       (:constructor make-check (experiment condition subject at-least trials
                                                  level workers))
                        (:copier nil))
   "Whether trials of CONDITION, of EXPERIMENT, succeed AT-LEAST so often."
   (experiment nil :read-only t)
   (condition nil :read-only t)
-  ;; What its author wrote, unless the experiment was there already.
-  (robots '() :type list :read-only t)
-  (form nil :read-only t)
+  ;; What its author wrote, or NIL if the experiment was there already.
+  (subject nil :type (or null subject) :read-only t)
   (at-least 0d0 :type double-float :read-only t)
   ;; How many there are at most.
   (trials 0 :type integer :read-only t)

@@ -6,27 +6,38 @@
 (defconstant +entry-gap+ 6 "How far entries of the legend are apart, in pixels.")
 
 (defstruct (legend (:copier nil))
-  "What stands beside a chart: ENTRIES are lists (index line...)."
+  "What stands beside a chart: the lines TITLE, and ENTRIES, lists (index line...)."
+  (title '() :type list)
   (entries '() :type list)
   (connect t)
   (width 0 :type real)
   (height 0 :type real))
 
-(defun plan-legend (names most connect)
-  "Return the legend for series called NAMES, at most MOST pixels wide; one of no width if all are
-empty. CONNECT: lines belong to the samples."
+(defun bold-width (lines)
+  (reduce #'max lines :key (lambda (line) (text-width line +text-size+ t)) :initial-value 0))
+
+(defun title-height (title)
+  "Return how much room TITLE, lines, takes above the entries."
+  (if title (+ +entry-gap+ (lines-height title)) 0))
+
+(defun plan-legend (names title most connect)
+  "Return the legend for series called NAMES below TITLE, a string or NIL, at most MOST pixels wide;
+one of no width if all are empty. CONNECT: lines belong to the samples."
   (if (every (lambda (name) (string= "" name)) names)
       (make-legend)
       (let* ((room (- most +sample-width+ 24))
+             (title (wrapped title (- most 24) :bold-p t))
              (entries (loop for name in names
                             for index from 0
                             collect (cons index (wrapped name room)))))
-        (make-legend :entries entries :connect connect
-                     :width (+ +sample-width+ 24
-                               (reduce #'max entries :key (lambda (entry)
-                                                            (lines-width (rest entry)))))
-                     :height (loop for (nil . lines) in entries
-                                   sum (+ +entry-gap+ (lines-height (or lines '("")))))))))
+        (make-legend :title title :entries entries :connect connect
+                     :width (max (+ 24 (bold-width title))
+                                 (+ +sample-width+ 24
+                                    (reduce #'max entries :key (lambda (entry)
+                                                                 (lines-width (rest entry))))))
+                     :height (+ (title-height title)
+                                (loop for (nil . lines) in entries
+                                      sum (+ +entry-gap+ (lines-height (or lines '(""))))))))))
 
 (defun draw-sample (canvas index x y connect)
   "Draw how the series INDEX looks from X, around Y."
@@ -37,6 +48,8 @@ empty. CONNECT: lines belong to the samples."
 
 (defun draw-legend (canvas legend x y)
   "Draw LEGEND with its upper left corner at X, Y."
+  (write-lines canvas (+ x 16) (+ y 10) (legend-title legend) :bold-p t)
+  (incf y (title-height (legend-title legend)))
   (loop for (index . lines) in (legend-entries legend)
         do (draw-sample canvas index (+ x 16) (+ y 6) (legend-connect legend))
            (write-lines canvas (+ x 16 +sample-width+ 8) (+ y 10) lines)

@@ -83,15 +83,17 @@
          upward (mapcar #'series-entry all) options))
 
 (defun line-chart (series &rest options &key percent range log-x (connect nil connect-given-p)
-                                          title subtitle x-label y-label width height)
+                                          title subtitle x-label y-label legend-title
+                                          width height)
   "Return a chart of SERIES as an SVG document. Each is a list (name point...), a point a list
 (x y) or (x y low high): Y at X, with an interval. X is a number or, then for all, a string or
 symbol; what is not known is NIL. PERCENT: Y are rates, shown as per cent from 0 to 100. RANGE is a
 list (low high) that the axis upward shows at least. LOG-X: X on a logarithmic scale. CONNECT: lines
-join the points, by default if X are numbers. TITLE, SUBTITLE, X-LABEL and Y-LABEL are strings or
-NIL; WIDTH and HEIGHT are pixels, by default 720 and 440, and grow where the text needs it. A series
-without a name, NIL, does without a legend. Signals WRONG-ARGUMENT."
-  (declare (ignore title subtitle x-label y-label width height))
+join the points, by default if X are numbers. TITLE, SUBTITLE, X-LABEL, Y-LABEL and
+LEGEND-TITLE, which says what the series are, are strings or NIL; WIDTH and HEIGHT are pixels, by
+default 720 and 440, and grow where the text needs it. A series without a name, NIL, does without a
+legend. Signals WRONG-ARGUMENT."
+  (declare (ignore title subtitle x-label y-label legend-title width height))
   (check-argument line-chart range (typep range '(or null (cons real (cons real null))))
                   "a list of two numbers, or NIL")
   (multiple-value-bind (given words-p) (checked-series series)

@@ -12,15 +12,15 @@ pixels. BELOW is where what a chart adds below begins."
   (left 0) (right 0) (top 0) (bottom 0) (below 0) (width 0) (height 0))
 
 (defun plan-plane (make-across upward names
-                   &key title subtitle x-label y-label (width 720) (height 440) (connect t)
-                     (extra 0) (least-left 0)
+                   &key title subtitle x-label y-label legend-title (width 720) (height 440)
+                     (connect t) (extra 0) (least-left 0)
                    &allow-other-keys)
   "Return a plane for series called NAMES. MAKE-ACROSS is called with the pixels where the data
 begin and end, and returns an axis; UPWARD is one. EXTRA is how much room the chart wants below,
 LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT where it must."
   (check-size width height)
   (let* ((heading (plan-heading title subtitle width))
-         (legend (plan-legend names (* 4/10 width) connect))
+         (legend (plan-legend names legend-title (* 4/10 width) connect))
          (y-lines (wrapped y-label (- width (* 2 +margin+))))
          (top (+ (heading-bottom heading) 14 (lines-height y-lines) (if y-lines 8 0)))
          (left (max least-left (+ +margin+ (marks-width upward) 8)))

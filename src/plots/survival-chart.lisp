@@ -97,14 +97,15 @@ time END."
                      :anchor :middle)))))
 
 (defun survival-chart (curves &rest options
-                       &key (risk-label "still there") title subtitle x-label y-label width height)
+                       &key (risk-label "still there") title subtitle x-label y-label legend-title
+                         width height)
   "Return a chart of CURVES, the shares that are left over time, as an SVG document. Each is a list
 (name :steps steps :censored times :times times). A step is a list (time survival low high): the
 share that is left from then on, 0 to 1, and its band; before the first all are. CENSORED are the
 times at which somebody was lost sight of, TIMES those until which each was seen, however that
 ended: from these come the numbers of those left, below the chart, which RISK-LABEL introduces. The
 other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
-  (declare (ignore title subtitle x-label y-label width height))
+  (declare (ignore title subtitle x-label y-label legend-title width height))
   (check-argument survival-chart risk-label (stringp risk-label) "a string")
   (let* ((curves (checked-curves curves))
          (ends (cons 0 (mapcar #'curve-end curves)))

@@ -2,9 +2,6 @@
 
 (in-package :ars-magna.experiment)
 
-;;; Over all conditions a seed counts as one, as its trials under several conditions share their
-;;; chance: for each seed the share of conditions under which it succeeds is compared.
-
 (defun results-given (operator name value)
   "Return the results that VALUE, the argument NAME of OPERATOR, means, and what they are called."
   (cond ((results-p value)
@@ -39,41 +36,6 @@ of conditions that one of them lacks."
                             (remove-if (lambda (sample) (called sample first))
                                        (results-samples second)))))))
 
-(defun note-successes (sample counts)
-  "Add to COUNTS, a table by seed, a list (trials successes), the trials of SAMPLE."
-  (loop for seed across (sample-seeds sample)
-        for outcome across (sample-outcomes sample)
-        for entry = (or (gethash seed counts) (setf (gethash seed counts) (list 0 0)))
-        do (incf (first entry))
-           (when (success-p outcome) (incf (second entry)))))
-
-(defun successes-by-seed (samples)
-  (let ((counts (make-hash-table)))
-    (dolist (sample samples counts) (note-successes sample counts))))
-
-(defun complete-seeds (pairs)
-  "Return the seeds of which both samples of all PAIRS have a trial, in order."
-  (let ((count (length pairs))
-        (first (successes-by-seed (mapcar #'first pairs)))
-        (second (successes-by-seed (mapcar #'second pairs))))
-    (values (sort (loop for seed being the hash-keys of first using (hash-value entry)
-                        when (and (= count (first entry))
-                                  (= count (first (gethash seed second '(0 0)))))
-                          collect seed)
-                  #'<)
-            first second)))
-
-(defun overall-contrast (contrast pairs)
-  "Return CONTRAST, of versions, with how they differ in success over all PAIRS of samples."
-  (multiple-value-bind (seeds first second) (complete-seeds pairs)
-    (flet ((shares (counts)
-             (loop for seed in seeds
-                   collect (/ (second (gethash seed counts)) (length pairs)))))
-      (setf (contrast-trials contrast) (length seeds)
-            (contrast-differences contrast)
-            (list (mean-difference "success" (shares first) (shares second) :rate))))
-    contrast))
-
 (defun check-one-experiment (before after)
   (let ((names (mapcar (lambda (results)
                          (if (results-samples results)
@@ -97,35 +59,37 @@ SECOND."
   (when (every (lambda (contrast) (zerop (contrast-trials contrast))) contrasts)
     (reject-use "~A and ~A have no trials of equal condition and seed." before-name after-name)))
 
+(defun lacking-notes (conditions)
+  "Return a sentence on CONDITIONS that only one table has, in a list; NIL if there are none."
+  (and conditions
+       (list (format nil "Only one of them has the condition~P ~{~A~^, ~}."
+                     (length conditions) conditions))))
+
 (defun comparison-of-versions (before after before-name after-name names)
   "Return the comparison of the results BEFORE and AFTER, which are called so, in what NAMES say."
   (multiple-value-bind (first second) (short-names after-name before-name)
     (multiple-value-bind (pairs lacking) (condition-pairs after before)
-      (let ((comparison
-              (make-comparison
-               (format nil "The experiment ~A, seed by seed: ~A against ~A, before."
-                       (check-one-experiment before after) after-name before-name)
-               :versions
-               (contrasts-of-versions pairs before after first second names))))
-        (reject-lack-of-pairs (comparison-contrasts comparison) before-name after-name)
-        (when (and (rest pairs) (member "success" names :test #'string=)
-                   (notevery #'same-runs-p (comparison-contrasts comparison)))
-          (setf (comparison-overall comparison)
-                (overall-contrast (make-contrast "over all" first second) pairs)))
-        (when lacking
-          (setf (comparison-notes comparison)
-                (list (format nil "Only one of them has the condition~P ~{~A~^, ~}."
-                              (length lacking) lacking))))
-        (finish-comparison comparison)))))
+      (let* ((experiment (check-one-experiment before after))
+             (contrasts (contrasts-of-versions pairs before after first second names)))
+        (reject-lack-of-pairs contrasts before-name after-name)
+        (finish-comparison
+         (make-comparison
+          experiment (format nil "~A against ~A, before" after-name before-name)
+          :versions contrasts
+          :overall (and (worth-overall-p contrasts)
+                        (list (overall-contrast first second pairs names after before)))
+          :changes (changes-between pairs (results-directory after) (results-directory before))
+          :notes (lacking-notes lacking)))))))
 
 (addition compare-results)
 (defun compare-results (before after &key measure (stream *standard-output*))
   "Compare two tables of one experiment that two versions of the code have made: BEFORE and AFTER
-are directories, or results. Trials of equal condition and seed are compared, per condition and, for
-success, over all conditions, where each seed counts once. Differences are AFTER less BEFORE. It is
-said which conditions got better or worse, and how many trials are the same to the last bit: rows
-with equal digest, outcome and measures. The other arguments, the value and the errors are those of
-COMPARE-CONDITIONS; DAMAGED-TABLE and MISUSE, too, as READ-RESULTS, and if the tables are of
+are directories, or results. Trials of equal condition and seed are compared, per condition and over
+all conditions, where each seed counts once. Differences are AFTER less BEFORE. It is said which
+conditions got better or worse, and how many trials are the same to the last bit: rows with equal
+digest, outcome and measures; and, by the texts beside the tables, what has changed in between, with
+a warning if that is the experiment itself. The other arguments, the value and the errors are those
+of COMPARE-CONDITIONS; DAMAGED-TABLE and MISUSE, too, as READ-RESULTS, and if the tables are of
 different experiments."
   (check-stream 'compare-results stream)
   (multiple-value-bind (old old-name) (results-given 'compare-results 'before before)

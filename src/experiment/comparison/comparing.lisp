@@ -27,67 +27,69 @@ OPERATOR, says, or all that they have."
           known
           (mapcar #'known-name (ensure-list measure))))))
 
-(defun samples-called (samples text)
-  "Return those of SAMPLES whose condition is called TEXT; or else has that for a value; or else has
-it in its name."
-  (flet ((those (test) (remove-if-not test samples)))
-    (or (those (lambda (sample) (string-equal text (sample-condition sample))))
-        (those (lambda (sample) (member text (sample-texts sample) :test #'string-equal)))
-        (those (lambda (sample) (search text (sample-condition sample) :test #'char-equal))))))
+;;; The whole. PAIRS are lists of two samples of one table; if PLACE is not NIL, the two differ in
+;;; the factor there, all else equal.
 
-(defun sample-called (results designator)
-  "Return the sample of RESULTS that DESIGNATOR means: a sample, the number of a condition, from 1,
-or its name or a part of that as far as it is unambiguous. Signals UNKNOWN-NAME."
-  (let* ((samples (results-samples results))
-         (text (if (typep designator '(or symbol string)) (string designator) ""))
-         (called (and (string/= "" text) (samples-called samples text))))
-    (cond ((member designator samples) designator)
-          ((and (integerp designator) (<= 1 designator (length samples)))
-           (nth (1- designator) samples))
-          ((= 1 (length called)) (first called))
-          (t (reject-name "condition"
-                          (if (symbolp designator) designator (princ-to-string designator))
-                          (mapcar #'sample-condition samples))))))
-
-;;; What two conditions have in common need not be said of each.
-
-(defun level-name (factor text)
-  "Return what the value TEXT of FACTOR is called: a word stands for itself."
-  (if (or (number-in text) (member text '("TRUE" "FALSE" "") :test #'string=))
-      (format nil "~A=~A" factor text)
-      text))
-
-(defun level-names (factors texts)
-  (format nil "~{~A~^ ~}" (mapcar #'level-name factors texts)))
-
-(defun contrast-of-conditions (results first second)
+(defun contrast-of-conditions (results first second place)
   "Return an empty contrast of the samples FIRST and SECOND of RESULTS: what they have in common is
 where, and the rest their names."
-  (loop for factor in (results-factors results)
-        for a in (sample-texts first)
-        for b in (sample-texts second)
+  (loop for other in (if place (cons place (factors-else results place)) (naming-factors results))
+        for factor = (nth other (results-factors results))
+        for a = (text-at other first)
+        for b = (text-at other second)
         if (string= a b)
-          collect (format nil "~A=~A" factor a) into where
+          collect (full-level-name factor a) into where
         else
           collect factor into factors and collect a into firsts and collect b into seconds
         finally (return (make-contrast (and where (format nil "~{~A~^ ~}" where))
                                        (level-names factors firsts)
                                        (level-names factors seconds)))))
 
-(defun contrast-conditions (results first second names)
-  (contrast-samples (contrast-of-conditions results first second)
-                    results first results second names))
+(defun contrasts-of-conditions (results pairs place names)
+  (loop for (first second) in pairs
+        collect (contrast-samples (contrast-of-conditions results first second place)
+                                  results first results second names)))
 
-(defun comparison-of-conditions (results pairs names stream)
-  "Return the comparison of PAIRS, lists of two samples of RESULTS, and print it to STREAM, if any."
-  (let ((comparison
-          (make-comparison
-           (format nil "The experiment ~A, seed by seed." (sample-experiment (first (first pairs))))
-           :conditions
-           (loop for (first second) in pairs
-                 collect (contrast-conditions results first second names)))))
-    (when (every (lambda (contrast) (zerop (contrast-trials contrast)))
-                 (comparison-contrasts comparison))
+(defun pairs-by-levels (results pairs place)
+  "Return lists (level base pair...) of PAIRS that compare the same two levels at PLACE."
+  (loop with factor = (nth place (results-factors results))
+        for group in (grouped pairs (lambda (pair)
+                                      (mapcar (lambda (sample) (text-at place sample)) pair)))
+        collect (append (mapcar (lambda (sample) (level-name factor (text-at place sample)))
+                                (first group))
+                        group)))
+
+(defun overall-contrasts (results pairs place names)
+  "Return a contrast for each two levels that several PAIRS, with seeds in common, compare."
+  (loop for (level base . group) in (pairs-by-levels
+                                     results
+                                     (remove-if-not (lambda (pair) (apply #'common-trials pair))
+                                                    pairs)
+                                     place)
+        when (rest group)
+          collect (overall-contrast level base group names results)))
+
+(defun sides-words (contrasts kind)
+  "Return what CONTRASTS compare with what, in words, as far as that is the same in all; else NIL.
+KIND says what those are that are several."
+  (flet ((names (reader) (remove-duplicates (mapcar reader contrasts) :test #'string= :from-end t)))
+    (let ((firsts (names #'contrast-first)) (seconds (names #'contrast-second)))
+      (cond ((and (null (rest firsts)) (null (rest seconds)))
+             (format nil "~A against ~A" (first firsts) (first seconds)))
+            ((null (rest seconds)) (format nil "each ~A against ~A" kind (first seconds)))
+            ((null (rest firsts)) (format nil "~A against each other ~A" (first firsts) kind))))))
+
+(defun comparison-of-conditions (results pairs place names stream)
+  "Return the comparison of PAIRS, of RESULTS, in what NAMES say, and print it to STREAM, if any."
+  (let* ((contrasts (contrasts-of-conditions results pairs place names))
+         (comparison
+           (make-comparison
+            (sample-experiment (first (first pairs)))
+            (sides-words contrasts (if place (nth place (results-factors results)) "condition"))
+            :conditions contrasts
+            :overall (and place (worth-overall-p contrasts)
+                          (overall-contrasts results pairs place names)))))
+    (when (every (lambda (contrast) (zerop (contrast-trials contrast))) contrasts)
       (reject-use "These conditions have no seeds in common. Run more trials of the experiment in ~
                    the same directory."))
     (finish-comparison comparison)
@@ -104,70 +106,35 @@ where, and the rest their names."
 them, seed by seed: how often they succeed, the ticks of trials that succeed in both, and all that
 is measured in numbers or as true or false; or, with MEASURE, a name or list of names, only that. A
 condition is given by its number, from 1, or by its name or a part of that, such as one value of
-what varies, as far as it is unambiguous; :ALL as SECOND compares FIRST with each of the others.
+what varies, as far as it is unambiguous; :ALL as SECOND compares FIRST with each of the others. If
+FIRST and SECOND are values of one thing that varies, and several conditions have them, then each of
+these is compared with the one that differs in nothing else, and all together, as COMPARE-LEVELS
+does.
 
 Only trials with seeds that both have are counted; a trial that broke off with an error, or came to
 its limit, did not succeed. Return a comparison, and write it to STREAM, if there is one, as
-PRINT-COMPARISON does. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE where there is nothing to be
-compared."
+PRINT-COMPARISON does. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a word is ambiguous, and
+where there is nothing to be compared."
   (check-argument compare-conditions results (results-p results) "results")
   (check-stream 'compare-conditions stream)
-  (let* ((names (compared-names 'compare-conditions (list results) measure))
-         (first (sample-called results first))
-         (others (if (eq :all second)
-                     (remove first (results-samples results))
-                     (list (sample-called results second)))))
-    (when (member first others)
-      (reject-use "~A cannot be compared with itself; give two conditions."
-                  (sample-condition first)))
-    (unless others (reject-use "There is only one condition, ~A." (sample-condition first)))
-    (comparison-of-conditions results (mapcar (lambda (other) (list first other)) others)
-                              names stream)))
-
-;;; By what varies.
-
-(defun factor-place (results factor)
-  "Return which of what varies in RESULTS is called FACTOR, from 0. Signals UNKNOWN-NAME."
-  (or (and (typep factor '(or symbol string))
-           (position (string factor) (results-factors results) :test #'string-equal))
-      (reject-name "column of what varies" (princ-to-string factor) (results-factors results))))
-
-(defun levels (results place)
-  "Return the texts of the values that vary at PLACE in RESULTS, in order."
-  (remove-duplicates (mapcar (lambda (sample) (nth place (sample-texts sample)))
-                             (results-samples results))
-                     :test #'string= :from-end t))
-
-(defun level-called (levels value)
-  (if (null value)
-      (first levels)
-      (or (find (value-text value) levels :test #'string-equal)
-          (reject-name "value" (value-text value) levels))))
-
-(defun sample-with (results texts)
-  (find texts (results-samples results) :key #'sample-texts :test #'equal))
-
-(defun level-pairs (results place base)
-  "Return lists of two samples of RESULTS that differ at PLACE only, the second being of BASE."
-  (loop for sample in (results-samples results)
-        for texts = (copy-list (sample-texts sample))
-        unless (string= base (nth place texts))
-          append (let ((other (progn (setf (nth place texts) base)
-                                     (sample-with results texts))))
-                   (and other (list (list sample other))))))
+  (let ((names (compared-names 'compare-conditions (list results) measure)))
+    (multiple-value-bind (pairs place) (pairs-meant results first second)
+      (comparison-of-conditions results pairs place names stream))))
 
 (addition compare-levels)
 (defun compare-levels (results factor &key against measure (stream *standard-output*))
   "Compare, all else equal, each value of FACTOR, the name of what varies in RESULTS, or CASE for
-named conditions, with the value AGAINST, the first in the table unless given. MEASURE, STREAM, the
-value and the errors are those of COMPARE-CONDITIONS; p is corrected for all tests together."
+named conditions, with the value AGAINST, the first in the table unless given; and, where that makes
+several comparisons of the same two values, these over all, each seed counting once, with its mean
+over the conditions. MEASURE, STREAM, the value and the errors are those of COMPARE-CONDITIONS; p is
+corrected for all tests together, those over all apart."
   (check-argument compare-levels results (results-p results) "results")
   (check-stream 'compare-levels stream)
   (let* ((names (compared-names 'compare-levels (list results) measure))
          (place (factor-place results factor))
          (base (level-called (levels results place) against))
-         (pairs (level-pairs results place base)))
+         (pairs (level-pairs results place nil base)))
     (unless pairs
       (reject-use "There is nothing else than ~A=~A to be compared with it."
                   (nth place (results-factors results)) base))
-    (comparison-of-conditions results pairs names stream)))
+    (comparison-of-conditions results pairs place names stream)))

@@ -2,9 +2,16 @@
 
 (in-package :ars-magna.experiment)
 
+(defun one-contest-p (comparison)
+  "True if the same two are compared wherever COMPARISON does."
+  (loop with one = (first (comparison-contrasts comparison))
+        for contrast in (comparison-contrasts comparison)
+        always (and (string= (contrast-first one) (contrast-first contrast))
+                    (string= (contrast-second one) (contrast-second contrast)))))
+
 (defun picture-label (contrast comparison)
   "Return what stands beside the row of CONTRAST, of COMPARISON."
-  (if (eq :versions (comparison-kind comparison))
+  (if (and (contrast-where contrast) (one-contest-p comparison))
       (contrast-where contrast)
       (format nil "~@[~A: ~]~A against ~A" (contrast-where contrast) (contrast-first contrast)
               (contrast-second contrast))))
@@ -28,26 +35,59 @@
             (and difference (eq :rate (paired-kind difference)))))
         (all-contrasts comparison)))
 
-(defun comparison-chart (comparison measure &key (title (comparison-title comparison))
-                                               (contrasts (all-contrasts comparison)))
-  "Return the chart, below TITLE, of what differs in MEASURE in COMPARISON, or in those CONTRASTS of
-it, an SVG document."
-  (difference-chart (remove nil (mapcar (lambda (contrast)
-                                          (picture-row contrast measure comparison))
-                                        contrasts))
-                    :title title
-                    :subtitle "First less second, with 95 % intervals; p after Holm's correction"
-                    :x-label (format nil "difference in ~A~:[~;, in points of 100~]"
-                                     (string-downcase measure)
-                                     (rate-compared-p measure comparison))))
+(defun range-text (numbers)
+  (let ((least (reduce #'min numbers)) (most (reduce #'max numbers)))
+    (format nil "~D~:[ to ~D~;~]" least (= least most) most)))
+
+(defun shown-differences (contrasts measure)
+  (remove nil (mapcar (lambda (contrast) (difference-called measure contrast)) contrasts)))
+
+(defun tests-words (contrasts measure)
+  "Return as one of how many tests p of CONTRASTS counts in the picture of MEASURE; NIL if none is."
+  (let ((tested (remove nil (shown-differences contrasts measure) :key #'paired-p)))
+    (when tested
+      (let ((tests (paired-tests (first tested))))
+        (format nil "one of ~D test~:P~:[, ~D of them shown~;~]" tests (= tests (length tested))
+                (length tested))))))
+
+(defun seeds-words (comparison measure)
+  "Return over how many seeds MEASURE is compared in the picture of COMPARISON; NIL if it is not."
+  (let ((trials (mapcar #'paired-trials (shown-differences (all-contrasts comparison) measure))))
+    (and trials
+         (format nil "~A seeds each~:[~;, those where both succeeded~]" (range-text trials)
+                 (string-equal "ticks" measure)))))
+
+(defun comparison-subtitle (comparison measure)
+  "Return what is said below the title of the picture of MEASURE in COMPARISON."
+  (format nil "~A, seed by seed: first less second, with 95 % intervals~@[; p as ~A (Holm)~].~
+               ~@[ ~A.~]~@[ Over all, each seed counts once; p as ~A.~]"
+          (or (comparison-sides comparison) "Conditions")
+          (tests-words (comparison-contrasts comparison) measure)
+          (seeds-words comparison measure)
+          (tests-words (comparison-overall comparison) measure)))
+
+(defun comparison-chart (comparison measure &key (contrasts (all-contrasts comparison)))
+  "Return the chart of what differs in MEASURE in COMPARISON, or in those CONTRASTS of it, an SVG
+document, below what the experiment asks."
+  (let ((experiment (comparison-experiment comparison)))
+    (difference-chart (remove nil (mapcar (lambda (contrast)
+                                            (picture-row contrast measure comparison))
+                                          contrasts))
+                      :title (or (question-of experiment)
+                                 (format nil "The experiment ~A" experiment))
+                      :subtitle (comparison-subtitle comparison measure)
+                      :x-label (format nil "difference in ~A~:[~;, in points of 100~]"
+                                       (string-downcase measure)
+                                       (rate-compared-p measure comparison)))))
 
 (addition save-comparison-picture)
 (defun save-comparison-picture (comparison file &key (measure "success"))
   "Save a picture of COMPARISON in FILE, replacing it: SVG or, where the program rsvg-convert is
 installed, PNG, as its name ends. It shows for each pair of conditions the difference in MEASURE,
 first less second, of rates in points of 100, with its 95 % interval and p as it counts among all
-tests. Return the file's truename. Signals UNKNOWN-NAME if MEASURE was not compared, WRONG-ARGUMENT,
-and MISUSE without that program."
+tests of COMPARISON, as in its verdicts; what stands above says how many these are. Return the
+file's truename. Signals UNKNOWN-NAME if MEASURE was not compared, WRONG-ARGUMENT, and MISUSE
+without that program."
   (check-argument save-comparison-picture comparison (comparison-p comparison) "a comparison")
   (check-argument save-comparison-picture measure (typep measure '(or symbol string))
                   "the name of a measure")

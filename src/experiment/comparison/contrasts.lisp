@@ -16,18 +16,23 @@
   (same 0 :type integer)
   (differences '() :type list))
 
-(defstruct (comparison (:constructor make-comparison (title kind contrasts)) (:copier nil))
-  "Conditions of an experiment side by side, or two versions of it: KIND is :CONDITIONS or
-:VERSIONS. OVERALL is the contrast of versions over all conditions, or NIL."
-  (title "" :type string :read-only t)
+(defstruct (comparison (:constructor make-comparison
+                           (experiment sides kind contrasts &key overall changes notes))
+                       (:copier nil))
+  "Conditions of EXPERIMENT side by side, or two versions of it: KIND is :CONDITIONS or :VERSIONS.
+SIDES says which, in words, or is NIL. OVERALL are contrasts over several conditions."
+  (experiment "" :type string :read-only t)
+  (sides nil :type (or null string) :read-only t)
   (kind :conditions :type keyword :read-only t)
   (contrasts '() :type list :read-only t)
-  (overall nil :type (or null contrast))
-  (tests 0 :type integer)
-  (notes '() :type list))
+  (overall '() :type list :read-only t)
+  ;; Sentences on what decides the trials of one version but not of the other.
+  (changes '() :type list :read-only t)
+  (notes '() :type list :read-only t))
 
 (addition contrast-p contrast-first contrast-second contrast-where contrast-trials contrast-same
-          contrast-differences comparison-p comparison-contrasts)
+          contrast-differences comparison-p comparison-contrasts comparison-overall
+          comparison-changes)
 (document-functions
   contrast-p "True of two conditions, or versions, that have been compared."
   contrast-first "Return what the first is called, a string."
@@ -39,7 +44,11 @@ rows."
   contrast-differences "Return a list of the differences in success, ticks and what was measured;
 none if all pairs are the same runs."
   comparison-p "True of what COMPARE-CONDITIONS, COMPARE-LEVELS and COMPARE-RESULTS return."
-  comparison-contrasts "Return a list of the pairs of conditions, or versions, that were compared.")
+  comparison-contrasts "Return a list of the pairs of conditions, or versions, that were compared."
+  comparison-overall "Return a list of the contrasts over several conditions, one for each two
+values, or for the two versions; each seed counts once in them."
+  comparison-changes "Return a list of sentences on what, by the texts beside the tables, decides
+the trials of one version but not of the other; NIL of conditions.")
 
 (defmethod print-object ((contrast contrast) stream)
   (print-unreadable-object (contrast stream)
@@ -47,8 +56,8 @@ none if all pairs are the same runs."
 
 (defmethod print-object ((comparison comparison) stream)
   (print-unreadable-object (comparison stream :type t)
-    (format stream "~A, ~D contrast~:P" (comparison-title comparison)
-            (length (comparison-contrasts comparison)))))
+    (format stream "~A~@[: ~A~], ~D contrast~:P" (comparison-experiment comparison)
+            (comparison-sides comparison) (length (comparison-contrasts comparison)))))
 
 ;;; Pairs.
 
@@ -63,14 +72,16 @@ indexes."
                (when (>= seed other) (incf j))))
     (nreverse pairs)))
 
-(defun success-p (outcome) (string= outcome "success"))
-
 (defun both-succeed (first second pairs)
   "Return those of PAIRS in which the trials of FIRST and SECOND both succeeded."
   (remove-if-not (lambda (pair)
                    (and (success-p (aref (sample-outcomes first) (car pair)))
                         (success-p (aref (sample-outcomes second) (cdr pair)))))
                  pairs))
+
+(defun pairs-for (name first second &optional (pairs (common-trials first second)))
+  "Return those of PAIRS of trials of FIRST and SECOND in which NAME can be compared."
+  (if (string-equal name "ticks") (both-succeed first second pairs) pairs))
 
 (defun column-of (results sample name)
   (if (string-equal name "success")
@@ -106,7 +117,7 @@ indexes."
 
 (defun difference-in (name results first other-results second pairs)
   "Return the difference in NAME between FIRST, of RESULTS, and SECOND, of OTHER-RESULTS."
-  (let ((pairs (if (string-equal name "ticks") (both-succeed first second pairs) pairs)))
+  (let ((pairs (pairs-for name first second pairs)))
     (multiple-value-bind (firsts seconds)
         (paired-values (column-of results first name) (column-of other-results second name) pairs)
       (cond ((string-equal name "ticks") (mean-difference "ticks" firsts seconds))
@@ -156,14 +167,17 @@ say. Return CONTRAST."
   "Return the difference of CONTRAST in NAME, or NIL."
   (find name (contrast-differences contrast) :key #'paired-measure :test #'string-equal))
 
-(defun finish-comparison (comparison)
-  "Let all differences of COMPARISON know how many they are. Return it."
-  (setf (comparison-tests comparison)
-        (adjust-for-all
-         (loop for contrast in (all-contrasts comparison)
-               append (contrast-differences contrast))))
-  comparison)
-
 (defun all-contrasts (comparison)
-  (append (comparison-contrasts comparison)
-          (and (comparison-overall comparison) (list (comparison-overall comparison)))))
+  (append (comparison-contrasts comparison) (comparison-overall comparison)))
+
+;; What is so over all is one question, and where it is so another: who asks in twelve conditions as
+;; well need not be less sure of the whole.
+(defun finish-comparison (comparison)
+  "Let all differences of COMPARISON know among how many their tests count. Return it."
+  (dolist (contrasts (list (comparison-contrasts comparison) (comparison-overall comparison))
+                     comparison)
+    (adjust-for-all (loop for contrast in contrasts append (contrast-differences contrast)))))
+
+(defun tested-differences (contrasts)
+  (loop for contrast in contrasts
+        append (remove nil (contrast-differences contrast) :key #'paired-p)))

@@ -21,6 +21,8 @@
   (high nil :read-only t)
   (p nil :read-only t)
   (table '() :type list :read-only t)
+  ;; As one of how many tests it counts, and what P is worth as that.
+  (tests 1 :type integer)
   (adjusted-p nil))
 
 (defun paired-estimate (difference)
@@ -38,7 +40,8 @@
   paired-low "Return the lower end of the 95 % interval of the difference; NIL of too few trials."
   paired-high "Return the upper end of the 95 % interval of the difference; NIL of too few trials."
   paired-p "Return the probability of as large a difference, or larger, if there is none; or NIL."
-  paired-adjusted-p "Return PAIRED-P as it counts among all tests of the comparison (Holm), or NIL."
+  paired-adjusted-p "Return PAIRED-P as it counts among all tests of the comparison (Holm), or NIL.
+Those over several conditions, and those of single ones, count apart."
   paired-table "Return, of a rate, in how many pairs it was so for both, only for the first, only
 for the second, and for neither, a list of four; of a mean, or over several conditions, NIL.")
 
@@ -91,12 +94,12 @@ of booleans, are true."
 ;;; Several.
 
 (defun adjust-for-all (differences)
-  "Let each of DIFFERENCES know what its test is worth among them. Return how many tests there are."
+  "Let each of DIFFERENCES know what its test is worth among them."
   (let ((tested (remove nil differences :key #'paired-p)))
     (loop for difference in tested
           for adjusted in (holm-adjusted (mapcar #'paired-p tested))
-          do (setf (paired-adjusted-p difference) adjusted))
-    (length tested)))
+          do (setf (paired-adjusted-p difference) adjusted
+                   (paired-tests difference) (length tested)))))
 
 (defun told-difference-p (difference)
   "True if DIFFERENCE is more than chance, as far as that can be told with 95 % confidence."

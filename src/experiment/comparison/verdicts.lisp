@@ -38,19 +38,26 @@
 (defun bare-p (p)
   (string-left-trim "= " (p-text p)))
 
+(defun amount-words (difference value)
+  "Return VALUE, which is of DIFFERENCE, with its unit, if that is points of 100."
+  (let ((text (funcall (number-writer difference) value)))
+    (format nil "~A~:[~; point~:[s~;~]~]" text (eq :rate (paired-kind difference))
+            (member text '("1" "-1") :test #'string=))))
+
 (defun interval-words (difference)
   "Return by how much DIFFERENCE is, with its interval, as a verdict says it."
   (let ((write (number-writer difference)))
-    (flet ((text (value) (funcall write value)))
-      (format nil "difference ~A~:[~; point~:P~] (~A to ~A, 95 %)"
-              (text (paired-estimate difference)) (eq :rate (paired-kind difference))
-              (text (paired-low difference)) (text (paired-high difference))))))
+    (format nil "difference ~A (95 % interval ~A to ~A)"
+            (amount-words difference (paired-estimate difference))
+            (funcall write (paired-low difference)) (funcall write (paired-high difference)))))
 
-(defun p-words (difference tests)
-  "Return how likely DIFFERENCE is by chance, and what that is worth among TESTS."
-  (let ((p (paired-p difference)) (adjusted (paired-adjusted-p difference)))
-    (format nil "p ~A~:[ (~A as one of ~D tests)~;~]" (p-text p)
-            (string= (p-text p) (p-text adjusted)) (bare-p adjusted) tests)))
+(defun p-words (difference)
+  "Return how likely DIFFERENCE is by chance, as one of several tests, and if it were the only one."
+  (let ((p (paired-p difference)) (adjusted (paired-adjusted-p difference))
+        (tests (paired-tests difference)))
+    (format nil "p ~A~:[~; as one of ~D tests~@[ (~A alone)~]~]" (p-text adjusted)
+            (< 1 tests) tests
+            (and (string/= (p-text p) (p-text adjusted)) (bare-p p)))))
 
 (defun both-words (difference)
   "Return the two rates or means of DIFFERENCE."
@@ -65,9 +72,9 @@
   (format nil "~:[over~;where both succeed,~] ~D common seed~:P"
           (string= "ticks" (paired-measure difference)) (paired-trials difference)))
 
-(defun figures-words (difference tests)
-  (format nil "~A ~A, ~A, ~A" (both-words difference) (trials-words difference)
-          (interval-words difference) (p-words difference tests)))
+(defun figures-words (difference)
+  (format nil "~A, ~A ~A, ~A" (p-words difference) (both-words difference)
+          (trials-words difference) (interval-words difference)))
 
 ;;; Verdicts.
 
@@ -84,15 +91,21 @@
           (t (format nil "~A is ~:[less~;more~] with ~A than with ~A"
                      measure more first second)))))
 
-(defun largest-words (difference)
-  "Return how large DIFFERENCE, if there is one, can be."
-  (format nil "if there is one, it is at most ~A~:[~; points~]"
-          (funcall (number-writer difference)
-                   (max (abs (paired-low difference)) (abs (paired-high difference))))
-          (eq :rate (paired-kind difference))))
+(defun leaves-out-zero-p (difference)
+  (not (<= (paired-low difference) 0 (paired-high difference))))
 
-(defun verdict (difference contrast tests)
-  "Return in words what DIFFERENCE, of CONTRAST, tells, as one of TESTS."
+(defun doubt-words (difference)
+  "Return how large DIFFERENCE can be if there is one; or why it is none in spite of its interval."
+  (if (and (leaves-out-zero-p difference) (< 1 (paired-tests difference)))
+      (format nil "the interval is of this difference alone: where ~D are tested, one that leaves ~
+                   out 0 is no proof"
+              (paired-tests difference))
+      (format nil "if there is one, it is at most ~A"
+              (amount-words difference (max (abs (paired-low difference))
+                                            (abs (paired-high difference)))))))
+
+(defun verdict (difference contrast)
+  "Return in words what DIFFERENCE, of CONTRAST, tells."
   (let ((first (contrast-first contrast)) (second (contrast-second contrast)))
     (format nil "~@[~A: ~]~A." (contrast-where contrast)
             (cond ((or (null (paired-p difference)) (null (paired-low difference)))
@@ -104,10 +117,10 @@
                            (trials-words difference)))
                   ((told-difference-p difference)
                    (format nil "~A: ~A" (direction-words difference first second)
-                           (figures-words difference tests)))
+                           (figures-words difference)))
                   (t (format nil "No difference in ~A between ~A and ~A can be told: ~A; ~A"
                              (paired-measure difference) first second
-                             (figures-words difference tests) (largest-words difference)))))))
+                             (figures-words difference) (doubt-words difference)))))))
 
 (defun success-verdict (contrast)
   "Return :BETTER or :WORSE if the first of CONTRAST succeeds more or less often, :SAME if both are
@@ -118,13 +131,13 @@ the same runs, else NIL."
           ((told-difference-p difference)
            (if (plusp (paired-estimate difference)) :better :worse)))))
 
-(defun contrast-verdicts (contrast tests)
+(defun contrast-verdicts (contrast)
   (if (same-runs-p contrast)
       (list (format nil "~@[~A: ~]~A and ~A are the same in all ~D trials, to the last bit."
                     (contrast-where contrast) (contrast-first contrast) (contrast-second contrast)
                     (contrast-trials contrast)))
       (loop for difference in (contrast-differences contrast)
-            collect (verdict difference contrast tests))))
+            collect (verdict difference contrast))))
 
 (defun versions-verdict (comparison)
   "Return in words how many conditions got better and worse, and how many rows are the same."
@@ -144,13 +157,15 @@ the same runs, else NIL."
 (addition comparison-verdicts)
 (defun comparison-verdicts (comparison)
   "Return what COMPARISON tells, a list of sentences: of two versions first how many conditions got
-better or worse and how many trials are the same to the last bit; and then, for each pair of
-conditions, which succeeds more often, takes more ticks and so on, with both rates or means, the
-difference with its 95 % interval, and p. A difference is called one if p, as it counts among all
-tests of COMPARISON (Holm), is at most .05; else it is said how large it can be."
+better or worse and how many trials are the same to the last bit; and then, over all where there are
+several conditions, and for each pair of these, which succeeds more often, takes more ticks and so
+on, with p, both rates or means, and the difference with its 95 % interval. A difference is called
+one if p, as it counts among all tests of COMPARISON (Holm), is at most .05; else it is said how
+large it can be. What is said over all counts apart. Intervals are of one difference alone."
   (check-argument comparison-verdicts comparison (comparison-p comparison) "a comparison")
-  (let ((all (loop for contrast in (all-contrasts comparison)
-                   append (contrast-verdicts contrast (comparison-tests comparison)))))
+  (let ((all (loop for contrast in (append (comparison-overall comparison)
+                                           (comparison-contrasts comparison))
+                   append (contrast-verdicts contrast))))
     (cond ((not (eq :versions (comparison-kind comparison))) all)
           ((every #'same-runs-p (comparison-contrasts comparison))
            (list (versions-verdict comparison)))
@@ -176,68 +191,15 @@ tests of COMPARISON (Holm), is at most .05; else it is said how large it can be.
                  (list (format nil "Broke off with an error, and counted as not succeeded: ~A."
                                errors))))))
 
+(defun seeds-note (comparison)
+  "Return how seeds count in what COMPARISON says over all, in a list; NIL if it does not."
+  (and (comparison-overall comparison)
+       (list "Over all, each seed counts once, with its mean over the conditions."
+             "What is tested over all counts apart from what is tested in each condition.")))
+
 (defun comparison-remarks (comparison)
-  "Return sentences on what COMPARISON had to leave out."
-  (append (comparison-notes comparison)
+  "Return sentences on what COMPARISON had to leave out, and how seeds count."
+  (append (seeds-note comparison)
+          (comparison-notes comparison)
           (loop for contrast in (comparison-contrasts comparison)
                 append (left-out-notes contrast))))
-
-;;; The table.
-
-(defparameter *headings* '("measure" "seeds" "first" "second" "difference" "p" "Holm"))
-
-(defun table-row (difference)
-  "Return the texts of the table for DIFFERENCE."
-  (let ((write (number-writer difference)) (rate-p (eq :rate (paired-kind difference))))
-    (flet ((text (value) (if value (funcall write value) "-")))
-      (list (paired-measure difference) (princ-to-string (paired-trials difference))
-            (format nil "~A~:[~; %~]" (text (paired-first difference)) rate-p)
-            (format nil "~A~:[~; %~]" (text (paired-second difference)) rate-p)
-            (format nil "~A (~A to ~A)" (text (paired-estimate difference))
-                    (text (paired-low difference)) (text (paired-high difference)))
-            (bare-p (paired-p difference)) (bare-p (paired-adjusted-p difference))))))
-
-(defun contrast-heading (contrast)
-  (let ((table (let ((success (difference-called "success" contrast)))
-                 (and success (paired-table success)))))
-    (format nil "~@[~A: ~]~A (first) against ~A~:[~; (the same)~]~@[: ~{both ~D, only the first ~
-                 ~D, only the second ~D, neither ~D~}~]"
-            (contrast-where contrast) (contrast-first contrast) (contrast-second contrast)
-            (same-runs-p contrast) table)))
-
-(defun write-columns (rows widths stream)
-  (dolist (row rows)
-    (format stream "  ~VA~{  ~V@A~}~%" (first widths) (first row)
-            (loop for text in (rest row)
-                  for width in (rest widths)
-                  collect width collect text))))
-
-(defun write-table (comparison stream)
-  (let* ((groups (loop for contrast in (all-contrasts comparison)
-                       collect (mapcar #'table-row (contrast-differences contrast))))
-         (widths (apply #'mapcar (lambda (&rest texts) (reduce #'max texts :key #'length))
-                        *headings* (apply #'append groups))))
-    (write-columns (list *headings*) widths stream)
-    (loop for contrast in (all-contrasts comparison)
-          for rows in groups
-          do (format stream "~A~%" (contrast-heading contrast))
-             (write-columns rows widths stream))))
-
-(addition print-comparison)
-(defun print-comparison (comparison &optional (stream *standard-output*))
-  "Write COMPARISON to STREAM: a line that says what is compared; the verdicts (see
-COMPARISON-VERDICTS), a line each; what was left out, if anything; and a table, with a line for each
-pair of conditions, how many trials succeeded in both, one and neither of them, and below it a row
-for each measure: over how many seeds, both rates or means, the difference (of rates in points) with
-its 95 % interval, and p before and after Holm's correction for all tests. Return COMPARISON."
-  (check-argument print-comparison comparison (comparison-p comparison) "a comparison")
-  (format stream "~A~2%~{~A~%~}" (comparison-title comparison) (comparison-verdicts comparison))
-  (format stream "~@[~%~{~A~%~}~]" (comparison-remarks comparison))
-  (when (plusp (comparison-tests comparison))
-    (terpri stream)
-    (write-table comparison stream)
-    (format stream "~%Differences are first less second, seed by seed, with 95 % intervals: of ~
-                    rates Newcombe's~%and McNemar's exact test, of means Student's and a ~
-                    permutation test. Holm: p as one of ~D test~:P.~%"
-            (comparison-tests comparison)))
-  comparison)

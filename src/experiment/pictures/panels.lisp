@@ -7,31 +7,15 @@
 
 (defconstant +most-series+ 6 "How many series there are in a picture at most.")
 
-(defstruct (panel (:constructor make-panel (where series)) (:copier nil))
+(defstruct (panel (:constructor make-panel (where title series)) (:copier nil))
   "A picture's worth of conditions. WHERE says what these have in common, or is NIL; SERIES are
-lists (name sample...), with NIL as the name of a single one."
+lists (name sample...), with NIL as the name of a single one. TITLE is what their names are values
+of, if that is one factor."
   (where nil :type (or null string) :read-only t)
+  (title nil :type (or null string) :read-only t)
   (series '() :type list :read-only t))
 
 ;;; Factors.
-
-(defun text-at (place sample) (nth place (sample-texts sample)))
-
-(defun case-decides-p (place samples)
-  "True if the first factor, named cases, decides what the factor PLACE is in SAMPLES."
-  (loop for sample in samples
-        always (loop for other in samples
-                     always (or (string/= (text-at 0 sample) (text-at 0 other))
-                                (string= (text-at place sample) (text-at place other))))))
-
-(defun free-factors (results)
-  "Return the factors that make the conditions of RESULTS, by place."
-  (let ((samples (results-samples results)))
-    (loop with case-p = (equal "case" (first (results-factors results)))
-          for place from 0 below (length (results-factors results))
-          unless (or (null (rest (levels results place)))
-                     (and case-p (plusp place) (case-decides-p place samples)))
-            collect place)))
 
 (defun numeric-factor-p (results place)
   (every #'number-in (levels results place)))
@@ -54,20 +38,20 @@ lists (name sample...), with NIL as the name of a single one."
        (level-names (loop for place in places collect (nth place factors))
                     (loop for place in places collect (text-at place sample)))))
 
-(defun grouped (samples key)
-  "Return lists of SAMPLES with equal KEY, in order of appearance."
-  (let ((groups '()))
-    (dolist (sample samples (mapcar #'reverse (reverse groups)))
-      (let ((group (find (funcall key sample) groups
-                         :key (lambda (group) (funcall key (first group))) :test #'equal)))
-        (if group
-            (setf (cdr group) (list* (first group) (rest group))
-                  (car group) sample)
-            (push (list sample) groups))))))
+(defun series-title (places factors)
+  "Return the name of the one factor at PLACES of FACTORS, or NIL if that is not one."
+  (and places (null (rest places)) (nth (first places) factors)))
+
+(defun series-name (sample places factors)
+  "Return what the series of SAMPLE is called: below a title its bare value."
+  (let ((text (and (series-title places factors) (text-at (first places) sample))))
+    (if (and text (string/= "" text))
+        text
+        (common-name sample places factors))))
 
 (defun series-of (samples places factors)
-  (loop for group in (grouped samples (lambda (sample) (common-name sample places factors)))
-        collect (cons (common-name (first group) places factors) group)))
+  (loop for group in (grouped samples (lambda (sample) (series-name sample places factors)))
+        collect (cons (series-name (first group) places factors) group)))
 
 (defun in-chunks (list most)
   "Return LIST as lists of about equal length, at most MOST."
@@ -75,20 +59,21 @@ lists (name sample...), with NIL as the name of a single one."
     (loop while list
           collect (loop repeat size while list collect (pop list)))))
 
-(defun chunk-panels (series where)
+(defun chunk-panels (series where title)
   (loop with chunks = (in-chunks series +most-series+)
         for chunk in chunks
         for number from 1
-        collect (make-panel (format nil "~@[~A, ~]~D of ~D" where number (length chunks)) chunk)))
+        collect (make-panel (format nil "~@[~A, ~]~D of ~D" where number (length chunks))
+                            title chunk)))
 
 (defun joined (where more) (format nil "~@[~A ~]~A" where more))
 
 (defun panels (samples places factors &optional where)
   "Return panels for SAMPLES, whose series the factors at PLACES of FACTORS tell apart: as few as
 hold all series."
-  (let ((series (series-of samples places factors)))
-    (cond ((<= (length series) +most-series+) (list (make-panel where series)))
-          ((null (rest places)) (chunk-panels series where))
+  (let ((series (series-of samples places factors)) (title (series-title places factors)))
+    (cond ((<= (length series) +most-series+) (list (make-panel where title series)))
+          ((null (rest places)) (chunk-panels series where title))
           (t (let ((last (last places)))
                (loop for group in (grouped samples
                                            (lambda (sample) (common-name sample last factors)))

@@ -63,6 +63,7 @@ estimate for a sample."
                                  :title (title-of results)
                                  :subtitle (subtitle panel words (intervals-words kind summaries))
                                  :x-label (and place (nth place factors))
+                                 :legend-title (panel-title panel)
                                  :y-label y-label))))))
 
 (defun success-pictures (results summaries)
@@ -162,6 +163,7 @@ estimate for a sample."
                      :title (title-of results)
                      :subtitle (subtitle panel (survival-words band-p results))
                      :x-label "ticks" :y-label "trials not yet done"
+                     :legend-title (panel-title panel)
                      :risk-label "trials not yet done"))))
 
 (defun survival-pictures (results summaries)
@@ -175,20 +177,21 @@ estimate for a sample."
 
 (defun pairs-by (results place)
   "Return lists of two samples of RESULTS that differ in the factor PLACE, all else equal if that
-can be, the second with its first value."
-  (or (level-pairs results place (first (levels results place)))
-      (loop with first = (first (results-samples results))
-            for other in (rest (results-samples results))
-            collect (list other first))))
+can be, the second with its first value; and whether it can."
+  (let ((pairs (level-pairs results place nil (first (levels results place)))))
+    (if pairs
+        (values pairs t)
+        (loop with first = (first (results-samples results))
+              for other in (rest (results-samples results))
+              collect (list other first)))))
 
-(defun comparison-by (results place)
-  "Return the comparison of RESULTS by the factor PLACE, or NIL if there is nothing to compare."
-  (let ((pairs (remove-if-not (lambda (pair) (apply #'common-trials pair))
-                              (pairs-by results place))))
-    (and pairs
-         (comparison-of-conditions results pairs
-                                   (compared-names 'save-result-pictures (list results) nil)
-                                   nil))))
+(defun comparison-by (results place measure)
+  "Return the comparison of RESULTS by the factor PLACE in MEASURE, the same that COMPARE-LEVELS
+makes; NIL if there is nothing to compare."
+  (multiple-value-bind (pairs equal-p) (pairs-by results place)
+    (let ((pairs (remove-if-not (lambda (pair) (apply #'common-trials pair)) pairs)))
+      (and pairs
+           (comparison-of-conditions results pairs (and equal-p place) (list measure) nil)))))
 
 (defun contrasts-in (measure comparison)
   "Return those contrasts of COMPARISON that say something of MEASURE."
@@ -196,24 +199,22 @@ can be, the second with its first value."
                    (let ((difference (difference-called measure contrast)))
                      (or (same-runs-p contrast)
                          (and difference (paired-estimate difference)))))
-                 (comparison-contrasts comparison)))
+                 (all-contrasts comparison)))
 
-(defun difference-charts (comparison measure name title)
+(defun difference-charts (comparison measure name)
   (loop with chunks = (in-chunks (contrasts-in measure comparison) +most-rows+)
         for chunk in chunks
         for number from 1
         collect (make-picture name (and (rest chunks) (princ-to-string number))
-                              (comparison-chart comparison measure
-                                                :title title :contrasts chunk))))
+                              (comparison-chart comparison measure :contrasts chunk))))
 
 (defun difference-pictures (results summaries)
   (declare (ignore summaries))
   (loop for place in (free-factors results)
-        for factor = (nth place (results-factors results))
-        for comparison = (comparison-by results place)
-        when comparison
-          append (loop for measure in '("success" "ticks")
+        append (loop for measure in '("success" "ticks")
+                     for comparison = (comparison-by results place measure)
+                     when comparison
                        append (difference-charts comparison measure
-                                                 (format nil "difference-in-~A-by-~A"
-                                                         measure factor)
-                                                 (title-of results)))))
+                                                 (format nil "difference-in-~A-by-~A" measure
+                                                         (nth place
+                                                              (results-factors results)))))))

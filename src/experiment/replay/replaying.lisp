@@ -152,7 +152,7 @@ from the row in DIRECTORY, if that is given."
     (list :outcome (and over-p (result-outcome result))
           :reason (if over-p (result-reason result) "")
           :ticks (result-ticks result)
-          :digest (result-digest result)
+          :digest (result-digest-text result)
           :measures (measured (replaying-experiment replaying) result)
           :error (if over-p (result-error result) "")
           :journal (replaying-kept replaying)
@@ -190,8 +190,9 @@ is stopped, before its simulation is gone: to look around, as by SAVE-PICTURE.
   :directory D  compares what comes of it with its row in D
 
 Return a plist: :outcome (\"success\", \"failure\", \"limit\", \"error\"; NIL if it was stopped),
-:reason, :ticks, :digest, :measures (lists (name value)), :error, :journal, and :differences, in
-words, from the row. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE (no such row), DAMAGED-TABLE."
+:reason, :ticks, :digest (as in the row), :measures (lists (name value)), :error, :journal, and
+:differences, in words, from the row. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE (no such row),
+DAMAGED-TABLE."
   (check-replay trial until then step journal directory)
   (when rate (check-rate rate))
   (let* ((experiment (find-experiment experiment))

@@ -2,27 +2,6 @@
 
 (in-package :ars-magna.experiment)
 
-;;; The question.
-
-(defun experiment-called (name)
-  "Return the experiment that a table calls NAME, if there is one, or NIL."
-  (find name (all-experiments) :key #'experiment-name :test #'string-equal))
-
-(defun first-sentence (text)
-  "Return the first sentence of TEXT, in one line."
-  (let* ((paragraph (search (format nil "~2%") text))
-         (line (one-line (subseq text 0 paragraph)))
-         (end (loop for mark in '(". " "? " "! ")
-                    for place = (search mark line)
-                    when place minimize (1+ place))))
-    (if (and end (plusp end)) (subseq line 0 end) line)))
-
-(defun question-of (name)
-  "Return what the experiment that a table calls NAME asks, if that is known, or NIL."
-  (let* ((experiment (experiment-called name))
-         (text (and experiment (experiment-documentation experiment))))
-    (and text (string/= "" (one-line text)) (first-sentence text))))
-
 ;;; Why.
 
 (defstruct (occurrence (:constructor make-occurrence (text sample trial)) (:copier nil))
@@ -60,8 +39,9 @@ the index of a trial, and returns a text, or NIL if nothing did."
 
 (defun replay-text (occurrence)
   "Return how to see the first trial of OCCURRENCE again."
-  (format nil "(replay-trial '~A ~S ~D)" (sample-experiment (occurrence-sample occurrence))
-          (sample-condition (occurrence-sample occurrence)) (occurrence-trial occurrence)))
+  (format nil "(replay-trial '~A ~A ~D)" (sample-experiment (occurrence-sample occurrence))
+          (unbroken (prin1-to-string (sample-condition (occurrence-sample occurrence))))
+          (occurrence-trial occurrence)))
 
 (defconstant +most-told+ 5 "How many reasons and errors are told.")
 
@@ -135,9 +115,10 @@ see one of each."
   (let ((counts (sort (remove-duplicates (mapcar #'summary-trials summaries)) #'<)))
     (format nil "Trials were added until the interval of success was at most ~A wide, looked at ~
                  after 50, 100, 200 and so on. Look K spends .05 / (K (K + 1)) of the error that ~
-                 is allowed, so that all looks together err in at most 5 % of such tables: ~
-                 ~{~A~^, ~}."
-            (value-text width)
+                 is allowed, so that the intervals of one condition, at all its looks together, ~
+                 err in at most 5 % of such runs~:[~*~;, each of these ~D conditions by itself: ~
+                 that one of them all errs is more likely~]. ~@(~{~A~^, ~}~)."
+            (value-text width) (rest summaries) (length summaries)
             (loop for count in counts
                   for look = (look-after count)
                   collect (format nil "after ~D trials intervals have a confidence of ~A %" count

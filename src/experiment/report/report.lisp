@@ -68,7 +68,7 @@ they are too large or small for that."
 (defun tally-text (tally most)
   "Return TALLY, an alist from texts to counts, in one line, the MOST commonest first."
   (flet ((counted (text count)
-           (format nil "~A~C(~D)" (cut text 60) #\No-break_space count)))
+           (unbroken (format nil "~A (~D)" (cut text 60) count))))
     (let ((rest (nthcdr most tally)))
       (format nil "~{~A~^, ~}"
               (append (loop for (text . count) in tally

@@ -93,8 +93,9 @@ the median of the trials that succeeded, with its interval by ranks. What was me
 it was always true or false; the mean, with Student's interval, if there are numbers in it, without
 what else there is besides; else texts, with how often there are such. What was :NONE, or not
 measured as an error came before, does not count. Intervals have a confidence of 95 %; if trials
-were added until they were narrow, that of the look at which a condition stopped, so that all looks
-together err in 5 of 100 tables at most."
+were added until they were narrow, that of the look at which a condition stopped, so that the
+intervals of a condition at all its looks together err in 5 of 100 runs at most. Each condition has
+that confidence by itself; that none of a table's intervals errs has less."
   (check-argument summarize-results results (results-p results) "results")
   (let* ((samples (results-samples results))
          (names (results-measures results))

@@ -8,18 +8,26 @@
 
 (defun break-place (text width)
   "Return where the first line of TEXT, WIDTH characters at most, ends."
-  (cond ((<= (length text) width) (length text))
-        ((position #\Space text :end (1+ width) :from-end t :start 1))
-        (t width)))
+  (flet ((last-place (character)
+           (position character text :end (1+ width) :from-end t :start 1)))
+    (cond ((<= (length text) width) (length text))
+          ((last-place #\Space))
+          ((last-place #\No-break_space))
+          (t width))))
 
 (defun wrapped-text (text width)
   "Return TEXT, of one line, as a list of lines of at most WIDTH characters, one at least. A line
-does not end at a no-break space, which becomes a space."
-  (loop with rest = (string-trim " " text)
+ends at a no-break space, which becomes a space, only if it cannot end at another."
+  (loop with blanks = '(#\Space #\No-break_space)
+        with rest = (string-trim blanks text)
         for end = (break-place rest width)
-        collect (substitute #\Space #\No-break_space (string-right-trim " " (subseq rest 0 end)))
-        do (setf rest (string-left-trim " " (subseq rest end)))
+        collect (substitute #\Space #\No-break_space (string-right-trim blanks (subseq rest 0 end)))
+        do (setf rest (string-left-trim blanks (subseq rest end)))
         until (string= "" rest)))
+
+(defun unbroken (text)
+  "Return TEXT so that no line ends in it, unless it is longer than a line."
+  (substitute #\No-break_space #\Space (coerce text '(simple-array character (*)))))
 
 (defun write-wrapped (text stream &key (first "") (indent (length first)))
   "Write TEXT to STREAM in lines that fit the page, the first one after FIRST, the others after

@@ -48,6 +48,13 @@
           (format nil "trial ~D of ~A has been under way for ~A" trial (condition-name condition)
                   (duration-text (seconds-since moment))))))))
 
+(defvar *progress* nil "How far the experiment that runs in this thread has come, or NIL.")
+
+(defun trial-under-way ()
+  "Return in words which trial of the experiment that runs in this thread has been under way
+longest, if that is long; or NIL."
+  (and *progress* (longest-under-way *progress*)))
+
 (defun tell-progress (progress &optional last)
   "Say how far PROGRESS has come, if it is time to, or this is the LAST time."
   (let ((stream (progress-stream progress)))

@@ -92,7 +92,8 @@ least one is tried, and others as long as there is time."
          (missing (count-missing queue))
          (workers (min workers missing))
          (progress (make-progress stream (and stream (interactive-stream-p stream))
-                                  missing workers)))
+                                  missing workers))
+         (*progress* progress))
     (when (plusp missing)
       (run-queue experiment queue
                  (lambda (result milliseconds worker)

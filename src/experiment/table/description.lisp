@@ -11,11 +11,16 @@
         (*print-length* nil) (*print-level* nil) (*print-circle* nil) (*print-readably* nil))
     (prin1-to-string form)))
 
-(defun file-of-experiment (experiment)
-  "Return the name of the file that EXPERIMENT is from, without its directory, or NIL."
+(defun experiment-file (experiment)
+  "Return the name of the file that EXPERIMENT is from, or NIL."
   (let* ((entry (lookup-entry (experiment-name experiment) *experiments*))
          (file (and entry (source-file (entry-source entry)))))
-    (and file (short-name (native-name file)))))
+    (and file (native-name file))))
+
+(defun file-of-experiment (experiment)
+  "Return the name of the file that EXPERIMENT is from, without its directory, or NIL."
+  (let ((file (experiment-file experiment)))
+    (and file (short-name file))))
 
 (defun repetition-text (experiment trials until)
   "Return how to run EXPERIMENT again."
@@ -65,12 +70,29 @@ those of the fingerprints of its conditions, in order."
 ;;; What has changed.
 
 (defun parts-described (condition directory)
-  "Return the lines for the parts of CONDITION in the text in DIRECTORY; NIL if there are none."
+  "Return the lines for the parts of what is called CONDITION in the text in DIRECTORY; NIL if there
+are none."
   (let ((lines (description-lines directory))
-        (title (format nil "= ~A" (condition-name condition))))
+        (title (format nil "= ~A" condition)))
     (loop for line in (rest (member title lines :test #'string=))
           while (starts-with-subseq "  " line)
           collect (string-trim " " line))))
+
+(defun form-described (directory)
+  "Return the lines of the experiment's own text in the text in DIRECTORY."
+  (loop for line in (member-if (lambda (line)
+                                 (and (starts-with-subseq "(" line) (search "defexperiment" line)))
+                               (description-lines directory))
+        until (starts-with-subseq "What decides" line)
+        unless (string= "" line) collect (string-trim " " line)))
+
+(defun changed-parts (before now)
+  "Return in words, in a list, which of the parts in the lines BEFORE and NOW are not in both."
+  (flet ((without-number (line) (subseq line 0 (position #\Space line :from-end t))))
+    (remove-duplicates (mapcar #'without-number
+                               (append (set-difference before now :test #'string=)
+                                       (set-difference now before :test #'string=)))
+                       :test #'string= :from-end t)))
 
 (defun conditions-described (directory)
   "Return the names of the conditions in the text in DIRECTORY, in order; NIL if there is none."
@@ -79,13 +101,8 @@ those of the fingerprints of its conditions, in order."
 
 (defun changes-since (condition parts directory)
   "Return in words, in a list, what of PARTS, of CONDITION, is not as the text in DIRECTORY says."
-  (flet ((without-number (line) (subseq line 0 (position #\Space line :from-end t))))
-    (let ((before (parts-described condition directory))
-          (now (mapcar #'part-text parts)))
-      (and before
-           (remove-duplicates
-            (mapcar #'without-number (set-exclusive-or before now :test #'string=))
-            :test #'string=)))))
+  (let ((before (parts-described (condition-name condition) directory)))
+    (and before (changed-parts before (mapcar #'part-text parts)))))
 
 (defun reject-foreign (experiment condition parts directory)
   "Say that DIRECTORY has rows of CONDITION of EXPERIMENT that cannot be gone on with. PARTS are

@@ -9,6 +9,11 @@
       (setf (char text place)
             (char "0123456789ABCDEF" (ldb (byte 4 (* 4 (- 15 place))) digest))))))
 
+(defun result-digest-text (result)
+  "Return how the digest of RESULT stands in its row."
+  (let ((digest (result-digest result)))
+    (if digest (digest-text digest) "")))
+
 (defun result-texts (experiment result)
   "Return the texts of the row for RESULT, of a trial of EXPERIMENT, in the order of its columns."
   (let ((condition (result-condition result)))
@@ -23,5 +28,5 @@
                   (princ-to-string (result-ticks result)))
             (or (result-measures result)
                 (make-list (length (experiment-measures experiment)) :initial-element ""))
-            (list (if (result-digest result) (digest-text (result-digest result)) "")
+            (list (result-digest-text result)
                   (result-error result)))))

@@ -13,6 +13,8 @@
   (value-text (or (and (typep failure 'plan-failure) (failure-class failure))
                   (type-of failure))))
 
+(defun success-p (outcome) (string= outcome "success"))
+
 (defun plan-outcome (result state)
   "Return outcome and reason of a plan that RUN-PLAN said has RESULT and STATE."
   (case state

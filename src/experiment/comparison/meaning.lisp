@@ -1,0 +1,138 @@
+;;;; meaning.lisp -- which conditions a word means, and which of them are compared with which.
+
+(in-package :ars-magna.experiment)
+
+;;; A word means a condition, by its name, or a level, by its value or as FACTOR=VALUE; else a part
+;;; of these. A level that only one condition has means that one.
+
+(defun word-of (designator)
+  "Return DESIGNATOR, of a condition or level, as a word."
+  (if (typep designator '(or symbol string)) (string designator) (value-text designator)))
+
+(defun either (things exactly partly)
+  "Return those of THINGS for which EXACTLY is true, or if there are none PARTLY."
+  (or (remove-if-not exactly things) (remove-if-not partly things)))
+
+(defun all-levels (results)
+  "Return lists (place level) of what conditions of RESULTS differ in."
+  (loop for place in (free-factors results)
+        append (loop for level in (levels results place) collect (list place level))))
+
+(defun level-title (results level)
+  (full-level-name (nth (first level) (results-factors results)) (second level)))
+
+(defun numbered-sample (results designator)
+  "Return the sample of RESULTS that DESIGNATOR is, or is the number of, from 1; else NIL."
+  (let ((samples (results-samples results)))
+    (cond ((integerp designator)
+           (and (<= 1 designator (length samples)) (nth (1- designator) samples)))
+          (t (find designator samples)))))
+
+(defun level-word-p (word factor level)
+  "True if WORD means the value LEVEL of FACTOR."
+  (or (string-equal word level) (string-equal word (full-level-name factor level))))
+
+(defun levels-meant (results designator)
+  "Return lists (place level) of what DESIGNATOR, no condition's number, can mean in RESULTS."
+  (unless (numbered-sample results designator)
+    (let ((word (word-of designator)))
+      (either (all-levels results)
+              (lambda (level)
+                (level-word-p word (nth (first level) (results-factors results)) (second level)))
+              (lambda (level) (search word (level-title results level) :test #'char-equal))))))
+
+(defun samples-called (results word)
+  "Return those samples of RESULTS whose condition is called WORD; or else has that for a value; or
+else has it in its name."
+  (let ((samples (results-samples results)))
+    (or (remove word samples :key #'sample-condition :test-not #'string-equal)
+        (either samples
+                (lambda (sample)
+                  (some (lambda (factor text) (level-word-p word factor text))
+                        (results-factors results) (sample-texts sample)))
+                (lambda (sample)
+                  (search word (sample-condition sample) :test #'char-equal))))))
+
+(defun samples-meant-by (results designator)
+  "Return the samples of RESULTS that DESIGNATOR can mean: a sample, the number of a condition, from
+1, its name, or a part of that. Signals UNKNOWN-NAME."
+  (let ((samples (results-samples results)) (one (numbered-sample results designator))
+        (word (word-of designator)))
+    (cond (one (list one))
+          ((and (string/= "" word) (samples-called results word)))
+          (t (reject-name "condition" (if (symbolp designator) designator word)
+                          (mapcar #'sample-condition samples))))))
+
+(defun reject-ambiguous (word meanings)
+  (reject-use "~A is ambiguous: it could be ~{~A~#[~; or ~:;, ~]~}. Give more of what you mean, a ~
+               value as FACTOR=VALUE, or a condition's number."
+              word
+              (if (nthcdr 6 meanings)
+                  (append (subseq meanings 0 6)
+                          (list (format nil "one of ~D others" (- (length meanings) 6))))
+                  meanings)))
+
+(defun the-meaning (results designator)
+  "Return the one sample that DESIGNATOR means. Signals MISUSE if it could be several."
+  (let ((samples (samples-meant-by results designator)))
+    (when (rest samples)
+      (reject-ambiguous (word-of designator) (mapcar #'sample-condition samples)))
+    (first samples)))
+
+;;; Pairs.
+
+(defun level-contests (results first second)
+  "Return lists (place level base) of what FIRST and SECOND can be of one factor; SECOND may be
+:ALL, and BASE is NIL then."
+  (loop for (place level) in (levels-meant results first)
+        append (if (eq :all second)
+                   (list (list place level nil))
+                   (loop for (other base) in (levels-meant results second)
+                         when (and (= place other) (string/= level base))
+                           collect (list place level base)))))
+
+(defun contest-title (results contest)
+  (destructuring-bind (place level base) contest
+    (format nil "~A~@[ against ~A~]" (level-title results (list place level))
+            (and base (level-title results (list place base))))))
+
+(defun contest-pairs (results contest)
+  "Return pairs of samples that differ as CONTEST says, all else equal."
+  (destructuring-bind (place level base) contest
+    (loop for other in (if base (list base) (remove level (levels results place) :test #'string=))
+          append (level-pairs results place level other))))
+
+(defun pairs-of-levels (results first second)
+  "Return the pairs of samples, all else equal, that have the levels FIRST and SECOND of one factor,
+and its place; NIL if these are none. Signals MISUSE if they could be those of several."
+  (let ((contests (level-contests results first second)))
+    (when (rest contests)
+      (reject-ambiguous (if (eq :all second)
+                            (word-of first)
+                            (format nil "~A against ~A" (word-of first) (word-of second)))
+                        (mapcar (lambda (contest) (contest-title results contest)) contests)))
+    (and contests
+         (values (contest-pairs results (first contests)) (first (first contests))))))
+
+(defun pairs-of-conditions (results first second)
+  "Return the pairs of the samples that FIRST and SECOND mean. Signals MISUSE."
+  (let* ((sample (the-meaning results first))
+         (others (if (eq :all second)
+                     (remove sample (results-samples results))
+                     (list (the-meaning results second)))))
+    (when (member sample others)
+      (reject-use "~A cannot be compared with itself; give two conditions."
+                  (sample-condition sample)))
+    (unless others (reject-use "There is only one condition, ~A." (sample-condition sample)))
+    (loop for other in others collect (list sample other))))
+
+(defun pairs-meant (results first second)
+  "Return the pairs of samples of RESULTS that are meant by FIRST and SECOND, which may be :ALL, and
+the place of the factor if these are levels of one that several conditions have."
+  (let ((several-p (or (rest (samples-meant-by results first))
+                       (and (not (eq :all second)) (rest (samples-meant-by results second))))))
+    (multiple-value-bind (pairs place)
+        (and several-p (pairs-of-levels results first second))
+      (if pairs
+          (values pairs place)
+          (pairs-of-conditions results first second)))))
