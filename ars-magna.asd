@@ -265,7 +265,7 @@
                  (:file "cli-plans") (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "experiment-replay")
                  (:file "cli-trials") (:file "cli-files") (:file "cli-plan-tree")
-                 (:file "experiment-shell")
+                 (:file "experiment-shell") (:file "experiment-shell-code")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
                  (:file "rpl-seeing-truth")
                  (:file "kinds") (:file "digests") (:file "runs") (:file "outliving")
