@@ -63,7 +63,7 @@
 (defun new-directory ()
   "Return the path of a new directory among the system's temporary ones."
   (loop for number from 0
-        for path = (directory-called (format nil "~Aars-magna-~D-~D/"
+        for path = (directory-called (format nil "~Atrials-~D-~D/"
                                              (native-name (uiop:temporary-directory))
                                              (process-number) number))
         unless (uiop:directory-exists-p path)
