@@ -42,14 +42,26 @@
         number
         (reject-usage "--until takes the width of an interval, such as .02, not ~A." text))))
 
+(defconstant +largest-count-of-shards+ 100000
+  "Into how many shards trials can be divided. A command must have room for all their numbers.")
+
+(defun parse-shards (text)
+  (let ((count (number-in-words text)))
+    (if (and (integerp count) (<= 1 count +largest-count-of-shards+))
+        count
+        (reject-usage "--shards takes a number of parts, from 1 to ~D, not ~A."
+                      +largest-count-of-shards+ text))))
+
 (defun parse-shard (text)
   "Return a cons (index . count) for TEXT, I/N."
   (let* ((slash (position #\/ text))
          (index (and slash (ignore-errors (parse-integer text :end slash))))
          (count (and slash (ignore-errors (parse-integer text :start (1+ slash))))))
-    (if (and index count (< -1 index count))
+    (if (and index count (< -1 index count (1+ +largest-count-of-shards+)))
         (cons index count)
-        (reject-usage "--shard takes I/N, a part I from 0 to below their number N, not ~A." text))))
+        (reject-usage "--shard takes I/N, a part I from 0 to below their number N, which is at ~
+                       most ~D, not ~A."
+                      +largest-count-of-shards+ text))))
 
 (defun parse-path (text)
   (if (string= text "") (reject-usage "A file or directory has a name, not an empty one.") text))
@@ -58,14 +70,15 @@
   '(("--trials" :trials parse-count) ("--workers" :workers parse-count) ("--out" :out parse-path)
     ("--until" :until parse-width) ("--plot" :plot nil) ("--quiet" :quiet nil)
     ("--shard" :shard parse-shard) ("--parallel" :parallel identity :optional)
-    ("--slurm" :slurm identity :optional) ("--shards" :shards parse-count)
+    ("--slurm" :slurm identity :optional) ("--shards" :shards parse-shards)
     ("--missing" :missing nil) ("--save-executable" :save-executable parse-path))
   "The options of the command EXPERIMENT, as in *OPTIONS*.")
 
 (defparameter *options-that-need-others*
   '(("--plot" :plot :out) ("--shard" :shard :out) ("--parallel" :parallel :out)
-    ("--slurm" :slurm :out) ("--missing" :missing :out) ("--missing" :missing :shards))
-  "Lists (option key key-of-another).")
+    ("--slurm" :slurm :out) ("--missing" :missing :out) ("--missing" :missing :shards)
+    ("--shards" :shards :parallel :slurm :missing))
+  "Lists (option key key-of-another...): one of the others must be there, too.")
 
 (defparameter *options-that-exclude-others*
   '((:shard :parallel :slurm :missing :save-executable) (:until :shard) (:until :parallel)
@@ -78,9 +91,9 @@
 (defun check-together (options)
   "Signal USAGE-ERROR if OPTIONS do not go together."
   (flet ((given-p (key) (find key options :key #'first)))
-    (loop for (option key other) in *options-that-need-others*
-          do (when (and (given-p key) (not (given-p other)))
-               (reject-usage "~A needs ~A." option (option-called other))))
+    (loop for (option key . others) in *options-that-need-others*
+          do (when (and (given-p key) (notany #'given-p others))
+               (reject-usage "~A needs ~{~A~^ or ~}." option (mapcar #'option-called others))))
     (loop for keys in *options-that-exclude-others*
           for given = (remove-if-not #'given-p keys)
           do (when (rest given)
@@ -113,9 +126,12 @@
 
 (defun run-here (experiment options)
   "Run what OPTIONS want of EXPERIMENT in this process, and say what came of it."
-  (let ((results (results-of experiment options)))
-    (unless (option-value :shard options)
-      (report-results results (option-value :plot options)))
+  (let ((shard (option-value :shard options)) (trials (trials-of experiment options)))
+    (cond ((null shard)
+           (report-results (results-of experiment options) (option-value :plot options)))
+          ((trials-in-shard-p shard trials) (results-of experiment options))
+          (t (say "shard ~D of ~D has no trials: there are only ~D of each condition."
+                  (car shard) (cdr shard) trials)))
     0))
 
 (defun tell-stopped (command arguments options under-way)
@@ -174,5 +190,6 @@ of what has been interrupted."
       (reject-usage "experiment takes a file or the name of an experiment, and one more name at ~
                      most~@[, not ~{~A~^ ~}~].~@[ Known: ~{~A~^, ~}.~]"
                     words (experiment-words (all-experiments))))
+    (when (option-value :save-executable options) (die-of-interrupts))
     (call-stoppable (lambda () (conduct-experiment (known-experiment words) words options))
                     "experiment" arguments options)))

@@ -40,7 +40,8 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:settle-fingerprints
                 #:results-directory #:print-results #:save-result-pictures #:read-results
                 #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture
-                #:shard-directory #:directories-with-rows #:count-rows #:missing-shards)
+                #:shard-directory #:directories-with-rows #:count-rows #:trials-in-shard-p
+                #:missing-shards #:check-same-code)
   ;; trivial-gray-streams
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream
            #:stream-line-column #:stream-write-char #:stream-write-string

@@ -8,7 +8,7 @@
 
 (defun end-process (status)
   "End this process with STATUS, at once: nothing is flushed and no thread is waited for."
-  (uiop:quit status nil))
+  (call-allowing-exits (lambda () (uiop:quit status nil))))
 
 ;;; Streams.
 
@@ -103,3 +103,7 @@ values of THEN, another function, which is not interrupted."
 (defun die-of-termination ()
   "Let this process end at once when it is told to terminate."
   (sb-sys:enable-interrupt sb-unix:sigterm :default))
+
+(defun die-of-interrupts ()
+  "Let control C end this process at once, as when its memory is being saved."
+  (sb-sys:enable-interrupt sb-unix:sigint :default))

@@ -28,21 +28,31 @@ need() {  # COMMAND...
     done
 }
 
-# Whoever ends this ends what it runs.
+# Whoever ends this ends what it runs. One that is just beginning does not heed a signal yet.
+stop() {
+    trap '' INT TERM HUP
+    while kill -s TERM "$child"; do sleep 0.3; done 2>/dev/null
+    exit 130
+}
+
 heeding() {  # COMMAND...
-    "$@" &
+    $tied "$@" &
     child=$!
-    trap 'trap "" INT TERM HUP; kill -s TERM $child; kill -s TERM $child; wait $child; exit 130' \
-        INT TERM HUP
-    wait $child
+    trap stop INT TERM HUP
+    wait "$child"
     ended=$?
     trap - INT TERM HUP
     return $ended
 }
 
+# Where the system can, it ends what this runs also when this is killed.
+tied='setpriv --pdeathsig TERM'
+$tied true 2>/dev/null || tied=
+
 here() {  # SHARD...
+    # A shell would stand between this and its jobs if it did not become them.
     heeding parallel --will-cite $bar --quote --jobs "$jobs" --joblog jobs.log \
-        ./ars-magna experiment "$experiment" --trials "$trials" --out . \
+        exec $tied ./ars-magna experiment "$experiment" --trials "$trials" --out . \
         --shard "{}/$shards" --workers 1 --quiet ::: "$@"
 }
 
@@ -71,7 +81,7 @@ if [ -n "$left" ]; then
 fi
 # Merging opens all tables at once.
 ulimit -S -n "$(ulimit -H -n)" 2>/dev/null || :
-./ars-magna merge . --out . $plot
+heeding ./ars-magna merge . --out . $plot
 merged=$?
 
 left=$(program --shards "$shards" --missing) || exit 1

@@ -67,6 +67,8 @@
   "Run EXPERIMENT, which WORDS, arguments of this program, stand for, by SCRIPT, made of TEMPLATE
 and what SETTINGS, a function, returns. Return the status to exit with."
   (let ((directory (ensure-results-directory (option-value :out options))))
+    ;; What has made the rows that are there is not to be replaced by what cannot go on with them.
+    (check-same-code experiment directory)
     (save-program-with words (native-name (merge-pathnames "ars-magna" directory)))
     (let ((path (write-script script
                               (with-settings (text-called template)

@@ -1,4 +1,4 @@
-;;;; experiment-shell.lisp -- experiments at a shell: options, files, tables, shards, scripts.
+;;;; experiment-shell.lisp -- experiments at a shell: options, files, tables, control C.
 
 (in-package :ars-magna.tests)
 
@@ -80,6 +80,9 @@ output, and what to the error output."
                        ("experiment" "a" "--shard" "3/3" "--out" "x")
                        ("experiment" "a" "--shard" "3" "--out" "x")
                        ("experiment" "a" "--shard" "0/3") ("experiment" "a" "--parallel")
+                       ("experiment" "a" "--shards" "3" "--out" "x")
+                       ("experiment" "a" "--shard" "5/99999999999" "--out" "x")
+                       ("experiment" "a" "--shards" "1000000000" "--missing" "--out" "x")
                        ("experiment" "a" "--plot") ("experiment" "a" "--missing" "--out" "x")
                        ("experiment" "a" "--out" "") ("experiment" "a" "--quiet=1")
                        ("experiment" "a" "--shard" "0/3" "--until" ".1" "--out" "x")
@@ -311,88 +314,3 @@ output, and what to the error output."
       (is-true (probe-file (base:native-path (placed "steps.svg"))))
       (is-true (has-words-p (said-by (lambda () (compared "1" "long" (placed "out"))))
                             "long is ambiguous: it could be" "way=long")))))
-
-;;; What decides the rows.
-
-(defun fingerprints-now ()
-  (let ((experiment (first (cli::load-experiments (base:native-path (placed "a stroll.lisp"))))))
-    (ars-magna.experiment::prepare-experiment experiment)
-    (mapcar #'ars-magna.experiment::condition-fingerprint
-            (ars-magna.experiment:experiment-conditions experiment))))
-
-(test fingerprints.know-the-functions-of-the-file-and-of-those-that-it-loads
-  (in-place
-    (write-file "far.lisp" "(defun far () 4)")
-    (flet ((fingerprints (more)
-             (write-file "a stroll.lisp" "~A~%(load (merge-pathnames \"far.lisp\" *load-truename*))"
-                         more)
-             (with-open-file (out (base:native-path (placed "a stroll.lisp")) :direction :output
-                                                                             :if-exists :append)
-               (write-string (subseq *stroll* (search "(defexperiment" *stroll*)) out))
-             (fingerprints-now)))
-      (let ((first (fingerprints "(defun unused () 1)")))
-        (is (equal first (fingerprints ";; Other words.
- (defun unused  () 1)")))
-        (write-file "far.lisp" "(defun far () 5)")
-        (is (not (equal first (fingerprints "(defun unused () 1)"))))
-        (write-file "far.lisp" "(defun far () 4)")
-        (is (equal first (fingerprints "(defun unused () 1)")))))))
-
-(test fingerprints.know-the-functions-of-the-file
-  (in-place
-    (let ((first (fingerprints-now)))
-      (is (equal first (fingerprints-now)))
-      (write-file "a stroll.lisp" "~A~%" (substitute #\5 #\4 *stroll* :count 1))
-      (is (not (equal first (fingerprints-now)))))))
-
-(test fingerprints.are-settled-in-a-saved-program
-  (in-place
-    (let ((first (fingerprints-now)) (ars-magna.experiment::*digests-settled-p* nil))
-      (ars-magna.experiment:settle-fingerprints)
-      (delete-file (base:native-path (placed "a stroll.lisp")))
-      (let ((experiment (ars-magna.experiment:find-experiment 'ars-user::stroll)))
-        (flet ((now ()
-                 (ars-magna.experiment::prepare-experiment experiment)
-                 (mapcar #'ars-magna.experiment::condition-fingerprint
-                         (ars-magna.experiment:experiment-conditions experiment))))
-          (is (equal first (now)))
-          (write-file "a stroll.lisp" "(defun other () 1)")
-          (is (equal first (now))))))))
-
-;;; Scripts.
-
-(defun script-settings (settings)
-  "Return what a shell makes of SETTINGS, a list of lists (variable value)."
-  (let ((text (cli::with-settings "@SETTINGS@" (loop for (variable value) in settings
-                                                     collect (list variable value "what")))))
-    (lines-of text)))
-
-(test scripts.have-their-settings-quoted
-  (loop for (word line) in '((5 "a=5") ("" "a=") ("two words" "a=\"two words\"")
-                             ("it's $x" "a=\"it's \\$x\"") ("8/ssh -p 2 x,`y`"
-                                                            "a=\"8/ssh -p 2 x,\\`y\\`\""))
-        for written = (first (script-settings `(("a" ,word))))
-        do (is (string= line (string-right-trim " " (subseq written 0 (search "#" written))))))
-  (dolist (name '("spread-parallel.sh" "spread-slurm.sh"))
-    (is-false (search "@SETTINGS@" (cli::with-settings (cli::text-called name) '(("a" 1 "one")))))
-    (is-true (eql 0 (search (format nil "#!/bin/sh~%") (cli::text-called name))))))
-
-(test shards.are-of-a-size-that-pays
-  (in-place
-    (let ((experiment (cli::experiment-called (placed "a stroll.lisp"))))
-      (loop for (trials script shards) in '((5 "run.sh" 5) (100 "run.sh" 16) (10000 "run.sh" 40)
-                                            (1000000 "run.sh" 1000) (100 "job.sh" 1)
-                                            (100000 "job.sh" 40) (10000000 "job.sh" 1000))
-            do (is (= shards (cli::default-shards experiment trials script))
-                   "~D trials by ~A" trials script)))))
-
-(test scripts.that-somebody-has-changed-are-kept
-  (in-place
-    (flet ((write-script (text)
-             (with-output-to-string (*error-output*)
-               (cli::write-script "run.sh" text (uiop:parse-native-namestring *place*)))))
-      (is (string= "" (write-script "one")))
-      (is (string= "" (write-script "one")))
-      (is-true (has-words-p (write-script "two") "run.sh~"))
-      (is (string= "two" (text-in "run.sh")))
-      (is (string= "one" (text-in "run.sh~"))))))

@@ -43,9 +43,12 @@ numbers."
 (defun call-as-from-file (function path)
   "Call FUNCTION, which evaluates forms that have been read from the file PATH: the functions that
 come of it are from there."
-  (let ((name (native-name path)))
+  (let ((name (native-name path)) (errors *error-output*))
     (setf (gethash name *dates-of-files*) (file-write-date path))
-    (with-compilation-unit (:source-namestring name) (funcall function))))
+    ;; What a unit says of itself at its end, that it was left, is no news to whoever leaves it.
+    (let ((*error-output* (make-broadcast-stream)))
+      (with-compilation-unit (:source-namestring name)
+        (let ((*error-output* errors)) (funcall function))))))
 
 (defun file-of-source (source)
   "Return which file SOURCE, what SBCL knows of a definition, is from, as the system calls it, and

@@ -178,16 +178,21 @@ is not true, or else another."
 
 ;;; SBCL has no hook for the end of a unit.
 
+(defun wrap-function (name wrapper)
+  "Let WRAPPER be called instead of SBCL's function NAME, with that and its arguments."
+  (sb-int:encapsulate name 'ars-magna wrapper))
+
 (defun watch-units ()
   "Let what SBCL compiles or loads be a unit."
-  (flet ((wrap (name wrapper)
-           (sb-int:encapsulate name 'ars-magna wrapper)))
-    (wrap 'compile-file (lambda (function &rest arguments)
-                          (compile-in-unit (lambda () (apply-in-own-file function arguments)))))
-    (wrap 'load (lambda (function &rest arguments)
-                  (call-in-unit :load (lambda () (apply-in-own-file function arguments)))))
-    (wrap (compiler-variable '#:%with-compilation-unit)
-          (lambda (function body &rest options &key override &allow-other-keys)
-            (apply function (lambda () (call-in-unit :compilation body override)) options)))))
+  (wrap-function 'compile-file
+                 (lambda (function &rest arguments)
+                   (compile-in-unit (lambda () (apply-in-own-file function arguments)))))
+  (wrap-function 'load
+                 (lambda (function &rest arguments)
+                   (call-in-unit :load (lambda () (apply-in-own-file function arguments)))))
+  (wrap-function (compiler-variable '#:%with-compilation-unit)
+                 (lambda (function body &rest options &key override &allow-other-keys)
+                   (apply function (lambda () (call-in-unit :compilation body override))
+                          options))))
 
 (watch-units)

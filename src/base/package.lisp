@@ -60,6 +60,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:malformed-definition-place
            #:definition-warning #:definition-warning-text #:warn-of-definition #:doubt-definition
            #:unknown-name #:plain-name #:misuse #:reject-use)
+  ;; exits
+  (:export #:call-refusing-exits #:call-allowing-exits)
   ;; threads
   (:export #:make-lock #:with-lock #:make-semaphore #:signal-semaphore #:wait-on-semaphore
            #:*while-waiting* #:wait-a-while

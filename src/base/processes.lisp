@@ -25,14 +25,22 @@ status, or NIL if it cannot be run, and as a string what it wrote if OUTPUT is :
         (values status text))
     (error () nil)))
 
+(defparameter *tied-start*
+  "setpriv --pdeathsig TERM true 2>/dev/null && exec setpriv --pdeathsig TERM \"$@\"; exec \"$@\""
+  "What a shell does to run a program that the system tells to end when this process ends, however
+it does: where the system can.")
+
 (defun run-attached (program arguments)
   "Run PROGRAM, looked for where programs are, with the strings ARGUMENTS: it reads and writes what
-this process would. Wait for its end; if this is left, it is told to end. Return its exit status, or
-NIL if it cannot be run."
-  (let ((process (handler-case (uiop:launch-program (cons program arguments)
-                                                    :input :interactive :output :interactive
-                                                    :error-output :interactive)
+this process would. Wait for its end; if this is left, or this process is killed, it is told to end.
+Return its exit status, as of a shell, or NIL if no program can be run."
+  (let ((process (handler-case (uiop:launch-program
+                                (list* "sh" "-c" *tied-start* "sh" program arguments)
+                                :input :interactive :output :interactive
+                                :error-output :interactive)
                    (error () (return-from run-attached nil))))
         (status nil))
     (unwind-protect (setf status (uiop:wait-process process))
-      (unless status (uiop:terminate-process process)))))
+      (unless status
+        (uiop:terminate-process process)
+        (uiop:wait-process process)))))

@@ -53,7 +53,7 @@ on with, on as many cores and machines as there are. Names lparallel.")
            #:trial-under-way)
   ;; fingerprint, shards
   (:export #:settle-fingerprints #:shard-directory #:directories-with-rows #:count-rows
-           #:missing-shards)
+           #:trials-in-shard-p #:missing-shards #:check-same-code)
   ;; estimates, summary, report
   (:export #:estimate-p #:estimate-name #:estimate-kind #:estimate-count #:estimate-value
            #:estimate-low #:estimate-high #:estimate-left-out #:estimate-texts

@@ -28,7 +28,7 @@ stays so for him. What goes wrong in it is no error of the trial's."
     (progv *surroundings* (outside-values outside)
       (let ((*aside-p* t) (*user-error-listener* nil))
         (with-debugger-hook ((outside-hook outside))
-          (unwind-protect (funcall function)
+          (unwind-protect (call-allowing-exits function)
             (setf (outside-values outside) (mapcar #'symbol-value *surroundings*))))))))
 
 (defun call-from-outside (function)

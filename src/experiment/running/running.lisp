@@ -8,13 +8,6 @@
 
 ;;; What is there already.
 
-(defun reject-foreign (experiment condition parts directory)
-  (declare (ignore experiment))
-  (reject-use "~A has rows of the condition ~A that other code or another configuration has made~
-               ~@[; changed since: ~{~A~^, ~}~]. Give another directory, or delete these rows."
-              (native-name directory) (condition-name condition)
-              (changes-since condition parts directory)))
-
 (defun rows-there (experiment parts directory)
   "Return the presence of rows of EXPERIMENT in DIRECTORY, and a list of the texts of one of each
 condition. PARTS are those of the fingerprints of its conditions. Signals MISUSE for rows of other
@@ -23,10 +16,7 @@ code."
     (values (present-rows experiment directory
                           (lambda (condition texts)
                             (declare (ignore texts))
-                            (reject-foreign
-                             experiment condition
-                             (nth (position condition (experiment-conditions experiment)) parts)
-                             directory))
+                            (reject-foreign experiment condition parts directory))
                           (lambda (condition texts) (setf (gethash condition samples) texts)))
             (loop for condition in (experiment-conditions experiment)
                   for texts = (gethash condition samples)

@@ -103,3 +103,13 @@ are none."
   "Return in words, in a list, what of PARTS, of CONDITION, is not as the text in DIRECTORY says."
   (let ((before (parts-described (condition-name condition) directory)))
     (and before (changed-parts before (mapcar #'part-text parts)))))
+
+(defun reject-foreign (experiment condition parts directory)
+  "Say that DIRECTORY has rows of CONDITION of EXPERIMENT that cannot be gone on with. PARTS are
+those of the fingerprints of all conditions."
+  (let ((its (nth (position condition (experiment-conditions experiment)) parts)))
+    (reject-use "~A has rows of the condition ~A that other code or another configuration has ~
+                 made~@[; changed since: ~{~A~^, ~}~]. Give another directory, or delete these ~
+                 rows."
+                (native-name directory) (condition-name condition)
+                (changes-since condition its directory))))

@@ -36,30 +36,64 @@ each table that has it."
   (loop for directory in (directories-with-rows directory)
         sum (1- (count-whole-lines (rows-file (directory-called directory))))))
 
-;;; What is missing.
+;;; What is there, and what is missing.
 
-(defun note-rows (experiment file presence)
-  "Note in PRESENCE which trials of EXPERIMENT have rows in FILE."
-  (let ((seed (seed-column (columns experiment))))
-    (when (equal (columns experiment) (header-of file))
-      (map-rows (lambda (texts line start number)
-                  (declare (ignore line start number))
-                  (let ((condition (condition-of-texts experiment texts)))
-                    (when (and condition
-                               (string= (second texts) (condition-fingerprint condition)))
-                      (note-present condition (parse-integer (nth (1+ seed) texts)) presence))))
-                file))))
+(defun trials-in-shard-p (shard trials)
+  "True if there are any of TRIALS trials, from 1, in SHARD, a cons (index . count)."
+  (<= 1 (if (zerop (car shard)) (cdr shard) (car shard)) trials))
+
+(defun map-rows-there (function experiment directory)
+  "Call FUNCTION with the condition, the number of the trial and the fingerprint of each row in
+DIRECTORY and the shards below it that is of EXPERIMENT, and the name of the directory it is in.
+Tables with other columns have none."
+  (let* ((columns (columns experiment)) (seed (seed-column columns)))
+    (dolist (name (directories-with-rows directory))
+      (let ((file (rows-file (directory-called name))))
+        (when (equal columns (header-of file))
+          (map-rows (lambda (texts line start number)
+                      (declare (ignore line start number))
+                      (let ((condition (condition-of-texts experiment texts)))
+                        (when condition
+                          (funcall function condition
+                                   (parse-integer (nth (1+ seed) texts))
+                                   (second texts) name))))
+                    file))))))
+
+(defun own-fingerprint-p (condition fingerprint)
+  (string= fingerprint (condition-fingerprint condition)))
+
+(defun presence-below (experiment directory)
+  "Return which trials of EXPERIMENT have rows in DIRECTORY and the shards below it."
+  (let ((presence (make-presence)))
+    (map-rows-there (lambda (condition trial fingerprint directory)
+                      (declare (ignore directory))
+                      (when (own-fingerprint-p condition fingerprint)
+                        (note-present condition trial presence)))
+                    experiment directory)
+    presence))
 
 (defun missing-shards (experiment trials count directory)
   "Return the numbers, from 0, of those of COUNT shards of TRIALS trials of each condition of
 EXPERIMENT that lack rows in DIRECTORY and the shards below it, in order."
   (prepare-experiment experiment)
-  (let ((presence (make-presence)) (missing (make-array count :element-type 'bit)))
-    (dolist (directory (directories-with-rows directory))
-      (note-rows experiment (rows-file (directory-called directory)) presence))
+  (let ((presence (presence-below experiment directory))
+        (missing (make-array count :element-type 'bit)))
     (loop for trial from 1 to trials
           do (unless (every (lambda (condition) (present-p condition trial presence))
                             (experiment-conditions experiment))
                (setf (aref missing (mod trial count)) 1)))
     (loop for shard below count
           when (plusp (aref missing shard)) collect shard)))
+
+(defun check-same-code (experiment directory)
+  "Signal MISUSE if there are rows in DIRECTORY or the shards below it that EXPERIMENT, as it is
+now, could not be gone on with, and DAMAGED-TABLE if they have other columns."
+  (let ((parts (loop for condition in (experiment-conditions experiment)
+                     collect (prepare-condition experiment condition))))
+    (dolist (name (directories-with-rows directory))
+      (check-beginning (rows-file (directory-called name)) (columns experiment)))
+    (map-rows-there (lambda (condition trial fingerprint name)
+                      (declare (ignore trial))
+                      (unless (own-fingerprint-p condition fingerprint)
+                        (reject-foreign experiment condition parts (directory-called name))))
+                    experiment directory)))

@@ -164,7 +164,8 @@ took for a success and :success does not is one that was only believed."
   "True while somebody looks at a trial that stands still: what goes wrong is not the trial's.")
 
 (defun call-until-error (function)
-  "Call FUNCTION. Return the condition with which it broke off, or NIL."
+  "Call FUNCTION, which is not to end this Lisp. Return the condition with which it broke off, or
+NIL."
   (flet ((leave (condition)
            (unless *aside-p*
              (when (and *break-on-user-error* (not (typep condition 'storage-condition)))
@@ -172,7 +173,7 @@ took for a success and :success does not is one that was only believed."
              (return-from call-until-error condition))))
     (let ((*aside-p* nil))
       (handler-bind (((or error storage-condition) #'leave))
-        (funcall function)))
+        (call-refusing-exits function)))
     nil))
 
 (defun call-noting-errors (function result)
