@@ -137,6 +137,43 @@
       (is-true (every (lambda (row) (string= "success" (third row))) one))
       (is (equal one (rows 4))))))
 
+(test variables.keep-what-they-share
+  "Values are not copied: what is the same outside is the same in a trial."
+  (let ((list (list 1 2 3)))
+    (setf (base:global-value '*question-data*) (make-array 4 :fill-pointer 0 :adjustable t)
+          (base:global-value '*question-cache*) (cons list (last list)))
+    (unwind-protect
+         (progn
+           (define-reaching (and (adjustable-array-p *question-data*)
+                                 (eq (cdr *question-cache*) (last (car *question-cache*)))))
+           (is (equal '("success") (mapcar #'third
+                                           (rows-of (experiment:run-experiment
+                                                     'question :trials 1 :workers 1
+                                                               :stream nil))))))
+      (setf (base:global-value '*question-data*) 1
+            (base:global-value '*question-cache*) nil))))
+
+(test code.that-changes-while-it-runs-is-noticed
+  (eval '(defun question-help () 1))
+  (define-reaching (progn (setf (symbol-function 'question-help) (lambda () 2)) (question-help)))
+  (handler-case (progn (experiment:run-experiment 'question :trials 2 :workers 1 :stream nil)
+                       (fail "it was not"))
+    (base:misuse (condition)
+      (is (search "while the experiment ran" (princ-to-string condition))))))
+
+(test experiments.may-run-in-trials
+  (eval '(experiment:defexperiment walk (:robots ars-worlds:dot) (:run t)))
+  (define-reaching (experiment:run-experiment 'walk :trials 2 :workers 1 :stream nil))
+  (let ((rows (rows-of (experiment:run-experiment 'question :trials 6 :workers 2 :stream nil))))
+    (is (= 6 (length rows)))
+    (is-true (every (lambda (row) (equal '("success" "" 0 "") (cddr row))) rows) "~S" rows)))
+
+(defclass question-kind () () (:documentation "A user's class."))
+
+(test methods.of-lisps-own-functions-are-noticed
+  (define-reaching (make-instance 'question-kind))
+  (is-true (changes (defmethod initialize-instance :after ((kind question-kind) &key) 1))))
+
 ;;; The printer, and the order.
 
 (test tables.do-not-depend-on-the-printer

@@ -185,15 +185,15 @@
           (is (search "experiment walk" (princ-to-string condition)))))
       (is (string= before (table-text directory))))))
 
-(defvar *walks* 0 "What a trial must not depend on.")
-
 (test rows.that-come-out-otherwise-are-refused
-  (let ((*walks* 0))
-    (define-walk :measure '(way (incf (get 'walks :count 0))))
-    (setf (get 'walks :count) 0)
-    (with-directories (directory)
-      (walk directory :trials 2)
-      (signals base:misuse (walk directory :trials 3)))))
+  "At the end of a run, and before another goes on."
+  (define-walk :measure '(way (incf (get 'walks :count 0))))
+  (setf (get 'walks :count) 0)
+  (with-directories (directory)
+    (signals base:misuse (walk directory :trials 2))
+    (is (= 5 (length (table-lines directory))))
+    (signals base:misuse (walk directory :trials 3))
+    (is (= 5 (length (table-lines directory))))))
 
 (test merging.refuses-rows-that-differ
   (define-walk)
