@@ -93,7 +93,8 @@ same in each run."
   "Return the number that TEXT, of a table, is, or NIL."
   (and (plusp (length text))
        (find (char text 0) "-0123456789")
-       (every (lambda (char) (find char "-+.eE0123456789")) text)
+       (loop for char across (the simple-string text)
+             always (or (char<= #\0 char #\9) (find char "-+.eE")))
        (let ((*read-default-float-format* 'double-float))
          (ignore-errors (let ((number (read-from-string text)))
                           (and (realp number) number))))))

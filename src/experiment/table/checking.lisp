@@ -61,8 +61,9 @@ DAMAGED-TABLE."
 (defparameter *outcomes* '("success" "failure" "limit" "error") "What a trial can have come to.")
 
 (defun hexadecimal-p (text)
+  (declare (type simple-string text))
   (and (<= 1 (length text) 16)
-       (every (lambda (char) (find char "0123456789ABCDEF")) text)))
+       (loop for char across text always (digit-char-p char 16))))
 
 (defun integer-in (text)
   "Return the integer that TEXT is, as a table has it, or NIL."
