@@ -142,7 +142,7 @@
                  (:file "description") (:file "results") (:file "merging") (:file "shards")))
    (:module "src/experiment/running" :serial t
     :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "rounds")
-                 (:file "stopping") (:file "running")))
+                 (:file "stopping") (:file "repeatable") (:file "running")))
    (:module "src/experiment/report" :serial t
     :components ((:file "estimates") (:file "summary") (:file "text-table")
                  (:file "remarks") (:file "report")))

@@ -1,0 +1,70 @@
+;;;; repeatable.lisp -- whether trials come out again as their rows say.
+
+(in-package :ars-magna.experiment)
+
+;;; A fingerprint is a guess at what decides a trial. What it misses, such as what trials leave to
+;;; each other, is found by running one of them again, before an experiment goes on and at its end.
+
+(defun differing-column (columns texts others)
+  "Return the name of the first of COLUMNS in which the rows TEXTS and OTHERS differ, and both texts
+there."
+  (loop for column in columns
+        for text in texts
+        for other in others
+        unless (string= text other) return (list column other text)))
+
+(defun check-repeatable (experiment texts)
+  "Signal MISUSE if the trial of EXPERIMENT whose row is TEXTS comes out otherwise now."
+  (let* ((condition (condition-of-texts experiment texts))
+         (columns (columns experiment))
+         (trial (parse-integer (nth (1+ (seed-column columns)) texts)))
+         (again (result-texts experiment
+                              (call-in-silence
+                               (lambda () (run-trial experiment condition trial))))))
+    (unless (equal texts again)
+      (reject-use "Trial ~D of the condition ~A has a row already, and comes out differently now: ~
+                   ~{its ~A is ~A, and ~A in the row~}. Either the row has been changed, or ~
+                   something that is not in the fingerprint decides the trial, such as a structure ~
+                   that trials change, the clock, or a file. Mend that, and begin in another ~
+                   directory."
+                  trial (condition-name condition) (differing-column columns texts again)))))
+
+(defparameter *seconds-for-checks* 10
+  "For how long trials that have rows are run again before an experiment goes on.")
+
+(defun check-samples (experiment rows seconds)
+  "Signal MISUSE if one of ROWS, of different conditions of EXPERIMENT, comes out otherwise now. At
+least one is tried, and others as long as less than SECONDS have passed."
+  (loop with begun = (moment)
+        for texts in rows
+        do (check-repeatable experiment texts)
+        until (> (seconds-since begun) seconds)))
+
+(defun part-name (part)
+  "Return PART, of a fingerprint, without its number."
+  (format nil "~(~A~) ~A" (first part) (second part)))
+
+(defun check-unchanged (experiment parts directory)
+  "Signal MISUSE if the fingerprints of EXPERIMENT, of PARTS, are no longer what they were."
+  (loop for condition in (experiment-conditions experiment)
+        for before in parts
+        for now = (prepare-condition experiment condition)
+        unless (equal before now)
+          do (reject-use "Code or data have been changed while the experiment ran: ~{~A~^, ~}. The ~
+                          rows in ~A may be of either. Begin in another directory."
+                         (remove-duplicates
+                          (mapcar #'part-name (set-exclusive-or before now :test #'equal))
+                          :test #'string=)
+                         (native-name directory))))
+
+(defun check-run-again (store parts seconds)
+  "Signal MISUSE if what was kept in STORE, in so many SECONDS, cannot be had again: if its
+experiment, of PARTS, is no longer what it was, or a trial comes out otherwise. This takes a
+twentieth of that time, or one trial."
+  (let ((experiment (store-experiment store)))
+    (check-unchanged experiment parts (store-path store))
+    (check-samples experiment
+                   (loop for condition in (experiment-conditions experiment)
+                         for texts = (gethash condition (store-samples store))
+                         when texts collect texts)
+                   (/ seconds 20))))
