@@ -137,6 +137,22 @@
       (is-true (every (lambda (row) (string= "success" (third row))) one))
       (is (equal one (rows 4))))))
 
+(test variables.are-bound-for-replays-too
+  "A trial that is replayed before any run, or twice, finds what a worker would find."
+  (eval '(defun question-drive (robot)
+          (command:robot-go-forward robot 3 (lambda (err robot) (declare (ignore err robot))
+                                              (setf *question-cache* t)))))
+  (eval '(experiment:defexperiment question (:robots ars-worlds:dot) (:limit 200)
+          (:run (question-drive ars-worlds:dot)) (:until *question-cache*)))
+  (flet ((ticks () (getf (experiment:replay-trial 'question 1 1) :ticks)))
+    (let ((first (ticks)))
+      (is (< 1 first 200))
+      (is (= first (ticks)))
+      (is (equal (list first)
+                 (mapcar #'fifth (rows-of (experiment:run-experiment 'question :trials 1 :workers 1
+                                                                               :stream nil)))))))
+  (is (null *question-cache*)))
+
 (test variables.keep-what-they-share
   "Values are not copied: what is the same outside is the same in a trial."
   (let ((list (list 1 2 3)))

@@ -37,6 +37,7 @@ Return it."
 
 (defun ways-of-trials (experiment condition trials)
   "Run the TRIALS, a list of numbers, of CONDITION of EXPERIMENT again. Return the ways of all."
+  (prepare-trials experiment condition)
   (call-in-silence (lambda ()
                      (loop for trial in trials
                            append (ways-of-trial experiment condition trial)))))

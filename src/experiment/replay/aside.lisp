@@ -78,5 +78,6 @@ result where the trial has ended, before its simulation is gone. Return the resu
                                       (unless begun-p
                                         (note-error result (text-of-condition condition))
                                         (return)))))
+                (prepare-trials experiment condition)
                 (run))))))))
     result))

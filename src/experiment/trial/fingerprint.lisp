@@ -110,20 +110,32 @@ reach."
               (loop for char across (part-text part) do (digest-add digest char)))
             (digest-value digest))))
 
+(defun note-reach (condition reach)
+  "Give CONDITION what its trials need of REACH, what they can reach."
+  (setf (condition-random-p condition) (reach-random-p reach)
+        (condition-variables condition)
+        (loop for symbol in (reach-variables reach)
+              collect (list symbol (global-value symbol)))))
+
 (defun look-up-fingerprint (experiment condition)
   "Give CONDITION of EXPERIMENT its fingerprint, and what else its trials need. Return the parts of
 the fingerprint."
   (multiple-value-bind (parts reach) (fingerprint-parts experiment condition)
-    (setf (condition-random-p condition) (reach-random-p reach)
-          (condition-variables condition)
-          (loop for symbol in (reach-variables reach)
-                collect (list symbol (global-value symbol)))
-          (condition-fingerprint condition) (fingerprint-of parts))
+    (note-reach condition reach)
+    (setf (condition-fingerprint condition) (fingerprint-of parts))
     parts))
 
 (defun prepare-condition (experiment condition)
   "Do as LOOK-UP-FINGERPRINT, whatever reader and printer are set to."
   (call-plainly (lambda () (look-up-fingerprint experiment condition))))
+
+(defun prepare-trials (experiment condition)
+  "Give CONDITION of EXPERIMENT what its trials need, but no fingerprint: its files may have been
+changed."
+  (call-plainly
+   (lambda ()
+     (note-reach condition
+                 (reach-of experiment condition (definitions-in-trial experiment condition))))))
 
 (defun prepare-experiment (experiment)
   "Give the conditions of EXPERIMENT their fingerprints. Signals MISUSE if a file is not as it was
