@@ -21,23 +21,14 @@
 
 ;;; Values of options.
 
-(defun number-in-words (text)
-  "Return the number that is TEXT, or NIL."
-  (let ((*read-default-float-format* 'double-float))
-    (and (plusp (length text))
-         (every (lambda (char) (find char "0123456789.eE+-")) text)
-         (ignore-errors
-          (let ((number (read-from-string text)))
-            (and (realp number) number))))))
-
 (defun parse-count (text)
-  (let ((number (number-in-words text)))
+  (let ((number (number-in text)))
     (if (and (integerp number) (<= 1 number 1000000000))
         number
         (reject-usage "~A is no number from 1 to 1e9, in digits." text))))
 
 (defun parse-width (text)
-  (let ((number (number-in-words text)))
+  (let ((number (number-in text)))
     (if (and number (< 0 number 1))
         number
         (reject-usage "--until takes the width of an interval, such as .02, not ~A." text))))
@@ -46,7 +37,7 @@
   "Into how many shards trials can be divided. A command must have room for all their numbers.")
 
 (defun parse-shards (text)
-  (let ((count (number-in-words text)))
+  (let ((count (number-in text)))
     (if (and (integerp count) (<= 1 count +largest-count-of-shards+))
         count
         (reject-usage "--shards takes a number of parts, from 1 to ~D, not ~A."

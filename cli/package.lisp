@@ -32,7 +32,8 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:find-experiment #:all-experiments #:experiment-name #:experiment-documentation
                 #:experiment-conditions #:experiment-trials #:experiment-limit #:experiment-file
                 #:find-condition #:condition-name #:trial-seed
-                #:ensure-store-directory #:run-again #:call-until-error #:call-aside #:await-time
+                #:number-in #:ensure-store-directory
+                #:run-again #:call-until-error #:call-aside #:await-time
                 #:prepare-condition #:row-of-trial #:row-differences
                 #:result-outcome #:result-reason #:result-ticks #:result-error #:measured
                 #:print-failures

@@ -11,7 +11,8 @@ on with, on as many cores and machines as there are. Names lparallel.")
                 #:draw-gcontext* #:graphics-scale* #:with-gcontext #:with-opacity #:with-origin
                 #:draw-lines)
   (:import-from :ars-magna.display
-                #:take-snapshot #:snapshot-map #:draw-terrain #:draw-movers #:picture-kind)
+                #:take-snapshot #:snapshot-map #:draw-terrain #:draw-movers #:picture-kind
+                #:keep-history #:open-display #:*display-opener*)
   (:import-from :ars-magna.world #:map-width #:map-height)
   (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
                 #:seconds-now #:check-rate)
@@ -23,14 +24,13 @@ on with, on as many cores and machines as there are. Names lparallel.")
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
   (:import-from :ars-magna.rpl-robot #:*plan-limit* #:*trace-plans*)
-  (:import-from :ars-magna.display #:keep-history #:open-display #:*display-opener*)
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments
            #:experiment-p #:experiment-name #:experiment-conditions #:experiment-trials
            #:experiment-from #:experiment-package #:experiment-limit #:find-condition #:trial-values
            #:condition-name #:condition-parameters)
   ;; trial, workers, description, values
-  (:export #:run-trial #:call-in-silence #:call-by-workers #:form-text #:experiment-file
+  (:export #:run-trial #:call-in-silence #:call-by-workers #:form-text #:experiment-file #:number-in
            #:result-trial #:result-seed #:result-outcome #:result-reason #:result-ticks
            #:result-digest #:result-error)
   ;; results

@@ -122,7 +122,7 @@ estimate for a sample."
 
 (defun limit-of (results)
   "Return the limit of ticks, as far as it is known."
-  (let ((experiment (experiment-called (sample-experiment (first (results-samples results))))))
+  (let ((experiment (find-experiment (sample-experiment (first (results-samples results))) nil)))
     (if experiment
         (experiment-limit experiment)
         (loop for sample in (results-samples results)

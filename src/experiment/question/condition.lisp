@@ -27,10 +27,11 @@
   ;; The values of all parameters, and those of the variables of the experiment's forms, in order.
   (parameters #() :type simple-vector)
   (arguments '() :type list)
-  ;; What decides its trials, as far as that has been looked up, and whether CL:RANDOM is there.
+  ;; What decides its trials, as far as that has been looked up.
   (fingerprint nil :type (or null string))
   ;; Lists (symbol value): users' special variables that its trials can reach, and their values.
   (variables '() :type list)
+  ;; True if they may roll CL:RANDOM.
   (random-p t :type boolean))
 
 (document-functions

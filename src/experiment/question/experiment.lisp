@@ -35,8 +35,7 @@
   experiment-trials "Return how many trials of each condition there are unless somebody says."
   experiment-documentation "Return what the experiment asks, a string, or NIL."
   experiment-limit "Return for how many ticks a trial may go on."
-  experiment-package "Return the package in which the experiment was written."
-  condition-name "Return what the condition is called, a string.")
+  experiment-package "Return the package in which the experiment was written.")
 
 (defmethod print-object ((experiment experiment) stream)
   (print-unreadable-object (experiment stream :type t)

@@ -2,10 +2,6 @@
 
 (in-package :ars-magna.experiment)
 
-(defun experiment-called (name)
-  "Return the experiment that a table calls NAME, if there is one, or NIL."
-  (find name (all-experiments) :key #'experiment-name :test #'string-equal))
-
 (defun first-sentence (text)
   "Return the first sentence of TEXT, in one line."
   (let* ((paragraph (search (format nil "~2%") text))
@@ -17,6 +13,6 @@
 
 (defun question-of (name)
   "Return what the experiment that a table calls NAME asks, if that is known, or NIL."
-  (let* ((experiment (experiment-called name))
+  (let* ((experiment (find-experiment name nil))
          (text (and experiment (experiment-documentation experiment))))
     (and text (string/= "" (one-line text)) (first-sentence text))))

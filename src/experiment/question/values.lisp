@@ -92,7 +92,7 @@ same in each run."
 (defun number-in (text)
   "Return the number that TEXT, of a table, is, or NIL."
   (and (plusp (length text))
-       (find (char text 0) "-0123456789")
+       (find (char text 0) "-.0123456789")
        (loop for char across (the simple-string text)
              always (or (char<= #\0 char #\9) (find char "-+.eE")))
        (let ((*read-default-float-format* 'double-float))

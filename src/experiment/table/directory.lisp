@@ -179,8 +179,7 @@ this returns."
 
 (defstruct (presence (:constructor make-presence ()) (:copier nil))
   "Which trials of which conditions have rows."
-  (bits (make-hash-table :test 'eq) :read-only t)
-  (count 0 :type fixnum))
+  (bits (make-hash-table :test 'eq) :read-only t))
 
 (defun bits-of (condition presence)
   (or (gethash condition (presence-bits presence))
@@ -196,8 +195,7 @@ this returns."
     (when (>= trial (length bits))
       (setf bits (adjust-array bits (* 2 (1+ trial)) :initial-element 0)
             (gethash condition (presence-bits presence)) bits))
-    (setf (aref bits trial) 1)
-    (incf (presence-count presence))))
+    (setf (aref bits trial) 1)))
 
 (defun condition-of-texts (experiment texts)
   "Return the condition of EXPERIMENT that the row TEXTS is of, or NIL if it has none like that."

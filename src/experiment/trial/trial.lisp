@@ -128,7 +128,7 @@ took for a success and :success does not is one that was only believed."
           ((string= outcome "success") (values "failure" "only-believed"))
           (t (values outcome reason)))))
 
-(defun measure (experiment condition)
+(defun texts-of-measures (experiment condition)
   "Return the texts of what EXPERIMENT measures. Signals WRONG-ARGUMENT if a table cannot have one."
   (loop for (name function) in (experiment-measures experiment)
         for value = (call-form function condition)
@@ -156,7 +156,7 @@ took for a success and :success does not is one that was only believed."
     (multiple-value-bind (outcome reason) (apply #'outcome-of-values values)
       (setf (values (result-outcome result) (result-reason result))
             (decide experiment condition outcome reason)
-            (result-measures result) (measure experiment condition))
+            (result-measures result) (texts-of-measures experiment condition))
       (when (string= "" (result-error result))
         (setf (result-error result) (error-in-plan values))))))
 
