@@ -9,7 +9,8 @@
 (defpackage :ars-magna.build
   (:documentation "Compiling, saving the prompt's core, running the tests.")
   (:use :cl)
-  (:export #:print-missing-libraries #:load-strictly #:save-prompt #:run-tests))
+  (:export #:print-missing-libraries #:load-strictly #:save-prompt #:run-tests
+           #:record-sessions))
 
 (in-package :ars-magna.build)
 
@@ -129,3 +130,9 @@ commands beside it."
 check fails."
   (load-strictly "ars-magna/tests")
   (uiop:quit (if (uiop:symbol-call :ars-magna.tests :run-from-shell suites seed) 0 1)))
+
+(defun record-sessions (names)
+  "Write the screens of the newcomer's sessions NAMES, or of all, into their files; end this Lisp,
+with status 1 if one waits in vain."
+  (load-strictly "ars-magna/tests")
+  (uiop:quit (if (uiop:symbol-call :ars-magna.tests :record-sessions names) 0 1)))

@@ -107,6 +107,12 @@ ensure_packages() {  # SYSTEM...
     [ -z "$packages" ] || install_packages $packages
 }
 
+# Programs whose packages are called as they are.
+ensure_programs() {  # PROGRAM...: true if all of them are there, or can be installed.
+    packages=$(for program; do command -v "$program" >/dev/null || printf '%s ' "$program"; done)
+    [ -z "$packages" ] || (install_packages $packages)
+}
+
 # Compiling. Starts at the same time wait for each other, where the system has flock; also for what
 # goes on compiling when the start that wanted it has been killed.
 

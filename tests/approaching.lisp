@@ -309,7 +309,7 @@ turning, one for each of driving, and one for what rounding leaves."
                                                (setf code err))))))
          (run:run-ticks 15)
          ;; A copy, made on the way, goes the same way.
-         (let ((copy (run:copy-simulation time:*simulation*)))
+         (let ((copy (run:fork-simulation time:*simulation*)))
            (run:run-ticks 200)
            (is (null code))
            (run:run-ticks 200 copy)

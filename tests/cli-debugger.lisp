@@ -155,7 +155,7 @@
   "Let another thread break, and wait until it has gone on, as RUN-PLAN does for a plan."
   (break-elsewhere)
   (loop with never = (base:make-semaphore "never")
-        repeat 100
+        repeat 6000                     ; a minute, which only a hang reaches
         until *went-on*
         do (base:wait-a-while never 0.01)))
 

@@ -321,7 +321,7 @@ of lines, and the number of errors."
 
 (test options.are-all-in-the-usage
   (let ((usage (base:read-file-into-string
-                (asdf:system-relative-pathname "ars-magna" "cli/usage.txt"))))
+                (asdf:system-relative-pathname "ars-magna" "cli/shell/usage.txt"))))
     (loop for (option) in cli::*options*
           do (is-true (search option usage) "~A" option))))
 

@@ -46,7 +46,7 @@
 
 (defun changed-twin (simulation number slot dice)
   "Return a copy of SIMULATION in which SLOT of the object with NUMBER has another value."
-  (let* ((twin (run:copy-simulation simulation))
+  (let* ((twin (run:fork-simulation simulation))
          (object (nth number (objects-in twin)))
          (value (funcall (base:kind-slot-reader slot) object)))
     (funcall (base:kind-slot-writer slot)
@@ -101,7 +101,7 @@
     (call-at-moments
      (lambda (simulation)
        (let ((digest (run:state-digest simulation))
-             (future (future (run:copy-simulation simulation))))
+             (future (future (run:fork-simulation simulation))))
          (loop repeat 20
                do (multiple-value-bind (number slot)
                       (any-slot simulation '(:memory :scratch) dice)
@@ -143,10 +143,10 @@
 (test copy.goes-the-way-of-its-original
   (call-at-moments
    (lambda (simulation)
-     (let ((twin (run:copy-simulation simulation))
+     (let ((twin (run:fork-simulation simulation))
            (digest (run:state-digest simulation)))
        (is (= digest (run:state-digest twin)))
-       (let ((twins-twin (run:copy-simulation twin)))
+       (let ((twins-twin (run:fork-simulation twin)))
          (is (equal (future twin) (future twins-twin))))
        (is (= digest (run:state-digest simulation)) "the original is not disturbed")))
    30 9))
@@ -157,7 +157,7 @@
     (command:robot-go-forward rover 9)
     (time:schedule (:bell :timer 12) (setf (base:parameter-value 'base:braking*) 1))
     (run:run-ticks 6)
-    (let ((twin (run:copy-simulation time:*simulation*)))
+    (let ((twin (run:fork-simulation time:*simulation*)))
       (run:run-ticks 20 twin)
       (setf base:braking* 2)
       (run:run-ticks 20)
@@ -171,7 +171,7 @@
                                     (declare (ignore ignore))
                                     (incf answers)))
       (run:run-ticks 2)
-      (run:run-ticks 20 (run:copy-simulation time:*simulation*))
+      (run:run-ticks 20 (run:fork-simulation time:*simulation*))
       (is (= 0 answers))
       (run:run-ticks 20)
       (is (= 1 answers)))))

@@ -229,11 +229,11 @@
                                           places))
                                   1))
     (let ((way (first (experiment::ways-of-trials experiment condition '(3)))))
-      (is (= 3 (experiment::way-trial way)))
-      (is (< 3 (length (experiment::way-points way))))
+      (is (= 3 (trails:way-trial way)))
+      (is (< 3 (length (trails:way-points way))))
       (is (equal (remove-duplicates (reverse places) :test #'equal :from-end t)
-                 (coerce (experiment::way-points way) 'list)))
-      (is (string= (end-of-trial 2 3) (experiment::way-outcome way))))))
+                 (coerce (trails:way-points way) 'list)))
+      (is (string= (end-of-trial 2 3) (trails:way-outcome way))))))
 
 (test ways.change-nothing-in-the-trial
   (define-wandering)
@@ -249,14 +249,14 @@
 
 (test ways.need-only-the-ends-of-what-is-straight
   (let ((points '((0 . 0) (1 . 0) (2 . 0) (3 . 0) (3 . 1) (3 . 2))))
-    (is (equal '((0 . 0) (3 . 0) (3 . 2)) (experiment::straightened points 1/10)))
-    (is (equal '((0 . 0) (3 . 2)) (experiment::straightened points 10)))
-    (is (equal points (experiment::straightened points -1)))
-    (is (equal '((1 . 1)) (experiment::straightened '((1 . 1)) 1)))
-    (is (equal '() (experiment::straightened '() 1)))
+    (is (equal '((0 . 0) (3 . 0) (3 . 2)) (trails:straightened points 1/10)))
+    (is (equal '((0 . 0) (3 . 2)) (trails:straightened points 10)))
+    (is (equal points (trails:straightened points -1)))
+    (is (equal '((1 . 1)) (trails:straightened '((1 . 1)) 1)))
+    (is (equal '() (trails:straightened '() 1)))
     ;; A circle has no ends.
     (is (equal '((0 . 0) (5 . 0) (0 . 0))
-               (experiment::straightened '((0 . 0) (5 . 0) (0 . 0)) 1)))))
+               (trails:straightened '((0 . 0) (5 . 0) (0 . 0)) 1)))))
 
 (test ways.are-drawn-by-outcome
   (define-wandering)
@@ -265,7 +265,7 @@
     (let* ((file (concatenate 'string directory "ways.svg"))
            (text (progn (experiment:save-ways-picture 'wandering 1 file :trials 8)
                         (base:file-text file)))
-           (outcomes (mapcar #'experiment::way-outcome
+           (outcomes (mapcar #'trails:way-outcome
                              (experiment::ways-of-trials (experiment:find-experiment 'wandering)
                                                          (experiment:find-condition 'wandering 1)
                                                          '(1 2 3 4 5 6 7 8))))

@@ -121,7 +121,7 @@
     (run:run-ticks 4)
     (sonar:sonar-ping (ears 1))
     (run:run-ticks 1)
-    (let* ((twin (run:copy-simulation time:*simulation*))
+    (let* ((twin (run:fork-simulation time:*simulation*))
            (other (robot:robot-part (first (run:simulation-robots twin)) 'sonar:sonar 1)))
       (is (not (eq other (ears 1))))
       (is (eq (first (run:simulation-robots twin)) (robot:part-robot other)))

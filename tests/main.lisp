@@ -16,14 +16,14 @@
 
 ;;; Running.
 
-(defun run-test (test)
-  "Run TEST, a name. Return what came of its checks, a list."
+(defun run-test (test suite)
+  "Run TEST, a name, of SUITE. Return what came of its checks, a list."
   (let ((*test-dribble* (make-broadcast-stream)))
-    (call-isolated (lambda () (run test)))))
+    (call-timed (lambda () (call-isolated (lambda () (run test)))) suite)))
 
 (defun run-suite (suite)
   "Run the tests of SUITE in order. Return what came of their checks."
-  (loop for test in (suite-tests suite) append (run-test test)))
+  (loop for test in (suite-tests suite) append (run-test test suite)))
 
 (defun shuffled (list seed)
   "Return the elements of LIST in an order that depends on the integer SEED only."
@@ -42,7 +42,7 @@ returns what came of its checks."
         (results (make-hash-table)))
     (loop for (suite . test) in (shuffled tests seed)
           do (setf (gethash suite results)
-                   (append (run-test test) (gethash suite results))))
+                   (append (run-test test suite) (gethash suite results))))
     (lambda (suite) (gethash suite results))))
 
 ;;; Reporting.
@@ -51,15 +51,22 @@ returns what came of its checks."
   (format t "~&~%FAILED ~(~A~)~%~A~%" (symbol-name (test-name result)) (failure-reason result)))
 
 (defun report-suite (suite results)
-  "Say what came of the checks of SUITE. Return how many passed, failed and were skipped, a list."
+  "Say what came of the checks of SUITE, and how long it took of what it may. Return how many
+passed, failed and were skipped, a list."
   (multiple-value-bind (good failed skipped) (results-status results)
     (declare (ignore good))
     (let ((passed (- (length results) (length failed) (length skipped))))
-      (format t "~&~(~20A~)~6D passed~[~:;~:*, ~D failed~]~[~:;~:*, ~D skipped~]~%"
-              (symbol-name suite) passed (length failed) (length skipped))
+      (format t "~&~(~28A~)~6D passed~7,1F s of ~D~[~:;~:*, ~D failed~]~[~:;~:*, ~D skipped~]~%"
+              (symbol-name suite) passed (seconds-taken suite) (budget-of suite)
+              (length failed) (length skipped))
       (mapc #'write-failure failed)
       (finish-output)
       (list passed (length failed) (length skipped)))))
+
+(defun report-slow-suites (suites)
+  "Say which SUITES have taken more time than they may."
+  (format t "~@[~&~%Slower than they may be (tests/budgets.lisp): ~{~(~A~)~^, ~}.~%~]"
+          (remove-if #'within-budget-p suites)))
 
 (defun report-total (counts)
   "Say what COUNTS, a list of what REPORT-SUITE returns, come to. True if no check has failed."
@@ -72,12 +79,15 @@ returns what came of its checks."
   "Run the suites called NAMES, or all if there are none, and end with a line that counts the
 checks. With the integer SEED, mix all their tests in the order that it decides. True if no check
 has failed."
+  (clrhash *seconds*)
   (let* ((suites (if names (remove-duplicates (mapcar #'find-suite names)) (suite-names)))
          (results-of (if seed
                          (run-shuffled suites seed)
                          #'run-suite)))
-    (report-total (loop for suite in suites
-                        collect (report-suite suite (funcall results-of suite))))))
+    (let ((counts (loop for suite in suites
+                        collect (report-suite suite (funcall results-of suite)))))
+      (report-slow-suites suites)
+      (report-total counts))))
 
 (defun run-from-shell (names &optional seed)
   "Do as RUN-SUITES does, for ./tests/run, and say which SEED it was. NIL if there is no such suite,

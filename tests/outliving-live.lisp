@@ -71,6 +71,7 @@
                                                           (declare (ignore thing))
                                                           (hang)))
     (with-live-shrew
+      (time:set-rate 1000)
       (world:set-kicker (world:find-thing 'log) 'brood)
       (is-true (message-with "has kept the simulator waiting"))
       (run:simulator 'shrew :rate :free :display nil)
@@ -201,3 +202,12 @@
         (define)
         (loop repeat 100000 until (zerop (simulators-of 'form)) do (base:yield-thread))
         (is (= 0 (simulators-of 'form)))))))
+
+(test live.at-a-free-rate-kickers-alone-let-no-time-pass
+  (with-own-definitions
+    (world:define-kicker 'twitch :prob 1 :body (lambda (thing) (world:kick-thing thing .1 0 nil)))
+    (with-live-shrew
+      (world:set-kicker (world:find-thing 'log) 'twitch)
+      (is-true (goes-on-p (live-shrew)))
+      (is-true (run:await-idle))
+      (is (< 0 (run:simulation-tick time:*simulation*) 1000)))))

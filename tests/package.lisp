@@ -10,11 +10,12 @@ layers' symbols are qualified by short local nicknames: geo:add, nisp:matchq, ro
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (loop for (nickname layer) in '((:base "BASE") (:geo "GEOMETRY") (:stats "STATISTICS")
                                   (:nisp "NISP")
-                                  (:world "WORLD") (:time "TIME") (:robot "ROBOT")
+                                  (:world "WORLD") (:ways "WAYS") (:floors "FLOORS") (:time "TIME")
+                                  (:robot "ROBOT")
                                   (:command "COMMAND") (:run "RUN") (:rpl "RPL")
                                   (:fluents "RPL.FLUENTS") (:tasks "RPL.TASKS")
                                   (:language "RPL.LANGUAGE") (:constructs "RPL.CONSTRUCTS")
-                                  (:display "DISPLAY")
+                                  (:display "DISPLAY") (:trails "TRAILS")
                                   (:experiment "EXPERIMENT") (:rates "FIVEAM") (:cli "CLI"))
         for package = (find-package (concatenate 'string "ARS-MAGNA." layer))
         when package
@@ -52,3 +53,15 @@ this."
 (defun test-claim (test)
   "Return what TEST, a name, says in its documentation."
   (fiveam::description (get-test test)))
+
+(defun call-with-suites-of-its-own (function package)
+  "Call FUNCTION, which may define suites, quietly. Then forget those of the package called PACKAGE,
+and the package."
+  (let ((fiveam::*suite* fiveam::*suite*)
+        (*test-dribble* (make-broadcast-stream)))
+    (unwind-protect (funcall function)
+      (let ((package (find-package package)))
+        (when package
+          (do-symbols (symbol package)
+            (when (eq package (symbol-package symbol)) (rem-test symbol)))
+          (delete-package package))))))

@@ -74,69 +74,22 @@
     (is (null (robot:part-location (robot:robot-camera ars-worlds:dot 0))))
     (is (null (robot:part-location (robot:robot-hand ars-worlds:dot 0))))))
 
-;;; Ways.
+;;; Steps.
 
-(defun way-in (map start goal &optional barred)
-  (ars-worlds:find-way (ars-worlds:make-chart (world:find-map map)) start goal barred))
+(defun next-step-in-office (start goal)
+  (ars-worlds:next-step (ars:make-chart 'office) start goal))
 
-(test find-way.keeps-to-free-cells-and-neighbours
-  (let ((way (way-in 'office '(62 38) '(108.5 70.5))))
-    (is (equal '(62 38) (first way)))
-    (is (equal '(108 70) (first (last way))))
-    (loop for (x y) in way
-          do (is-false (world:wall-at-p (world:find-map 'office) x y)))
-    (loop for ((x y) (next-x next-y)) on way while next-x
-          do (is (>= 1 (max (abs (- x next-x)) (abs (- y next-y))))))
-    (is (< 60 (length way) 110))))
+(test next-step.leads-to-a-doorway-and-through-it
+  (is (equal '(:drive (94.5 37.0)) (next-step-in-office '(85 36.6) '(95 28))))
+  (is (equal '(:door (94 34) (94.5d0 33.5d0)) (next-step-in-office '(94.4 36.8) '(95 28))))
+  (is (equal '(:drive (95d0 28d0)) (next-step-in-office '(94.5 33.5) '(95 28)))))
 
-;;; Two rooms without a door.
-(world:defmap split (9 5)
-  (rect (0 0) (8 4) stone 1)
-  (wall (4 0) (4 4) stone 1))
-
-(test find-way.none-where-there-is-none
-  (is (null (way-in 'split '(2 2) '(6 2))))
-  (is (equal '((2 2) (3 2)) (way-in 'split '(2.5 2.5) '(3.5 2.5)))))
-
-(test find-way.goes-round-what-is-barred
-  (let ((straight (way-in 'tiny '(2.5 4.5) '(8.5 4.5)))
-        (round (way-in 'tiny '(2.5 4.5) '(8.5 4.5) '(((5 4) 50) ((5 5) 50)))))
-    (is (member '(5 4) straight :test #'equal))
-    (is (not (member '(5 4) round :test #'equal)))
-    (is (not (member '(5 5) round :test #'equal)))))
-
-(defun corners-of (map)
-  "Return points in all parts of MAP."
-  (loop for x from 5 below (world:map-width map) by 28
-        append (loop for y from 7 below (world:map-height map) by 23
-                     collect (list x y))))
-
-(test find-way.does-not-depend-on-what-was-asked-before
-  (let* ((map (world:find-map 'office))
-         (chart (ars-worlds:make-chart map))
-         (points (corners-of map))
-         (barred '(((62 38) 50) ((62 39) 50))))
-    (is (< 10 (length points)))
-    (loop for (start goal) on points while goal
-          do (let ((way (ars-worlds:find-way chart start goal)))
-               (is (< 10 (length way)))
-               (is (equal (way-in 'office start goal barred)
-                          (ars-worlds:find-way chart start goal barred)))
-               (is (equal way (ars-worlds:find-way chart start goal)))
-               (is (equal way (way-in 'office start goal)))))))
-
-(test charts.are-shared-until-their-map-changes
-  (base:with-own-definitions ()
-    (flet ((chart () (ars-worlds:chart-of (world:find-map 'split))))
-      (let ((chart (chart)))
-        (is (eq chart (chart)))
-        (world:rebuild-map 'split)
-        (is (not (eq chart (chart))))
-        (setf chart (chart))
-        (is (eq chart (chart)))
-        (world:defmap split (9 5))
-        (is (not (eq chart (chart))))
-        (is (< 4 (length (ars-worlds:find-way (chart) '(2 2) '(6 2)))))))))
+(test next-step.there-is-none-without-a-way
+  (is (null (next-step-in-office '(-50 3) '(95 28))))
+  (let ((chart (ars:make-chart 'office)))
+    (ars:bar-cell chart '(94 34))
+    (ars:bar-cell chart '(84 24))
+    (is (null (ars-worlds:next-step chart '(85 36.6) '(95 28))))))
 
 ;;; Reckoning.
 

@@ -162,7 +162,7 @@ another command, and sometimes fails."
     (:place-type (pick '(doorway convex concave beak "concave" nonsense)))
     (:number (pick '(0 1 .3 .8 -1 5)))
     (:angle (pick '(0 1 -2 .1 3.2d0 1/2)))
-    (:ticks (pick '(0 1 2 5 -1 1.5)))))
+    ((:ticks :tick-span) (pick '(0 1 2 5 20)))))
 
 (defun senseless-argument ()
   (pick (list nil t 7 "seven" 'seven :seven -1d6 1d30 (expt 10 400)

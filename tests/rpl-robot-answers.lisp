@@ -257,8 +257,8 @@
                        when (eq name (command:command-name command)) collect code))
           (own (mapcar #'command:error-code-keyword (command:command-errors command))))
       (is-true (or (null own) (intersection own codes)) "failure of ~A" command)
-      ;; These two only ask, and tell the answer by a code.
+      ;; Two only ask, and tell the answer by a code; THINK is a construct of plans.
       (is-true (or (member nil codes)
                    (member (command:command-name command)
-                           '(command:hand-grasp-check command:hand-track)))
+                           '(command:hand-grasp-check command:hand-track command:think)))
                "success of ~A" command))))

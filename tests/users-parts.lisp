@@ -70,7 +70,7 @@
         (change (lambda (probe) (setf (gethash :a (probe-table probe)) 5)))
         (change (lambda (probe) (setf (gethash :a (probe-table probe)) 6))))
       (is (= 7 (length (remove-duplicates (cons digest digests)))))
-      (let* ((copy (run:copy-simulation time:*simulation*))
+      (let* ((copy (run:fork-simulation time:*simulation*))
              (other (the-probe (first (run:simulation-robots copy)))))
         (is (= (first digests) (run:state-digest copy)))
         (setf (second (probe-history other)) :changed

@@ -4,7 +4,7 @@
 
 (in-suite world)
 
-(defun cache-file () (world::cache-path (format nil "~Aars-magna-tests/[world]*cache"
+(defun cache-file () (base:path-called (format nil "~Aars-magna-tests/[world]*cache"
                                                 (uiop:temporary-directory))))
 
 (defun cached-map (&rest clauses)
@@ -232,4 +232,4 @@
 
 (test cache.tilde-is-home
   (is (equal (namestring (merge-pathnames "cache/x" (user-homedir-pathname)))
-             (namestring (world::cache-path "~/cache/x")))))
+             (namestring (base:path-called "~/cache/x")))))

@@ -241,9 +241,48 @@ between one thing's kicks with the geometric law, as a draw per thing and tick w
       (is (eq t (world:kick-thing box 2 0 nil)) "the path is not checked")
       (is (equal '(6.5d0 5.5d0) (position-of box)))
       (is (null (world:kick-thing box -100 0 t)) "far outside there is no opening")
+      (signals base:wrong-argument (world:kick-thing box (/ (expt 10 400) 3) 0 t))
       (world:move-thing box 10 19.5)
       (is (eq t (world:kick-thing box 0 1 t)) "off the map is as in a wall")
       (is (equal '(10.5d0 19.5d0) (position-of box)))
+      (is-sound world))))
+
+(test kick-thing.puts-last-in-its-cell
+  "Also a thing that stays in its cell; and a list that somebody has asked for stays as it was."
+  (with-own-definitions
+    (let* ((world (open-world))
+           (a (thing-in world 'a 4.5 4.5)) (b (thing-in world 'b 4.5 4.5))
+           (c (thing-in world 'c 4.5 4.5)) (d (thing-in world 'd 7.5 4.5)))
+      (flet ((here () (world:things-at world 4.5 4.5)))
+        (let ((before (here)))
+          (dolist (thing before) (world:kick-thing thing .25d0 0 nil))
+          (is (equal (list a b c) before))
+          (is (equal (list a b c) (here)) "each in its turn")
+          (world:kick-thing b 0 .25 nil)
+          (is (equal (list a c b) (here)))
+          (world:kick-thing a 3 0 nil)
+          (world:kick-thing d -3d0 1/4 nil)
+          (is (equal (list c b d) (here)))
+          (is (equal (list a) (world:things-at world 7.5 4.5)))
+          (is (equal (list a b c) before))))
+      (is-sound world))))
+
+(test kicks.cons-nothing
+  "Within ticks, at random, into walls, into cells with things in them, by floats and integers."
+  (with-own-definitions
+    (let* ((world (open-world :clauses '((wall (5 0) (5 12) bricks 1) (circle (13 9) 4 bricks 1))))
+           (dice (world:world-dice world :user)))
+      (world:define-kicker 'stroll :prob .3
+        :body (lambda (thing)
+                (world:kick-thing thing (base:roll-within 2d0 dice) (base:roll-within 2 dice) t)))
+      (world:define-kicker 'fall :prob .2
+        :body (lambda (thing) (world:kick-thing thing -.25 1 nil)))
+      (dotimes (index 40)
+        (thing-in world 'box (base:roll-between 0 20 dice) (base:roll-between 0 20 dice)
+                  '((:obsmove t)) :kickers '(stroll fall)))
+      (world:writing (world)
+        (run-world world 20)
+        (is (> 80000 (bytes-consed-by (lambda () (run-world world 1))))))
       (is-sound world))))
 
 (test kick-thing.out-of-containers

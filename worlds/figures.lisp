@@ -55,10 +55,25 @@ map.")
   (with-open-file (out page :direction :output :if-exists :supersede :external-format :utf-8)
     (format out "~{~A~%~}" lines)))
 
+;;; Looking ahead.
+
+(defun save-ways-ahead ()
+  "Save a picture of where the rollouts of an errand go whose way may be barred."
+  (with-simulation (marvin :seed 3)
+    (leave-trolleys)
+    (save-projection-picture (project 'carry-messages :arguments '(:first)
+                                                      :trials 25 :horizon 1200)
+                             (ensure-directories-exist
+                              (in-worlds "pictures/looking-ahead/ways.svg"))
+                             :part '(28 2 100 46))))
+
 ;;; The whole.
 
 (defun save-figures ()
-  "Run the shipped experiments, put their tables into worlds/README.md, and save their pictures."
+  "Draw the floor to import, run the shipped experiments, put their tables into worlds/README.md,
+and save their pictures."
+  (draw-ward (in-worlds "floors/"))
+  (save-ways-ahead)
   (let* ((page (in-worlds "README.md")) (lines (page-lines page)))
     (loop for (experiment . names) in *pictures-kept*
              do (let ((results (run-experiment experiment)))

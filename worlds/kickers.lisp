@@ -63,7 +63,7 @@ moved."
   (let ((step (or (get-attribute walker :heading) (random-step .4))))
     (if (and (take-step walker step) (chance .9 (user-dice)))
         (progn
-          (set-attribute walker :heading step)
+          (unless (get-attribute walker :heading) (set-attribute walker :heading step))
           (run-kicker self))
         (set-attribute walker :heading #f))))
 

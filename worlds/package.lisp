@@ -15,8 +15,8 @@ and programs for the robots there. Written as users write theirs.")
   (:export #:lock #:unlock #:switch-on #:switch-off)
   ;; worlds and their robots
   (:export #:watson #:robbie #:office #:marvin #:gofer #:hall #:porter #:tiny #:dot)
-  ;; charts, wayfinding
-  (:export #:chart #:make-chart #:chart-of #:find-way #:next-step)
+  ;; doorways
+  (:export #:next-step)
   ;; plans: reckoning
   (:export #:reckoning #:here #:begin-reckoning #:reckon #:distance-left #:angle-towards
            #:point-ahead)
@@ -44,8 +44,12 @@ and programs for the robots there. Written as users write theirs.")
   ;; experiments
   (:export #:fetching-against-motion-noise #:fetching-against-blindness-and-kicks
            #:three-ways-of-searching)
+  ;; choosing
+  (:export #:leave-trolleys #:forecasts* #:choose-way #:carry-messages #:choosing-by-rollouts)
   ;; an errand with continuations
-  (:export #:run-errand))
+  (:export #:run-errand)
+  ;; a journey with continuations
+  (:export #:robot-go-to))
 
 (in-package :ars-worlds)
 

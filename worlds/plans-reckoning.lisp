@@ -23,11 +23,11 @@
   "Return where ROBOT is and its heading, a list (x y heading). Plans are given it as their start."
   (append (multiple-value-list (robot-position robot)) (list (robot-angle robot))))
 
-(defun begin-reckoning (start)
-  "Return a reckoning of the plans' robot, which is at START, a list (x y heading)."
+(defun begin-reckoning (start &optional (robot (rpl-robot)))
+  "Return a reckoning of ROBOT, by default the plans', which is at START, a list (x y heading)."
   (destructuring-bind (x y heading) start
-    (make-reckoning (chart-of (ars-magna.world:world-map (robot-world (rpl-robot))))
-                    (rpl-new-odometer 'reckoning)
+    (make-reckoning (make-chart (ars-magna.world:world-map (robot-world robot)))
+                    (ars-magna.robot:make-odometer robot 'reckoning)
                     x y heading)))
 
 (defun reckon (me)
@@ -58,7 +58,21 @@
     (list (+ x (* distance (cos (reckoning-heading me))))
           (+ y (* distance (sin (reckoning-heading me)))))))
 
-;;; What is in the way.
+;;; What is in the way. The chart has the cells as they are barred now, the reckoning until when.
+
+(defun bar-on-chart (me)
+  "Let the chart of ME have what the robot remembers to be barred, up to 90 for a cell, and no
+more."
+  (let ((chart (reckoning-chart me)) (sums '()))
+    (loop for (cell cost) in (reckoning-barred me)
+          for sum = (assoc cell sums :test #'equal)
+          do (if sum
+                 (setf (second sum) (min 90 (+ cost (second sum))))
+                 (push (list cell cost) sums)))
+    (free-all-cells chart)
+    (loop for (cell cost) in sums
+          when (apply #'free-p (chart-map chart) cell)
+            do (bar-cell chart cell cost))))
 
 (defun bar-cells (me point cost until)
   "Let the cell at POINT cost COST more, and those around it a little, until the tick UNTIL."
@@ -67,27 +81,24 @@
                  do (push (list (mapcar #'+ (cell-of point) (list dx dy))
                                 (if (= 0 dx dy) cost (floor cost 8))
                                 until)
-                          (reckoning-barred me)))))
+                          (reckoning-barred me))))
+  (bar-on-chart me))
 
 (defun bar-ahead (me)
   "Remember for a while that something stands right before the robot of ME."
-  (bar-cells me (point-ahead me .6) 40 (+ 200 (plan-time))))
+  (bar-cells me (point-ahead me .6) 40 (+ 200 (simulation-tick))))
 
-(defun barred-now (me)
-  "Return a list of (cell cost) for what the robot of ME remembers to be barred."
-  (setf (reckoning-barred me)
-        (remove-if (lambda (entry) (< (third entry) (plan-time))) (reckoning-barred me)))
-  (let ((sums '()))
-    (loop for (cell cost) in (reckoning-barred me)
-          for sum = (assoc cell sums :test #'equal)
-          do (if sum
-                 (setf (second sum) (min 90 (+ cost (second sum))))
-                 (push (list cell cost) sums)))
-    sums))
+(defun chart-now (me)
+  "Return the chart of ME as it is now: what was barred long enough is free again."
+  (flet ((over-p (entry) (< (third entry) (simulation-tick))))
+    (when (some #'over-p (reckoning-barred me))
+      (setf (reckoning-barred me) (remove-if #'over-p (reckoning-barred me)))
+      (bar-on-chart me)))
+  (reckoning-chart me))
 
 (defun next-step-of (me goal)
   "Return the next step, as NEXT-STEP, of the robot of ME on its way to GOAL."
-  (next-step (reckoning-chart me) (barred-now me) (reckon me) goal))
+  (next-step (chart-now me) (reckon me) goal))
 
 ;;; Corrections.
 

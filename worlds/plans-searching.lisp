@@ -26,15 +26,14 @@
   (roll-element places dice))
 
 (defun way-to (me place)
-  "Return how long the way of the robot of ME to PLACE is, in metres; NIL if there is none."
-  (let ((cells (find-way (reckoning-chart me) (reckon me) place (barred-now me))))
-    (and cells
-         (loop for (cell next) on cells
-               while next
-               sum (apply #'length-of (mapcar #'- next cell))))))
+  "Return what the way of the robot of ME to PLACE costs, about its length in metres; NIL if there
+is none."
+  (let* ((chart (chart-now me))
+         (start (nearest-free-point chart (reckon me))))
+    (and start (way-cost chart start place))))
 
 (defun nearest-place (me places left dice)
-  "Return that of LEFT to which the way of the robot of ME is shortest; any if it gets to none."
+  "Return that of LEFT to which the way of the robot of ME costs least; any if it gets to none."
   (declare (ignore places dice))
   (flet ((straight (place) (distance-left me place)))
     (let ((nearest (first left)) (least nil))

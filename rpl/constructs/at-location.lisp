@@ -16,13 +16,10 @@ a fluent: the stays under way."
   "That TASK does something at a place."
   (task nil :type task :read-only t))
 
-(defvar *whereabouts* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "The whereabouts of each plan runner's robot.")
-
 (defun whereabouts ()
   "Return the whereabouts of the robot of the plan that asks."
-  (or (gethash *runner* *whereabouts*)
-      (setf (gethash *runner* *whereabouts*) (make-whereabouts))))
+  (or (runner-note *runner* 'whereabouts)
+      (setf (runner-note *runner* 'whereabouts) (make-whereabouts))))
 
 (defun begin-stay (whereabouts)
   "Note that the task that asks stays where the robot is now. Return the stay."

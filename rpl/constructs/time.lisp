@@ -25,12 +25,16 @@
       (:seconds (ceiling (* span (runner-ticks-per-second *runner*))))
       (t (reject-argument operator 'unit unit ":ticks or :seconds")))))
 
+(defun check-unit (unit form)
+  "Signal MALFORMED-DEFINITION if UNIT, a form in FORM, is seen to be no unit of time."
+  (when (and (atom unit) (or (keywordp unit) (not (symbolp unit)))
+             (not (member unit '(:ticks :seconds))))
+    (reject-clause (author) form (format nil ":unit :ticks or :unit :seconds, not ~(~S~)" unit))))
+
 (defun span-lambda (operator span unit form scope)
   "Return the lambda expression, of the environment, for SPAN of UNIT, forms in FORM, a use of
 OPERATOR, in ticks."
-  (when (and (atom unit) (or (keywordp unit) (not (symbolp unit)))
-             (not (member unit '(:ticks :seconds))))
-    (reject-clause (author) form (format nil ":unit :ticks or :unit :seconds, not ~(~S~)" unit)))
+  (check-unit unit form)
   (value-lambda `(ticks-of ,span (or ,unit :ticks) ',operator) scope))
 
 (define-construct wait-time (span &key unit)

@@ -8,7 +8,7 @@
 ;;; in first out; one that wants several can be overtaken by such as can have what they want.
 ;;; What an owner's own parts ask for they have: it is for the owner to keep them apart.
 
-(defstruct (valve (:constructor %make-valve (name)) (:copier nil))
+(defstruct (valve (:include entity) (:constructor %make-valve (name)) (:copier nil))
   "What guarantees that one task at a time has a resource."
   (name nil :read-only t)
   (claims '() :type list)
@@ -22,6 +22,11 @@ that have been taken from it."
   (priority 0 :type real :read-only t)
   (taken '() :type list)
   (lost '() :type list))
+
+;; In a fork whose plans did not lead to it, nobody has it.
+(defmethod fresh-twin ((valve valve) realm)
+  (declare (ignore realm))
+  (%make-valve (valve-name valve)))
 
 (document-functions
   claim-p "True of claims: what tasks that want or have valves wait for, or have in a frame."
@@ -40,15 +45,16 @@ that have been taken from it."
 (defun valve-owner (valve)
   "Return the task that has VALVE, or NIL."
   (check-argument valve-owner valve (valve-p valve) "a valve, as make-valve returns")
-  (and (valve-claims valve) (claim-task (first (valve-claims valve)))))
+  (let ((claims (valve-claims (here valve))))
+    (and claims (claim-task (first claims)))))
 
 (defun valve-requests (valve)
   "Return the tasks that wait for VALVE, the next to have it first."
-  (mapcar #'claim-task (valve-waiting valve)))
+  (mapcar #'claim-task (valve-waiting (here valve))))
 
 (defun valve-losers (valve)
   "Return the tasks from which VALVE was taken and which are to have it back, the next first."
-  (mapcar #'claim-task (rest (valve-claims valve))))
+  (mapcar #'claim-task (rest (valve-claims (here valve)))))
 
 (defun valve-text (valve)
   "Return the name of VALVE as text."

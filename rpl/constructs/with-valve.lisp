@@ -2,12 +2,16 @@
 
 (in-package :ars-magna.rpl.constructs)
 
+(defun valve-meant (object)
+  "Return the valve here that OBJECT, perhaps a fluent, stands for. Signals WRONG-ARGUMENT."
+  (let ((valve (fluent-value object)))
+    (check-argument with-valve valve (valve-p valve) "a valve, made by make-valve")
+    (here valve)))
+
 (defun checked-claim (priority valves task)
   "Return the claim of TASK to VALVES, or their fluents' values. Signals WRONG-ARGUMENT."
   (let ((priority (or (fluent-value priority) 0))
-        (valves (remove-duplicates (mapcar (lambda (valve) (fluent-value valve)) valves))))
-    (dolist (valve valves)
-      (check-argument with-valve valve (valve-p valve) "a valve, made by make-valve"))
+        (valves (remove-duplicates (mapcar #'valve-meant valves))))
     (check-argument with-valve priority (quantity-p priority) "a number from -1e15 to 1e15")
     (make-claim task valves priority)))
 

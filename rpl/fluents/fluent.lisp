@@ -8,7 +8,7 @@
 ;;; to go undoes that, so that nothing leaks. HEIGHT is the longest way down to a base fluent.
 
 (public fluent)
-(defstruct (fluent (:constructor %make-fluent (name now)) (:copier nil))
+(defstruct (fluent (:include entity) (:constructor %make-fluent (name now)) (:copier nil))
   "A quantity that varies in time. Plans wait for fluents to become true (manual C)."
   (name nil :read-only t)
   (now nil)
@@ -51,7 +51,51 @@ watcher, the value, and NIL or the error met in computing it. PENDING counts eve
   (previous nil :type (or null link))
   (next nil :type (or null link)))
 
-(declaim-final derived watcher link fluent)
+(defstruct (view (:include derived)
+                 (:constructor %make-view (name operator sources height bases memory always-p
+                                           test key))
+                 (:copier nil))
+  "A network that remembers: see views.lisp. BASES are the base fluents that it is of, MEMORY is
+what was the case when it was read last: how often these were set or pulsed and, of a view of
+changes, what TEST compares, KEY of the value, behind it in a cons. ALWAYS-P says whether each event
+counts."
+  (bases '() :type list :read-only t)
+  (memory nil)
+  (always-p nil :read-only t)
+  (test nil :type (or null function) :read-only t)
+  (key nil :type (or null function) :read-only t))
+
+(declaim-final view derived watcher link fluent)
+(define-shared-slots fluent name)
+
+;;; In forks.
+
+(defmethod fresh-twin ((fluent fluent) realm)
+  (declare (ignore realm))
+  (let ((twin (%make-fluent (fluent-name fluent) (fluent-now fluent))))
+    (setf (fluent-sets twin) (fluent-sets fluent)
+          (fluent-pulses twin) (fluent-pulses fluent))
+    twin))
+
+(defmethod fresh-twin ((fluent derived) realm)
+  (%make-derived (fluent-name fluent) (derived-operator fluent)
+                 (mapcar (lambda (source)
+                           (if (fluent-p source) (entity-in source realm) source))
+                         (derived-sources fluent))
+                 (fluent-height fluent)))
+
+(defgeneric home-forked-p (home copier)
+  (:documentation "True if HOME is of the run that COPIER copies.")
+  (:method (home copier) (declare (ignore home copier)) nil))
+
+(defmethod foreign-p ((fluent fluent) copier)
+  (and (fluent-home fluent)
+       (not (home-forked-p (fluent-home fluent) copier))))
+
+(defmethod concerns-p ((fluent fluent) realm)
+  (let ((home (fluent-home fluent)))
+    (or (null home)
+        (and (realm-source realm) (eq home (weak-value (realm-source realm)))))))
 
 (document-functions
  make-watcher "Return somebody who is to be told of a fluent by a function, on behalf of a client."

@@ -39,8 +39,8 @@ NIL.")
 
 ;;; Having it.
 
-;; An interrupt may come even before a thread that leaves a home has said so. Bindings are undone
-;; all the same.
+;; An interrupt may make a thread leave a home before it has noted that it leaves. But its bindings
+;; are undone in any case.
 (defvar *homes* '()
   "The homes that this thread has.")
 

@@ -42,12 +42,13 @@ for each part, or T if a fluent.")
 
 (declaim (inline one-fluent truth-value))
 (defun one-fluent (object)
-  "Return OBJECT, a condition. Signals MISUSE if it is a vector of fluents."
-  (if (and (simple-vector-p object) (fluents-vector-p object))
-      (reject-vector object)
-      object))
+  "Return OBJECT, a condition; of a fluent, the one that is here. Signals MISUSE if it is a vector
+of fluents."
+  (cond ((fluent-p object) (here object))
+        ((and (simple-vector-p object) (fluents-vector-p object)) (reject-vector object))
+        (t object)))
 
 (defun truth-value (object)
   "Return the value of OBJECT, a condition: a fluent, or else its own value. Signals MISUSE if it is
 a vector of fluents."
-  (if (fluent-p object) (current-value object) (one-fluent object)))
+  (if (fluent-p object) (current-value (here object)) (one-fluent object)))

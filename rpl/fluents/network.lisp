@@ -107,14 +107,18 @@ have set the fluent just before; so who waits for it to be true looks at it afte
 (defun fluent-value (object)
   "Return the value that OBJECT, a fluent, has now. Any other OBJECT is its own value. Can be set:
 see SET-VALUE (manual D.2)."
-  (if (fluent-p object) (current-value object) object))
+  (if (fluent-p object) (current-value (here object)) object))
 
 ;;; Building.
 
+(defun height-over (sources)
+  "Return the height of a network of SOURCES."
+  (1+ (loop for source in sources
+            when (fluent-p source) maximize (fluent-height source))))
+
 (defun make-derived (name operator sources)
-  (%make-derived name operator sources
-                 (1+ (loop for source in sources
-                           when (fluent-p source) maximize (fluent-height source)))))
+  (let ((sources (mapcar (lambda (source) (if (fluent-p source) (here source) source)) sources)))
+    (%make-derived name operator sources (height-over sources))))
 
 (defun lift (name function &rest arguments)
   "Return FUNCTION of ARGUMENTS; if there is a fluent among these, the fluent called NAME whose
@@ -193,7 +197,7 @@ each other's values.")
 
 (defun value-text (fluent)
   "Return the value of FLUENT as text; in words what hinders that."
-  (handler-case (let ((*inside-fluent* t)) (safe-text (current-value fluent)))
+  (handler-case (let ((*inside-fluent* t)) (safe-text (current-value (here fluent))))
     (error (condition) (format nil "error: ~A" (type-of condition)))))
 
 (defmethod print-object ((fluent fluent) stream)

@@ -4,8 +4,8 @@
 
 ;;; A change is heard by the watchers of what was set, in order of arrival, and then by the
 ;;; dependent fluents in order of height, so that none is computed from a mixture of old and new
-;;; values and each at most once. Watchers hear only of true values (and of errors). Whoever was
-;;; heard to be true is committed to waking: what happens to the fluent afterwards is no matter.
+;;; values and each at most once. Watchers hear only of true values (and of errors). A watcher that
+;;; has heard of a true value will wake, whatever happens to the fluent afterwards.
 
 (defvar *spreading* nil
   "While a change is being spread, when networks must not set fluents, a list of one element: the
@@ -140,8 +140,8 @@ views that are true for the instant at which that change happened.")
     (reject-use "A function lifted over fluents set ~A. Networks only compute: set it in a plan."
                 fluent)))
 
-;;; What is not the business of the runner at work is posted to the runner that it is of, or done at
-;;; once while nobody has that.
+;;; A change that concerns another runner than the one at work is posted to that runner, or made at
+;;; once while no thread has it.
 
 (defun elsewhere (fluent)
   "Return where changes of FLUENT are to be heard, if that is not where this thread is; else NIL."
@@ -152,6 +152,7 @@ views that are true for the instant at which that change happened.")
 
 (defun set-now (fluent value)
   (unless (eql value (fluent-now fluent))
+    (before-change fluent)
     (setf (fluent-now fluent) value)
     (incf (fluent-sets fluent))
     (note-change :set fluent value)
@@ -166,6 +167,15 @@ it."
       (funcall (home-on-post home))
       (post home `((:set ,fluent ,value)))))
 
+(defvar *on-outside-change* nil
+  "A function that is told of what is changed where no plan is at work: SET-VALUE or PULSE, as a
+function, and the fluent and value that it is called with; or NIL.")
+
+(declaim (inline note-outside))
+(defun note-outside (function fluent value)
+  (unless *runner*
+    (when *on-outside-change* (funcall (the function *on-outside-change*) function fluent value))))
+
 (public set-value)
 (defun set-value (fluent value)
   "Give FLUENT the value VALUE and return it. Those who wait for FLUENT, or for a network that it
@@ -173,7 +183,8 @@ is in, hear of it if that changed something (EQL) and the outcome is true. FLUEN
 network. From outside of plans, in any thread, it is heard as soon as the plans at work have come to
 a pause (manual D.2)."
   (check-settable 'set-value fluent)
-  (let ((home (elsewhere fluent)))
+  (note-outside #'set-value fluent value)
+  (let* ((fluent (here fluent)) (home (elsewhere fluent)))
     (if home
         (set-elsewhere home fluent value)
         (set-now fluent value))
@@ -186,8 +197,8 @@ a pause (manual D.2)."
 (defun (setf fluent-value) (value fluent)
   (set-value fluent value))
 
-;;; A pulse is one instant at which the fluents have other values, and then they have those of
-;;; before again.
+;;; A pulse is one instant at which the fluents have other values; then they have their former
+;;; values again.
 
 (defun pulse-all (fluents values)
   (let ((before (mapcar #'fluent-now fluents)))
@@ -210,6 +221,7 @@ a pause (manual D.2)."
         (spread-by-height backlog)))))
 
 (defun pulse-now (fluent value)
+  (before-change fluent)
   (incf (fluent-pulses fluent))
   (pulse-all (list fluent) (list value)))
 
@@ -219,18 +231,25 @@ a pause (manual D.2)."
 for a network that is true at that instant, will wake. Return VALUE. From outside of plans, in any
 thread, it is heard as soon as the plans at work have come to a pause (manual C)."
   (check-settable 'pulse fluent)
-  (let ((home (elsewhere fluent)))
+  (note-outside #'pulse fluent value)
+  (let* ((fluent (here fluent)) (home (elsewhere fluent)))
     (if home
         (post home `((:pulse ,fluent ,value)))
         (pulse-now fluent value)))
   value)
 
+(defun settable-here (operator fluent)
+  "Return the fluent that FLUENT, which OPERATOR is to set, is here. Signals WRONG-ARGUMENT."
+  (check-settable operator fluent)
+  (here fluent))
+
 (defun apply-settings (settings)
   "Apply SETTINGS at one instant: first each (:set fluent value), then each (:pulse fluent [value]),
 all together. So whoever sees the pulses sees the values that came with them (reading 177)."
   (let ((changed '()) (pulsed '()) (values '()))
-    (loop for (kind fluent . more) in settings
-          do (check-settable kind fluent)
+    (loop for (kind given . more) in settings
+          for fluent = (settable-here kind given)
+          do (before-change fluent)
              (ecase kind
                (:set (unless (eql (first more) (fluent-now fluent))
                        (setf (fluent-now fluent) (first more))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-;;; Whatever was true of the lists before, the fluents that anybody watches are found from the
-;;; watchers that are known; all that they remember of each other is forgotten, and made anew.
+;;; The lists of fluents may be in any state. So the fluents that somebody watches are found from
+;;; the watchers, which are known; what the fluents remember of each other is dropped and made anew.
 
 (defun reachable-fluents (watchers)
   "Return the fluents that WATCHERS watch, and those that depend on these or that these depend on."

@@ -14,15 +14,42 @@
 (defun count-events (fluents)
   (loop for fluent in fluents sum (+ (fluent-sets fluent) (fluent-pulses fluent))))
 
-(defun make-view (name sources function)
-  "Return a view of SOURCES called NAME, whose value is what FUNCTION returns for theirs; it is read
-when FUNCTION is called."
+(defun look-for-event (view)
+  "Return a number if something has happened to the fluents of VIEW since it was read last, or NIL."
+  (let ((seen (view-memory view)) (events (count-events (view-bases view))))
+    (when (< seen events)
+      (before-change view)
+      (setf (view-memory view) (if (view-always-p view) (1+ seen) events)))))
+
+(defun look-for-change (view value)
+  "Return a number if VALUE, what the fluent of VIEW is now, is another than when it was read last."
+  (destructuring-bind (sets . last) (view-memory view)
+    (let ((now (count-sets (view-bases view))))
+      (unless (= sets now)
+        (let ((value (funcall (view-key view) value)))
+          (unless (funcall (view-test view) last value)
+            (before-change view)
+            (setf (view-memory view) (cons now value))
+            now))))))
+
+(defun look (view value)
+  "Return what VIEW says, which this uses up. VALUE is the value of its first fluent."
+  (let ((answer (if (view-test view) (look-for-change view value) (look-for-event view))))
+    (when answer (note-instant view))
+    answer))
+
+(defun make-view (name sources bases memory &key always-p test key)
+  "Return a view of SOURCES called NAME; see VIEW."
   (let ((view nil))
-    (flet ((look (&rest values)
-             (let ((value (apply function values)))
-               (when value (note-instant view))
-               value)))
-      (setf view (make-derived name #'look sources)))))
+    (setf view (%make-view name (lambda (&rest values) (look view (first values)))
+                           sources (height-over sources) bases memory always-p test key))))
+
+;; What it remembers is a state, and it is of the fork's fluents.
+(defmethod fresh-twin ((view view) realm)
+  (flet ((twins (fluents) (mapcar (lambda (fluent) (entity-in fluent realm)) fluents)))
+    (make-view (fluent-name view) (twins (derived-sources view)) (twins (view-bases view))
+               (view-memory view)
+               :always-p (view-always-p view) :test (view-test view) :key (view-key view))))
 
 (addition fl-pulsed)
 (defun fl-pulsed (fluent &key (handle-missed-pulses :once))
@@ -35,14 +62,9 @@ WRONG-ARGUMENT. (CRAM's; what a network's pulse is, is ours.)"
   (check-argument fl-pulsed fluent (fluent-p fluent) "a fluent")
   (check-argument fl-pulsed handle-missed-pulses
                   (member handle-missed-pulses '(:once :never :always)) ":once, :never or :always")
-  (let* ((bases (base-fluents fluent))
+  (let* ((bases (base-fluents (here fluent)))
          (seen (if (eq handle-missed-pulses :never) (count-events bases) 0)))
-    (make-view 'fl-pulsed bases
-               (lambda (&rest values)
-                 (declare (ignore values))
-                 (let ((events (count-events bases)))
-                   (when (< seen events)
-                     (setf seen (if (eq handle-missed-pulses :always) (1+ seen) events))))))))
+    (make-view 'fl-pulsed bases bases seen :always-p (eq handle-missed-pulses :always))))
 
 (defun function-given-p (object)
   "True if OBJECT is a function or the name of one that there is."
@@ -58,12 +80,9 @@ Pulses alone are no change. Signals WRONG-ARGUMENT. (CRAM's.)"
   (check-argument fl-value-changed fluent (fluent-p fluent) "a fluent")
   (check-argument fl-value-changed test (function-given-p test) "a function of two values")
   (check-argument fl-value-changed key (function-given-p key) "a function of a value")
-  (let* ((bases (base-fluents fluent))
-         (sets (count-sets bases))
-         (last (funcall key (fluent-value fluent))))
-    (make-view 'fl-value-changed (list fluent)
-               (lambda (value)
-                 (let ((now (count-sets bases)))
-                   (unless (or (= sets now) (funcall test last (funcall key value)))
-                     (setf last (funcall key value)
-                           sets now)))))))
+  (let* ((fluent (here fluent))
+         (bases (base-fluents fluent))
+         (key (coerce key 'function)))
+    (make-view 'fl-value-changed (list fluent) bases
+               (cons (count-sets bases) (funcall key (fluent-value fluent)))
+               :test (coerce test 'function) :key key)))

@@ -91,6 +91,8 @@ make its task wait, bind it before FORM, and so those to the left of it."
   "Let the plan language have the construct NAME, exported from the package at hand. LAMBDA-LIST has
 no defaults. DOCUMENTATION is for users. CLAUSES:
 (:manual): the manual has it.
+(:command): there is a command of the same name, which is what users see; its documentation says,
+too, what the name means in plans.
 (:waits :MUST, :MAY or NIL): whether it makes its task wait, see SUSPENSION; :MUST if not given.
 (:arguments form...): those of the variables of LAMBDA-LIST, or forms that return parts of their
 values, that stand for ordinary values, which should they wait are had before; the last may be
@@ -104,8 +106,8 @@ around it; then (build [scope]) in it is the code for the node.
 in plans as well if there is neither :code nor a step.
 (:like construct): what is not said here is as for that one, whose lambda list must be the same."
   (check-clauses "define-construct" name clauses
-                 '(:manual :waits :arguments :parts :code :steps :step :unwind :child-ended :hot
-                   :in-lisp :like))
+                 '(:manual :command :waits :arguments :parts :code :steps :step :unwind
+                   :child-ended :hot :in-lisp :like))
   (let* ((node (symbolicate name '-node))
          (all (all-clauses clauses))
          (node-p (or (clause :steps all) (clause :step all))))
@@ -113,7 +115,8 @@ in plans as well if there is neither :code nor a step.
        (eval-when (:compile-toplevel :load-toplevel :execute)
          (export ',name)
          (note-construct ',name ',all))
-       (,(if (assoc :manual clauses) 'public 'addition) ,name)
+       ,@(unless (assoc :command clauses)
+           `((,(if (assoc :manual clauses) 'public 'addition) ,name)))
        ,(stub-form name lambda-list documentation (first (clause :in-lisp all)))
        (show-lambda-list ',name ',lambda-list)
        ,@(when node-p

@@ -58,7 +58,7 @@
   (:error camera-tracking-error*)
   (:when (null err) (:pulse camera-tracking*)))
 
-;; What it ended tells of that first, with :INTERRUPT.
+;; The track that it ends reports its own end first, with the error :INTERRUPT.
 (define-outcome (camera-untrack) ()
   (:error camera-tracking-error*))
 
@@ -123,3 +123,10 @@
   (:set storage-bin-jammer* jammed-part)
   (:error storage-bin-error*)
   (:pulse storage-bin-moved*))
+
+;;; A thought is a construct in plans, and a command elsewhere.
+
+(setf (documentation 'think 'function)
+      (format nil "~A~%In plans (think span &key unit alone) means: ~A"
+              (documentation 'think 'function)
+              (documentation 'ars-magna.rpl:think 'function)))

@@ -12,39 +12,42 @@
 plan: of all that happens to tasks and fluents, some 50 octets for each. See PLAN-TRACE, WHY and
 SAVE-PLAN-TIMELINE.")
 
-(defstruct (interface (:constructor make-interface (robot simulation)) (:copier nil))
-  "The robot that plans drive, and what runs them."
-  (robot nil :type robot :read-only t)
-  (simulation nil :read-only t)
-  (runner nil :type (or null plan-runner))
-  (ender nil :type (or null function))
-  (valve (make-valve "robot") :type valve :read-only t)
-  (lock (make-lock "plans") :read-only t)
-  ;; The thread that holds the lock, so that plans may start and end others; how many want it.
-  (holder nil)
-  (wanted 0 :type atomic-count)
-  ;; It is to end, has ended.
-  (closing-p nil)
-  (closed-p nil)
-  ;; The thread of plans that are live, and how often all of them have come to rest there.
-  (thread nil :type t)
-  (wake-up (make-semaphore "plans") :read-only t)
-  (rests 0 :type atomic-count)
-  ;; What task keeps that thread by Lisp code that does not return.
-  (hog nil :type (or null task))
-  ;; They are to go on with the next tick.
-  (tick-wanted-p nil)
-  ;; Plans that somebody wants to end.
-  (unwanted '() :type t)
-  ;; The commands of plans that are under way, and what was answered and is not yet heard, both
-  ;; oldest first.
-  (deeds '() :type list)
-  (answers '() :type list)
-  (deeds-lock (make-lock "commands of plans") :read-only t)
-  ;; How often plans have taken which resource in a tick, and what was said of that at which tick.
-  (takeovers '() :type list)
-  (takeover-tick nil)
-  (warned '() :type list))
+(define-kind (interface :constructor (make-interface (robot simulation)))
+    "The robot that plans drive, and what runs them."
+  (:fixed
+   (robot nil (or null robot) "the robot that plans drive")
+   (simulation nil t "the simulation that the robot is in")
+   (valve (make-valve "robot") valve "the valve of the robot, for plans that want to have it"))
+  (:state
+   (runner nil (or null plan-runner) "what runs the plans")
+   (tick-wanted-p nil boolean "the plans are to go on with the next tick")
+   (unwanted '() t "the plans that somebody wants to end")
+   (deeds '() list "the commands of plans that are under way, the oldest first")
+   (answers '() list "what was answered to them and is not yet heard, the oldest first")
+   (takeovers '() list "how often plans have taken which resource in a tick")
+   (takeover-tick nil t "the tick in which that was")
+   (wishes '() list "what tasks want done while all plans rest, the oldest first")
+   (wishes-served 0 fixnum "how many wishes have been served in a tick")
+   (wish-tick nil t "the tick in which that was"))
+  (:memory
+   (warned '() list "what was said of takeovers, and at which tick"))
+  (:link
+   (ender nil (or null function) "what the robot calls when its run is over")
+   (closing-p nil boolean "the interface is to end")
+   (closed-p nil boolean "the interface has ended")
+   (resting-p nil boolean "whoever holds the plans has them rest, for the run to be forked")
+   (lock (make-lock "plans") t "what whoever touches the plans holds")
+   (deeds-lock (make-lock "commands of plans") t "what whoever touches deeds or answers holds")
+   (holder nil t "the thread that holds the lock, so that plans may start and end others")
+   (wanted 0 atomic-count "how many threads want the lock, or wait for all to rest")
+   (thread nil t "the thread of plans that are live, or NIL")
+   (wake-up (make-semaphore "plans") t "what wakes that thread")
+   (rests 0 atomic-count "how often all plans have come to rest there")
+   (hog nil (or null task)
+        "the task that keeps the thread by Lisp code that does not return, or NIL")))
+
+(document-functions
+  interface-p "True of interfaces: what runs the plans that drive a robot.")
 
 (defmethod print-object ((interface interface) stream)
   (print-unreadable-object (interface stream :type t)
@@ -54,6 +57,7 @@ SAVE-PLAN-TIMELINE.")
   "The interface in use; see RPL-INIT-ROBOT.")
 
 (pushnew '*interface* *simulation-variables*)
+(pushnew '*realm* *simulation-variables*)
 
 (defvar *reacting* nil
   "The interface whose plans react in this thread: they drive its robot and no other.")

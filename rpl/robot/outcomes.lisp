@@ -19,8 +19,8 @@
 (defun convert-argument (value type operator)
   "Return what VALUE, perhaps a fluent or an index, stands for as an argument of
 TYPE (reading 181)."
-  (let ((value (fluent-value value)))
-    (cond ((part-kind type) (find-part (part-kind type) value operator))
+  (let ((value (fluent-value value)) (kind (part-kind type)))
+    (cond (kind (find-part kind value operator))
           ((and (same-name-p type 'destination) (integerp value))
            (find-part 'storage-bin value operator))
           (t value))))

@@ -7,20 +7,26 @@
                 #:world-map #:*world* #:remaining-capacity)
   (:import-from :ars-magna.time
                 #:*simulation* #:seconds-now #:current-simulation #:asking #:live-p
-                #:grab-resource #:wake-owner #:timeline-inbox #:agenda-pending #:*hog-seconds*
-                #:hog-seconds)
+                #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
+                #:wake-owner #:timeline-inbox #:agenda-pending #:*hog-seconds* #:hog-seconds)
   (:import-from :ars-magna.run
                 #:simulation-tick #:add-observer #:remove-observer #:run-ticks #:call-as-owner
                 #:simulation-over #:simulation-seed #:simulation-agenda #:simulation-thread
                 #:simulation-timeline #:simulation-robots #:robot-simulation
                 #:*simulation-variables* #:*simulator-hooks* #:add-participant
                 #:remove-participant #:participant-after-tick #:participant-busy-p
-                #:participant-reseed #:participant-digest #:participant-end)
+                #:participant-reseed #:participant-digest #:participant-end
+                #:participant-copy #:participant-at-rest #:check-forkable
+                #:call-as-participant-makes-way #:participant-unsavable
+                #:fork-simulation
+                #:participant-place #:simulation-participants #:fork-p #:note-environment
+                #:counterpart-here #:note-doing #:simulation-past)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:fluent-value
                 #:apply-settings #:*home-in-use* #:*runner* #:post-call #:react-to-all
                 #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers
-                #:next-wake-time #:make-plan-runner #:start-plan #:stop-plan #:plan-runner
+                #:next-wake-time #:needs-tick-p #:set-charges #:make-plan-runner #:start-plan
+                #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:plan-runner-steps #:current-task #:task #:task-p
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:task-serial #:task-form #:task-cleaning #:form-text
@@ -28,7 +34,11 @@
                 #:report-end #:reseed-runner #:digest-runner #:print-tasks #:find-procedure
                 #:plan-trace #:write-trace #:valve #:make-valve #:note-command #:with-answer
                 #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks* #:start-trace
-                #:task-runner #:leave-plan #:runner-client)
+                #:task-runner #:leave-plan #:runner-client #:client-forked-p #:*realm*
+                #:realm-source #:source-realm #:at-home #:entity #:here
+                #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
+                #:decide #:withdraw #:task-frame #:entity-realm #:entity-like
+                #:*on-outside-change* #:task-children)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
            #:robot-place-input* #:robot-place* #:camera-input* #:camera-views*
@@ -59,5 +69,10 @@
            #:rpl-hand-track #:rpl-storage-bin-open #:rpl-storage-bin-close)
   ;; running
   (:export #:run-plan #:begin-plan #:end-plan #:plans #:*plan-limit* #:rpl-runner)
+  ;; interface, wishes and runs, for rooms above
+  (:export #:*interface* #:interface-p #:interface-robot #:interface-simulation #:interface-runner
+           #:interface-wishes #:holding-p #:call-with-plans #:wish #:wish-task #:wish-interface
+           #:serve-wish #:add-wish #:forget-wish #:grant-wish #:wishes-in-tick #:fork-at-rest
+           #:unwanted-wish-p #:call-apart #:ensure-interface #:begin-in #:pass-until #:how-over)
   ;; seeing
   (:export #:plan-ending-p #:call-with-plans-in-use #:print-plans #:step-plan))

@@ -2,7 +2,21 @@
 
 (in-package :ars-magna.rpl-robot)
 
-;;; Headless, plans react at the end of each tick until all wait, so that they see every tick.
+;;; Headless, plans react at the end of each tick until all wait, so that they see every tick; live
+;;; too, unless the thinking mode of the run gives them a thread of their own.
+
+(defun thread-wanted-p (interface)
+  "True if plans of INTERFACE are to react in a thread of their own."
+  (let ((simulation (interface-simulation interface)))
+    (and (live-p simulation)
+         (timeline-real-p (simulation-timeline simulation)))))
+
+(defun charge-as-told (interface)
+  "Let thinking cost the plans of INTERFACE what it costs in its run now."
+  (let ((timeline (simulation-timeline (interface-simulation interface))))
+    (set-charges (interface-runner interface)
+                 (thinking-charged-p timeline)
+                 (thinking-budget timeline))))
 
 (defun react-fully (interface)
   "Let the plans of INTERFACE react to time and to all that was posted, until all of them wait or
@@ -10,9 +24,14 @@ have used their steps. Return :IDLE or :BUDGET. The caller holds the plans; insi
 nothing happens."
   (if (eq interface *reacting*)
       :idle
-      (let ((runner (interface-runner interface)) (*reacting* interface))
+      (let ((runner (interface-runner interface))
+            (*reacting* interface)
+            ;; By then another run may be the current one.
+            (*realm* (entity-realm (interface-valve interface)))
+            (*goes-on-in-forks-p* t))
+        (charge-as-told interface)
         (advance-timers runner (simulation-tick (interface-simulation interface)))
-        (let ((outcome (react-to-all runner)))
+        (let ((outcome (react-and-serve interface)))
           (cond ((interface-closing-p interface) (finish-closing interface) :idle)
                 (t outcome))))))
 
@@ -39,21 +58,22 @@ nothing happens."
   (with-plans (interface)
     (unless (tasks-of interface) (react-fully interface))))
 
-;; In a live simulation only the plans' thread lets plans react: a plan may be waiting for the owner
-;; to answer it.
+;; If plans have a thread only that lets them react: one may be waiting for the owner to answer it.
 (defmethod participant-after-tick ((interface interface) simulation)
+  (declare (ignore simulation))
   (cond ((thread-of interface)
-         (when (time-to-wake-p interface) (wake interface)))
-        ((not (live-p simulation)) (with-plans (interface) (react-fully interface)))
+         (when (or (time-to-wake-p interface) (not (thread-wanted-p interface)))
+           (wake interface)))
+        ((not (thread-wanted-p interface)) (with-plans (interface) (react-fully interface)))
         ((tasks-of interface) (ensure-thread interface))
         ((interface-answers interface) (apply-posts interface))))
 
 ;; What was left ready by a thread that has ended from outside waits for the next tick.
 (defmethod participant-busy-p ((interface interface) simulation)
-  (or (next-wake-time (interface-runner interface))
-      (and (live-p simulation)
-           (tasks-of interface)
-           (null (thread-of interface)))))
+  (cond ((thread-of interface) (next-wake-time (interface-runner interface)))
+        ((needs-tick-p (interface-runner interface)))
+        ((wish-to-serve interface) t)
+        ((live-p simulation) (and (thread-wanted-p interface) (tasks-of interface) t))))
 
 (defmethod participant-reseed ((interface interface) seed)
   (reseed-runner (interface-runner interface) seed))
@@ -68,6 +88,11 @@ nothing happens."
   (declare (ignore simulation))
   (close-interface interface))
 
+(defmethod participant-unsavable ((interface interface))
+  (loop for task in (tasks-of interface)
+        unless (or (task-parent task) (task-over-p task))
+          collect (format nil "the plan ~A is under way" (task-label task))))
+
 ;;; The runner.
 
 (defun busy-p (interface)
@@ -75,6 +100,7 @@ nothing happens."
 not count: they tell plans nothing."
   (let ((simulation (interface-simulation interface)))
     (or (commands-under-way-p interface)
+        (wish-to-serve interface)
         (plusp (agenda-pending (simulation-agenda simulation)))
         (timeline-inbox (simulation-timeline simulation)))))
 
@@ -102,6 +128,6 @@ not count: they tell plans nothing."
                       :busy-p (lambda () (busy-p interface))
                       :clock (lambda () (seconds-when-live simulation))
                       :slow *hog-seconds*
-                      :on-post (lambda () (wake interface))
+                      :on-post (lambda () (call-to-plans interface))
                       :attended-p (lambda () (thread-of interface))
                       :on-end (lambda (task) (note-end interface task)))))

@@ -19,12 +19,13 @@
 (defun begin-in (interface plan arguments note)
   "Start PLAN with the list ARGUMENTS by INTERFACE, and return its task. NOTE, a function, has been
 called with that before anything else can happen."
+  (apply #'note-of-plans interface #'begin-plan plan arguments)
   (prog1 (with-plans (interface)
            (let ((task (apply #'start-plan (interface-runner interface) plan arguments)))
              (funcall note task)
              task))
     (ensure-thread interface)
-    (wake interface)))
+    (call-to-plans interface)))
 
 (addition begin-plan)
 (defun begin-plan (plan &rest arguments)
@@ -48,18 +49,30 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
                   "a number of ticks, up to 1e9")
   *plan-limit*)
 
-(defun run-headless (interface task)
-  "Pass ticks until TASK is over. Return its state, or how it came that it is not over."
-  (let* ((simulation (interface-simulation interface))
-         (last (+ (simulation-tick simulation) (checked-plan-limit))))
+(defun pass-until (interface over last)
+  "Let the plans of INTERFACE react and ticks pass, headless, until OVER, a function, returns true.
+Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :LIMIT if it is tick LAST."
+  (let ((simulation (interface-simulation interface)))
+    (note-of-plans interface #'react-again)
     (with-plans (interface) (react-fully interface))
     (loop
-      (cond ((ended-by-itself-p task) (return (task-state task)))
-            ((not (interface-valid-p interface)) (return :stopped))
-            ((task-over-p task) (return (task-state task)))
+      (let ((how (funcall over))) (when how (return how)))
+      (cond ((not (interface-valid-p interface)) (return :stopped))
             ((deadlocked-p interface) (return :deadlock))
             ((>= (simulation-tick simulation) last) (return :limit)))
       (run-ticks 1 simulation))))
+
+(defun how-over (interface task)
+  "Return the state of TASK if it is over; :STOPPED if it evaporated with all plans of INTERFACE."
+  (cond ((not (task-over-p task)) nil)
+        ((or (ended-by-itself-p task) (interface-valid-p interface)) (task-state task))
+        (t :stopped)))
+
+(defun run-headless (interface task)
+  "Pass ticks until TASK is over. Return its state, or how it came that it is not over."
+  (pass-until interface
+              (lambda () (how-over interface task))
+              (+ (simulation-tick (interface-simulation interface)) (checked-plan-limit))))
 
 (defun await-over (interface task)
   "Wait until TASK is over, live. Return its state, or how it came that it is not over. If nothing
@@ -142,6 +155,7 @@ MISUSE."
 
 (defun want-end (interface task)
   "Let TASK of INTERFACE, or all if it is NIL, evaporate when its runner gets to that."
+  (note-of-plans interface #'end-again (and task (task-serial task)))
   (dolist (task (if task (list task) (tasks-of interface)))
     (unless (task-over-p task) (atomic-push task (interface-unwanted interface))))
   (stop-plan (interface-runner interface) task))
@@ -150,7 +164,8 @@ MISUSE."
   "Let TASK of INTERFACE, or all if it is NIL, evaporate: now, or when their thread gets to it."
   (want-end interface task)
   (unless (or (holding-p interface) (thread-of interface))
-    (with-plans (interface) (react-fully interface))))
+    (asking ((interface-simulation interface))
+      (with-plans (interface) (react-fully interface)))))
 
 (defun plan-ending-p (task)
   "True if somebody has ended TASK, a plan, which may still be under way."
@@ -167,6 +182,16 @@ MISUSE."
           ((eq interface (interface-here)) (end-in interface task))
           (t (want-end interface task)))))
 
+(defun task-here (task)
+  "Return TASK or, in a fork of the run that it is in, what it is there."
+  (let ((client (and (task-runner task) (runner-client (task-runner task)))))
+    (or (and client
+             *simulation*
+             (fork-p *simulation*)
+             (not (eq *simulation* (interface-simulation client)))
+             (counterpart-here task))
+        task)))
+
 (addition end-plan)
 (defun end-plan (task)
   "Let the plan TASK, or all plans if it is :ALL, evaporate. Commands of theirs that are under way
@@ -178,5 +203,5 @@ and MISUSE if there is no robot whose plans :ALL could be."
                   "a task, as begin-plan returns, or :ALL")
   (if (eq task :all)
       (end-in (the-interface) nil)
-      (end-task task))
+      (end-task (task-here task)))
   (values))

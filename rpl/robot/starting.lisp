@@ -51,12 +51,14 @@ and MISUSE if the robot is in another world than the current one."
          (robot (if (robot-p named) named (find-robot named)))
          (simulation (robot-simulation robot)))
     (check-world robot)
+    (note-doing simulation #'rpl-init-robot robot)
     (when (and *interface* (ended-by-p *interface* simulation))
       (close-interface *interface*))
     (make-fluents robot)
     (let ((interface (make-interface robot simulation)))
       (attach interface)
       (setf *interface* interface))
+    (when (eq simulation *simulation*) (note-environment simulation))
     robot))
 
 ;;; When a simulator starts.

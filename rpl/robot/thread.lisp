@@ -9,6 +9,13 @@
   (when (interface-thread interface)
     (signal-semaphore (interface-wake-up interface))))
 
+(defun call-to-plans (interface)
+  "Let the plans of INTERFACE hear soon that there is something for them."
+  (let ((simulation (interface-simulation interface)))
+    (if (thread-of interface)
+        (wake interface)
+        (when (live-p simulation) (wake-owner (simulation-timeline simulation))))))
+
 (defun thread-of (interface)
   "Return the thread of the plans of INTERFACE, :STARTING if it is yet to start, or NIL."
   (let ((thread (interface-thread interface)))
@@ -16,10 +23,18 @@
       (swap-if (interface-thread interface) thread nil))
     (interface-thread interface)))
 
+(defun leave-to-ticks (interface)
+  "Let the plans of INTERFACE, which are to have a thread no longer, go on in the ticks."
+  (setf (interface-thread interface) nil)
+  (wake-owner (simulation-timeline (interface-simulation interface)))
+  :over)
+
 (defun react-in-thread (interface)
-  "Let the plans of INTERFACE react. Return :IDLE or :BUDGET, :OVER if there are none to go on, NIL
-if that was aborted."
+  "Let the plans of INTERFACE react. Return :IDLE or :BUDGET, :OVER if there are none to go on here,
+NIL if that was aborted."
   (with-plans (interface)
+    (unless (timeline-real-p (simulation-timeline (interface-simulation interface)))
+      (return-from react-in-thread (leave-to-ticks interface)))
     ;; Looked at first: what is to end the plans is heard in this reaction.
     (let* ((closing-p (interface-closing-p interface))
            (outcome (call-user-code #'react-fully "running plans" interface)))
@@ -49,7 +64,7 @@ if that was aborted."
     (ecase (react-in-thread interface)
       (:over (return))
       (:idle (rest-plans interface))
-      (:budget (when (waits-for-tick-p interface)
+      (:budget (when (or (waits-for-tick-p interface) (wish-to-serve interface))
                  (setf (interface-tick-wanted-p interface) t)
                  (rest-plans interface)))
       ((nil) (rest-plans interface 0.05)))))
@@ -85,7 +100,7 @@ if that was aborted."
 
 (defun ensure-thread (interface)
   "Have a thread for the plans of a live simulation."
-  (when (and (live-p (interface-simulation interface))
+  (when (and (thread-wanted-p interface)
              (null (thread-of interface))
              (swap-if (interface-thread interface) nil :starting))
     (start-plans-thread interface)))

@@ -2,10 +2,11 @@
 
 (in-package :ars-magna.rpl-robot)
 
-;;; A thread beside that of the plans looks twice in *HOG-SECONDS* what that is at. A plan's Lisp
-;;; code that it sees three times on end has been there for so long: that is named, and aborted if
-;;; somebody wants the end of the plan, or the simulator has been stopped. A plan that takes step
-;;; after step is named by the runner; one that does so after the simulator has stopped is ended.
+;;; A watcher, a thread of its own, looks twice in *HOG-SECONDS* at what the plans' thread is doing.
+;;; If it finds the same step of Lisp code three times in a row, the plan has kept the thread for
+;;; that long: a warning names the plan. The code is aborted if somebody wants the plan to end, or
+;;; the simulator has been stopped. A plan that takes step after step is named by the runner; if it
+;;; goes on after the simulator has stopped, it is ended.
 
 (defstruct (look (:constructor make-look (rests steps task)) (:copier nil))
   "What the plans' thread was at: how often it had come to rest, how many steps had been taken, and

@@ -8,7 +8,7 @@ the debugger's side of plans. Changes nothing.")
   ;; variables
   (:export #:task-stack #:task-variables)
   ;; subjects
-  (:export #:*runner-in-use* #:*still* #:runner-to-see #:task-numbered)
+  (:export #:*runner-in-use* #:*still* #:runner-to-see #:task-numbered #:task-with)
   ;; tree
   (:export #:print-tasks)
   ;; history

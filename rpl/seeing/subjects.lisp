@@ -27,6 +27,14 @@ use. Signals MISUSE if there is none."
   "Return the task with NUMBER of those of WHICH that are not over, or NIL."
   (find number (all-tasks which) :key #'task-serial))
 
+(defun task-with (value runner)
+  "Return the task of RUNNER that has VALUE in a variable, or in what is there, and the name of that
+variable; or NIL."
+  (dolist (task (all-tasks runner) nil)
+    (loop for (nil . variables) in (stack-entries task)
+          for (name) = (find-if (lambda (variable) (holds-p (second variable) value)) variables)
+          do (when name (return-from task-with (values task name))))))
+
 (defun valves-of (task)
   "Return the valves that TASK has or waits for."
   (flet ((valves-in (object)

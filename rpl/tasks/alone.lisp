@@ -5,9 +5,9 @@
 (defun pass-time (runner)
   "Let the next tick come at which something happens."
   (advance-timers runner
-                  (if (any-ready-p runner)
-                      (1+ (runner-tick runner))
-                      (next-wake-time runner))))
+                  (if (idle-p runner)
+                      (next-wake-time runner)
+                      (1+ (runner-tick runner)))))
 
 (defun run-until-over (runner task limit)
   "Run the plans of RUNNER until TASK is over. Return its state, or :deadlock, or :limit when it is
@@ -15,7 +15,7 @@ past tick LIMIT."
   (loop
     (react-to-all runner)
     (cond ((task-over-p task) (return (task-state task)))
-          ((not (or (any-ready-p runner) (next-wake-time runner))) (return :deadlock))
+          ((not (needs-tick-p runner)) (return :deadlock))
           ((and limit (> (or (next-wake-time runner) (runner-tick runner)) limit)) (return :limit))
           (t (pass-time runner)))))
 

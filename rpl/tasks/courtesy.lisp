@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-;;; Who tells a task something by a pulse must not do so before that task has come to its wait. So
-;;; it gives way until the other has come to rest: until that waits, is over, is kept from
+;;; A task that tells another something by a pulse must not do so before the other waits for it. So
+;;; the teller gives way until the hearer rests: until the hearer waits, is over, is kept from
 ;;; running, or has used its slice.
 
 (defstruct (courtesy (:constructor make-courtesy (hearer teller function)) (:copier nil))

@@ -9,20 +9,23 @@
 ;;; The engine knows no simulator. Whoever drives it calls REACT-TO-ALL and ADVANCE-TIMERS, in one
 ;;; thread at a time; any thread may post.
 
-(defun make-plan-runner (&key trace budget clock (slow 0.1d0) dice (ticks-per-second 20)
+(defun make-plan-runner (&key trace budget charged clock (slow 0.1d0) dice (ticks-per-second 20)
                            (tick 0) client (busy-p (constantly nil)) (on-post #'list)
                            (attended-p (constantly nil)) on-tick
                            (on-end #'report-end))
   "Return what runs plans, at TICK. TRACE says whether to keep a trace. BUDGET is how many steps a
-reaction may take before time passes (NIL: as many as it needs). CLOCK, a function that returns
-seconds, serves to warn of Lisp code that runs for more than SLOW seconds. DICE choose for TRY-ONE.
+reaction may take before time passes (NIL: as many as it needs). If CHARGED is true, thoughts that
+say what they cost take ticks, and all reactions of a tick share its BUDGET. CLOCK, a function that
+returns seconds, serves to warn of Lisp code that runs for more than SLOW seconds. DICE choose for
+TRY-ONE.
 BUSY-P says whether somebody else, such as a command under way, may still post. ON-POST is called
 after each post, in the posting thread; ATTENDED-P says whether a thread will hear that anyway.
 ON-TICK, if given, is called with the tick when time has passed, ON-END with each top-level task
 that ends; by default it reports failures. CLIENT, any object, is on whose behalf it does all this."
   (check-argument make-plan-runner budget (or (null budget) (whole-p budget 1))
                   "NIL or an integer from 1 to 1e9")
-  (let ((runner (%make-plan-runner :trace (and trace (make-trace)) :budget budget :clock clock
+  (let ((runner (%make-plan-runner :trace (and trace (make-trace)) :budget budget
+                                   :charged-p (and charged t) :clock clock
                                    :slow slow :dice dice :ticks-per-second ticks-per-second
                                    :tick tick :client client :busy-p busy-p :on-post on-post
                                    :attended-p attended-p :repairer #'put-in-order
@@ -36,7 +39,7 @@ that ends; by default it reports failures. CLIENT, any object, is on whose behal
 
 (defconstant +start+ 100
   "How many steps of a reaction it counts as to start a plan: what starts plans without end is to
-meet the end of the reaction before that of the room.")
+meet the end of the reaction before that of the room. Where steps are counted it is one.")
 
 (defun start-plan (runner plan &rest arguments)
   "Start PLAN, a plan procedure or the name of one, with ARGUMENTS as a top-level task of RUNNER.
@@ -45,7 +48,7 @@ Return the task, which runs at the next reaction."
     (let ((name (if (procedure-p plan) (procedure-name plan) plan)))
       (at-home (runner)
         (let ((task (spawn nil body environment 0 0 (make-task name body))))
-          (incf (runner-steps runner) +start+)
+          (incf (runner-steps runner) (if (runner-budget runner) 1 +start+))
           (push task (runner-roots runner))
           (dolist (hook *plan-start-hooks*) (funcall hook task))
           task)))))
@@ -56,10 +59,12 @@ Return the task, which runs at the next reaction."
 
 (defun run-ready (runner)
   "Run the ready tasks of RUNNER. Return :idle when none is ready that has not used its slice,
-:budget when the steps of the reaction are spent."
+:budget when the steps of the reaction are spent, or all stand still while one thinks."
   (loop
     (when (runner-doomed runner) (end-doomed runner))
-    (when (>= (runner-steps runner) (runner-limit runner)) (return :budget))
+    (when (or (>= (runner-steps runner) (runner-limit runner))
+              (standing-still-p runner))
+      (return :budget))
     (when (runner-courtesies runner) (settle-courtesies runner))
     (let ((task (take-ready runner)))
       (cond (task (run-task task))
@@ -67,9 +72,14 @@ Return the task, which runs at the next reaction."
             (t (return :idle))))))
 
 (defun run-round (runner)
-  "Run the ready tasks of RUNNER, whatever becomes of one. Return as RUN-READY does."
-  (incf (runner-round runner))
-  (loop thereis (call-with-care runner #'run-ready)))
+  "Run the ready tasks of RUNNER, whatever becomes of one. Return as RUN-READY does. A round that
+the end of a tick's budget has broken off goes on in the next tick: each task gets its turn in it."
+  (unless (shiftf (runner-broken-off-p runner) nil)
+    (incf (runner-round runner)))
+  (let ((outcome (loop thereis (call-with-care runner #'run-ready))))
+    (when (and (eq outcome :budget) (runner-charged-p runner))
+      (setf (runner-broken-off-p runner) t))
+    outcome))
 
 (defun run-rounds (runner hear)
   "Run the ready tasks of RUNNER until none is ready; HEAR, a function, is called between rounds and
@@ -94,21 +104,16 @@ returns true if it brought something new. Return :idle or :budget."
       (warning-set "A plan took " *runaway-limit* " steps without waiting, at " (form-text form)
                    " in " (task-label task) "; time passes all the same."))))
 
-(defun give-budget (runner budget)
-  "Let the reaction that begins take BUDGET steps."
-  (setf (runner-exhausted runner) nil
-        (runner-limit runner) (+ (runner-steps runner) budget)
-        (runner-slice runner) (max 1 (min +slice+ (floor budget 10)))))
-
 (defun react-hearing (runner hear)
   "Let RUNNER react, as RUN-ROUNDS does."
   (at-home (runner)
-    (give-budget runner (or (runner-budget runner) *runaway-limit*))
+    (give-budget runner)
     (let ((outcome (let ((*leaves-offer-restarts* *break-on-user-error*))
                      (run-rounds runner hear))))
       (when (and (eq outcome :budget)
                  (null (runner-budget runner))
-                 (not (runner-exhausted runner)))
+                 (not (runner-exhausted runner))
+                 (not (standing-still-p runner)))
         (warn-of-runaway runner))
       outcome)))
 
@@ -155,7 +160,8 @@ step. For any thread."
 
 (defun close-runner (runner)
   "Let all tasks of RUNNER evaporate. What they do to clean up goes on as far as it can without any
-time; the rest is given up, with a warning for each. None is left."
+time; the rest is given up, with a warning for each. None is left. Nothing is charged for any more."
+  (set-charges runner nil nil)
   (stop-plan runner)
   (react-to-all runner)
   (loop for part = (some #'cleaning-part (plan-runner-tasks runner))
@@ -182,6 +188,11 @@ time; the rest is given up, with a warning for each. None is left."
   "True if no task of RUNNER is ready and nothing is posted: only time or a post can change that."
   (not (or (any-ready-p runner) (runner-doomed runner) (posted-p runner))))
 
+(defun needs-tick-p (runner)
+  "True if RUNNER needs the next tick: a task waits for time, or what is to be done had no steps
+left."
+  (and (or (next-wake-time runner) (not (idle-p runner))) t))
+
 (defun plan-deadlocked-p (runner)
   "True if tasks of RUNNER wait and nothing can ever wake them: no timer, and nobody who may post."
   (and (runner-roots runner)
@@ -204,5 +215,6 @@ time; the rest is given up, with a warning for each. None is left."
 (defun digest-runner (runner digest)
   "Add to DIGEST what the tasks of RUNNER are about, when they wake, and what chance will bring."
   (digest-add digest (list (runner-tick runner) (next-wake-time runner)
-                           (and (runner-dice runner) (dice-state (runner-dice runner)))))
+                           (and (runner-dice runner) (dice-state (runner-dice runner)))
+                           (runner-debt runner) (runner-still-until runner)))
   (dolist (task (runner-roots runner)) (digest-task task digest)))

@@ -4,8 +4,8 @@
 
 ;;; A signal is what can happen to a task other than going on: a PLAN-FAILURE; an ESCAPE to an
 ;;; enclosing node, perhaps of an enclosing task; the word :EVAPORATE; or a COMPLETION, by which
-;;; the construct that the task waits in ends well. A signal reaches a task that has children only
-;;; when the last of them is gone.
+;;; the construct that the task waits in ends well. A task that has children takes a signal only
+;;; when the last child is gone.
 
 (defstruct (escape (:constructor make-escape (target value)) (:copier nil))
   "A way out to the node TARGET, which knows what to do with VALUE."

@@ -22,20 +22,23 @@ plans nor a simulator.")
            #:task-over-p #:task-p #:task-parent #:task-path #:task-result #:task-runner
            #:task-serial #:task-signal #:task-state #:task-status-fluent #:task-timer #:task-top
            #:evaporating-p #:part-of-p #:under-way-p #:frame-p #:node-names #:task-since
-           #:task-doomed #:task-node)
+           #:task-doomed #:task-node #:task-uncounted-p)
   ;; trace
   (:export #:agent-text #:answer-p #:answer-error #:answer-issue #:issue-arguments #:issue-name
            #:issue-p #:issue-task #:trace-entry #:trace-entry-agent #:trace-entry-detail
            #:trace-entry-event #:trace-entry-form #:trace-entry-subject #:trace-entry-task
            #:trace-entry-tick #:trace-entry-value #:write-trace)
   ;; tracing
-  (:export #:note-command #:note-event #:start-trace #:with-answer #:call-with-answer)
+  (:export #:note-command #:note-event #:start-trace #:stop-trace #:with-answer #:call-with-answer)
   ;; runner
-  (:export #:*runaway-limit* #:alone-p #:current-task #:exhaust-reaction #:make-ready
+  (:export #:*runaway-limit* #:alone-p #:blocked-p #:current-task #:exhaust-reaction #:make-ready
            #:note-event #:plan-runner #:plan-runner-steps #:plan-runner-tasks #:plan-runner-tick
            #:plan-time #:plan-trace #:runner-blocks #:runner-dice #:runner-tick
            #:runner-ticks-per-second #:runner-timers #:runner-current #:runner-stepper
-           #:runner-trace #:runner-client #:*plan-task-limit*)
+           #:runner-note #:client-forked-p #:runner-trace #:runner-client #:*plan-task-limit*)
+  ;; charging
+  (:export #:charge-steps #:charge-ticks #:runner-charged-p #:set-charges #:stand-no-longer
+           #:stand-still #:standing-still-p)
   ;; machine
   (:export #:+nothing+ #:+parked+ #:awaited-text #:bundle-p #:bundle-values #:call-leaf
            #:completion-p #:enter #:escape-p #:escape-target #:escape-value #:leaf-function
@@ -51,7 +54,8 @@ plans nor a simulator.")
            #:reject-lisp-call #:all-procedures #:anonymous-procedure #:declare-procedure
            #:defined-p #:ensure-procedure #:enter-plan #:find-procedure #:install-procedure
            #:make-procedure #:procedure #:procedure-body #:procedure-entry
-           #:procedure-lambda-list #:procedure-name #:procedure-name-p #:procedure-p
+           #:check-arguments #:procedure-lambda-list #:procedure-name #:procedure-name-p
+           #:procedure-p
            #:procedure-source)
   ;; blame
   (:export #:*failure-hook* #:failure-of #:plan-backtrace)
@@ -62,7 +66,8 @@ plans nor a simulator.")
   ;; engine
   (:export #:advance-timers #:apply-next-batch #:close-runner #:tell-at-rest #:digest-runner
            #:idle-p #:make-plan-runner #:next-wake-time #:plan-deadlocked-p #:post-batch
-           #:post-call #:react #:react-to-all #:reseed-runner #:start-plan #:stop-plan)
+           #:needs-tick-p #:post-call #:react #:react-to-all #:reseed-runner #:start-plan
+           #:stop-plan)
   ;; blocking
   (:export #:block-task #:check-together #:make-heed #:suspend #:unblock-task #:wake-up)
   ;; circles

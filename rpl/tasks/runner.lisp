@@ -26,7 +26,8 @@ one more fails with class :TOO-MANY-TASKS.")
   "What runs plans: knows the tasks, the tick, the timers, and what was posted from outside. PAUSE
 is the number of steps at which the running task is to pause, LIMIT that at which the reaction is to
 end. SPENT are the ready tasks that have used their slice in this ROUND, the last one first.
-ALIVE is how many tasks are not over. CLIENT is on whose behalf all this is."
+ALIVE is how many tasks are not over. BUDGET is how many steps a reaction may take, NIL for as many
+as it needs. CLIENT is on whose behalf all this is."
   (rings (coerce (loop repeat +levels+ collect (make-ring)) 'simple-vector)
    :type (simple-vector 8) :read-only t)
   (mask 0 :type fixnum)
@@ -49,6 +50,13 @@ ALIVE is how many tasks are not over. CLIENT is on whose behalf all this is."
   (courtesies '() :type list)
   (doomed '() :type t)
   (budget nil :type (or null (integer 1)))
+  ;; What thinking costs; see charging.lisp.
+  (charged-p nil :type boolean)
+  (allotted nil :type (or null real))
+  (debt 0 :type (integer 0))
+  (still-until nil :type (or null real))
+  (uncounted 0 :type (integer 0))
+  (broken-off-p nil :type boolean)
   (ticks-per-second 20 :type (real (0)))
   (dice nil :type (or null dice))
   (trace nil :type (or null chronicle))
@@ -58,12 +66,38 @@ ALIVE is how many tasks are not over. CLIENT is on whose behalf all this is."
   ;; Whether somebody has sat at a debugger in the step under way.
   (looked-at nil :type boolean)
   (warned '() :type list)
+  ;; What constructs keep for all tasks, a plist.
+  (notes '() :type list)
   (busy-p (constantly nil) :type function)
   (on-tick '() :type list)
   (on-end #'identity :type function))
 
+(define-shared-slots plan-runner warned)
+
+;;; A fork of a run copies the runner of that run. A runner of another run is not copied.
+
+(defgeneric client-forked-p (client copier)
+  (:documentation "True if CLIENT, of a plan runner, is of the run that COPIER copies.")
+  (:method (client copier) (declare (ignore client copier)) nil))
+
+(defmethod home-forked-p ((runner plan-runner) copier)
+  (client-forked-p (runner-client runner) copier))
+
+(defmethod copy-plan-value ((runner plan-runner) fork)
+  (if (home-forked-p runner fork)
+      (copy-slots runner fork)
+      runner))
+
+(defun runner-note (runner key)
+  "Return what is kept for all tasks of RUNNER by KEY, or NIL. Can be set."
+  (getf (runner-notes runner) key))
+
+(defun (setf runner-note) (value runner key)
+  (setf (getf (runner-notes runner) key) value))
+
 (document-functions
  runner-tick "Return the tick that it is for the plan runner."
+ runner-charged-p "True if thoughts of the plan runner's tasks that say what they cost take ticks."
  runner-timers "Return the timers of the plan runner."
  runner-blocks "Return how many blocks of tasks of the plan runner there are."
  runner-client "Return on whose behalf the plan runner runs plans, as MAKE-PLAN-RUNNER was told."

@@ -109,8 +109,9 @@ VALUE are what the last step returned; return what it should have."
   (unless (= (task-round task) (runner-round runner))
     (setf (task-round task) (runner-round runner)
           (task-slice task) (runner-slice runner)))
-  (setf (runner-pause runner)
-        (min (runner-limit runner) (+ (runner-steps runner) (max 0 (task-slice task))))))
+  (let ((slice (+ (runner-steps runner) (max 0 (task-slice task)))))
+    (setf (runner-pause runner)
+          (if (task-uncounted-p task) slice (min (runner-limit runner) slice)))))
 
 (defun run-task (task)
   "Let TASK, just taken from the ready ones, go on, or let its signal happen to it."
@@ -127,7 +128,9 @@ VALUE are what the last step returned; return what it should have."
         (setf (task-signal task) nil)
         (multiple-value-setq (frame value) (receive task frame signal)))
       (run-steps task frame value))
-    (decf (task-slice task) (- (runner-steps runner) start))))
+    (let ((taken (- (runner-steps runner) start)))
+      (decf (task-slice task) taken)
+      (when (task-uncounted-p task) (give-back runner taken)))))
 
 (defun check-room (runner)
   "Fail if as many tasks of RUNNER as may be are under way."
@@ -149,7 +152,9 @@ Return it."
           (task-node task) node
           (task-index task) index
           (task-frame task) (make-frame node environment nil))
-    (when parent (link-child task parent))
+    (when parent
+      (link-child task parent)
+      (when (task-uncounted-p parent) (setf (task-uncounted-p task) t)))
     (incf (runner-blocks runner) (task-blocked task))
     (note-event task :start (task-name task) (and parent (task-serial parent)))
     (note-status task :running)

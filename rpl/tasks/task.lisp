@@ -16,13 +16,14 @@ same arguments but a signal when a signal passes the frame, and returns a frame 
 it, or NIL and, if another signal is to go on instead, that. CHILD-ENDED is called with node, task,
 frame, child, the child's state and its result. STATES are the names of what a frame may be in,
 NAMES those of the variables in the environment that it runs in: a list for each level of that,
-innermost first."
+innermost first. WHOSE says whether forks of a run share it, once somebody has found that out."
   (form nil)
   (names '() :type list)
   (states #() :type simple-vector)
   (step #'list :type function)
   (unwind nil :type (or null function))
-  (child-ended nil :type (or null function)))
+  (child-ended nil :type (or null function))
+  (whose :unknown :type (member :unknown :everybodys :a-runs)))
 
 (declaim (inline make-frame))
 (defstruct (frame (:constructor make-frame (node environment up)) (:copier nil))
@@ -72,12 +73,21 @@ what it waits for before it starts, VARIABLES what it has set."
   (parent nil :type (or null task))
   (suspensions 0 :type fixnum)
   (suspended nil :type boolean)
+  (uncounted-p nil :type boolean)
   (gate nil)
   (variables '() :type list)
   (newest-child nil :type (or null task))
   (older nil :type (or null task))
   (newer nil :type (or null task)))
 (declaim-final frame task)
+
+(defmethod copy-plan-value ((task task) fork)
+  (if (and (task-runner task) (not (home-forked-p (task-runner task) fork)))
+      task
+      (copy-slots task fork)))
+
+(defmethod asker-forked-p ((task task))
+  t)
 
 (document-functions
  node-form "Return the source of the expression that the node stands for."
@@ -96,6 +106,7 @@ what it waits for before it starts, VARIABLES what it has set."
  task-awaiting "Return what the task waits for: a watcher, a timer, a valve, a text; or NIL."
  task-timer "Return the timer that ends the task's wait at the latest, or NIL."
  task-cleaning "Return the frames of the task that clean up, innermost first."
+ task-uncounted-p "True if the task's steps are not charged for, as what it does has a price."
  task-blocked "Return by how many the task is blocked now."
  task-status-fluent "Return the fluent that follows the task's status, or NIL: see TASK-STATUS."
  task-newest-child "Return that part of the task which started last of those not over, or NIL.")

@@ -127,6 +127,14 @@ each in a list with its own FILL."
   (fill 0 :type (unsigned-byte 32))
   (full '() :type list))
 (declaim-final chronicle)
+(define-shared trace-entry issue)
+
+;; What has been noted is not copied: it is never altered.
+(defmethod copy-plan-value ((trace chronicle) fork)
+  (let ((copy (note-copy trace (make-trace) fork)))
+    (setf (chronicle-full copy) (cons (list (chronicle-chunk trace) (chronicle-fill trace))
+                                      (chronicle-full trace)))
+    copy))
 
 (defun begin-chunk (trace)
   (push (list (chronicle-chunk trace) (chronicle-fill trace)) (chronicle-full trace))

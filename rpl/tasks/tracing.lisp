@@ -66,6 +66,12 @@ if it keeps one."
     (trace-changes runner)
     (mapc #'trace-start (plan-runner-tasks runner))))
 
+(defun stop-trace (runner)
+  "Let RUNNER keep no trace from now on, and forget the one that it kept."
+  (setf (runner-trace runner) nil
+        (runner-wrapper runner) nil
+        (runner-on-change runner) nil))
+
 ;;; What is posted.
 
 (defun on-behalf (entry)

@@ -19,6 +19,18 @@ them. It does not change, whatever becomes of ASKER.")
   (:method ((asker symbol)) asker)
   (:method ((asker null)) (list "Lisp (" (thread-name (current-thread)) ")")))
 
+(defgeneric asker-forked-p (asker)
+  (:documentation "True if ASKER goes on in forks of the run too, such as a plan, and so is told of
+the ends of its commands there.")
+  (:method (asker) (declare (ignore asker)) nil))
+
+(defvar *goes-on-in-forks-p* nil
+  "True where something acts that goes on in forks of the run too, whoever the asker is.")
+
+(defun goes-on-in-forks-p ()
+  "True if what is asked for here and now is asked for in forks of the run as well, by themselves."
+  (or *goes-on-in-forks-p* (asker-forked-p *asker*)))
+
 (defun note-of-asker ()
   "Return a note of who asks here and now."
   (asker-note *asker*))

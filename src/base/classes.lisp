@@ -34,3 +34,15 @@ called NAME, if there is one."
 (defun class-slot-names (class)
   "Return the names, symbols, of the slots of objects of CLASS."
   (mapcar #'closer-mop:slot-definition-name (closer-mop:class-slots class)))
+
+(defun class-slot-types (class)
+  "Return a list (name type) for each slot of objects of CLASS."
+  (mapcar (lambda (slot)
+            (list (closer-mop:slot-definition-name slot) (closer-mop:slot-definition-type slot)))
+          (closer-mop:class-slots class)))
+
+(defun instance-slot-names (class)
+  "Return the names of the slots that each object of CLASS has to itself."
+  (mapcar #'closer-mop:slot-definition-name
+          (remove :instance (closer-mop:class-slots class)
+                  :key #'closer-mop:slot-definition-allocation :test-not #'eq)))

@@ -28,7 +28,7 @@ numbers."
    (if (typep function 'generic-function)
        (mapcar #'method-code (methods-of-generic function))
        (append (mapcar #'constant-meant (code-constants function))
-               (when (sb-kernel:closurep function) (sb-kernel:%closure-values function))))))
+               (when (closure-p function) (closure-values function))))))
 
 ;;; From which file functions are. Where the forms of one are evaluated one by one, that must be
 ;;; said.

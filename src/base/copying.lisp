@@ -1,90 +1,200 @@
-;;;; copying.lisp -- objects of a run, copied into another that goes on by itself.
+;;;; copying.lisp -- the objects of a run, copied into another that goes on by itself.
 
 (in-package :ars-magna.base)
 
-;;; A copy has a table from what has been copied to what it was copied to: two objects that refer
-;;; to the same one do so in the copy. Functions, and what has a reference but no kind, such as maps
-;;; and commands, are shared. The :LINKs of a copy are as those of a new object.
+;;; A COPIER walks from what it is given to all that can be reached, and remembers what it copied to
+;;; what: two objects that refer to the same one do so in the copies. It copies an object first, and
+;;; puts what is in the copy right later, from a list of work: so lists and chains may be as long as
+;;; they like. What is in structures is known from their kinds, or else from their classes:
+;;;
+;;;   copied   lists, arrays, tables, structures, instances, conditions, closures with their cells;
+;;;   fresh    the :LINKs of kinds, as in a new object;
+;;;   shared   numbers, symbols, code, what DEFINE-SHARED says, and :SHARED slots of kinds.
 
-(defun make-copy-table ()
-  "Return a table for COPY-RUNNING in which nothing has been copied."
-  (make-hash-table :test 'eq))
+(declaim (inline forked))
+(addition forked)
+(defun forked (value copier)
+  "Return what a fork has for VALUE: for methods of COPY-PLAN-VALUE, which are given COPIER. It may
+not be complete before they have returned."
+  (typecase value
+    ((or number symbol character) value)
+    (t (forked-object value copier))))
 
-(defgeneric copy-running (value table)
-  (:documentation
-   "Return VALUE as another run is to have it. TABLE has what was copied so far, by what it was
-copied from. Objects of a kind, structures of a user's, lists, arrays and tables are copied; the
-rest is shared.")
-  (:method (value table) (declare (ignore table)) value)
-  (:method ((value cons) table) (copy-list-running value table))
-  (:method ((value dice) table) (copied value table (copy-dice value)))
-  (:method ((value array) table) (copy-array-running value table))
-  (:method ((value hash-table) table) (copy-table-running value table))
-  (:method ((value structure-object) table)
-    (cond ((gethash value table))
-          ((kind-of value) (copy-by-kind value table))
-          ((reference value) value)
-          (t (copy-structure-running value table)))))
+(defun forked-object (value copier)
+  (declare #.*hot* (type copier copier))
+  (multiple-value-bind (copy known-p) (gethash value (copier-table copier))
+    (if known-p copy (begin-copy value copier))))
 
-(defun copied (value table copy)
-  "Note in TABLE that VALUE was copied to COPY, unless it has been before. Return its copy."
-  (or (gethash value table)
-      (setf (gethash value table) copy)))
+(defmethod copy-plan-value ((value structure-object) fork)
+  (copy-slots value fork))
 
-(defun copy-by-kind (object table)
-  "Return a new copy of OBJECT, of a kind, for COPY-RUNNING."
-  (let ((copy (copied object table (copy-structure object))))
-    (dolist (slot (kind-slots (kind-of object)) copy)
-      (let* ((old (slot-content slot object))
-             (new (if (eq :link (kind-slot-role slot))
-                      (funcall (kind-slot-initial slot))
-                      (copy-running old table))))
-        (unless (eql old new) (funcall (kind-slot-writer slot) new copy))))))
+(defun copy-slots (object copier &optional (manner (manner object)))
+  "Return what COPIER has for the structure OBJECT: a new one, in whose slots are copies."
+  (declare #.*hot* (type manner manner))
+  (let ((copy (note-copy object (copy-structure (the structure-object object)) copier)))
+    (loop for (writer . initial) in (manner-fresh manner)
+          do (funcall (the function writer) (funcall (the function initial)) copy))
+    (unless (zerop (length (manner-indices manner)))
+      (put-right-later copy (manner-indices manner) copier))
+    copy))
 
-(defun copy-structure-running (object table)
-  "Return a copy of OBJECT, a structure without a kind, and of what is in it."
-  (let ((copy (copied object table (copy-structure object))))
-    (dolist (slot (class-slot-names (class-of object)) copy)
-      (let* ((old (slot-value object slot)) (new (copy-running old table)))
-        (unless (eql old new) (setf (slot-value copy slot) new))))))
+;;; Other objects.
 
-(defun copy-list-running (list table)
-  "Return a copy of LIST, perhaps dotted or circular, and of what is in it."
-  (or (gethash list table)
-      (let* ((first (copied list table (cons nil nil))) (last first))
-        (setf (car first) (copy-running (car list) table))
-        (loop for tail = (cdr list) then (cdr tail)
-              while (and (consp tail) (null (gethash tail table)))
-              do (let ((new (copied tail table (cons nil nil))))
-                   (setf (cdr last) new
-                         last new
-                         (car new) (copy-running (car tail) table)))
-              finally (setf (cdr last) (copy-running tail table)))
-        first)))
+(define-shared package pathname readtable class generic-function method method-combination)
 
-(defun copy-array-running (array table)
-  "Return a copy of ARRAY, and of what is in it."
-  (or (gethash array table)
-      (let ((copy (copied array table (array-like array))))
-        (dotimes (i (array-total-size array) copy)
-          (setf (row-major-aref copy i) (copy-running (row-major-aref array i) table))))))
+(defmethod copy-plan-value ((value random-state) fork)
+  (note-copy value (make-random-state value) fork))
 
-(defun array-like (array)
-  "Return an array like ARRAY, for other things to be put into."
-  (if (simple-array-p array)
-      (make-array (array-dimensions array) :element-type (array-element-type array))
-      (make-array (array-dimensions array)
-                  :element-type (array-element-type array) :adjustable t
-                  :fill-pointer (and (array-has-fill-pointer-p array) (fill-pointer array)))))
+(defmethod copy-plan-value ((value dice) fork)
+  (note-copy value (copy-dice value) fork))
+
+(defmethod copy-plan-value ((value condition) fork)
+  (multiple-value-bind (copy indices) (copy-condition value)
+    (put-right-later (note-copy value copy fork) (coerce indices 'simple-vector) fork)))
+
+(defmethod copy-plan-value ((value standard-object) fork)
+  (let ((copy (note-copy value (allocate-instance (class-of value)) fork)))
+    (dolist (slot (instance-slot-names (class-of value)))
+      (when (slot-boundp value slot)
+        (setf (slot-value copy slot) (slot-value value slot))))
+    (put-right-later copy nil fork)))
+
+(defun like-array (array)
+  "Return an array like ARRAY, with the same in it."
+  (if (vectorp array)
+      (if (simple-array-p array)
+          (copy-seq array)
+          (let ((copy (make-array (array-dimension array 0)
+                                  :element-type (array-element-type array) :adjustable t
+                                  :fill-pointer (and (array-has-fill-pointer-p array)
+                                                     (fill-pointer array)))))
+            (dotimes (index (array-total-size array) copy)
+              (setf (row-major-aref copy index) (row-major-aref array index)))))
+      (let ((copy (make-array (array-dimensions array) :element-type (array-element-type array)
+                                                       :adjustable (adjustable-array-p array))))
+        (dotimes (index (array-total-size array) copy)
+          (setf (row-major-aref copy index) (row-major-aref array index))))))
 
 (defun simple-array-p (array)
   (typep array 'simple-array))
 
-(defun copy-table-running (hash-table table)
-  (or (gethash hash-table table)
-      (let ((copy (copied hash-table table
-                          (make-hash-table :test (hash-table-test hash-table)))))
-        (maphash (lambda (key value)
-                   (setf (gethash (copy-running key table) copy) (copy-running value table)))
-                 hash-table)
-        copy)))
+(defun copy-displaced (array copier)
+  "Return what COPIER is to have for ARRAY, which is part of another."
+  (multiple-value-bind (base offset) (array-displacement array)
+    (note-copy array
+               (make-array (array-dimensions array)
+                           :element-type (array-element-type array)
+                           :adjustable (adjustable-array-p array)
+                           :fill-pointer (and (array-has-fill-pointer-p array)
+                                              (fill-pointer array))
+                           :displaced-to (forked base copier) :displaced-index-offset offset)
+               copier)))
+
+(defun begin-copy (value copier)
+  "Return what COPIER, which does not know VALUE yet, is to have for it."
+  (declare #.*hot*)
+  (flet ((note (copy) (put-right-later (note-copy value copy copier) nil copier)))
+    (declare (inline note))
+    (typecase value
+      (cons (note (cons (car value) (cdr value))))
+      (hash-table (let ((copy (note-copy value (like-table value) copier)))
+                    (push (cons value copy) (copier-tables copier))
+                    copy))
+      (structure-object (let ((manner (manner value)))
+                          (ecase (manner-way manner)
+                            (:copy (copy-slots value copier manner))
+                            (:share value)
+                            (:method (note-copy value (copy-plan-value value copier) copier))
+                            (:ask (ask-about value copier)))))
+      (function (if (closure-p value) (note (copy-closure value)) (copy-function value copier)))
+      (simple-vector (if (zerop (length value)) value (note (copy-seq value))))
+      (array (cond ((array-displacement value) (copy-displaced value copier))
+                   ((eq t (array-element-type value)) (note (like-array value)))
+                   (t (note-copy value (like-array value) copier))))
+      (t (cond ((not (cell-p value)) (note-copy value (copy-plan-value value copier) copier))
+               ;; So that who leaves it later is told, in a fork too, that it is gone.
+               ((exit-cell-p value) value)
+               (t (note (make-cell (cell-value value)))))))))
+
+(defun copy-function (function copier)
+  "Return what COPIER is to have for FUNCTION, which has closed over nothing: itself. What is a
+function and an instance of a class of a user's may keep anything."
+  (cond ((typep function 'generic-function) (copy-plan-value function copier))
+        ((typep function 'standard-object) (ask-about function copier))
+        (t function)))
+
+;;; Putting right.
+
+(defun put-list-right (list copier)
+  "Put right what is in LIST, a copy, as far as it goes on into what has not been copied."
+  (declare #.*hot* (type copier copier))
+  (loop
+    (setf (car list) (forked (car list) copier))
+    (let ((tail (cdr list)))
+      (cond ((or (not (consp tail)) (nth-value 1 (gethash tail (copier-table copier))))
+             (setf (cdr list) (forked tail copier))
+             (return))
+            (t (setf list (setf (cdr list)
+                                (note-copy tail (cons (car tail) (cdr tail)) copier))))))))
+
+(defun put-right (copy indices copier)
+  "Let what is in COPY be copies too. INDICES are the numbers of slots, or NIL for what has none."
+  (declare #.*hot* (type copier copier))
+  (cond (indices
+         (loop for index of-type (unsigned-byte 20) across (the simple-vector indices)
+               do (let ((value (instance-slot copy index)))
+                    (unless (typep value '(or null fixnum))
+                      (setf (instance-slot copy index) (forked value copier))))))
+        ((consp copy) (put-list-right copy copier))
+        ((simple-vector-p copy)
+         (dotimes (index (length copy))
+           (let ((value (svref copy index)))
+             (unless (typep value '(or null fixnum))
+               (setf (svref copy index) (forked value copier))))))
+        ((functionp copy)
+         (replace-closure-values copy (lambda (value) (forked value copier))))
+        ((arrayp copy)
+         (dotimes (index (array-total-size copy))
+           (setf (row-major-aref copy index) (forked (row-major-aref copy index) copier))))
+        ((cell-p copy) (setf (cell-value copy) (forked (cell-value copy) copier)))
+        (t (dolist (slot (instance-slot-names (class-of copy)))
+             (when (slot-boundp copy slot)
+               (setf (slot-value copy slot) (forked (slot-value copy slot) copier)))))))
+
+(defun put-all-right (copier)
+  "Put right the copies that wait for that, and those that come up then."
+  (declare #.*hot* (type copier copier))
+  (loop until (zerop (copier-fill copier))
+        do (let ((fill (decf (copier-fill copier) 2)))
+             (put-right (setf (copier-holder copier) (svref (copier-work copier) fill))
+                        (svref (copier-work copier) (1+ fill))
+                        copier))))
+
+;; A key must be complete before a table can know where it belongs.
+(defun fill-tables (tables copier)
+  "Fill the copies in TABLES, a list (table . copy)."
+  (let ((contents (loop for (table) in tables
+                        do (setf (copier-holder copier) table)
+                        collect (loop for key being the hash-keys of table using (hash-value value)
+                                      collect (cons (forked key copier) (forked value copier))))))
+    (put-all-right copier)
+    (loop for (nil . copy) in tables
+          for pairs in contents
+          do (loop for (key . value) in pairs
+                   do (setf (gethash key copy) value)))))
+
+(defun finish-copies (copier)
+  "Put right all that COPIER has copied."
+  (loop
+    (put-all-right copier)
+    (let ((tables (shiftf (copier-tables copier) '())))
+      (unless tables (return))
+      (fill-tables tables copier))))
+
+(defmacro copying ((copier) &body body)
+  "Run BODY, which copies things by COPIER, and put all that right. Return the value of BODY, one."
+  (once-only (copier)
+    `(progn
+       (refresh-manners)
+       (prog1 (progn ,@body)
+         (finish-copies ,copier)))))

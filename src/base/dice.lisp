@@ -69,7 +69,7 @@
   (check-argument make-dice seed (integerp seed) "an integer")
   (%make-dice (mix-word (logxor (mix-word (ldb (byte 64 0) seed)) (text-word purpose)))))
 
-(declaim (inline roll-word roll chance roll-between))
+(declaim (inline roll-word roll chance roll-between roll-within))
 (defun roll-word (dice)
   (declare (type dice dice))
   (let ((state (ldb (byte 64 0) (+ (dice-state dice) +golden-gamma+))))
@@ -105,7 +105,8 @@ WRONG-ARGUMENT unless PROBABILITY is a number from -1e15 to 1e15."
   "Return a double-float uniform in [-RANGE, RANGE); 0 if RANGE is 0. Signals WRONG-ARGUMENT unless
 that is a number from -1e15 to 1e15."
   (check-argument roll-within range (quantity-p range) "a number from -1e15 to 1e15")
-  (if (zerop range) 0d0 (roll-between (- range) range dice)))
+  (let ((range (double range)))
+    (if (zerop range) 0d0 (roll-between (- range) range dice))))
 
 (addition roll-index)
 (defun roll-index (count dice)

@@ -16,6 +16,13 @@
   "Return the pathname of what the operating system calls NAME, a string."
   (uiop:parse-native-namestring name))
 
+(defun path-called (name)
+  "Return the pathname that NAME, a string or pathname, stands for; ~/ is the home directory."
+  (cond ((pathnamep name) name)
+        ((starts-with-subseq "~/" name)
+         (merge-pathnames (native-path (subseq name 2)) (user-homedir-pathname)))
+        (t (native-path name))))
+
 (defun existing-path (path)
   "Return the truename of the file PATH, or NIL if there is none, or it is a directory."
   (uiop:file-exists-p path))
@@ -59,11 +66,12 @@ the name is illegible."
       (error "there is no such directory"))
     path))
 
-(defun call-replacing-file (function file)
+(defun call-replacing-file (function file &key (external-format :utf-8))
   "Call FUNCTION with a stream to a new file of UTF-8, which takes the place of FILE at one stroke
-when FUNCTION has returned; if that or anything else fails, FILE is as it was. Return its truename."
+when FUNCTION has returned; if that or anything else fails, FILE is as it was. Return its truename.
+In the EXTERNAL-FORMAT :LATIN-1 each character that is written is an octet."
   (let ((path (new-file-for file)))
-    (uiop:with-temporary-file (:stream out :pathname new :external-format :utf-8
+    (uiop:with-temporary-file (:stream out :pathname new :external-format external-format
                                :directory (uiop:pathname-directory-pathname path)
                                :prefix "ars-magna" :type :unspecific)
       (funcall function out)

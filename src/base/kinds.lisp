@@ -10,12 +10,13 @@
 ;;;   :scratch  what means nothing between ticks;
 ;;;   :link     what ties the object to those who use it, such as continuations.
 ;;;
-;;; From that follow the readers' documentation, RESET, DIGEST-STATE, COPY-RUNNING and the
-;;; inspection of an object. Other objects in a slot are referred to, unless the slot is marked as
-;;; a :PART: then they belong to the object, and are reset, digested and shown with it.
+;;; From that follow the readers' documentation, RESET, DIGEST-STATE, forks and the inspection of an
+;;; object. Other objects in a slot are referred to, unless the slot is marked as a :PART: then they
+;;; belong to the object, and are reset, digested and shown with it. What is in a slot marked as
+;;; :SHARED is replaced and never altered: forks have the same.
 
 (defstruct (kind-slot (:constructor make-kind-slot
-                          (name role type text part-p initial reader writer))
+                          (name role type text part-p shared-p initial reader writer))
                       (:copier nil))
   "What is known of a slot of a kind. INITIAL returns the value that it begins with."
   (name nil :type symbol :read-only t)
@@ -23,6 +24,7 @@
   (type t :read-only t)
   (text "" :type string :read-only t)
   (part-p nil :type boolean :read-only t)
+  (shared-p nil :type boolean :read-only t)
   (initial nil :type function :read-only t)
   (reader nil :type function :read-only t)
   (writer nil :type function :read-only t))
@@ -49,6 +51,7 @@
   kind-slot-type "Return the Lisp type of the slot's values."
   kind-slot-text "Return what is in the slot, in words."
   kind-slot-part-p "True if what is in the slot belongs to the object."
+  kind-slot-shared-p "True if what is in the slot is never altered, so that copies can share it."
   kind-slot-reader "Return the function of an object that returns what is in the slot."
   kind-slot-writer "Return the function of a value and an object that puts the value into the slot."
   kind-p "True of kinds."
@@ -64,6 +67,7 @@
 
 (declaim (inline kind-called))
 (defun kind-called (name)
+  "Return the kind called NAME, the very symbol, or NIL."
   (get name 'object-kind))
 
 (declaim (inline kind-of))
@@ -115,11 +119,13 @@ are or include it."
     kind))
 
 (defun slots-by-role (groups)
-  "Return a list (role name default type text part-p) for each slot in GROUPS, (role slot...)."
+  "Return a list (role name default type text part-p shared-p) for each slot in GROUPS, lists (role
+slot...)."
   (loop for (role . slots) in groups
         append (loop for (name default type text . options) in slots
                      collect (list role name default type text
-                                   (and (member :part options) t)))))
+                                   (and (member :part options) t)
+                                   (and (member :shared options) t)))))
 
 (defun check-kind-name (name include documentation)
   (unless (and (symbolp name) name (symbol-package name) (not (keywordp name)))
@@ -134,8 +140,9 @@ are or include it."
   "Signal MALFORMED-DEFINITION unless SLOT of the kind NAME makes sense beside KNOWN, other names."
   (unless (and (proper-list-p slot) (<= 4 (length slot))
                (symbolp (first slot)) (first slot)
-               (stringp (fourth slot)) (subsetp (nthcdr 4 slot) '(:part)))
-    (reject-clause-of-kind name slot "(name default type \"what it is\" [:part])"))
+               (stringp (fourth slot)) (subsetp (nthcdr 4 slot) '(:part :shared)))
+    (reject-clause-of-kind name slot
+                           "(name default type \"what it is\" [:part] [:shared])"))
   (when (member (first slot) known :test #'same-name-p)
     (reject-clause-of-kind name slot "a name that no other slot has, also of what is included")))
 
@@ -157,9 +164,9 @@ are or include it."
 
 (defun slot-forms (name conc slots)
   "Return the forms that make what is known of SLOTS of the kind NAME."
-  (loop for (role slot default type text part-p) in slots
+  (loop for (role slot default type text part-p shared-p) in slots
         for reader = (reader-name conc slot)
-        collect `(make-kind-slot ',slot ,role ',type ,text ,part-p
+        collect `(make-kind-slot ',slot ,role ',type ,text ,part-p ,shared-p
                             (lambda () ,default)
                             (lambda (object) (,reader (the ,name object)))
                             (lambda (value object) (setf (,reader (the ,name object)) value)))))
@@ -179,8 +186,8 @@ with, says."
 (defmacro define-kind (name-and-options documentation &body groups &environment environment)
   "Define a structure and say what each of its slots is. NAME-AND-OPTIONS is its name, or (name
 [:include kind] [:constructor constructor]), as in DEFSTRUCT. GROUPS are lists (role slot...), a
-slot is (name default type \"what it is\"), and :PART behind that if what is in it belongs to the
-object. The roles are
+slot is (name default type \"what it is\"), and behind that :PART if what is in it belongs to the
+object, :SHARED if it is never altered. The roles are
   :fixed    how the object was made;
   :state    what decides the future, or what programs are told of it;
   :memory   what is shown to people and decides nothing;

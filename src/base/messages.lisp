@@ -35,6 +35,15 @@ that reports) after each message is queued."
 (defvar *message-queue* (make-message-queue)
   "The queue that messages go to. A headless simulation binds its own.")
 
+(defun copy-message-queue (queue)
+  "Return a new queue that holds the messages of QUEUE, and has no listener."
+  (let ((copy (make-message-queue)))
+    (with-lock ((message-queue-lock queue))
+      (setf (message-queue-newest-first copy) (message-queue-newest-first queue)
+            (message-queue-count copy) (message-queue-count queue)
+            (message-queue-forgotten copy) (message-queue-forgotten queue)))
+    copy))
+
 (defun queue-message (message queue)
   (with-lock ((message-queue-lock queue))
     (push message (message-queue-newest-first queue))

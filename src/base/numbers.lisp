@@ -15,8 +15,15 @@
 (define-constant +largest-quantity+ (expt 10 15)
   :documentation "How large the numbers are at most that say what something is like.")
 
+(declaim (inline within-reason-p))
 (defun within-reason-p (value)
   "True if VALUE can be a position, distance, speed, angle or time: from -1e9 to 1e9."
+  (if (typep value 'double-float)
+      (and (finite-double-p value)
+           (<= #.(double (- +largest+)) value #.(double +largest+)))
+      (other-within-reason-p value)))
+
+(defun other-within-reason-p (value)
   (and (finite-p value) (<= (- +largest+) value +largest+)))
 
 (declaim (inline quantity-p))

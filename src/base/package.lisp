@@ -10,6 +10,13 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
                 #:read-file-into-string #:starts-with-subseq #:ends-with
                 #:ends-with-subseq #:define-constant #:proper-list-p
                 #:parse-ordinary-lambda-list)
+  ;; For closures.lisp alone.
+  (:import-from :sb-eval
+                #:env-p #:env-parent #:env-vars #:env-funs #:make-interpreted-function
+                #:interpreted-function-name #:interpreted-function-lambda-list
+                #:interpreted-function-env #:interpreted-function-declarations
+                #:interpreted-function-documentation #:interpreted-function-body
+                #:interpreted-function-source-location)
   ;; alexandria
   (:export #:clamp #:ensure-list #:once-only #:parse-body #:removef #:when-let #:if-let
            #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
@@ -31,13 +38,14 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:memory-barrier)
   ;; classes, code, packages
   (:export #:define-function-class #:generic-name #:class-ancestors #:class-slot-names
+           #:class-slot-types
            #:code-references #:method-code #:methods-on-class
            #:function-file #:files-besides-functions
            #:call-as-from-file #:date-of-file
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
   ;; files, processes
-  (:export #:native-name #:native-path #:existing-path #:replace-file #:plain-file-p 
+  (:export #:native-name #:native-path #:path-called #:existing-path #:replace-file #:plain-file-p
            #:unusable-file-text
            #:call-replacing-file #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
@@ -63,7 +71,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; exits
   (:export #:call-refusing-exits #:call-allowing-exits)
   ;; threads
-  (:export #:make-lock #:with-lock #:make-semaphore #:signal-semaphore #:wait-on-semaphore
+  (:export #:make-lock #:with-lock #:call-if-free #:make-weak #:weak-value
+           #:make-semaphore #:signal-semaphore #:wait-on-semaphore
            #:*while-waiting* #:wait-a-while
            #:start-thread #:join-thread #:interrupt-thread #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
@@ -78,7 +87,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; dice, random
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice
-           #:*lisps-dice* #:call-with-own-lisps-dice #:lisps-dice-p #:unheard-of-number)
+           #:*lisps-dice* #:seeded-lisps-dice #:call-with-own-lisps-dice #:unheard-of-number
+           #:tick-dice #:make-tick-dice #:begin-tick-dice #:*tick-dice*)
   ;; names
   (:export #:same-name-p #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables
@@ -104,11 +114,13 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:with-own-definitions #:call-with-own-definitions)
   ;; messages
   (:export #:error-set #:warning-set #:message-set #:error-display #:flush-all-errors*
-           #:*message-queue* #:make-message-queue #:message-queue #:message-queue-listener
+           #:*message-queue* #:make-message-queue #:message-queue
+           #:copy-message-queue #:message-queue-listener
            #:message #:message-kind #:message-items #:take-messages #:message-text
            #:write-message #:write-items #:out #:*message-limit*)
   ;; askers
-  (:export #:*asker* #:asker-note #:note-of-asker #:note-text)
+  (:export #:*asker* #:asker-note #:asker-forked-p #:*goes-on-in-forks-p* #:goes-on-in-forks-p
+           #:note-of-asker #:note-text)
   ;; user code
   (:export #:call-user-code #:*break-on-user-error* #:*user-error-listener* #:in-any-case
            #:call-each
@@ -139,15 +151,28 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:prob-miss-grasp* #:prob-grasp-lose-desig* #:hand-insert-miss-prob*
            #:hand-insert-lose-desig-prob* #:hand-move-delay* #:hand-grasp-delay*
            #:bin-close-jam-prob* #:bin-delay* #:tick-quantum*
+           #:ticks-for #:noise-of-step #:per-tick-drift
            #:per-tick-probability)
   ;; digest
   (:export #:digest #:make-digest #:digest-add #:digest-value)
   ;; kinds, digesting, copying
-  (:export #:define-kind #:*object-kinds* #:kind-p #:kind-of #:kind-name #:kind-slots #:all-kinds
+  (:export #:define-kind #:*object-kinds* #:kind-p #:kind-of #:kind-called #:kind-name
+           #:kind-slots #:all-kinds
            #:kind-slot-name #:kind-slot-role #:kind-slot-type #:kind-slot-text #:kind-slot-part-p
            #:kind-slot-reader
            #:kind-slot-writer #:object-slots #:reset #:reference #:digest-state #:digest-mention
-           #:copy-running #:make-copy-table #:copied #:given)
+           #:kind-slot-shared-p #:given)
+  (:export #:copier #:with-copier #:closure-p #:copier-environment #:copier-variable
+           #:copier-option #:copier-objects #:copying #:forked #:note-copy #:settled
+           #:put-right-later #:copy-plan-value #:define-shared #:define-shared-slots #:copy-slots
+           #:cannot-fork #:cannot-fork-value #:cannot-fork-place #:share-value #:leave-out-value
+           #:make-no-fork #:holds-p #:reference-slots #:instance-slot #:closure-values
+           #:environment-p #:environment-values)
+  ;; fields
+  (:export #:field-name #:field-kept-p #:field-reader #:field-writer #:field-initial
+           #:fields-of-type #:blank-object #:note-lasting #:lasting-name #:lasting-function)
+  ;; contradictions
+  (:export #:contradiction #:contradict #:must-hold #:proper-list-of-p)
   ;; argument-types, operators
   (:export #:define-argument-type #:argument-type-text #:argument-of-type-p #:find-argument-type
            #:check-of-type #:operator-name #:operator-function #:operator-types

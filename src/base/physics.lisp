@@ -111,8 +111,8 @@ designators of things, but no parameter for them." :addition t)
       "How long opening or closing a storage bin takes."))
     ("Time"
      (tick-quantum* 1 "ticks" :setting (real 1 1000000)
-      "How much time one tick stands for: motion, drift and chances scale with it. The manual
-only wishes, in chapter 1.2, to skip ahead." :addition t))))
+      "How much time one tick stands for: motion, drift and chances scale with it, and what takes
+time takes fewer ticks. The manual only wishes, in chapter 1.2, to skip ahead." :addition t))))
 
 (defun per-tick-probability (probability)
   "Return the chance that something of PROBABILITY per unit of time happens in a tick, which stands
@@ -121,3 +121,25 @@ for TICK-QUANTUM* of them."
     (if (= tick-quantum* 1)
         probability
         (- 1d0 (expt (- 1d0 probability) (double tick-quantum*))))))
+
+(defun ticks-for (time)
+  "Return how many ticks what takes TIME, as the manual counts it in ticks, takes when a tick stands
+for TICK-QUANTUM* of it."
+  (if (= tick-quantum* 1)
+      time
+      (values (ceiling time tick-quantum*))))
+
+(declaim (inline noise-of-step))
+(defun noise-of-step (noise step unit)
+  "Return how far, as a fraction of it, a STEP may be off, if NOISE is how far one of length UNIT
+is, which takes a unit of time: in a tick that stands for many, their errors cancel out in part."
+  (declare (type (double-float 0d0) step unit))
+  (if (<= step unit)
+      (double noise)
+      (/ (double noise) (sqrt (/ step unit)))))
+
+(defun per-tick-drift (drift)
+  "Return how far something may drift in a tick, if it does so by DRIFT at most in a unit of time."
+  (if (= tick-quantum* 1)
+      (double drift)
+      (* (double drift) (sqrt (double tick-quantum*)))))

@@ -41,5 +41,6 @@
     (double-float number)
     (fixnum (coerce number 'double-float))
     (single-float (coerce number 'double-float))
+    (ratio (coerce number 'double-float))
     ;; Not inline, so that the compiler does not complain where it cannot rule out complex numbers.
     (t (other-double number))))

@@ -17,7 +17,7 @@
 (defparameter *layers-of-nisp*
   '("ARS-MAGNA.NISP" "ARS-MAGNA.CANVAS" "ARS-MAGNA.RPL.FLUENTS" "ARS-MAGNA.RPL.TASKS"
     "ARS-MAGNA.RPL.LANGUAGE" "ARS-MAGNA.RPL.CONSTRUCTS" "ARS-MAGNA.RPL.SEEING"
-    "ARS-MAGNA.RPL-ROBOT" "ARS-MAGNA.RPL-PICTURES")
+    "ARS-MAGNA.RPL-ROBOT" "ARS-MAGNA.RPL-PICTURES" "ARS-MAGNA.RPL-PROJECTING")
   "The packages whose public names NISP shows, unless a mark says otherwise; ARS shows all others.")
 
 (defun face-of (symbol)

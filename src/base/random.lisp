@@ -1,14 +1,28 @@
-;;;; random.lisp -- Lisp's own dice, of which all that the simulator needs is that they begin anew.
+;;;; random.lisp -- Lisp's own dice, which users' code rolls by CL:RANDOM.
 
 (in-package :ars-magna.base)
+
+;;; What CL:RANDOM says must not depend on what has gone on in Lisp before. Programs (continuations,
+;;; plans, what is around them) have a random state of their run's, seeded when it begins. Code that
+;;; changes a world has another, as a journal repeats the world but not the programs; in each tick
+;;; it begins anew, from a word that depends on nothing but the seed and the tick, so that there is
+;;; no state to be copied, saved or digested.
 
 (defparameter *lisps-dice* 'cl:*random-state*
   "The name of the variable whose value CL:RANDOM rolls.")
 
+(declaim (inline short-seed))
+(defun short-seed (word)
+  (declare (type word word))
+  (ldb (byte 32 0) (mix-word word)))
+
+(defun seeded-lisps-dice (seed)
+  "Return a random state for CL:RANDOM that depends on the integer SEED only."
+  (sb-ext:seed-random-state (short-seed (ldb (byte 64 0) seed))))
+
 (defun call-with-lisps-dice (function seed)
   "Call FUNCTION. What CL:RANDOM says in it depends on the integer SEED only."
-  (let ((*random-state* (sb-ext:seed-random-state
-                         (ldb (byte 32 0) (mix-word (ldb (byte 64 0) seed))))))
+  (let ((*random-state* (seeded-lisps-dice seed)))
     (funcall function)))
 
 (defun call-with-own-lisps-dice (function)
@@ -19,6 +33,56 @@
   "Return a number of 64 bits that no other process comes upon, if chance allows."
   (random (expt 2 64) (make-random-state t)))
 
-(defun lisps-dice-p (symbol)
-  "True if SYMBOL is a name by which Lisp's own dice are rolled."
-  (and (member symbol '(cl:random cl:*random-state* cl:make-random-state)) t))
+;;; The dice of a tick. Few ticks call users' code, and seeding takes microseconds: it is done when
+;;; the first code is called.
+
+(defstruct (tick-dice (:constructor make-tick-dice ()) (:copier nil))
+  "What CL:RANDOM rolls in users' code that changes a world in the tick at hand: STATE, once it is
+seeded by the integers SEED and TICK."
+  (state nil :type (or null random-state))
+  (seed 0 :type integer)
+  (tick 0 :type fixnum)
+  (seeded-p nil :type boolean))
+(setf (documentation 'make-tick-dice 'function)
+      "Return what holds the dice of one tick after the other. See BEGIN-TICK-DICE.")
+
+(defvar *tick-dice* nil
+  "The TICK-DICE for users' code that this thread calls, or NIL if that rolls what is there.")
+
+(declaim (inline begin-tick-dice))
+(defun begin-tick-dice (dice seed tick)
+  "Let DICE be those of TICK of a world whose chance comes from the integer SEED."
+  (declare (type tick-dice dice) (type fixnum tick))
+  (setf (tick-dice-seed dice) seed
+        (tick-dice-tick dice) tick
+        (tick-dice-seeded-p dice) nil))
+
+(defun word-of-tick (dice)
+  (logxor (ldb (byte 64 0) (tick-dice-seed dice))
+          (mix-word (ldb (byte 64 0) (tick-dice-tick dice)))))
+
+(declaim (type function *words-of-state* *fill-words*))
+(defparameter *words-of-state* (symbol-function (find-symbol "RANDOM-STATE-STATE" "SB-KERNEL"))
+  "The function that returns the words of a random state.")
+(defparameter *fill-words* (symbol-function (find-symbol "INIT-RANDOM-STATE" "SB-KERNEL"))
+  "The function of a seed and the words of a random state that seeds these.")
+
+(defun seed-tick-dice (dice)
+  "Seed DICE, without a new random state if they have one."
+  (let ((seed (short-seed (word-of-tick dice))) (state (tick-dice-state dice)))
+    (if state
+        (funcall *fill-words* seed (funcall *words-of-state* state))
+        (setf (tick-dice-state dice) (sb-ext:seed-random-state seed)))
+    (setf (tick-dice-seeded-p dice) t)))
+
+(declaim (inline users-dice))
+(defun users-dice ()
+  "Return the random state that users' code called here is to roll."
+  (let ((dice *tick-dice*))
+    (cond (dice (unless (tick-dice-seeded-p dice) (seed-tick-dice dice))
+                (tick-dice-state dice))
+          (t *random-state*))))
+
+(defmacro with-users-dice (&body body)
+  "Run BODY, which calls users' code, with the dice that it is to roll by CL:RANDOM."
+  `(let ((*random-state* (users-dice))) ,@body))

@@ -1,4 +1,4 @@
-;;;; tables.lisp -- hash tables by other tests than Lisp's own.
+;;;; tables.lisp -- hash tables beyond what Lisp has: other tests, and tables like others.
 
 (in-package :ars-magna.base)
 
@@ -6,3 +6,10 @@
   "Let MAKE-HASH-TABLE take the function called TEST as its test; HASH is the name of a function
 that returns equal integers, not negative, for what TEST holds equal."
   `(sb-ext:define-hash-table-test ,test ,hash))
+
+(defun like-table (table)
+  "Return an empty hash table like TABLE."
+  (make-hash-table :test (hash-table-test table)
+                   :size (max 7 (hash-table-count table))
+                   :weakness (sb-ext:hash-table-weakness table)
+                   :synchronized (sb-ext:hash-table-synchronized-p table)))

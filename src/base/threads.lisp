@@ -13,6 +13,14 @@
   "Run BODY while holding LOCK."
   `(bordeaux-threads:with-lock-held (,lock) ,@body))
 
+(defun call-if-free (lock function)
+  "Call FUNCTION while holding LOCK, and return its value and true; NIL and false if another thread
+holds that."
+  (if (bordeaux-threads:acquire-lock lock nil)
+      (unwind-protect (values (funcall function) t)
+        (bordeaux-threads:release-lock lock))
+      (values nil nil)))
+
 (defun make-semaphore (name)
   "Return a new semaphore called NAME with a count of 0."
   (bordeaux-threads:make-semaphore :name name))

@@ -155,14 +155,16 @@ thread can be stopped STOP-SIMULATOR."
   "Call FUNCTION with ARGUMENTS and return its values. Should it signal an error or be aborted,
 queue an error message saying that it came from ORIGIN (an item or list of items) and return NIL."
   (declare (dynamic-extent arguments))
-  (prog (trouble)
+  (prog (trouble (queue *message-queue*))
    again
      (setf trouble nil)
      (block call
        (flet ((go-on ()
-                (cond ((null trouble) (report-aborted origin))
-                      ((typep trouble 'storage-condition))
-                      (t (report-user-error trouble origin)))
+                ;; What was called may have gone on into another run, with a queue of its own.
+                (let ((*message-queue* queue))
+                  (cond ((null trouble) (report-aborted origin))
+                        ((typep trouble 'storage-condition))
+                        (t (report-user-error trouble origin))))
                 (return-from call))
               (again () (go again)))
          (declare (dynamic-extent #'go-on #'again))
@@ -185,8 +187,9 @@ queue an error message saying that it came from ORIGIN (an item or list of items
                (handler-bind (((or error storage-condition time-limit) #'note))
                  (answering-debugger (#'answer)
                    (as-users-code (origin)
-                     (let ((*asker* origin))
-                       (apply function arguments))))))))))
+                     (with-users-dice
+                       (let ((*asker* origin))
+                         (apply function arguments)))))))))))
      ;; There is room to say so only now.
      (when (typep trouble 'storage-condition)
        (regain-room trouble)

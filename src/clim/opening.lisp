@@ -128,3 +128,13 @@ MISUSE where there is no X server."
           (t (open-new-window robot)))))
 
 (setf *display-opener* #'open-window)
+
+(defun watch-rewound (old new)
+  "Let the windows that show OLD show NEW, which is to go on in its place."
+  (dolist (window (with-lock (*windows-lock*) (copy-list *windows*)))
+    (let ((watcher (window-watcher window)))
+      (when (eq old (watcher-simulation watcher))
+        (remove-observer (watcher-observer watcher) new)
+        (watch-simulation watcher new)))))
+
+(pushnew 'watch-rewound *rewind-hooks*)

@@ -29,6 +29,8 @@ function of the operation that returns one."
   (section nil :type (or null string) :read-only t)
   (documentation "" :type string :read-only t)
   (resource nil :type parameter-spec :read-only t)
+  ;; A function of the resource that returns what is occupied instead of it, or NIL.
+  (occupies nil :type (or null symbol) :read-only t)
   (parameters '() :type list :read-only t)
   (results '() :type list :read-only t)
   (errors '() :type list :read-only t)
@@ -55,7 +57,7 @@ function of the operation that returns one."
   command-name "Return the symbol of the function that issues the command."
   command-prompt-name "Return what the command is called at the prompt, in upper case."
   command-prefix "Return the word that the command's messages begin with."
-  command-family "Return :MOVING, :LOOKING, :HANDLING or :MANIPULATING."
+  command-family "Return :MOVING, :LOOKING, :HANDLING, :MANIPULATING or :THINKING."
   command-section "Return the section of the manual that describes the command, or NIL."
   command-documentation "Return the sentence that says what the command does."
   command-resource "Return the specification of the command's first argument, its resource."

@@ -51,7 +51,7 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
   "Return a form that checks that VARIABLE, an argument of the command NAME, is of TYPE."
   `(check-of-type ',name ',variable ,variable (load-time-value (find-argument-type ',type))))
 
-(defparameter *command-families* '(:moving :looking :handling :manipulating)
+(defparameter *command-families* '(:moving :looking :handling :manipulating :thinking)
   "Where commands belong.")
 
 (defun check-command-form (name resource parameters results options)
@@ -70,10 +70,12 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
     (dolist (option options)
       (check (and (consp option)
                   (member (first option)
-                          '(:family :section :delay :errors :report :echo :prompt :prefix)))
+                          '(:family :section :delay :errors :report :echo :prompt :prefix
+                            :occupies)))
              option
              (format nil "(:family ...), (:section ...), (:delay ...), (:errors ...), ~
-                          (:report ...), (:echo ...), (:prompt ...) or (:prefix ...)")))
+                          (:report ...), (:echo ...), (:prompt ...), (:prefix ...) or ~
+                          (:occupies ...)")))
     (let ((family (assoc :family options)))
       (check (and family (member (second family) *command-families*)) (or family options)
              (format nil "(:family family), one of ~{~(~S~)~^, ~}" *command-families*)))))
@@ -101,6 +103,8 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
                                        interruption, too: parameters of the same names, or else
                                        the operation's subject, once it has begun
   (:prompt name) (:prefix string)      unlike the rule of DEFAULT-PROMPT-NAME
+  (:occupies function)                 the name of a function of the resource that returns what the
+                                       command occupies instead of it, such as the robot's mind
 BODY runs in a tick and must let OPERATION end, with SUCCEED or FAIL-WITH, now or
 later (reading 149)."
   (check-command-form name resource parameters results options)
@@ -122,6 +126,7 @@ later (reading 149)."
          :section ,(first (option :section options))
          :documentation ,sentence
          :resource ,(spec-form resource)
+         :occupies ',(first (option :occupies options))
          :parameters (list ,@(mapcar #'spec-form parameters))
          :results (list ,@(loop for (result text) in results
                                 collect (spec-form (list result t text))))

@@ -6,28 +6,43 @@
 ;;; last step, without braking. So it does when anything interrupts it but ROBOT-STOP, which lets
 ;;; the robot coast.
 
-(defmacro drive-on ((block operation) &body body)
-  "Drive the robot of OPERATION for a tick, and run BODY with BLOCK bound to what blocks it, :WALL,
-:THING or NIL. OPERATION goes on in the next tick unless BODY has ended it. Fails with :NOT-MOVING
-when the speed is 0."
+(declaim (inline drive-for-tick drive-in-time drive-time-over-p))
+(defun drive-for-tick (operation)
+  "Drive the robot of OPERATION for a tick. Return what blocks it, :WALL, :THING or NIL."
+  (drive-tick (operation-resource operation)))
+
+(defun drive-in-time (operation)
+  "Drive the robot of OPERATION for a tick, or what is left of its time if a tick stands for more.
+Return what blocks it, :WALL, :THING or NIL."
+  (let* ((robot (operation-resource operation))
+         (left (operation-left operation))
+         (later (- left (the double-float (double tick-quantum*)))))
+    (setf (operation-left operation) later)
+    (if (minusp later)
+        (drive-tick robot (* left (the double-float (robot-speed-now robot))))
+        (drive-tick robot))))
+
+(defun drive-time-over-p (operation)
+  "True if the robot of OPERATION, which has driven for a tick, is to drive no longer."
+  (<= (operation-left operation) 0d0))
+
+(defmacro drive-on ((block operation &optional (drive 'drive-for-tick)) &body body)
+  "Drive the robot of OPERATION for a tick, by the function DRIVE, and run BODY with BLOCK bound to
+what blocks it, :WALL, :THING or NIL. OPERATION goes on in the next tick unless BODY has ended it.
+Fails with :NOT-MOVING when the speed is 0."
   `(let ((robot (operation-resource ,operation)))
      (declare #.*hot* (type operation ,operation) (type robot robot))
      (if (standing-p robot)
          (fail-with ,operation :not-moving)
-         (let ((,block (drive-tick robot)))
+         (let ((,block (,drive ,operation)))
            ,@body
            (unless (operation-finished-p ,operation) (once-more ,operation))))))
 
-(defun drive (operation robot step)
-  "Let a movement of ROBOT begin in this tick, by STEP, the name of a function of OPERATION."
-  (begin-movement robot)
-  (go-on-now operation step))
-
-(defun drive-count (operation)
-  "Drive for a tick of those that are left, and end OPERATION after the last."
-  (drive-on (block operation)
+(defun drive-a-while (operation)
+  "Drive for a tick of the time that is left, and end OPERATION when that is over."
+  (drive-on (block operation drive-in-time)
     (cond (block (fail-with operation :robot-blocked))
-          ((zerop (decf (operation-count operation))) (succeed operation)))))
+          ((drive-time-over-p operation) (succeed operation)))))
 
 (defun drive-to-wall (operation)
   "Drive for a tick, and end OPERATION at a wall."
@@ -41,8 +56,8 @@ when the speed is 0."
 and if the robot has stopped meanwhile."
   (if (standing-p (operation-resource operation))
       (succeed operation)
-      (drive-on (block operation)
-        (when (or block (zerop (decf (operation-count operation)))) (succeed operation)))))
+      (drive-on (block operation drive-in-time)
+        (when (or block (drive-time-over-p operation)) (succeed operation)))))
 
 ;; As reading 233 says.
 (define-command robot-go-forward (operation (robot robot)
@@ -53,10 +68,11 @@ and if the robot has stopped meanwhile."
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot stopped"))
     "Drive ROBOT straight ahead for TIME ticks. With TIME 0 or less it succeeds at once."
-  (setf (operation-count operation) (ceiling time))
-  (if (plusp (operation-count operation))
-      (drive operation robot 'drive-count)
-      (succeed operation)))
+  (setf (operation-left operation) (double (ceiling time)))
+  (cond ((plusp (operation-left operation))
+         (begin-movement robot)
+         (go-on-now operation 'drive-a-while))
+        (t (succeed operation))))
 
 ;; As reading 102 says.
 (define-command robot-goto-wall (operation (robot robot))
@@ -66,7 +82,8 @@ and if the robot has stopped meanwhile."
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot is at a wall"))
     "Drive ROBOT straight ahead until it meets a wall or the edge of the map."
-  (drive operation robot 'drive-to-wall))
+  (begin-movement robot)
+  (go-on-now operation 'drive-to-wall))
 
 (defun driving-p (robot)
   "True if ROBOT drove in the last tick, or in this."
@@ -79,8 +96,9 @@ and if the robot has stopped meanwhile."
      (:report () "Robot stopped"))
     "Stop ROBOT: if that interrupts its driving, let it coast for BRAKING* ticks first. Who stops it
 once more meanwhile does not prolong that."
-  (when (zerop (operation-count operation))
-    (setf (operation-count operation) braking*))
-  (if (and (operation-subject operation) (driving-p robot) (plusp braking*))
-      (drive operation robot 'coast)
-      (succeed operation)))
+  (when (zerop (operation-left operation))
+    (setf (operation-left operation) (double braking*)))
+  (cond ((and (operation-subject operation) (driving-p robot) (plusp braking*))
+         (begin-movement robot)
+         (go-on-now operation 'coast))
+        (t (succeed operation))))

@@ -124,6 +124,9 @@ none if the manipulation has been undefined since."
                                  (:constructor %make-manipulation-command))
   "The command by which a manipulation is carried out.")
 
+(document-functions
+  manipulation-command-p "True of commands by which manipulations are carried out.")
+
 (defmethod command-entry ((command manipulation-command) operation)
   (list* 'manipulate (command-name command) (operation-arguments operation)))
 
@@ -143,6 +146,7 @@ none if the manipulation has been undefined since."
      :body #'begin-manipulation)))
 
 (defun command-for (manipulation)
+  "Return the command by which MANIPULATION is carried out, made if there is none yet."
   (or (manipulation-command manipulation)
       (setf (manipulation-command manipulation)
             (make-manipulation-command (manipulation-name manipulation)))))

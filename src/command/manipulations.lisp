@@ -198,3 +198,5 @@ MALFORMED-DEFINITION. Return NAME."
     (expand-definition form environment
                        (lambda ()
                          (manipulation-forms definition name parameters options body)))))
+
+(define-shared command manipulation manipulation-method)

@@ -21,12 +21,23 @@
    (step nil symbol "the name of the function of the operation that is to carry it on")
    (finished-p nil boolean "the operation has ended")
    (count 0 fixnum "how many ticks it is yet to go on")
-   (left 0d0 double-float "what is left to be turned, in radians")
+   (left 0d0 double-float "what is left to be turned, in radians, or for how long to drive")
    (reading 0d0 double-float "what the odometry has read so far, in radians")
    (subject nil t "what it is about: what is held, was found, is done; at first, the name of the
 command that it cut short, or NIL"))
   (:link
    (continuation nil t "what to call when it ends, or NIL")))
+
+;; What is told of an end is a program's own affair, unless that is forked along with the run.
+(defmethod copy-plan-value ((operation operation) fork)
+  (let ((copy (copy-slots operation fork)))
+    (when (or (and (operation-forked-p operation) (copier-option fork :participants))
+              (copier-option fork :continuations))
+      (setf (operation-continuation copy) (forked (operation-continuation operation) fork)))
+    copy))
+
+(note-lasting 'run-operation)
+(note-lasting 'interrupt-operation)
 
 (document-functions
   operation-p "True of operations."
@@ -41,6 +52,11 @@ command that it cut short, or NIL"))
 (defun operation-agenda (operation)
   (timeline-agenda (the timeline (operation-timeline operation))))
 
+(defun resource-told (operation)
+  "Return what programs and journals call the resource of OPERATION: the robot, if it is its mind."
+  (let ((resource (operation-resource operation)))
+    (if (mind-p resource) (mind-robot resource) resource)))
+
 (defun operation-world (operation)
   "Return the world that OPERATION takes place in."
   (robot-world (resource-robot (operation-resource operation))))
@@ -52,7 +68,7 @@ command that it cut short, or NIL"))
 (defgeneric command-entry (command operation)
   (:documentation "Return what a journal notes of OPERATION, which carries out COMMAND.")
   (:method ((command command) operation)
-    (list* (command-name command) (operation-resource operation)
+    (list* (command-name command) (resource-told operation)
            (operation-arguments operation))))
 
 (defmethod request-entry ((operation operation))
@@ -92,7 +108,7 @@ command that it cut short, or NIL"))
 (defun call-continuation (operation code results)
   (apply #'call-user-code (operation-continuation operation)
          (command-origin (operation-command operation))
-         code (operation-resource operation) results))
+         code (resource-told operation) results))
 
 (defun notify (operation code results)
   "Call the continuation of OPERATION with CODE and RESULTS at the end of this tick."
@@ -191,7 +207,7 @@ time limit, OPERATION is interrupted."
 ;; As reading 78 says.
 (defun start-body (operation)
   (apply (command-body (operation-command operation))
-         operation (operation-resource operation) (operation-arguments operation)))
+         operation (resource-told operation) (operation-arguments operation)))
 
 (defun make-way (operation agenda rival)
   "Free for OPERATION the resource of RIVAL, the event pending on it: a command that takes no time
@@ -214,7 +230,7 @@ stop that interrupts another goes on where that was."
   (cond ((not (operation-p rival)))
         ((and (named-p operation 'robot-stop) (named-p rival 'robot-stop))
          (setf (operation-subject operation) (operation-subject rival)
-               (operation-count operation) (operation-count rival)))
+               (operation-left operation) (operation-left rival)))
         ((begun-p rival)
          (setf (operation-subject operation) (command-name (operation-command rival))))))
 
@@ -226,7 +242,7 @@ stop that interrupts another goes on where that was."
     (when rival
       (note-cut-short operation rival)
       (make-way operation agenda rival))
-    (go-on operation 'start-body delay)))
+    (go-on operation 'start-body (ticks-for delay))))
 
 ;; A robot may have been retired since the command was issued.
 (defmethod perform ((operation operation) timeline)
@@ -236,8 +252,15 @@ stop that interrupts another goes on where that was."
       (begin operation)))
 
 (defun resource-robot (resource)
-  "Return RESOURCE if it is a robot, else the robot that it is a part of."
-  (if (robot-p resource) resource (part-robot resource)))
+  "Return RESOURCE if it is a robot, else the robot whose part or mind it is."
+  (cond ((robot-p resource) resource)
+        ((mind-p resource) (mind-robot resource))
+        (t (part-robot resource))))
+
+(defun occupied (command resource)
+  "Return what COMMAND, which is issued on RESOURCE, occupies."
+  (let ((reader (command-occupies command)))
+    (if reader (funcall reader resource) resource)))
 
 (defun issue (command resource arguments continuation)
   "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked and of which lists are copied;
@@ -248,4 +271,5 @@ if the robot's run is over."
         (arguments (if (some #'consp arguments)
                        (given (command-name command) "arguments" arguments)
                        arguments)))
-    (post (make-operation command resource arguments continuation timeline) timeline)))
+    (post (make-operation command (occupied command resource) arguments continuation timeline)
+          timeline)))

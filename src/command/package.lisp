@@ -28,6 +28,8 @@
   (:export #:withdraw-command)
   ;; hands
   (:export #:check-grips)
+  ;; thinking
+  (:export #:think)
   ;; moving
   (:export #:robot-set-speed #:robot-set-turn-angle #:robot-turn #:robot-about-face
            #:robot-turn-left #:robot-turn-right #:robot-align-place #:robot-turn-corner
@@ -44,4 +46,7 @@
   ;; manipulations
   (:export #:defmanipulation #:define-manipulation #:manipulate #:run-manipulation
            #:find-manipulation #:all-manipulations #:manipulation-name
-           #:manipulation-methods #:method-source #:method-digest))
+           #:manipulation-methods #:method-source #:method-digest #:manipulation-method
+           #:manipulation-command-p #:command-for)
+  ;; soundness
+  (:export #:check-commands #:step-p #:withdrawal #:withdrawal-continuation))

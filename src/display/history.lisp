@@ -115,10 +115,12 @@ the rays of the last looks. Return it."
           (add-observer observer simulation))
         history)))
 
-(defun forget-history (&optional (simulation (current-simulation)))
-  "Keep no history of SIMULATION any more. Return nothing."
-  (let ((entry (gethash simulation *histories*)))
+(defun follow-rewind (old new)
+  "Keep a history of NEW, which is to go on in the place of OLD, if one is kept of that."
+  (let ((entry (gethash old *histories*)))
     (when entry
-      (remhash simulation *histories*)
-      (asking (simulation) (remove-observer (cdr entry) simulation))))
-  (values))
+      (remhash old *histories*)
+      (remove-observer (cdr entry) new)
+      (keep-history new))))
+
+(pushnew 'follow-rewind *rewind-hooks*)

@@ -10,7 +10,7 @@
   ;; text-map
   (:export #:text-map)
   ;; history
-  (:export #:history #:history-of #:keep-history #:forget-history)
+  (:export #:history #:history-of #:keep-history)
   ;; snapshot
   (:export #:snapshot #:take-snapshot #:snapshot-of #:snapshot-tick #:snapshot-map
            #:snapshot-things #:snapshot-robots #:snapshot-robot #:thing-image #:robot-image
@@ -21,6 +21,7 @@
   (:export #:draw-terrain #:draw-movers #:draw-world #:*picture-layers* #:+picture-layers+
            #:draw-display #:display-title #:+displays+)
   ;; picture, animation
-  (:export #:picture-kind #:save-svg #:save-picture #:save-snapshot #:svg-picture #:save-animation)
+  (:export #:picture-kind #:save-svg #:save-picture #:save-snapshot #:svg-picture #:save-animation
+           #:save-way-picture)
   ;; opening
   (:export #:open-display #:*display-opener* #:announce-display))

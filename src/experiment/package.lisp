@@ -6,13 +6,11 @@ on with, on as many cores and machines as there are. Names lparallel.")
   (:use :cl :ars-magna.base :ars-magna.statistics :ars-magna.run)
   (:import-from :ars-magna.plots
                 #:figure-text #:line-chart #:survival-chart #:difference-chart #:measure-chart
-                #:drawing-chart #:look-color #:draw-marker #:save-chart)
-  (:import-from :ars-magna.canvas
-                #:draw-gcontext* #:graphics-scale* #:with-gcontext #:with-opacity #:with-origin
-                #:draw-lines)
+                #:save-chart)
+  (:import-from :ars-magna.trails #:note-places #:ways-along #:ways-chart #:part-of-map)
   (:import-from :ars-magna.display
-                #:take-snapshot #:snapshot-map #:draw-terrain #:draw-movers #:picture-kind
-                #:keep-history #:open-display #:*display-opener*)
+                #:take-snapshot #:snapshot-map #:picture-kind #:keep-history
+                #:open-display #:*display-opener*)
   (:import-from :ars-magna.world #:map-width #:map-height)
   (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
                 #:seconds-now #:check-rate)

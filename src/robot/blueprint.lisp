@@ -30,3 +30,5 @@
 
 (define-registry robot "robot" :object-p blueprint-p :by-symbol t
   :finder find-blueprint :lister all-blueprints :internal t)
+
+(define-shared blueprint)

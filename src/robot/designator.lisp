@@ -21,7 +21,7 @@
    (angle 0d0 double-float "the estimated angle of what the designator denotes relative to the
 robot's heading, in radians, not normalised (manual 3.4.1)")
    (data '() list "what was seen: a list of lists (attribute value), or of the name of a place type
-(manual 3.4.1)")
+(manual 3.4.1)" :shared)
    (denotation nil (or null thing place)
                "the THING or PLACE that the designator denotes; NIL: it is false")
    (distance 0d0 double-float "the distance at which the denotation was last seen, in metres")
@@ -146,6 +146,9 @@ those that have none, being where the robot is, turn along with it."
 
 ;;; In a journal: also one that has been dropped can be named, perhaps in a run before this one,
 ;;; whose serial numbers are given again. So it has none.
+
+(defmethod copy-plan-value ((designator designator) fork)
+  (copy-of-robots designator (designator-robot designator) fork))
 
 (defmethod reference ((designator designator))
   (list :designator (string (robot-name (designator-robot designator)))

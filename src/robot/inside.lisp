@@ -145,6 +145,8 @@ what they hold too much."
   (when (or (null new-location) (thing-contents thing) (plusp (thing-capacity thing)))
     (mapc #'settle-parts (world-robots (thing-world thing)))))
 
+(note-lasting 'watch-container)
+
 (defun settle-robots (world)
   "Settle what is inside what in WORLD: pull out the parts of robots that are out of their reach."
   (dolist (robot (world-robots world))

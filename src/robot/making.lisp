@@ -45,7 +45,8 @@ NIL."
 
 (defun outfit (robot blueprint)
   "Give ROBOT the parts that BLUEPRINT lists."
-  (setf (robot-cameras robot)
+  (setf (robot-mind robot) (make-mind :robot robot)
+        (robot-cameras robot)
         (make-parts robot #'make-camera
                     (loop for (field-of-view resolution) in (blueprint-cameras blueprint)
                           collect (list :field-of-view field-of-view :resolution resolution)))

@@ -97,8 +97,8 @@ So a robot can drive along the border of two cells, and stay in one of them."
 speed; the odometers read an interval that contains it (reading 96)."
   (declare #.*hot* (type robot robot) (type double-float limit))
   (let* ((world (robot-world robot))
-         (noise (double motion-noise*))
          (nominal (min limit (step-now robot)))
+         (noise (noise-of-step motion-noise* nominal (robot-speed-now robot)))
          (distance (* nominal (+ 1d0 (* noise (- (* 2d0 (roll (world-dice world :motion)))
                                                  1d0)))))
          (block (sweep robot distance))
@@ -117,7 +117,7 @@ speed; the odometers read an interval that contains it (reading 96)."
 it. The interval that the odometers read is left in ROBOT-TURNED-LOW and -HIGH."
   (let* ((world (robot-world robot))
          (size (abs (double angle)))
-         (noise (double robot-turn-max-error*))
+         (noise (noise-of-step robot-turn-max-error* size (robot-turn-angle-now robot)))
          (turned (* size (+ 1d0 (roll-within noise (world-dice world :motion)))))
          (dice (world-dice world :odometry))
          (low (- turned (* (roll dice) (max 0d0 (- turned (* size (- 1d0 noise)))))))

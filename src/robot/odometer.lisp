@@ -31,6 +31,9 @@
    (origin-angle 0d0 double-float
                  "the robot's true heading when the angle was last reset, in radians")))
 
+(defmethod copy-plan-value ((odometer odometer) fork)
+  (copy-of-robots odometer (odometer-robot odometer) fork))
+
 (defmethod reference ((odometer odometer))
   (list :odometer (string (robot-name (odometer-robot odometer)))
         (string (odometer-name odometer))))

@@ -18,6 +18,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:robot-speed #:robot-turn-angle #:robot-cameras #:robot-hands #:robot-bins
            #:robot-last-place #:robot-drove-tick #:robot-designators
            #:robot-camera #:robot-hand #:robot-storage-bin #:robot-part #:robot-parts
+           #:robot-resources #:robot-mind #:mind-p #:mind-robot
            #:parts-of-kind #:robot-sensors #:robot-ended-tracks
            #:part #:part-p #:part-robot #:part-index #:part-location
            #:camera #:camera-p #:camera-robot #:camera-index #:camera-field-of-view
@@ -29,7 +30,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:storage-bin-capacity #:storage-bin-closed-p #:storage-bin-contents)
   (:export #:world-tick #:ensure-timeline)
   ;; odometer
-  (:export #:odometer #:odometer-p #:odometer-name #:odometer-estimate
+  (:export #:odometer #:odometer-p #:odometer-name #:odometer-robot #:odometer-estimate
            #:odometer-origin-angle #:make-odometer #:robot-main-odometer
            #:robot-odometer #:robot-odometers #:reset-odometer #:reset-odometer-pos
            #:reset-odometer-ang #:get-odometer-pos #:get-odometer-ang)
@@ -43,7 +44,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
   (:export #:within-reach-p #:in-same-cell-p #:reached-p)
   ;; designator
   (:export #:designator #:designator-p #:designator-type #:designator-angle #:designator-data
-           #:designator-robot #:designator-number #:designator-denotation
+           #:designator-robot #:designator-serial #:designator-number #:designator-denotation
            #:designator-distance #:designator-valid-p #:designator-x #:designator-y
            #:designator-location #:find-designator #:live-designators #:designators-on
            #:*designator-limit* #:thing-space #:designator-position
@@ -55,6 +56,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
   ;; noise, matching, scanning, views, tending
   (:export #:own-symbol #:reading-reliability #:reading-deviation #:read-attribute #:angle-error
            #:specification-p #:specification-trouble #:notice-probability #:sighting
+           #:sighting-p
            #:designate #:look-for-things #:tend-tracks #:tracks-busy-p
            #:track #:track-operation #:track-ended #:serial-designator #:make-designator
            #:look-for-places #:camera-heading #:take-view #:start-track #:trackable-p
@@ -67,6 +69,8 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
   (:export #:robot-place-here #:sense-place-type #:canonical-directions #:nearest-direction)
   ;; blueprint, making
   (:export #:defrobot #:define-robot #:find-robot #:all-robots
-           #:blueprint-name #:blueprint-map)
+           #:blueprint #:blueprint-name #:blueprint-map)
   ;; own-changes
-  (:export #:place-robot))
+  (:export #:place-robot)
+  ;; soundness
+  (:export #:check-robot))

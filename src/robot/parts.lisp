@@ -9,6 +9,11 @@
 (defconstant +default-turn-angle+ 0.3d0
   "How far a robot turns in a tick unless told otherwise, in radians.")
 
+(define-kind (mind :include resource)
+    "What a robot thinks with: one thought at a time, beside what its body and parts do."
+  (:fixed
+   (robot nil t "the robot whose mind it is")))
+
 (public robot)
 ;; As reading 92 says.
 (define-kind (robot :include resource :constructor %make-robot)
@@ -21,7 +26,8 @@
    (cameras #() simple-vector "the vector of the robot's cameras" :part)
    (hands #() simple-vector "the vector of the robot's hands" :part)
    (bins #() simple-vector "the vector of the robot's storage bins" :part)
-   (sensors #() simple-vector "the vector of the robot's parts of other kinds" :part))
+   (sensors #() simple-vector "the vector of the robot's parts of other kinds" :part)
+   (mind nil (or null mind) "what the robot thinks with, beside what it does" :part))
   (:state
    (x 0d0 double-float "the robot's true x coordinate, in metres")
    (y 0d0 double-float "the robot's true y coordinate, in metres")
@@ -51,6 +57,16 @@
    (retired nil (or null string) "why the robot's run is over, or NIL as long as it is not")
    (enders '() list "the functions that are called when the robot's run is over")))
 
+;; What is of another run stays what it is.
+(defun copy-of-robots (object robot copier)
+  "Return what COPIER has for OBJECT, which is ROBOT or belongs to it."
+  (if (eq (robot-world robot) (copier-option copier :world))
+      (copy-slots object copier)
+      object))
+
+(defmethod copy-plan-value ((robot robot) fork)
+  (copy-of-robots robot robot fork))
+
 (define-kind (part :include resource :constructor nil)
     "A camera, hand or storage bin of a robot, or a sensor of a kind of one's own."
   (:fixed
@@ -58,6 +74,9 @@
    (index 0 fixnum "the part's index among its kind, from 0"))
   (:state
    (location nil t "the container or storage bin that the part is inside of, or NIL")))
+
+(defmethod copy-plan-value ((part part) fork)
+  (copy-of-robots part (part-robot part) fork))
 
 (public camera)
 (define-kind (camera :include part)
@@ -70,7 +89,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
    (angle 0d0 double-float "the camera's angle relative to the robot, in radians")
    (tracking nil t "the camera's TRACK, or NIL if it tracks nothing; see CAMERA-TRACKS" :part))
   (:memory
-   (last-view '() list "the last view, a list of numbers; () before the first")))
+   (last-view '() list "the last view, a list of numbers; () before the first" :shared)))
 
 (public hand)
 (define-kind (hand :include part)
@@ -95,7 +114,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
           hand-robot hand-index hand-location storage-bin-robot storage-bin-index robot-name
           robot-world robot-x robot-y robot-angle robot-speed robot-turn-angle robot-cameras
           robot-hands robot-bins robot-sensors robot-last-place part-robot part-index part-location
-          camera-field-of-view camera-resolution camera-angle camera-last-view camera-tracking
+          camera-field-of-view camera-resolution camera-angle camera-last-view
           hand-strength hand-contents storage-bin-capacity storage-bin-closed-p
           storage-bin-contents)
 (document-functions
@@ -103,6 +122,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   part-p "True of cameras, hands, storage bins and other parts."
   camera-p "True of cameras."
   hand-p "True of hands."
+  mind-p "True of what robots think with."
   storage-bin-p "True of storage bins.")
 
 (define-argument-type 'robot #'robot-p "a robot")
@@ -142,6 +162,9 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
 (defmethod timeline-of ((part part))
   (timeline-of (part-robot part)))
 
+(defmethod timeline-of ((mind mind))
+  (timeline-of (mind-robot mind)))
+
 (addition robot-position)
 (defun robot-position (robot)
   "Return the true position of ROBOT, x and y as two values, in metres."
@@ -152,6 +175,10 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   "Return a list of ROBOT's cameras, hands, storage bins, and parts of other kinds."
   (concatenate 'list (robot-cameras robot) (robot-hands robot) (robot-bins robot)
                (robot-sensors robot)))
+
+(defun robot-resources (robot)
+  "Return a list of all of ROBOT that does one thing at a time: itself, its parts and its mind."
+  (append (list robot) (robot-parts robot) (list (robot-mind robot))))
 
 (addition hand-holding)
 (defun hand-holding (hand)
@@ -208,6 +235,9 @@ among those, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 
 (defmethod print-object ((robot robot) stream)
   (print-named robot stream (symbol-name (robot-name robot))))
+
+(defmethod print-object ((mind mind) stream)
+  (print-named mind stream (format nil "Mind of ~A" (mind-robot mind))))
 
 (defmethod print-object ((part part) stream)
   (print-named part stream (format nil "~@(~A~) ~D" (type-of part) (part-index part))))

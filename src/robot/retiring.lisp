@@ -36,7 +36,7 @@
 
 (defun interrupt-robot (robot)
   "Interrupt all that ROBOT and its parts are doing. Called by the owner of its world."
-  (abandon (timeline-of robot) (cons robot (robot-parts robot))))
+  (abandon (timeline-of robot) (robot-resources robot)))
 
 (defun take-out (robot reason)
   "Retire ROBOT, interrupt what it is doing, and take it out of its world."

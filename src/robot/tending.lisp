@@ -23,11 +23,9 @@
          (x (designator-x designator)) (y (designator-y designator)))
     (unless (or no-sensor-error* (eq (designator-type designator) :local))
       (let ((distance (abs (+ (distance-to robot x y)
-                              (roll-within (* (double false-desig-drift-dist*) tick-quantum*)
-                                           dice))))
+                              (roll-within (per-tick-drift false-desig-drift-dist*) dice))))
             (bearing (+ (bearing-to robot x y)
-                        (roll-within (* (double false-desig-drift-ang*) tick-quantum*)
-                                     dice))))
+                        (roll-within (per-tick-drift false-desig-drift-ang*) dice))))
         (setf (values (designator-x designator) (designator-y designator))
               (clip-to-map map
                            (+ (robot-x robot) (* distance (cos bearing)))

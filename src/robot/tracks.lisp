@@ -3,12 +3,14 @@
 (in-package :ars-magna.robot)
 
 ;;; A track is what a camera does in the background of its commands: it keeps pointing where its
-;;; designator's denotation is. Tracks are looked after once a tick, after events and kickers. What
-;;; ends a track at any moment of a tick takes effect, and says so, at once; but the one who asked
-;;; for the track is told only in the tracks phase, so after the command that ended it has told
-;;; its own. Only an interruption is told at once. A designator that was tracked does not
-;;; survive the loss of its last track; one that was not does not survive that its denotation
-;;; moves -- unless a hand takes that up or sets it down -- or that a local one is out of reach.
+;;; designator's denotation is. Tracks are looked after once a tick, after events and kickers. A
+;;; track may end at any moment of a tick, and is over at once; but whoever asked for it is told
+;;; only in the tracks phase, after the command that ended it has reported its own end. Only an
+;;; interruption is told at once.
+;;;
+;;; A designator that was tracked becomes invalid with the loss of its last track. One that was
+;;; not tracked becomes invalid when its denotation moves, unless a hand takes this up or sets it
+;;; down; and a local one when its denotation is out of reach.
 
 ;; As reading 82 says.
 (define-kind (track :constructor (make-track (designator operation)))
@@ -105,6 +107,8 @@ is lost and no other camera tracks the designator, that is dropped."
         (dolist (designator (designators-on robot thing))
           (unless (and new-location (survives-move-p designator by-hand))
             (drop-designator designator)))))))
+
+(note-lasting 'watch-thing)
 
 (defun survives-move-p (designator by-hand)
   "True if DESIGNATOR stays valid although its denotation has moved, BY-HAND if it was taken up or

@@ -2,10 +2,11 @@
 
 (in-package :ars-magna.run)
 
-;;; Whoever has the world in custody makes a change between ticks, and notes it. Another thread
-;;; takes custody first, or has the change made by the thread that has it. By then the world may
-;;; have become another: so all is checked again there. What a tick itself does, kickers and all,
-;;; needs no note: it happens again by itself. Nor does what is done to a world whose run is over.
+;;; A change is made and noted between ticks, by the thread that has the world in custody. Another
+;;; thread takes custody first, or has the change made by the thread that has it; as the world may
+;;; have changed by then, the arguments are checked again there. What a tick itself does, kickers
+;;; included, is not noted, since a replay does it again. Nor is what is done to a world whose run
+;;; is over.
 
 (defun note-change (simulation operator arguments)
   (unless (simulation-over simulation)
@@ -19,8 +20,12 @@ sense now."
     (apply (operator-function (find-operator operator)) arguments)))
 
 (defmethod change-world ((timeline timeline) world function operator arguments)
+  (check-own-run timeline)
   (if (owner-p timeline)
       (deferring-interrupts
         (note-change (world-simulation world) operator arguments)
         (writing (world) (funcall function)))
-      (asking (timeline) (change-again world operator arguments))))
+      (let ((by-itself-p (goes-on-in-forks-p)))
+        (asking (timeline)
+          (let ((*goes-on-in-forks-p* by-itself-p))
+            (change-again world operator arguments))))))

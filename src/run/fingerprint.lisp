@@ -2,16 +2,17 @@
 
 (in-package :ars-magna.run)
 
-;;; A journal has, for each definition that decides its run, a list (kind name number), where the
-;;; number stands for the form that was read, and (:file name number) for each file that they are
-;;; from, whose other forms may decide it too. Comments and layout do not count. What has no form,
-;;; because a function made it, has no number and is not compared.
+;;; A journal has a list (kind name number) for each definition that the run depends on, where the
+;;; number is a digest of the form that was read. It has (:file name number) for each file that
+;;; these definitions are from, as the run may depend on other forms there too. Comments and layout
+;;; do not count. A definition that a function made has no form: it has no number, and is not
+;;; compared.
 ;;;
-;;; What a run uses decides it: its map and robots; the kickers on its things, the attributes that
-;;; these have, the place types and substances in the map; the robots' parts of users' kinds; the
-;;; kickers, manipulations and users' commands that it was asked for. So does all that stands in the
-;;; files that these are from. Of functions that stand in other files, or were typed, nothing is
-;;; known.
+;;; A run depends on what it uses: its map and robots; the kickers on its things, and the attributes
+;;; of these; the place types and substances in the map; the robots' parts of users' kinds; the
+;;; kickers, manipulations and users' commands that it was asked for. It also depends on everything
+;;; in the files that define these. Functions that stand in other files, or were typed, are not
+;;; covered.
 
 (defparameter *definition-kinds*
   (list (cons :map *maps*) (cons :robot *robots*) (cons :kicker *kickers*)

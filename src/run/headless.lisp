@@ -4,12 +4,6 @@
 
 ;;; WITH-SIMULATION makes a fresh world, with fresh robots in it, for its extent.
 
-(defvar *simulation-variables* '()
-  "Symbols that a headless simulation binds, to the values they have, so that what is set in it
-ends with it and simulations side by side do not meet.")
-
-(pushnew '*simulation-variables* *kept-variables*)
-
 ;;; Passing ticks.
 
 (defun check-headless (simulation operator)
@@ -24,21 +18,16 @@ ends with it and simulations side by side do not meet.")
                  (timeline-passing-p (simulation-timeline simulation))))
     (reject-use "run-ticks: a tick is under way; time cannot pass inside it.")))
 
+(defun await-free (simulation)
+  "Wait a moment for another thread that has SIMULATION in custody only to look at it. Signals
+MISUSE if it passes its ticks."
+  (when (timeline-passing-p (simulation-timeline simulation)) (reject-busy simulation))
+  (answer-meanwhile)
+  (yield-thread))
+
 (defun reject-busy (simulation)
   (reject-use "run-ticks: another thread passes ticks of ~A, or changes it. One at a time can."
               (simulation-name simulation)))
-
-(defun call-inside (simulation function)
-  "Call FUNCTION where SIMULATION is the current one: with its world, its message queue and, if it
-is not the current one out here, its parameters."
-  (flet ((call ()
-           (let ((*simulation* simulation)
-                 (*world* (simulation-world simulation))
-                 (*message-queue* (simulation-messages simulation)))
-             (funcall function))))
-    (if (eq simulation *simulation*)
-        (call)
-        (call-with-parameter-values (simulation-known-parameters simulation) #'call))))
 
 (defun pass-freely (count simulation)
   "Pass COUNT ticks of SIMULATION, which this thread has in custody, unless its run ends before."
@@ -75,10 +64,13 @@ its ticks."
   (check-headless simulation 'run-ticks)
   (check-not-over simulation 'run-ticks)
   (check-passable simulation)
-  (call-with-custody (timeline-custody (simulation-timeline simulation))
-                     (lambda ()
-                       (call-inside simulation (lambda () (pass-ticks count simulation))))
-                     (lambda () (reject-busy simulation)))
+  (loop with custody = (timeline-custody (simulation-timeline simulation))
+        until (call-with-custody custody
+                                 (lambda ()
+                                   (call-inside simulation
+                                                (lambda () (pass-ticks count simulation)))
+                                   t)
+                                 (lambda () (await-free simulation) nil)))
   (simulation-tick simulation))
 
 (addition run-until)
@@ -114,9 +106,10 @@ passes them at its pace. Returns nothing."
   "Return the blueprint of the robot DESIGNATOR, which may be a robot or its name."
   (if (robot-p designator) (robot-blueprint designator) (find-blueprint designator)))
 
-(defun fresh-simulation (robots &key (seed 0) journal)
+(defun fresh-simulation (robots &key (seed 0) journal (thinking :free))
   "Return a simulation, at tick 0, of a fresh world that holds the things of its map and fresh
-ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
+ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one. THINKING is its thinking
+mode."
   (let* ((blueprints (mapcar #'blueprint-of robots))
          (maps (remove-duplicates (mapcar #'find-map (mapcar #'blueprint-map blueprints)))))
     (unless (= (length maps) 1)
@@ -126,27 +119,47 @@ ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one."
     (let ((world (make-world (first maps) :seed seed)))
       (dolist (blueprint blueprints) (make-robot blueprint world))
       (let ((simulation (make-simulation world)))
+        (begin-thinking simulation thinking)
         (when journal (begin-journal simulation))
         simulation))))
 
-(defun call-with-simulation (function robots &key (seed 0) parameters clean journal variables)
+(defun call-with-simulation (function robots &key (seed 0) parameters clean journal keep
+                                               (thinking :free) variables)
   "Call FUNCTION in a fresh headless simulation; see WITH-SIMULATION. VARIABLES are symbols by which
 FUNCTION calls some of the ROBOTS, of other packages than theirs perhaps."
   (check-argument with-simulation seed (integerp seed) "an integer")
+  (check-thinking 'with-simulation thinking)
   (call-with-parameters
    parameters
    (lambda ()
      (check-parameters)
      (when clean (clean-simulation))
-     (let* ((*message-queue* (make-message-queue))
-            (simulation (fresh-simulation (ensure-list robots) :seed seed :journal journal))
-            (*simulation* simulation)
-            (*world* (simulation-world simulation))
-            (robots (simulation-robots simulation)))
-       (progv (append variables (mapcar #'robot-name robots) *simulation-variables*)
-           (append (robots-meant variables) robots (mapcar #'symbol-value *simulation-variables*))
-         (unwind-protect (funcall function)
-           (end-headless simulation)))))))
+     (let ((*message-queue* (make-message-queue)))
+       (call-as-headless function
+                         (fresh-simulation (ensure-list robots) :seed seed :journal journal
+                                                                :thinking thinking)
+                         :variables variables :keep keep)))))
+
+(defun call-as-headless (function simulation &key variables keep)
+  "Call FUNCTION where SIMULATION, a headless one, is the current one, and the variables of its
+robots are bound to these; so are the symbols VARIABLES, which name some of them. It keeps forks as
+KEEP says, see KEEP-FORKS. Then the run is over."
+  (when *simulation* (note-environment *simulation*))
+  (let* ((*message-queue* (simulation-messages simulation))
+         (*simulation* simulation)
+         (*world* (simulation-world simulation))
+         (*tick-dice* nil)
+         (robots (simulation-robots simulation)))
+    (setf (simulation-variables simulation)
+          (append variables (mapcar #'robot-name robots) *simulation-variables*
+                  (list *lisps-dice*)))
+    (progv (simulation-variables simulation)
+        (append (robots-meant variables) robots (mapcar #'symbol-value *simulation-variables*)
+                (list (seeded-lisps-dice (simulation-seed simulation))))
+      (note-environment simulation)
+      (unwind-protect (progn (when keep (keep-forks keep simulation))
+                             (funcall function))
+        (end-headless (latest simulation))))))
 
 (defun end-headless (simulation)
   (let ((reason "the headless simulation that it was in has ended"))
@@ -170,17 +183,22 @@ FUNCTION calls some of the ROBOTS, of other packages than theirs perhaps."
   (dolist (robot robots) (retire-robot robot reason)))
 
 (addition with-simulation)
-(define-user-macro with-simulation ((robots &key (seed 0) parameters clean journal) &body body)
+(define-user-macro with-simulation ((robots &key (seed 0) parameters clean journal keep
+                                            (thinking :free))
+                                    &body body)
   "Run BODY with ROBOTS, the name of a robot or a list of names, of any package, bound to fresh
 robots in a fresh world, headless: ticks pass only when BODY calls RUN-TICKS or RUN-UNTIL. The
 integer SEED decides all chance. Parameters are bound to what they are here, or as the list
 PARAMETERS of lists (name value) says; with CLEAN the simulation is clean. With JOURNAL it keeps a
-journal. Messages go to a queue of its own. When BODY has ended, the run is over: what the robots
-are doing is interrupted, and they take no more commands. Return the values of BODY."
+journal, with KEEP forks, so that it can be rewound, see KEEP-FORKS. THINKING says how much time
+thinking costs, see SET-THINKING. Messages go to a queue of its
+own. When BODY has ended, the run is over: what the robots are doing is interrupted, and they take
+no more commands. Return the values of BODY."
   (let* ((robots (unquoted robots)) (variables (variables-among robots)))
     `(call-with-simulation (lambda ()
                              (declare (special ,@variables))
                              ,@body)
                            ',robots
                            :variables ',variables
-                           :seed ,seed :parameters ,parameters :clean ,clean :journal ,journal)))
+                           :seed ,seed :parameters ,parameters :clean ,clean
+                           :journal ,journal :keep ,keep :thinking ,thinking)))

@@ -7,24 +7,16 @@
 ;;; plain-data.lisp for what they look like.
 
 (defconstant +journal-version+ 2)
-(defconstant +longest-line+ 1000000 "How many characters a line of a journal has at most.")
-(defconstant +longest-file+ (expt 2 28) "How many bytes a journal has at most.")
 (defconstant +latest-end+ (expt 10 9) "The last tick that a journal on file can end at.")
 
-(defun shown-name (file)
-  "Return FILE, a pathname or string, as the operating system writes it; an empty name in quotes."
-  (let ((name (if (and (pathnamep file) (not (wild-pathname-p file))) (native-name file) file)))
-    (if (equal name "") "\"\"" name)))
-
 (addition damaged-journal)
-(define-condition damaged-journal (ars-magna-error)
-  ((file   :initarg :file   :reader damaged-journal-file)
-   (reason :initarg :reason :reader damaged-journal-reason))
+(define-condition damaged-journal (damaged-file)
+  ()
   (:report (lambda (condition stream)
              (format stream "~A is no usable journal: ~A. Save one with SAVE-JOURNAL; ~
                              nothing was changed."
-                     (shown-name (damaged-journal-file condition))
-                     (damaged-journal-reason condition))))
+                     (shown-name (damaged-file-name condition))
+                     (damaged-file-reason condition))))
   (:documentation "A file that should hold a journal cannot be used."))
 
 ;;; Writing.
@@ -60,14 +52,7 @@
   "Write DATA, a line for each, with check sums to OUT."
   (format out ";;;; A journal of ARS MAGNA.~%")
   (let ((sum 0))
-    (dolist (datum data)
-      (let ((text (datum-text datum)))
-        (when (<= (- +longest-line+ 10) (length text))
-          (error "one of its entries takes ~D characters" (length text)))
-        (setf sum (text-checksum text sum))
-        (format out "~A ;~8,'0X~%" text sum)
-        (when (< (- +longest-file+ (expt 2 20)) (file-position out))
-          (error "it takes more than ~D bytes" (- +longest-file+ (expt 2 20))))))))
+    (dolist (datum data) (setf sum (write-sealed (datum-text datum) sum out)))))
 
 (defun write-journal (journal file)
   "Write JOURNAL to FILE, replacing it when all is written. Return the file's truename. Signals
@@ -82,29 +67,6 @@ form; then FILE is as it was."
 
 ;;; Reading.
 
-(defun one-line-text (condition)
-  "Return what CONDITION says as the part of a sentence."
-  (string-right-trim "." (cut (one-line (text-of-condition condition)) 400)))
-
-(defun read-short-line (in)
-  "Return the next line of IN, or NIL; of one that is too long, no more than its beginning."
-  (let* ((last nil)
-         (line (with-output-to-string (out)
-                 (loop repeat +longest-line+
-                       do (setf last (read-char in nil))
-                       until (member last '(nil #\Newline))
-                       do (write-char last out)))))
-    (when (or last (plusp (length line))) (string-right-trim '(#\Return) (decoded line)))))
-
-(defun comment-line-p (line)
-  "True if LINE is a comment or empty; an editor may have put a byte order mark before it."
-  (let ((text (string-left-trim '(#\Space #\Tab #.(code-char #xFEFF)) line)))
-    (or (string= "" text) (char= #\; (char text 0)))))
-
-(defun begins-with-p (text line)
-  (and (<= (length text) (length line))
-       (string-equal text line :end2 (length text))))
-
 (defun check-head-line (line)
   "Signal an error unless LINE begins as the head of a journal of this version does."
   (when (or (begins-with-p "(:ars-magna-journal 1 " line)
@@ -113,33 +75,11 @@ form; then FILE is as it was."
             more: repeat the run, with the version that recorded it, or record it anew"))
   (unless (begins-with-p "(ars-magna-journal " line) (error "it does not begin like one")))
 
-(defun line-checksum (line start)
-  "Return the check sum that stands in LINE from START on, or NIL."
-  (and (<= 0 start)
-       (string= " ;" line :start2 start :end2 (+ 2 start))
-       (parse-integer line :start (+ 2 start) :radix 16 :junk-allowed t)))
-
-(defun checked-datum (line sum)
-  "Return the datum in LINE and its check sum. SUM is that of what comes before."
-  (when (= +longest-line+ (length line)) (error "it has ~D characters or more" +longest-line+))
-  (let* ((start (- (length line) 10))
-         (text (subseq line 0 (max 0 start)))
-         (sum (text-checksum text sum)))
-    (unless (eql sum (line-checksum line start)) (error "it is not as it was written"))
-    (multiple-value-bind (datum end) (read-datum text)
-      (unless (= end (length text)) (error "something stands behind it"))
-      (values datum sum))))
-
 (defun numbered-datum (number line sum)
   "Return what CHECKED-DATUM does. Signals an error that names the entry by its NUMBER."
   (handler-case (checked-datum line sum)
     (error (trouble)
       (error "~[its head~:;~:*entry ~D~] is damaged: ~A" number (one-line-text trouble)))))
-
-(defun next-line (in)
-  "Return the next line of IN that is no comment, or NIL."
-  (loop for line = (read-short-line in)
-        unless (and line (comment-line-p line)) return line))
 
 (defun read-data (in)
   "Return a list of all data of the journal that the stream IN has. Signals an error that says what
@@ -191,6 +131,7 @@ is wrong, and in which entry."
           ((or (wrong-p :robots #'consp) (wrong-p :robots #'strings-p)) "it names no robots")
           ((twice-p (getf header :robots)) "it names a robot twice")
           ((wrong-p :seed #'integerp) "its seed is no integer")
+          ((not (thinking-mode-p (getf header :thinking :free))) "its thinking mode makes no sense")
           ((wrong-p :parameters #'settings-p) "its parameters make no sense")
           ((wrong-p :definitions #'definitions-p) "its definitions make no sense")
           ((undescribed header) (format nil "it does not say what ~A was" (undescribed header)))
@@ -255,20 +196,11 @@ is wrong, and in which entry."
 
 (defun read-journal-file (file)
   "Return the journal in FILE. Signals an error if it is none."
-  (let ((trouble (unusable-file-text file)))
-    (when trouble (error "~A" trouble)))
-  (with-open-file (in file :external-format :latin-1)
-    (when (< +longest-file+ (file-length in))
-      (error "it has ~D bytes, more than journals have" (file-length in)))
-    (with-homeless-symbols () (journal-from (read-data in)))))
+  (call-with-saved-text (lambda (in) (journal-from (read-data in))) file))
 
 (defun read-journal (file)
   "Return the journal in FILE. Signals DAMAGED-JOURNAL if it is none, or incomplete, and says which
 entry is to blame; WRONG-ARGUMENT unless FILE is a name."
   (check-argument read-journal file (typep file '(or string pathname))
                   "a journal, or the name of a file that holds one")
-  (handler-case (read-journal-file file)
-    (stream-error ()
-      (error 'damaged-journal :file file :reason "the system does not let it be read"))
-    ((or error storage-condition) (trouble)
-      (error 'damaged-journal :file file :reason (one-line-text trouble)))))
+  (reading-file (file 'damaged-journal) (read-journal-file file)))

@@ -41,6 +41,15 @@ Signals WRONG-ARGUMENT."
   (check-argument journal-entries journal (journal-p journal) "a journal, as LOAD-JOURNAL returns")
   (reverse (journal-newest-first journal)))
 
+(defun copied-journal (journal tick)
+  "Return a journal that is like JOURNAL, of a run that has come to TICK, and goes on by itself."
+  (let ((copy (make-journal (copy-list (journal-header journal)))))
+    (setf (journal-newest-first copy) (journal-newest-first journal)
+          (journal-length copy) (journal-length journal)
+          (journal-end copy) (if (journal-full-p journal) (journal-end journal) tick)
+          (journal-full-p copy) (journal-full-p journal))
+    copy))
+
 (defun truncated-journal (journal tick)
   "Return a journal that ends at TICK and until then is like JOURNAL. Signals WRONG-ARGUMENT for a
 TICK that it does not reach."

@@ -10,19 +10,24 @@
   (let ((*simulation* simulation)
         (*world* (simulation-world simulation))
         (*message-queue* (simulation-messages simulation)))
-    (call-with-parameters '() function)))
+    (call-with-parameters '() (lambda ()
+                                (call-with-lisps-dice function (simulation-seed simulation))))))
 
-(defun start-clock (simulation &key (rate *default-rate*))
-  "Run SIMULATION live, in a thread of its own, at RATE. Return SIMULATION. Signals MISUSE if it
-runs live already, WRONG-ARGUMENT for a rate that is neither a positive number nor :FREE."
+(defun start-clock (simulation &key (rate *default-rate*) (real t) paused-p)
+  "Run SIMULATION live, in a thread of its own, at RATE; if PAUSED-P, from when it is told to
+RESUME. Plans have a thread as well if REAL is true and thinking is not charged for. Return
+SIMULATION. Signals MISUSE if it runs live already, WRONG-ARGUMENT for a rate that is neither a
+positive number nor :FREE."
   (check-not-over simulation 'start-clock)
   (check-parameters)
   (asking (simulation)
+    (give-threads (simulation-timeline simulation) real)
     (start-pacing (simulation-timeline simulation)
                   (lambda () (tick simulation))
                   (lambda () (idle-p simulation))
                   rate
-                  (lambda (function) (call-as-owner simulation function))))
+                  (lambda (function) (call-as-owner simulation function))
+                  :paused-p paused-p))
   simulation)
 
 (defun stop-clock (simulation)
@@ -163,16 +168,19 @@ is what it is doing already, and FUNCTION has been called on the way."
     (setf (global-value '*simulation*) simulation
           (global-value '*world*) (simulation-world simulation))))
 
-(defun start-world (world rate seed journal everywhere)
-  "Run WORLD, which this thread is starting, live at RATE, with SEED and a JOURNAL or without, and
-make its run the current one, EVERYWHERE or here. Return the run."
+(defun start-world (world rate seed journal keep thinking everywhere)
+  "Run WORLD, which this thread is starting, live at RATE, with SEED and a JOURNAL or without, let
+it KEEP forks or not, in the mode THINKING, and make its run the current one, EVERYWHERE or here.
+Return the run."
   (let ((simulation (run-to-start world seed journal)))
+    (begin-thinking simulation thinking)
     (if journal
         (renew-definitions simulation)
         (setf (simulation-journal simulation) nil))
     (setf (simulation-messages simulation) (residents-queue))
     (make-current simulation everywhere)
-    (start-clock simulation :rate rate)))
+    (keep-forks keep simulation)
+    (start-clock simulation :rate rate :real (eq thinking :real))))
 
 (defun in-replaced-map-p (robot)
   "True if ROBOT is in the world of a map that another has replaced, perhaps while it was made."
@@ -180,28 +188,41 @@ make its run the current one, EVERYWHERE or here. Return the run."
     (and (eq world (map-resident map))
          (not (eq map (find-map (map-name map) nil))))))
 
-(defun start-live (robot rate seed journal)
+(defun start-live (robot rate seed journal keep thinking)
   "Run the world of ROBOT as START-WORLD does. True unless ROBOT has been replaced meanwhile."
   (let ((world (robot-world robot)) (everywhere (passing-ticks-p)))
     (call-starting world (lambda ()
                            (when (in-replaced-map-p robot)
                              (retire-robot robot "its map has been defined anew"))
                            (unless (robot-retired robot)
-                             (start-world world rate seed journal everywhere))))))
+                             (start-world world rate seed journal keep thinking everywhere))))))
+
+(defun check-no-fork (robot)
+  "Signal MISUSE if ROBOT is in a fork, which cannot run live."
+  (when (timeline-fork-p (ensure-timeline (robot-world robot)))
+    (reject-use "simulator: ~A is in a fork, which has no clock: use RUN-TICKS there." robot)))
 
 (public simulator)
 (defun simulator (robot &rest options
-                  &key (rate *default-rate*) (seed nil) (journal t) &allow-other-keys)
+                  &key (rate *default-rate*) (seed nil) (journal t) (keep *forks-to-keep*)
+                    (thinking :real)
+                  &allow-other-keys)
   "Run the world of ROBOT live, in a thread of its own, at RATE ticks per second or :FREE, and make
 it the current simulation. ROBOT is a robot or a map with a robot in it, or the name of either. A
 world that has run before starts anew, with SEED if that is given. It keeps a journal unless
-JOURNAL is NIL, as is advisable for busy programs at free rates. Return the robot (manual A).
-STOP-SIMULATOR stops it. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if the robot no longer
-fits into its map. See reading 238."
+JOURNAL is NIL, as is advisable for busy programs at free rates. With KEEP it keeps forks, so that
+it can be rewound, see KEEP-FORKS. THINKING says how much time thinking costs, see SET-THINKING:
+plans have a thread of their own unless it is :FREE or charged, when they react within the ticks.
+Return the robot (manual A). STOP-SIMULATOR stops it. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and
+MISUSE if the robot no longer fits into its map. See reading 238."
   (check-rate rate)
   (check-argument simulator seed (typep seed '(or null integer)) "an integer, or NIL")
+  (check-of-type 'simulator 'keep keep 'fork-count)
+  (check-thinking 'simulator thinking)
   (let ((robot (loop for candidate = (robot-to-start robot)
-                     when (start-live candidate rate seed journal) return candidate)))
+                     do (check-no-fork candidate)
+                     when (start-live candidate rate seed journal keep thinking)
+                       return candidate)))
     (dolist (hook *simulator-hooks*) (funcall hook robot options))
     robot))
 

@@ -15,17 +15,23 @@
   (not (and (finite-p *journal-limit*)
             (>= (journal-length journal) *journal-limit*))))
 
-(defun note (simulation operator arguments)
-  "Enter that OPERATOR, a symbol, was asked for with the list ARGUMENTS into the journal of
-SIMULATION, as of now, if it keeps one."
-  (let ((journal (simulation-journal simulation)))
-    (when (and journal (not (journal-full-p journal)))
-      (let ((tick (simulation-tick simulation)))
-        (cond ((not (room-left-p journal)) (close-full-journal journal tick))
-              (t (push (list* tick operator (externalize arguments))
-                       (journal-newest-first journal))
-                 (incf (journal-length journal))
-                 (setf (journal-end journal) tick)))))))
+(defun add-entry (journal tick entry)
+  "Enter ENTRY, a list of an operator and its arguments, into JOURNAL as of TICK, if there is room."
+  (cond ((journal-full-p journal))
+        ((not (room-left-p journal)) (close-full-journal journal tick))
+        (t (push (cons tick entry) (journal-newest-first journal))
+           (incf (journal-length journal))
+           (setf (journal-end journal) tick))))
+
+(defun note (simulation operator arguments &optional request)
+  "Enter that OPERATOR, a symbol, was asked for with the list ARGUMENTS, by REQUEST if that is
+given, into the journal of SIMULATION, as of now, if it keeps one, and into what it remembers of its
+past."
+  (when (noting-p simulation)
+    (let ((arguments (externalize arguments)) (journal (simulation-journal simulation)))
+      (when journal
+        (add-entry journal (simulation-tick simulation) (cons operator arguments)))
+      (remember simulation operator arguments request))))
 
 (defun follow-settings (simulation)
   "Let the journal of SIMULATION know which parameters somebody has set."
@@ -43,6 +49,7 @@ SIMULATION, as of now, if it keeps one."
                                   (map-name (world-map (simulation-world simulation))))
                             :robots (robot-names simulation)
                             :seed (simulation-seed simulation)
+                            :thinking (simulation-thinking simulation)
                             :parameters (loop for (symbol value) in (parameter-settings)
                                               collect (list (string-downcase symbol) value))
                             :definitions (definitions-of simulation)))))

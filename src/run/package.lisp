@@ -4,20 +4,29 @@
   (:documentation "A run: its tick, its journal and replay, its digest; headless or live, and what
 takes part in it. Manual 2.3 and appendix A.")
   (:use :cl :ars-magna.base :ars-magna.world :ars-magna.time :ars-magna.robot :ars-magna.command)
+  (:import-from :ars-magna.geometry #:pt #:interval #:pt-interval)
   (:shadowing-import-from :cl #:equal)
   (:shadowing-import-from :ars-magna.world #:map)
   ;; participant
   (:export #:participant-after-tick #:participant-busy-p #:participant-reseed #:participant-digest
-           #:participant-copy #:participant-end)
+           #:participant-copy #:participant-end #:participant-unsavable)
   ;; run
   (:export #:simulation #:simulation-p #:simulation-name #:simulation-world #:simulation-timeline
            #:simulation-tick #:simulation-seed #:simulation-robots #:simulation-journal
            #:simulation-gate #:simulation-observers #:simulation-participants
            #:simulation-messages #:simulation-over #:simulation-agenda #:simulation-ticking-p
-           #:simulation-rate #:simulation-thread
+           #:simulation-rate #:simulation-thinking #:simulation-thread
            #:add-observer #:remove-observer #:add-participant #:remove-participant
-           #:idle-p #:robot-simulation #:resident-simulation #:fresh-simulation #:headless-p
-           #:copy-simulation #:set-seed #:end-simulation)
+           #:idle-p #:robot-simulation #:fresh-simulation #:headless-p
+           #:set-seed #:end-simulation)
+  ;; environments, forking
+  (:export #:environment-of #:note-environment #:fork-p #:fork-simulation #:release-fork
+           #:with-fork #:call-with-fork #:call-in-fork #:participant-at-rest #:check-forkable
+           #:call-as-participant-makes-way #:participant-place #:counterpart-here #:counterpart)
+  ;; thinking
+  (:export #:set-thinking)
+  ;; past, keeping, rewinding
+  (:export #:simulation-past #:note-doing #:keep-forks #:*forks-to-keep* #:rewind #:*rewind-hooks*)
   ;; journal
   (:export #:journal #:make-journal #:journal-p #:journal-header #:journal-entries
            #:journal-end #:journal-length #:*journal-limit* #:note #:begin-journal
@@ -36,5 +45,9 @@ takes part in it. Manual 2.3 and appendix A.")
            #:*simulator-hooks*)
   ;; state, replay
   (:export #:state-digest #:replay #:with-replay #:call-with-replay #:save-journal #:load-journal
-           #:write-journal #:read-journal #:damaged-journal #:different-definitions
-           #:replay-anyway))
+           #:write-journal #:read-journal #:damaged-file #:damaged-journal
+           #:different-definitions #:replay-anyway)
+  ;; saving, loading
+  (:export #:save-simulation #:load-simulation #:with-loaded-simulation
+           #:call-with-loaded-simulation #:damaged-simulation #:unsavable #:unsavable-parts
+           #:save-without #:load-anyway))

@@ -30,16 +30,47 @@
     (declare (ignore participant digest))
     (values)))
 
-(defgeneric participant-copy (participant simulation table)
+(defgeneric participant-copy (participant simulation copier)
   (:documentation
-   "Return what takes the part of PARTICIPANT in SIMULATION, a copy of its run, or NIL if it does
-not go on there. TABLE has what was copied; see COPY-RUNNING.")
-  (:method (participant simulation table)
-    (declare (ignore participant simulation table))
+   "Return what takes the part of PARTICIPANT in SIMULATION, a fork of its run that COPIER makes, or
+NIL if it does not go on there. See COPY-PLAN-VALUE.")
+  (:method (participant simulation copier)
+    (declare (ignore participant simulation copier))
     nil))
+
+(defgeneric participant-place (participant value)
+  (:documentation "Return a text that says where PARTICIPANT has VALUE, or NIL if it does not.")
+  (:method (participant value)
+    (declare (ignore participant value))
+    nil))
+
+(defgeneric check-forkable (participant)
+  (:documentation "Signal MISUSE if PARTICIPANT does something around this call, so that its run
+cannot be forked here.")
+  (:method (participant) (declare (ignore participant)) (values)))
+
+(defgeneric participant-at-rest (participant function)
+  (:documentation "Call FUNCTION while PARTICIPANT does nothing, and return its value; or :BUSY if
+it does something just now in another thread.")
+  (:method (participant function)
+    (declare (ignore participant))
+    (funcall function)))
+
+(defgeneric call-as-participant-makes-way (participant function)
+  (:documentation "Call FUNCTION, which tries until PARTICIPANT is at rest, and return its value.
+Meanwhile what PARTICIPANT does in another thread stops as soon as it can.")
+  (:method (participant function)
+    (declare (ignore participant))
+    (funcall function)))
 
 (defgeneric participant-end (participant simulation)
   (:documentation "Let PARTICIPANT know that SIMULATION is over.")
   (:method (participant simulation)
     (declare (ignore participant simulation))
     (values)))
+
+(defgeneric participant-unsavable (participant)
+  (:documentation "Return in words, in a list, what goes on in PARTICIPANT that no file can hold.")
+  (:method (participant)
+    (declare (ignore participant))
+    '()))

@@ -6,6 +6,9 @@
 ;;; strings and between bars a backslash begins the code of a character, in hexadecimal, up to a
 ;;; semicolon; so every datum is one line. The Lisp reader sees nothing but numbers. Reading interns
 ;;; nothing: a symbol that does not exist becomes one without a home.
+;;;
+;;; What is saved of a run has two things more: @7 stands for the object with the number 7, and a
+;;; list may end in ". tail". There keywords that are not known become so.
 
 (defconstant +deepest+ 200 "How deep lists stand in lists at most.")
 (defconstant +largest-datum+ 100000 "How many conses a datum has at most.")
@@ -80,7 +83,7 @@
     (cond ((null symbol) (write-string "nil" stream))
           ((eq t symbol) (write-string "t" stream))
           ((and (keywordp symbol) (bare-name-p name)) (write-string (string-downcase name) stream))
-          (t (write-quoted (format nil "~@[~A~]::~A" (and package (package-name package)) name)
+          (t (write-quoted (concatenate 'string (if package (package-name package) "") "::" name)
                            #\| stream)))))
 
 (defun write-datum (datum stream)
@@ -137,11 +140,18 @@
                (#\/ (digits-p word (1+ end)))
                (#\. (fraction-p word (1+ end))))))))
 
+(defun short-integer-p (word)
+  "True if WORD, a number, is an integer that fits into a word of the machine."
+  (and (< (length word) 18)
+       (= (length word) (skip-digits word (skip-sign word 0)))))
+
 (defun read-number (word)
   (when (< +longest-number+ (length word))
     (error "it has a number of ~D characters" (length word)))
-  (handler-case (with-plain-syntax (values (read-from-string word)))
-    (error () (error "it has ~A, a number that Lisp does not have" word))))
+  (if (short-integer-p word)
+      (parse-integer word)
+      (handler-case (with-plain-syntax (values (read-from-string word)))
+        (error () (error "it has ~A, a number that Lisp does not have" word)))))
 
 ;;; Reading. Each function returns what it has read in TEXT from START on, and where that ends.
 
@@ -192,14 +202,32 @@
     (or (and package (find-symbol name package))
         (homeless-symbol text name))))
 
+(defvar *numbered* nil
+  "A vector of the objects that @1, @2 and so on stand for, the first of them at 1; NIL where there
+are none.")
+
+(defun numbered-object (word)
+  "Return the object that WORD, such as @7, stands for."
+  (let ((number (and (< 1 (length word) 12)
+                     (digits-p word 1)
+                     (parse-integer word :start 1))))
+    (if (and number (< 0 number (length *numbered*)))
+        (aref *numbered* number)
+        (error "nothing in it has the number ~A" (subseq word 1 (min 40 (length word)))))))
+
+(defun keyword-called (name word)
+  "Return the keyword called NAME, as WORD says, or a symbol without a home if there is none."
+  (cond ((find-symbol name :keyword))
+        (*numbered* (make-keyword name))
+        (t (homeless-symbol word name))))
+
 (defun word-meaning (word)
-  "Return the number, NIL, T or keyword that WORD stands for."
+  "Return the number, NIL, T, keyword or numbered object that WORD stands for."
   (cond ((number-text-p word) (read-number word))
         ((string= word "nil") nil)
         ((string= word "t") t)
-        ((bare-name-p (string-upcase word))
-         (or (find-symbol (string-upcase word) :keyword)
-             (homeless-symbol word (string-upcase word))))
+        ((and *numbered* (char= #\@ (char word 0))) (numbered-object word))
+        ((bare-name-p (string-upcase word)) (keyword-called (string-upcase word) word))
         (t (error "it has ~S, neither number nor name"
                   (subseq word 0 (min 40 (length word)))))))
 
@@ -209,18 +237,30 @@
     (when (= start end) (error "it has a ~A where none can be" (char-at text start)))
     (values (word-meaning (subseq text start end)) end)))
 
+(defun tail-follows-p (text position)
+  "True if the tail of a list stands in TEXT behind POSITION."
+  (and *numbered*
+       (char= #\. (char text position))
+       (char= #\Space (char-at text (1+ position)))))
+
+(defun read-tail (text start depth)
+  "Return the datum in TEXT from START on that a list ends in, and where that list ends."
+  (multiple-value-bind (tail end) (read-datum text start depth)
+    (unless (char= #\) (char-at text end)) (error "something stands behind the tail of a list"))
+    (values tail end)))
+
 (defun read-list (text start depth)
   (when (> depth +deepest+) (error "its lists are more than ~D deep" +deepest+))
-  (let ((position (1+ start)))
-    (values (loop for char = (char-at text position)
-                  until (char= char #\))
-                  if (char= char #\Space)
-                    do (incf position)
-                  else
-                    collect (multiple-value-bind (datum end) (read-datum text position depth)
-                              (setf position end)
-                              datum))
-            (1+ position))))
+  (let ((position (1+ start)) (elements '()) (tail nil))
+    (loop for char = (char-at text position)
+          until (char= char #\))
+          do (cond ((char= char #\Space) (incf position))
+                   ((tail-follows-p text position)
+                    (setf (values tail position) (read-tail text (+ 2 position) depth)))
+                   (t (multiple-value-bind (datum end) (read-datum text position depth)
+                        (push datum elements)
+                        (setf position end)))))
+    (values (nreconc elements tail) (1+ position))))
 
 (defun read-datum (text &optional (start 0) (depth 0))
   "Return the datum in TEXT from START on, and where it ends. Signals an error that says what is

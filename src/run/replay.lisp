@@ -2,15 +2,19 @@
 
 (in-package :ars-magna.run)
 
-(addition different-definitions)
+(addition different-definitions replay-anyway)
 (define-condition different-definitions (ars-magna-error)
-  ((differences :initarg :differences :reader different-definitions-differences))
+  ((differences :initarg :differences :reader different-definitions-differences)
+   (file :initarg :file :initform "journal" :reader different-definitions-file)
+   (verb :initarg :verb :initform "replay" :reader different-definitions-verb))
   (:report (lambda (condition stream)
-             (format stream "The journal is of a run whose definitions are not those at hand: ~
-                             ~{~A~^; ~}. Load what it was recorded with; or replay it all the ~
+             (format stream "The ~A is of a run whose definitions are not those at hand: ~
+                             ~{~A~^; ~}. Load what it was recorded with; or ~A it all the ~
                              same, with :ANYWAY T, and it may go differently."
-                     (different-definitions-differences condition))))
-  (:documentation "A journal was recorded with other definitions than those that are loaded."))
+                     (different-definitions-file condition)
+                     (different-definitions-differences condition)
+                     (different-definitions-verb condition))))
+  (:documentation "A journal or saved run is of other definitions than those that are loaded."))
 
 (defun map-difference (header blueprints)
   "Return in words, in a list, which of BLUEPRINTS, robots as they are defined now, are in another
@@ -22,18 +26,23 @@ map than HEADER says."
             collect (format nil "robot ~(~A~) is in another map, ~(~A~)"
                             (blueprint-name blueprint) (and other (map-name other))))))
 
+(defun differences-from (header blueprints)
+  "Return in words, in a list, how what is at hand, such as BLUEPRINTS of robots, differs from what
+HEADER says."
+  (append (differences (getf header :definitions))
+          (map-difference header blueprints)))
+
 (defun check-definitions (header blueprints)
   "Signal DIFFERENT-DEFINITIONS, with the restart REPLAY-ANYWAY, if HEADER is of a run with other
 definitions than those at hand."
-  (let ((differences (append (differences (getf header :definitions))
-                             (map-difference header blueprints))))
+  (let ((differences (differences-from header blueprints)))
     (when differences
       (restart-case (error 'different-definitions :differences differences)
         (replay-anyway ()
           :report "Replay it all the same.")))))
 
-;;; Silence. A run in which nothing was asked for goes on as long as somebody lets it; whoever reads
-;;; a journal that says so may not want to.
+;;; Silence. A journal may say that a run went on for very many ticks in which nothing was asked
+;;; for; whoever replays it may not want to wait for so long.
 
 (defconstant +longest-silence+ 10000000
   "For how many ticks without an entry a journal is repeated unless somebody says how far.")
@@ -55,16 +64,21 @@ definitions than those at hand."
   "Return what ENTRY is called in messages."
   (format nil "entry ~D, ~(~A~) at tick ~D" number (second entry) (first entry)))
 
+(defun perform-operator (name arguments simulation asker)
+  "Ask SIMULATION, which is the current one, on behalf of ASKER for what the operator called NAME
+does with ARGUMENTS, which are externalized."
+  (let ((operator (find-operator name))
+        (arguments (internalize arguments simulation))
+        (*asker* asker))
+    (check-operands operator arguments)
+    (apply (operator-function operator) arguments)))
+
 (defun perform-entry (entry number simulation)
   "Ask SIMULATION again for what ENTRY says. Signals MISUSE if that cannot be."
   (destructuring-bind (tick name . arguments) entry
     (run-ticks (- tick (simulation-tick simulation)) simulation)
     (handler-case
-        (let ((operator (find-operator name))
-              (arguments (internalize arguments simulation)))
-          (check-operands operator arguments)
-          (let ((*asker* "the journal"))
-            (apply (operator-function operator) arguments)))
+        (perform-operator name arguments simulation "the journal")
       (error (trouble)
         (reject-use "The journal cannot be replayed: its ~A: ~A."
                     (entry-text entry number) (one-line-text trouble))))))
@@ -82,7 +96,7 @@ definitions than those at hand."
                                                     (find-parameter (first setting))))
                     (list (parameter-name parameter) (parameter-default parameter)))))
 
-(defun call-with-replay (function journal &key until anyway observer)
+(defun call-with-replay (function journal &key until anyway keep observer)
   "Call FUNCTION where JOURNAL has been repeated; see WITH-REPLAY. OBSERVER, if given, is called
 after each tick of that, with the simulation."
   (let* ((journal (if (journal-p journal) journal (read-journal journal)))
@@ -101,19 +115,22 @@ after each tick of that, with the simulation."
          (when observer (remove-observer observer simulation))
          (funcall function)))
      (mapcar #'blueprint-name blueprints)
-     :seed (getf header :seed) :parameters (full-settings (getf header :parameters)) :journal t)))
+     :seed (getf header :seed) :parameters (full-settings (getf header :parameters)) :journal t
+     :keep keep :thinking (getf header :thinking :free))))
 
 (addition with-replay)
-(define-user-macro with-replay ((journal &key until anyway) &body body)
+(define-user-macro with-replay ((journal &key until anyway keep) &body body)
   "Run BODY in a fresh headless simulation in which JOURNAL (a journal or a file that holds one) has
 been repeated, up to the tick UNTIL or its end, with robots and parameters bound as in
 WITH-SIMULATION: a run can be rewound so, and go on differently. At UNTIL, what was asked for or
 changed when that tick had passed, also by continuations, has not happened. Commands are repeated
-without their continuations. Return the values of BODY. Signals DAMAGED-JOURNAL, WRONG-ARGUMENT
-for a tick beyond its end, MISUSE where nothing happens for ten million ticks and nobody says UNTIL
-when, UNKNOWN-NAME when the world is not loaded, and DIFFERENT-DEFINITIONS
-when what is loaded is not what the run was recorded with, unless ANYWAY is true."
-  `(call-with-replay (lambda () ,@body) ,journal :until ,until :anyway ,anyway))
+without their continuations. With KEEP it keeps forks, see KEEP-FORKS, and can be rewound. Return
+the values of BODY. Signals DAMAGED-JOURNAL, WRONG-ARGUMENT for a tick beyond its end, MISUSE
+where nothing happens for ten million ticks and nobody says UNTIL when, UNKNOWN-NAME when the
+world is not loaded, and DIFFERENT-DEFINITIONS when what is loaded is not what the run was
+recorded with, unless ANYWAY is true."
+  `(call-with-replay (lambda () ,@body) ,journal
+                     :until ,until :anyway ,anyway :keep ,keep))
 
 (addition replay)
 (defun replay (journal &key until anyway)

@@ -15,6 +15,11 @@
                      "the values of the parameters as the journal knows them"))
   (:link
    (journal nil t "the journal that the simulation keeps, or NIL")
+   (variables '() list "the symbols that are bound for the headless simulation")
+   (environment '() list "what they are, a list (symbol . value), in a fork")
+   (left '() list "what they were when a thread at work in the simulation last said so")
+   (past nil t "what is kept of the past, or NIL")
+   (successor nil t "the simulation that goes on since this one was rewound, or NIL")
    (messages *message-queue* message-queue "the message queue that the simulation reports to")
    (gate nil (or null function)
          "a function of the simulation that says how many ticks may pass before it is asked again")
@@ -52,6 +57,12 @@
 (defun simulation-rate (&optional (simulation (current-simulation)))
   "Return the pace of the live clock of SIMULATION: ticks per second, or :FREE."
   (pace simulation))
+
+(addition simulation-thinking)
+(defun simulation-thinking (&optional (simulation (current-simulation)))
+  "Return how much time thinking costs in SIMULATION: :FREE, :REAL, :CHARGED or (:CHARGED :BUDGET
+steps). See SET-THINKING."
+  (timeline-thinking (simulation-timeline simulation)))
 
 (addition simulation-robots)
 (declaim (inline simulation-robots))
@@ -93,6 +104,12 @@ other thread can find it before PREPARE, a function, has been called with it."
   (let ((world (simulation-world simulation)))
     (not (eq world (map-resident (world-map world))))))
 
+(defun latest (simulation)
+  "Return SIMULATION or, if it was rewound, the one that goes on instead."
+  (loop while (simulation-successor simulation)
+        do (setf simulation (simulation-successor simulation))
+        finally (return simulation)))
+
 ;;; Who looks on, and who takes part.
 
 (addition add-observer)
@@ -107,9 +124,10 @@ other thread can find it before PREPARE, a function, has been called with it."
 
 (addition remove-observer)
 (defun remove-observer (function &optional (simulation (current-simulation)))
-  "Stop calling FUNCTION after the ticks of SIMULATION."
-  (asking (simulation)
-    (removef (simulation-observers simulation) function))
+  "Stop calling FUNCTION after the ticks of SIMULATION, also if it has been rewound since."
+  (let ((simulation (latest simulation)))
+    (asking (simulation)
+      (removef (simulation-observers simulation) function)))
   (values))
 
 (defun add-participant (participant simulation)
@@ -127,12 +145,14 @@ other thread can find it before PREPARE, a function, has been called with it."
 
 (addition idle-p)
 (defun idle-p (&optional (simulation (current-simulation)))
-  "True if nothing can happen in SIMULATION until somebody asks for something."
+  "True if nothing can happen in SIMULATION until somebody asks for something. In a live one at the
+rate :FREE, things with kickers wait for that, too: else a million ticks, which nobody wants, would
+be over before anybody could ask."
   (let ((timeline (simulation-timeline simulation)) (world (simulation-world simulation)))
     (and (zerop (agenda-pending (timeline-agenda timeline)))
          (null (timeline-inbox timeline))
-         (not (world-has-kickers-p world))
-         (not (tracks-busy-p world))
+         (or (and (eq :free (pace simulation)) (live-p simulation))
+             (not (or (world-has-kickers-p world) (tracks-busy-p world))))
          (notany (lambda (participant) (participant-busy-p participant simulation))
                  (simulation-participants simulation)))))
 
@@ -146,7 +166,9 @@ SEED. See reading 218."
   (changing ((simulation-world simulation) set-seed seed)
     (seed-world (simulation-world simulation) seed)
     (dolist (participant (simulation-participants simulation))
-      (participant-reseed participant seed)))
+      (participant-reseed participant seed))
+    (when (member *lisps-dice* (simulation-variables simulation))
+      (setf (symbol-value *lisps-dice*) (seeded-lisps-dice seed))))
   seed)
 
 (define-operator 'set-seed '(integer) #'set-seed)
@@ -156,7 +178,7 @@ SEED. See reading 218."
 (defun interrupt-all (timeline robots)
   "Interrupt whatever ROBOTS of TIMELINE, which is over, do or were to do."
   (call-each (lambda (request) (perform request timeline)) (take-requests timeline))
-  (abandon timeline (loop for robot in robots append (cons robot (robot-parts robot)))))
+  (abandon timeline (mapcan #'robot-resources robots)))
 
 (defun end-simulation (simulation reason)
   "End the run of SIMULATION for good, for REASON, a sentence without its full stop. Whatever was

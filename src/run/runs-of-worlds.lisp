@@ -21,10 +21,6 @@ the first to need one."
                                        (setf (simulation-messages simulation) (residents-queue))
                                        (begin-journal simulation))))))))
 
-(defun resident-simulation (map)
-  "Return the simulation of the resident world of MAP, or of the map so named."
-  (world-simulation (map-resident-world (find-map map))))
-
 (defun simulation-meant (designator)
   "Return the simulation DESIGNATOR, or that of the robot DESIGNATOR. Signals WRONG-ARGUMENT."
   (cond ((simulation-p designator) designator)

@@ -23,7 +23,8 @@ have been begun."
 (defun begin-changing (timeline world)
   "Let this thread change WORLD in a tick of TIMELINE."
   (setf (timeline-ticking-p timeline) t
-        (world-writer world) (current-thread)))
+        (world-writer world) (current-thread))
+  (begin-tick-dice (timeline-tick-dice timeline) (world-seed world) (timeline-tick timeline)))
 
 (defun end-changing (timeline world)
   (setf (timeline-ticking-p timeline) nil
@@ -34,7 +35,7 @@ have been begun."
   "Look after the parameters of SIMULATION, at least when there is a command that may read them."
   (when (or (timeline-pacing timeline)
             (timeline-inbox timeline)
-            (simulation-journal simulation))
+            (noting-p simulation))
     (follow-settings simulation)))
 
 (defun set-parameter (name value)
@@ -45,11 +46,11 @@ have been begun."
 
 (defun note-request (simulation request)
   (destructuring-bind (operator . arguments) (request-entry request)
-    (note simulation operator arguments)))
+    (note simulation operator arguments request)))
 
 (defun perform-all (simulation timeline)
   (call-each (lambda (request)
-               (when (simulation-journal simulation) (note-request simulation request))
+               (when (noting-p simulation) (note-request simulation request))
                (perform request timeline))
              (take-requests timeline)))
 
@@ -70,19 +71,28 @@ have been begun."
       (setf (journal-end journal) (simulation-tick simulation)))))
 
 (defun tell-all-observers (simulation)
-  (call-each (lambda (observer) (call-user-code observer "an observer" simulation))
-             (simulation-observers simulation)))
+  (let ((*tick-dice* nil))
+    (call-each (lambda (observer) (call-user-code observer "an observer" simulation))
+               (simulation-observers simulation))))
 
 (defun tell-observers (simulation)
   (when (simulation-observers simulation) (tell-all-observers simulation)))
 
 (defun let-all-participants-act (simulation)
-  (call-each (lambda (participant)
-               (call-user-code #'participant-after-tick "a participant" participant simulation))
-             (simulation-participants simulation)))
+  (let ((*tick-dice* nil))
+    (call-each (lambda (participant)
+                 (call-user-code #'participant-after-tick "a participant" participant simulation))
+               (simulation-participants simulation))))
 
 (defun let-participants-act (simulation)
   (when (simulation-participants simulation) (let-all-participants-act simulation)))
+
+(declaim (inline keep-fork-if-due))
+(defun keep-fork-if-due (simulation)
+  "Let SIMULATION, whose tick has ended, keep a fork of itself if it is to, and it is time."
+  (let ((past (simulation-past simulation)))
+    (when (and past (>= (simulation-tick simulation) (past-next past)))
+      (funcall (past-keeper past) simulation past))))
 
 (defun tick (simulation)
   "Pass one tick of SIMULATION, or what is left of one. To be called by its owner only."
@@ -90,19 +100,21 @@ have been begun."
   (let ((timeline (simulation-timeline simulation))
         (world (simulation-world simulation)))
     (declare (type timeline timeline) (type world world))
-    (in-any-case
-      (in-phases ((timeline-phase timeline))
-        (progn (begin-changing timeline world)
-               (notice-parameters simulation timeline)
-               (perform-requests simulation timeline))
-        (run-due-events timeline)
-        (run-kickers world)
-        (progn (settle-robots world)
-               (tend-tracks world)
-               (check-grips world))
-        (progn (end-changing timeline world)
-               (prolong-journal simulation)
-               (deliver-notifications timeline))
-        (tell-observers simulation)
-        (let-participants-act simulation))
-      (unless (zerop (timeline-phase timeline)) (tick simulation)))))
+    (let ((*tick-dice* (timeline-tick-dice timeline)))
+      (in-any-case
+        (in-phases ((timeline-phase timeline))
+          (progn (begin-changing timeline world)
+                 (notice-parameters simulation timeline)
+                 (perform-requests simulation timeline))
+          (run-due-events timeline)
+          (run-kickers world)
+          (progn (settle-robots world)
+                 (tend-tracks world)
+                 (check-grips world))
+          (progn (end-changing timeline world)
+                 (prolong-journal simulation)
+                 (deliver-notifications timeline))
+          (tell-observers simulation)
+          (let-participants-act simulation)
+          (keep-fork-if-due simulation))
+        (unless (zerop (timeline-phase timeline)) (tick simulation))))))

@@ -112,15 +112,17 @@
     (start-thread (lambda () (funcall caller (lambda () (watch-for-hogs pacing))))
                   (format nil "watcher of the ~A" name))))
 
-(defun start-pacing (timeline tick idle-p rate caller)
+(defun start-pacing (timeline tick idle-p rate caller &key paused-p)
   "Let a new thread pass ticks of TIMELINE at RATE by calling TICK, as long as IDLE-P is false, both
-functions of no arguments. The thread works inside CALLER, a function of a function that calls it,
-and is handed the custody of TIMELINE, which this thread has. Return TIMELINE. Signals MISUSE if it
+functions of no arguments; if PAUSED-P, not before RESUME. The thread works inside CALLER, a
+function of a function that calls it, and is handed the custody of TIMELINE, which this thread has.
+Return TIMELINE. Signals MISUSE if it
 is live already, WRONG-ARGUMENT for a rate that is neither a number from 0.001 to 1000000 nor
 :FREE."
   (check-rate rate)
   (when (live-p timeline) (reject-use "~A runs live already." (timeline-name timeline)))
-  (start-threads (make-pacing timeline rate tick idle-p
-                              (make-user-calls (lambda () (stop-pacing timeline))))
-                 caller)
+  (let ((pacing (make-pacing timeline rate tick idle-p
+                             (make-user-calls (lambda () (stop-pacing timeline))))))
+    (setf (pacing-paused-p pacing) paused-p)
+    (start-threads pacing caller))
   timeline)

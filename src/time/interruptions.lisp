@@ -30,3 +30,5 @@
             (make-interruption tick
                                (request-name request) (request-asker request)
                                (request-name rival) (request-asker rival))))))
+
+(define-shared interruption)

@@ -6,32 +6,41 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
   (:use :cl :ars-magna.base)
   ;; resource, event, agenda
   (:export #:resource #:resource-event #:resource-interruption #:event #:event-pending-p
-           #:event-resource #:event-time #:event-priority
+           #:event-resource #:event-time #:event-priority #:event-function #:event-interrupt
            #:agenda #:make-agenda #:agenda-tick #:agenda-pending #:queue-event
            #:queue-again #:+longest-delay+ #:cancel-event #:interrupt-event
            #:pending-event #:advance-agenda
            #:pending-events)
   ;; request
   (:export #:request #:make-request #:request-operator #:request-arguments #:request-entry
-           #:request-asker #:perform)
+           #:request-asker #:request-forked-p #:request-inside-p #:perform)
   ;; interruptions
-  (:export #:request-name #:note-interruption #:interruption-tick #:interruption-what
+  (:export #:request-name #:note-interruption #:interruption #:interruption-tick #:interruption-what
            #:interruption-asker #:interruption-by #:interruption-by-asker)
   ;; timeline
   (:export #:timeline #:make-timeline #:timeline-p #:timeline-of #:timeline-name #:timeline-tick
            #:timeline-agenda #:timeline-run #:timeline-over #:timeline-custody
            #:timeline-phase #:timeline-ticking-p #:timeline-passing-p #:timeline-notifications
-           #:timeline-inbox #:timeline-pacing #:check-not-over
+           #:timeline-tick-dice
+           #:timeline-inbox #:timeline-pacing #:timeline-fork-p #:check-not-over
+           #:check-own-run
            #:*simulation* #:current-simulation
-           #:wake-owner #:post #:take-requests #:owner-p
+           #:wake-owner #:post #:post-again #:take-requests #:owner-p
            #:notify-later #:deliver-notifications)
+  ;; thinking
+  (:export #:check-thinking #:thinking-mode-p #:timeline-thinking #:set-timeline-thinking
+           #:give-threads #:thinking-charged-p #:thinking-budget #:timeline-real-p)
   ;; custody, asking
   (:export #:custody-questions #:custody-starter #:answer-questions #:call-with-custody #:mine-p
            #:ask #:asking)
   ;; pacing, stopping, clock
+  (:export #:answer-meanwhile)
   (:export #:timeline-thread #:pacer-p #:check-rate #:live-p #:paused-p #:pause #:resume
            #:let-pass #:pace #:set-rate #:*default-rate* #:*hog-seconds*
            #:hog-seconds
            #:seconds-now #:abort-hog #:stop-pacing #:call-alone #:start-pacing)
   ;; schedule
-  (:export #:schedule #:call-scheduled #:abandon #:grab-resource #:release-resource))
+  (:export #:schedule #:call-scheduled #:abandon #:grab-resource #:release-resource
+           #:scheduled)
+  ;; soundness
+  (:export #:fill-agenda #:check-occupant #:check-request))

@@ -10,7 +10,9 @@
     "Something asked of a run."
   (:fixed
    (operator nil t "what is asked for: an operator's name, or what has one")
-   (arguments '() list "what it is asked for with"))
+   (arguments '() list "what it is asked for with")
+   (forked-p (goes-on-in-forks-p) boolean "who asked for it goes on in forks of the run too")
+   (inside-p nil boolean "it was asked for inside of a tick, as by a kicker"))
   (:memory
    (asker nil t "a note of who asked for it")))
 

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.time)
 
-;;; The thread ends by itself after its tick. Users' code that keeps it from that is aborted, at the
-;;; word of whoever has it stopped.
+;;; The thread ends by itself after its tick. Users' code that keeps it from ending is aborted, but
+;;; only if whoever stops the run says so.
 
 (defun ended-p (pacing seconds)
   "Wait for the thread of PACING to end, for SECONDS. True if it has."

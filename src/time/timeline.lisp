@@ -10,9 +10,11 @@
 (define-kind (timeline :constructor (make-timeline (name &optional (custody (make-custody)))))
     "The events of a run, and what was asked of it."
   (:fixed
-   (name "" (or symbol string) "what the timeline is called, for messages"))
+   (name "" (or symbol string) "what the timeline is called, for messages")
+   (real-p nil boolean "plans think in a thread of their own while the clock goes on"))
   (:state
-   (agenda (make-agenda) agenda "the events that wait for their ticks" :part))
+   (agenda (make-agenda) agenda "the events that wait for their ticks" :part)
+   (charge '() list "what thinking costs: NIL for no ticks, or a plist; see thinking.lisp"))
   ;; What is asked of a run is no part of its state before it is taken.
   (:scratch
    (inbox '() t "the requests that wait for the next tick, newest first")
@@ -21,8 +23,10 @@
    (phase 0 fixnum "how many phases of the tick that is under way have begun; 0 between ticks")
    (ticking-p nil boolean "a tick is under way, and the world changes")
    (passing-p nil boolean "somebody passes ticks without a clock")
+   (fork-p nil boolean "the timeline is that of a fork")
    (run nil t "the run that the timeline is of, NIL as long as there is none")
    (over nil (or null string) "why the run is over, a sentence without its full stop, or NIL")
+   (tick-dice (make-tick-dice) tick-dice "Lisp's dice for users' code that changes the world")
    (custody (make-custody) custody "which thread may touch the timeline and its world")
    (pacing nil t "how the timeline is paced, or NIL if it never was")))
 
@@ -77,6 +81,20 @@ given to SIMULATOR.")
   "True if the calling thread may touch what the timeline of OBJECT owns."
   (mine-p (timeline-custody (timeline-of object))))
 
+;;; Forks look very much like the runs that they are of.
+
+(defun check-own-run (timeline)
+  "Signal MISUSE if the run that this thread works in is a fork, and TIMELINE that of another."
+  (let ((own (and *simulation* (timeline-of *simulation*))))
+    (when (and own
+               (timeline-fork-p own)
+               (not (eq own timeline))
+               (eq (timeline-name own) (timeline-name timeline)))
+      (reject-use "That is of another run than the fork that this code works in, at tick ~D. ~
+                   (counterpart OBJECT *SIMULATION*) is what a robot or thing is here; robots' ~
+                   names and FIND-THING lead to those of the fork."
+                  (timeline-tick own)))))
+
 ;;; Requests.
 
 (defun post (request object)
@@ -84,14 +102,21 @@ given to SIMULATOR.")
 posted before. Any thread may post. Return nothing. Signals MISUSE if the run is over.
 See reading 219."
   (let ((timeline (timeline-of object)))
+    (check-own-run timeline)
     (check-not-over timeline)
-    (setf (request-asker request) (note-of-asker))
+    (setf (request-asker request) (note-of-asker)
+          (request-inside-p request) (and (timeline-ticking-p timeline) (owner-p timeline)))
     (atomic-push request (timeline-inbox timeline))
     ;; It may have ended just now, and its inbox may have been emptied for the last time.
     (when (and (timeline-over timeline) (withdraw request timeline))
       (check-not-over timeline))
     (wake-owner timeline))
   (values))
+
+(defun post-again (request timeline)
+  "Have REQUEST, which was taken from TIMELINE, performed after those posted before. Called by the
+owner."
+  (atomic-push request (timeline-inbox timeline)))
 
 (defun withdraw (request timeline)
   "Take REQUEST out of the inbox of TIMELINE again. True unless somebody else has taken it."
@@ -114,5 +139,8 @@ See reading 219."
 
 (defun deliver-notifications (timeline)
   "Call what is to be called at the end of this tick, in order."
-  (loop while (timeline-notifications timeline)
-        do (call-each #'funcall (reverse (shiftf (timeline-notifications timeline) '())))))
+  (when (timeline-notifications timeline)
+    (let ((*tick-dice* nil))
+      (loop while (timeline-notifications timeline)
+            do (call-each #'funcall
+                          (reverse (shiftf (timeline-notifications timeline) '())))))))

@@ -47,5 +47,6 @@ what OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside
     `(flet ((change-it () ,@body))
        (if (writing-p ,world)
            (change-it)
-           (change-world (world-timeline ,world) ,world #'change-it
+           ;; A closure of its own, so that none is made above.
+           (change-world (world-timeline ,world) ,world (lambda () (change-it))
                          ',operator (list ,@arguments))))))

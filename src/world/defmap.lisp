@@ -28,17 +28,19 @@ rewrite its cache. Worlds of MAP see the change at once. Return the map."
     (find-places map path (and path (cache-key map)))
     map))
 
-(defun define-map (name width height &key cache clauses things (package *package*))
-  "Define or redefine the map NAME; what DEFMAP expands to. CLAUSES are walls, rects and circles;
-THINGS is a list of recipes, and of NIL for those that are left out. PACKAGE is the one that the
-author writes in. Return the map."
+(defun define-map (name width height &key cache (frame '(1 0 0 0)) clauses things
+                                       (package *package*))
+  "Define or redefine the map NAME; what DEFMAP expands to. FRAME is as MAP-FRAME says. CLAUSES are
+walls, rects and circles; THINGS is a list of recipes, and of NIL for those that are left out.
+PACKAGE is the one that the author writes in. Return the map."
   (unless (typep cache '(or null string pathname))
     (reject-clause (format nil "defmap ~(~A~)" name) (list :cache cache) "the name of a file"))
   (check-room (format nil "defmap ~(~A~)" name) width height)
   (let* ((recipes (remove nil things))
          (map (build-map
                (%make-map :name name :width width :height height :clauses clauses :cache cache
-                          :package (package-name (find-package package)) :things recipes
+                          :frame frame :package (package-name (find-package package))
+                          :things recipes
                           :attribute-names (attribute-names recipes)))))
     (warn-of-outside map)
     (warn-of-things-in-walls map)
@@ -189,14 +191,35 @@ and of ARGUMENTS, makes. The user may replace the clause, now and when the form 
   (warn-of-substance definition clause)
   clause)
 
+(defun frame-p (form)
+  "True if FORM can be the frame of a map: (size x y yaw)."
+  (and (proper-list-p form)
+       (= 4 (length form))
+       (every #'within-reason-p form)
+       (< 1d-9 (first form))))
+
+(defun check-frame (definition frame)
+  "Signal MALFORMED-DEFINITION unless FRAME, the value of :frame, can be the frame of a map."
+  (unless (frame-p frame)
+    (reject-clause definition (list :frame frame)
+                   "(:frame (size x y yaw)): four numbers from -1e9 to 1e9, the first positive")))
+
 (defun check-size (definition name size)
-  "Return width, height and :cache form of the SIZE of a map."
+  "Return width and height of the SIZE of a map, and the plist of its options."
   (check-name definition name "map")
   (unless (and (proper-list-p size) (<= 2 (length size))
                (typep (first size) '(integer 1 32767)) (typep (second size) '(integer 1 32767)))
-    (reject-clause definition size "(width height), integers from 1 to 32767, and perhaps :cache"))
-  (check-options definition (cddr size) '(:cache))
-  (values (first size) (second size) (getf (cddr size) :cache)))
+    (reject-clause definition size
+                   "(width height), integers from 1 to 32767, and perhaps :cache and :frame"))
+  (check-options definition (cddr size) '(:cache :frame))
+  (check-frame definition (getf (cddr size) :frame '(1 0 0 0)))
+  (values (first size) (second size) (cddr size)))
+
+(defun option-forms (options)
+  "Return the arguments for DEFINE-MAP that OPTIONS, of the size of a map, stand for."
+  (loop for (key value) on options by #'cddr
+        collect key
+        collect (if (eq key :frame) `',value value)))
 
 (defun parse-clause (definition clause path width height)
   "Return a list (kind form) for CLAUSE, at PATH of DEFINITION: of a thing, the form that makes its
@@ -212,7 +235,7 @@ recipe, of anything else the clause itself. NIL if it is to be left out."
 (defun map-forms (name size clauses)
   "Return the forms that DEFMAP expands to."
   (let ((definition (title "defmap" name)))
-    (multiple-value-bind (width height cache) (check-size definition name size)
+    (multiple-value-bind (width height options) (check-size definition name size)
       (loop for clause in clauses
             for position from 3
             for (kind form) = (parse-clause definition clause (list position) width height)
@@ -220,14 +243,14 @@ recipe, of anything else the clause itself. NIL if it is to be left out."
             else if kind collect form into walls
             finally (return
                       `((define-map ',name ,width ,height
-                          :cache ,cache :clauses ',walls :things (list ,@things)
+                          ,@(option-forms options) :clauses ',walls :things (list ,@things)
                           :package ,(package-name *package*))))))))
 
 (public defmap)
 (define-user-macro defmap (&whole form name &optional size &body clauses &environment environment)
   "Define the map NAME (manual 5.1), a special variable bound to it. SIZE is (width height), in
 cells of a metre, and perhaps :cache with the name of a file to keep the built grid in, unless a
-place type has a :checker. Clauses:
+place type has a :checker. Ours is :frame with a list (size x y yaw), as MAP-FRAME says. Clauses:
   (wall (x0 y0) (x1 y1) substance parameter [parameter1]) -- a line of walls
   (rect (x0 y0) (x1 y1) substance parameter [parameter1 parameter2 parameter3]) -- an outline
   (circle (x y) radius substance parameter) -- likewise

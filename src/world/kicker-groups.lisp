@@ -190,10 +190,12 @@ Return nothing."
           (due (nreverse (shiftf (world-due-kickers world) '()))))
       (unless (= (world-kicker-generation world) *kicker-generation*) (regroup-kickers world))
       (let ((tick (incf (world-kicker-tick world))))
-        (in-any-case
-          (call-each (lambda (attachment) (run-due-kicker attachment world)) due)
-          (call-each (lambda (group) (run-group group dice (if due tick 0)))
-                     (world-kicker-groups world))))))
+        (flet ((run-due (attachment) (run-due-kicker attachment world))
+               (run-chance (group) (run-group group dice (if due tick 0))))
+          (declare (dynamic-extent #'run-due #'run-chance))
+          (in-any-case
+            (call-each #'run-due due)
+            (call-each #'run-chance (world-kicker-groups world)))))))
   (values))
 
 (public run-kicker)

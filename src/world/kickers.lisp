@@ -55,6 +55,13 @@
 
 (define-registry kicker "kicker" :object-p kicker-p :by-symbol t)
 
+;; Those defined by name are everybody's; others may have closed over things of a run.
+(defmethod copy-plan-value ((kicker kicker) fork)
+  (if (or (eq kicker (find-kicker (kicker-name kicker) nil))
+          (notany #'closure-p (list (kicker-test kicker) (kicker-body kicker))))
+      (note-copy kicker kicker fork)
+      (copy-slots kicker fork)))
+
 (defvar *kicker-generation* 0 "How many times a kicker has been redefined.")
 
 (public self)
@@ -102,9 +109,9 @@ a thing. Return the kicker."
 any tick on which the form :test (default true) holds. LAMBDA-LIST is one variable, bound to the
 thing in both. NAME becomes a special variable bound to the kicker, unless it is one of Common
 Lisp's symbols, such as OPEN, or ours, or already has a value: such kickers are called by name.
-Redefinition affects things that have it. For chance use the dice of the world, as in (roll-between
-0 1 (world-dice *world* :user)): what CL:RANDOM says is not repeated by the same seed. Signals
-MALFORMED-DEFINITION. Return the name."
+Redefinition affects things that have it. Chance goes by the seed, whether by CL:RANDOM, which
+begins anew in each tick, or by the world's dice: (roll-between 0 1 (world-dice *world* :user)).
+Signals MALFORMED-DEFINITION. Return the name."
   (let ((definition (title "defkicker" name)))
     (expand-definition
      form environment

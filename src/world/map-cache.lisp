@@ -136,14 +136,6 @@ or damaged, or that cannot be told."
   (and (ignore-errors (probe-file path))
        (not (ignore-errors (and (plain-file-p path) (begins-as-cache-p path))))))
 
-(defun cache-path (name)
-  "Return the file that NAME, a string or pathname, stands for; ~/ is the home directory."
-  (cond ((pathnamep name) name)
-        ((starts-with-subseq "~/" name)
-         (merge-pathnames (native-path (subseq name 2))
-                          (user-homedir-pathname)))
-        (t (native-path name))))
-
 (defun warn-of-cache (map path what)
   (warning-set "The cache " (native-name path) " of map " (map-name map) " " what
                "; the map is built anew."))
@@ -174,7 +166,7 @@ or damaged, or that cannot be told."
 
 (defun usable-cache-path (map)
   "Return the file that MAP is to be kept in, if any; not one that holds something else."
-  (let ((path (and (keepable-p map) (cache-path (map-cache map)))))
+  (let ((path (and (keepable-p map) (path-called (map-cache map)))))
     (cond ((null path) nil)
           ((foreign-p path)
            (warning-set "The file " (native-name path)

@@ -46,17 +46,22 @@
   (package nil :type (or null string) :read-only t)
   (clauses '() :type list)
   (cache nil :type (or null string pathname))
+  ;; Where the map lies elsewhere; see MAP-FRAME.
+  (frame '(1 0 0 0) :type list :read-only t)
   (resident nil))
 
 (defun make-octets (size) (make-array size :element-type '(unsigned-byte 8) :initial-element 0))
 (defun make-doubles (size) (make-array size :element-type 'double-float :initial-element 0d0))
 
-(addition map-p map-name map-width map-height)
+(addition map-p map-name map-width map-height map-frame)
 (document-functions
  map-p "True of a map."
  map-name "Return the symbol that the map is called."
  map-width "Return how many cells the map is wide."
  map-height "Return how many cells the map is high."
+ map-frame "Return a list (size x y yaw): how many metres of elsewhere a side of the map's cells
+is, where its lower left corner lies there, in metres, and how far its x axis is turned there,
+radians against the clock. It is (1 0 0 0) unless DEFMAP or IMPORT-MAP said something else."
  map-flags "Return the flags of the map's cells by index: +WALL+ where filled."
  map-parameters "Return the substance parameters of the map's cells by index, 0 where empty."
  map-substances "Return, by cell index, indices into the map's MAP-SUBSTANCE-TYPES."

@@ -24,8 +24,8 @@
            #:substance-value-parameter
            #:wood #:metal #:bricks #:slate #:stone #:plaster #:glass #:cloth #:paper #:plastic)
   ;; map
-  (:export #:map #:map-p #:map-name #:map-width #:map-height #:map-flags #:map-parameters
-           #:map-substances #:map-substance-types #:map-places #:map-directions
+  (:export #:map #:map-p #:map-name #:map-width #:map-height #:map-frame #:map-flags
+           #:map-parameters #:map-substances #:map-substance-types #:map-places #:map-directions
            #:map-place-types #:map-least-parameter #:map-greatest-parameter #:map-things
            #:map-resident-world #:map-resident #:map-attribute-names #:map-package #:map-replaced
            #:map-form
@@ -77,4 +77,6 @@
            #:find-attachment #:detached-kicker
            #:attachment #:attachment-kicker #:attachment-thing #:self)
   ;; check
-  (:export #:world-invariant-violations))
+  (:export #:world-invariant-violations)
+  ;; soundness
+  (:export #:check-world #:world-kicker-generation #:*kicker-generation*))

@@ -6,16 +6,20 @@
 ;;; a thing in something is in exactly its contents; a cell's flags say what lies there.
 ;;; Everything that moves a thing goes through PLACE-THING.
 
+(declaim (inline thing-flags))
 (defun thing-flags (thing)
+  "Return the flags of a cell with THING on its floor."
   (logior +occupied+
           (if (thing-obsmove-p thing) +obsmove+ 0)
           (if (thing-obsview-p thing) +obsview+ 0)))
 
 (defun refresh-cell-flags (world index)
   "Make the flags of a cell of WORLD agree with the things on its floor."
+  (declare #.*hot* (type world world) (type cell-index index))
   (let ((flags (logand +wall+ (aref (world-flags world) index))))
     (declare (type (unsigned-byte 8) flags))
     (dolist (thing (svref (world-cells world) index))
+      (declare (type thing thing))
       (setf flags (logior flags (thing-flags thing))))
     (setf (aref (world-flags world) index) flags)))
 
@@ -24,17 +28,56 @@
   "Return the index of the cell that THING, on the floor, lies in."
   (the cell-index (point-index (world-map (thing-world thing)) (thing-x thing) (thing-y thing))))
 
+(declaim (inline add-link))
+(defun add-link (link cells index)
+  "Put LINK, a list of one thing, at the end of the list at INDEX of CELLS."
+  (declare (type simple-vector cells) (type cell-index index) (type cons link))
+  (let ((others (svref cells index)))
+    (if others
+        (setf (rest (last (the cons others))) link)
+        (setf (svref cells index) link))))
+
+(defun take-link (thing cells index)
+  "Take THING out of the list at INDEX of CELLS. Return the list of one thing that it was there."
+  (declare #.*hot* (type simple-vector cells) (type cell-index index))
+  (let ((before nil) (link (svref cells index)))
+    (declare (type list before) (type cons link))
+    (loop until (eq thing (first link)) do (setf before link link (rest link)))
+    (if before
+        (setf (rest before) (rest link))
+        (setf (svref cells index) (rest link)))
+    (setf (rest link) '())
+    link))
+
 (defun take-from-floor (thing)
-  (let* ((world (thing-world thing)) (index (thing-index thing)) (cells (world-cells world)))
-    (setf (svref cells index) (delete thing (the list (svref cells index)) :test #'eq :count 1))
+  (let ((world (thing-world thing)) (index (thing-index thing)))
+    (take-link thing (world-cells world) index)
     (refresh-cell-flags world index)))
 
 (defun put-on-floor (thing x y)
   (setf (thing-x thing) x (thing-y thing) y (thing-location thing) :floor)
   (let* ((world (thing-world thing)) (index (thing-index thing)) (flags (world-flags world)))
-    (setf (svref (world-cells world) index)
-          (nconc (svref (world-cells world) index) (list thing))
-          (aref flags index) (logior (aref flags index) (thing-flags thing)))))
+    (add-link (list thing) (world-cells world) index)
+    (setf (aref flags index) (logior (aref flags index) (thing-flags thing)))))
+
+(defun change-cell (thing world from to)
+  "Take THING from the cell FROM of WORLD, an index, to the cell TO, where it comes last, without
+consing."
+  (declare #.*hot* (type thing thing) (type world world) (type cell-index from to))
+  (let ((cells (world-cells world)) (flags (world-flags world)))
+    (unless (and (= from to) (null (rest (the cons (svref cells from)))))
+      (let ((link (take-link thing cells from)))
+        (refresh-cell-flags world from)
+        (add-link link cells to)
+        (setf (aref flags to) (logior (aref flags to) (thing-flags thing)))))))
+
+(declaim (inline move-on-floor))
+(defun move-on-floor (thing x y)
+  "Move THING, which is on the floor, to X, Y."
+  (declare (type double-float x y))
+  (let ((from (thing-index thing)))
+    (setf (thing-x thing) x (thing-y thing) y)
+    (change-cell thing (thing-world thing) from (thing-index thing))))
 
 (defun take-away (thing)
   "Take THING from where it is, leaving it nowhere."
@@ -45,14 +88,21 @@
       (t (setf (location-contents location) (remove thing (location-contents location)))))
     (setf (thing-location thing) nil)))
 
+(declaim (inline lay-down))
+(defun lay-down (thing x y)
+  "Take THING from wherever it is to the floor at X, Y, a point inside the map."
+  (declare (type double-float x y))
+  (cond ((eq :floor (thing-location thing)) (move-on-floor thing x y))
+        (t (take-away thing)
+           (put-on-floor thing x y))))
+
 (defun place-thing (thing location &optional x y)
   "Put THING into LOCATION: NIL, what holds things, or :FLOOR at X, Y (metres, inside the map).
 The primitive: it checks and tells nothing. Return THING."
   (if (eq location :floor)
       (let ((x (double x)) (y (double y)))
         (check-inside 'place-thing (world-map (thing-world thing)) x y)
-        (take-away thing)
-        (put-on-floor thing x y))
+        (lay-down thing x y))
       (progn
         (take-away thing)
         (setf (thing-location thing) location)
@@ -67,6 +117,7 @@ The primitive: it checks and tells nothing. Return THING."
                   (format nil "a point of ~A, which is ~D by ~D metres"
                           map (map-width map) (map-height map)))))
 
+(declaim (inline note-move))
 (defun note-move (thing old-location new-location)
   "Tell the watchers of THING's world."
   (dolist (watcher (world-move-watchers (thing-world thing)))

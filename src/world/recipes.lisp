@@ -103,3 +103,6 @@ tick 0, robots where they start. Timeline and watchers stay. Return WORLD."
 (defun make-world (map &key (seed 0))
   "Return a fresh world of MAP (a map or its name) that depends on it and the integer SEED only."
   (reset-world (%make-world (find-map map)) :seed seed))
+
+;;; What a map or a definition says is everybody's.
+(define-shared map cell substance attribute place-type place rule recipe)

@@ -16,7 +16,8 @@
    (location nil t "where the thing is: :FLOOR, what holds it, or NIL if it is nowhere")
    (x 0d0 double-float "the x coordinate of a thing on the floor, in metres")
    (y 0d0 double-float "the y coordinate of a thing on the floor, in metres")
-   (attributes '() list "the thing's attributes as an object descriptor; do not alter it")
+   (attributes '() list "the thing's attributes as an object descriptor; do not alter it"
+               :shared)
    (contents '() list "the list of things directly inside the thing, in order of arrival")
    (kickers '() list "the list of the thing's kickers, as ATTACHMENTs" :part)
    (alive-p t boolean "the thing has not been destroyed")

@@ -25,7 +25,8 @@ moved, been made or been destroyed"))
    (flags (make-octets 0) octets
           "the flags of the world's cells by index: walls, and things on the floor")
    (cells #() simple-vector
-          "a vector that has, by cell index, the list of the things on the floor, oldest first")
+          "a vector that has, by cell index, the list of the things on the floor, oldest first; a
+thing that goes from cell to cell takes its link of the list along")
    (things (make-list-vector) thing-vector
            "a vector of the world's things in order of creation; NIL where one has been destroyed.
 WORLD-THING-LIST leaves those out" :part)
@@ -117,9 +118,9 @@ meanwhile are left out."
 
 (addition things-at)
 (defun things-at (world x y)
-  "Return the list of things on the floor of the cell of WORLD that holds the point (X, Y), in
-order of arrival; do not alter it. NIL outside the map. Signals WRONG-ARGUMENT."
+  "Return a fresh list of the things on the floor of the cell of WORLD that holds the point (X, Y),
+in order of arrival. NIL outside the map. Signals WRONG-ARGUMENT."
   (check-argument things-at world (world-p world) "a world, as (robot-world ROBOT) returns")
   (check-point 'things-at x y)
   (let ((index (map-index (world-map world) x y)))
-    (and index (svref (world-cells world) index))))
+    (and index (copy-list (svref (world-cells world) index)))))

@@ -2,7 +2,8 @@
 
 ;;; Prints ticks per second for 100,000 things on a 1000 x 1000 map,
 ;;; each with a kicker of probability .01: once with kickers that only count, once with kickers
-;;; that move their things, and once with one roll per thing and tick, for comparison.
+;;; that move their things, all the same way or each by a small step drawn anew, and once with one
+;;; roll per thing and tick, for comparison.
 
 (in-package :ars-magna.benchmarks)
 
@@ -35,7 +36,14 @@
     :body (lambda (thing) (declare (ignore thing)) (incf hits)))
   (world:define-kicker 'hop :prob .01
     :body (lambda (thing) (world:kick-thing thing 0.3d0 0.4d0 t)))
+  (world:define-kicker 'stroll :prob .01
+    :body (lambda (thing)
+            (let ((dice (world:world-dice world:*world* :user)))
+              (world:kick-thing thing
+                                (base:roll-within .5d0 dice) (base:roll-within .5d0 dice)
+                                t))))
   (measure "drawn intervals, counting" 20000 (full-world 'count-kicks))
   (measure "drawn intervals, kicking" 1000 (full-world 'hop))
+  (measure "drawn intervals, kicking at random" 1000 (full-world 'stroll))
   (say "one roll per thing and tick"
        (per-second 500 (lambda () (roll-for-each 500)) :runs 3) "ticks/s"))

@@ -30,9 +30,7 @@
   ;; What decides its trials, as far as that has been looked up.
   (fingerprint nil :type (or null string))
   ;; Lists (symbol value): users' special variables that its trials can reach, and their values.
-  (variables '() :type list)
-  ;; True if they may roll CL:RANDOM.
-  (random-p t :type boolean))
+  (variables '() :type list))
 
 (document-functions
   condition-name "Return what the condition is called, a string."

@@ -112,8 +112,7 @@ reach."
 
 (defun note-reach (condition reach)
   "Give CONDITION what its trials need of REACH, what they can reach."
-  (setf (condition-random-p condition) (reach-random-p reach)
-        (condition-variables condition)
+  (setf (condition-variables condition)
         (loop for symbol in (reach-variables reach)
               collect (list symbol (global-value symbol)))))
 

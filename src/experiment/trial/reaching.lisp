@@ -14,8 +14,7 @@ variables."
   (seen (make-hash-table :test 'eq) :read-only t)
   (parts '() :type list)
   (files '() :type list)
-  (variables '() :type list)
-  (random-p nil :type boolean))
+  (variables '() :type list))
 
 (defun lisps-own-package-p (package)
   (or (package-locked-p package) (eq package (find-package :keyword))))
@@ -126,8 +125,7 @@ data, since it often stands where a table or structure is to be."
 (defun visit-symbol (symbol reach)
   (unless (gethash symbol (reach-seen reach))
     (setf (gethash symbol (reach-seen reach)) t)
-    (cond ((lisps-dice-p symbol) (setf (reach-random-p reach) t))
-          ((users-symbol-p symbol) (visit-name symbol reach)))))
+    (when (users-symbol-p symbol) (visit-name symbol reach))))
 
 (defun visit-list (list reach)
   (unless (gethash list (reach-seen reach))

@@ -60,12 +60,6 @@ it was looked up: what a trial sets, no other sees."
       (mapcar #'second (condition-variables condition))
     (funcall function)))
 
-(defun call-with-dice-of (condition seed function)
-  "Call FUNCTION with what CL:RANDOM says decided by SEED, if a trial of CONDITION may ask it."
-  (if (condition-random-p condition)
-      (call-with-lisps-dice function seed)
-      (funcall function)))
-
 (defun call-in-trial (function experiment condition trial &key gate journal)
   "Call FUNCTION in the fresh simulation of TRIAL of CONDITION of EXPERIMENT. GATE, if given, is a
 gate to be asked besides that of the limit. With JOURNAL the simulation keeps one."
@@ -80,9 +74,7 @@ gate to be asked besides that of the limit. With JOURNAL the simulation keeps on
             (call-with-simulation
              (lambda ()
                (setf (simulation-gate (current-simulation)) (limit-gate limit gate))
-               (call-with-dice-of
-                condition seed
-                (lambda () (call-with-variables-of condition function))))
+               (call-with-variables-of condition function))
              (condition-robots condition)
              :seed seed :journal journal
              :variables (remove-if-not #'variable-name-p (condition-robots condition)))))))

@@ -1,0 +1,70 @@
+;;;; help.lisp -- HELP and the menus, from the definitions.
+
+(in-package :ars-magna.cli)
+
+(defparameter *families*
+  '((:general . "The prompt") (:seeing . "The robot and its world") (:planning . "Plans")
+    (:running . "Running")
+    (:moving . "Moving and turning"))
+  "The families of the main menu, with what it calls them.")
+
+(defun write-menu (lines)
+  "List LINES: how each is typed, and what it does."
+  (dolist (line lines)
+    (write-filled (first-sentence (line-sentence line)) 27 (format nil "  ~A" (usage line)))))
+
+(defun lines-of (family)
+  (remove family (all-lines) :key #'line-family :test-not #'eq))
+
+(defun write-main-menu ()
+  (loop for (family . title) in *families*
+        do (format t "~A~%" title)
+           (write-menu (lines-of family)))
+  (let ((lines (lines-of :manipulating)))
+    (when lines
+      (format t "Manipulating~%")
+      (write-menu lines)))
+  (terpri)
+  (write-filled "MENU-CAMERA, MENU-HAND and MENU-BIN list the commands of those parts, PLAN lists
+the plans, HELP name tells more of a command or plan. The beginning of a name will do. A line in
+parentheses is Lisp." 0))
+
+(defun slot-help (slot)
+  "Return what HELP says of SLOT."
+  (format nil "~A: ~{~A~^; ~}~:[~; (may be left out)~]." (slot-name slot)
+          (remove "" (remove-duplicates (list (slot-text slot) (slot-words slot)) :test #'string=)
+                  :test #'string=)
+          (slot-optional-p slot)))
+
+(defun write-help (line)
+  (format t "~A~%" (usage line))
+  (write-filled (line-sentence line) 2)
+  (dolist (slot (line-parameters line)) (write-filled (slot-help slot) 4))
+  (dolist (detail (line-details line)) (write-filled detail 2)))
+
+(defun write-help-on (name)
+  "Tell what the command, alias or plan NAME does."
+  (let ((line (find name (all-lines) :key #'line-name :test #'string-equal))
+        (alias (assoc name *aliases* :test #'string-equal))
+        (plan (plan-called name)))
+    (cond (line (write-help line))
+          (alias (format t "~{~A is an alias of ~A~}~%" alias))
+          (plan (write-plan-help plan))
+          (t (write-help (find-line name))))))
+
+(define-line "HELP" (session (cmd :token "the name of a command or a plan" :optional))
+    (:general)
+    "List the commands of the prompt and those that move the robot, or tell what CMD does."
+  (if cmd (write-help-on cmd) (write-main-menu)))
+
+(define-line "MENU-BIN" (session) (:general)
+    "List the commands of storage bins."
+  (write-menu (lines-of :storage-bin)))
+
+(define-line "MENU-CAMERA" (session) (:general)
+    "List the commands of cameras."
+  (write-menu (lines-of :camera)))
+
+(define-line "MENU-HAND" (session) (:general)
+    "List the commands of hands."
+  (write-menu (lines-of :hand)))

@@ -1,0 +1,153 @@
+;;;; running-lines.lisp -- PAUSE, RESUME, STEP, RATE, SEED, PARAMS and journals.
+
+(in-package :ars-magna.cli)
+
+(defun live-simulation ()
+  "Return the simulation, if it is live. Signals BAD-LINE."
+  (check-run)
+  (let ((simulation (current-simulation)))
+    (unless (live-p simulation)
+      (reject-line "Here time passes only as commands need it. STEP lets more of it pass."))
+    simulation))
+
+(defun time-text (session simulation)
+  (format nil "Tick ~D, ~A." (simulation-tick simulation)
+          (cond ((session-visit session) (visit-text (session-visit session)))
+                ((simulation-over simulation) (simulation-over simulation))
+                ((not (live-p simulation)) "headless")
+                ((paused-p simulation) "paused")
+                (t (rate-text (simulation-rate simulation))))))
+
+(define-line "PAUSE" (session) (:running)
+    "Let time stand still until RESUME."
+  (let ((simulation (current-simulation)))
+    (if (session-visit session)
+        (pause-visit (session-visit session))
+        (pause (live-simulation)))
+    (format t "~A~%" (time-text session simulation))))
+
+(define-line "RESUME" (session) (:running)
+    "Let time go on after PAUSE; in a trial up to its end, where nobody sits."
+  (if (session-visit session)
+      (resume-visit (session-visit session))
+      (resume (live-simulation))))
+
+(defun step-here (count)
+  "Let COUNT ticks pass, and say so."
+  (check-run)
+  (let* ((simulation (current-simulation))
+         (goal (+ (simulation-tick simulation) count)))
+    (step-ticks count simulation)
+    (await (lambda () (>= (simulation-tick simulation) goal)))
+    (format t "Tick ~D.~%" (simulation-tick simulation))))
+
+(define-line "STEP" (session (n integer "how many ticks; 1 if left out" :optional))
+    (:running)
+    "Let N ticks pass; a live simulator is paused after them."
+  (if (session-visit session)
+      (step-visit (session-visit session) (or n 1))
+      (step-here (or n 1))))
+
+(defun parse-rate (text)
+  "Return the rate that TEXT says: a number or :FREE. Signals BAD-LINE."
+  (if (string-equal text "free")
+      :free
+      (let ((rate (ignore-errors (values (read-data-from-string text 0)))))
+        (if (argument-of-type-p rate 'rate)
+            rate
+            (reject-line "The rate cannot be ~A. Give ~A." text (argument-type-text 'rate))))))
+
+(define-line "RATE" (session (x :token "a number of ticks per second, or free" :optional))
+    (:running)
+    "Set the pace of a live simulator; show what it is, and how many ticks have passed."
+  (let ((simulation (current-simulation)))
+    (when x
+      (if (session-visit session)
+          (set-visit-rate (session-visit session) (parse-rate x))
+          (set-rate (parse-rate x) (live-simulation))))
+    (format t "~A~%" (time-text session simulation))))
+
+(define-line "SEED" (session (n integer "the seed"))
+    (:running)
+    "Make all chance depend on N from now on."
+  (set-seed n (current-simulation)))
+
+;;; Parameters.
+
+(defun setting-text (value)
+  "Return VALUE, a parameter's, in few characters."
+  (if (and (realp value) (or (zerop value) (<= 1d-3 (abs value) 1d6)))
+      (amount-text value)
+      (princ-to-string value)))
+
+(defun parameter-text (parameter)
+  (let ((value (parameter-value parameter))
+        (default (parameter-default parameter)))
+    (format nil "~26A ~8A ~A~:[ (default ~A)~;~]" (parameter-name parameter)
+            (setting-text value) (parameter-unit parameter)
+            (value-equal value default) (setting-text default))))
+
+(defun parameters-like (name)
+  "Return the parameters called NAME, with or without the star, or else those that begin so."
+  (flet ((called (test)
+           (loop for parameter in (all-parameters)
+                 when (funcall test (string-downcase name) (parameter-name parameter))
+                   collect parameter)))
+    (or (called (lambda (name own) (string= own (format nil "~A*" (string-right-trim "*" name)))))
+        (called #'starts-with-subseq))))
+
+(defun list-parameters (parameters)
+  (loop with group = nil
+        for parameter in parameters
+        do (unless (equal group (parameter-group parameter))
+             (setf group (parameter-group parameter))
+             (format t "~A~%" group))
+           (put-line "  ~A" (parameter-text parameter))))
+
+(defun read-setting (text)
+  (handler-case (values (read-data-from-string text 0))
+    (error () (reject-line "~A cannot be read; give a number, T or NIL." text))))
+
+(define-line "PARAMS" (session (name :token "the name of a parameter" :optional)
+                               (value :rest "its new value" :optional))
+    (:running)
+    "List the parameters of the simulation, or those whose names begin with NAME; give one a new
+VALUE."
+  (let ((parameters (parameters-like (or name ""))))
+    (cond ((rest parameters)
+           (when value (reject-line "~A is the beginning of several names." name))
+           (list-parameters parameters))
+          (t (let ((parameter (or (first parameters) (find-parameter name))))
+               (when value (setf (parameter-value parameter) (read-setting value)))
+               (put-line "~A" (parameter-text parameter))
+               (format t "~A~%" (parameter-sentence parameter)))))))
+
+;;; Journals.
+
+(defun moment-text (tick digest)
+  (format nil "tick ~D, state ~16,'0X~%" tick digest))
+
+(define-line "SAVE-JOURNAL" (session (file :token "the name of a file"))
+    (:running)
+    "Write all that was asked of this run to FILE, for REPLAY."
+  (let ((simulation (current-simulation)))
+    (multiple-value-bind (path tick digest)
+        (asking (simulation)
+          (values (save-journal (native-path file) simulation)
+                  (simulation-tick simulation)
+                  (state-digest simulation)))
+      (format t "~A: ~A" (native-name path) (moment-text tick digest)))))
+
+(defun anyway-p (word)
+  "True if WORD is ANYWAY, NIL if it was left out. Signals BAD-LINE for another."
+  (cond ((null word) nil)
+        ((string-equal word "anyway") t)
+        (t (reject-line "REPLAY does not know ~A. After the file you may say ANYWAY." word))))
+
+(define-line "REPLAY" (session (file :token "the name of a file that SAVE-JOURNAL wrote")
+                               (anyway :token "the word ANYWAY" :optional))
+    (:running)
+    "Repeat the run in FILE in a world of its own; show the tick and the state that it comes to.
+With ANYWAY also if what is defined here is not what the run was recorded with."
+  (multiple-value-bind (simulation digest) (replay (native-path file) :anyway (anyway-p anyway))
+    (format t "~A: ~A" file (moment-text (simulation-tick simulation) digest))))

@@ -1,0 +1,23 @@
+;;;; way-lines.lisp -- GO-TO: the robot finds its way to a point of the map.
+
+(in-package :ars-magna.cli)
+
+(defun tell-arrival (err robot x y)
+  "Queue a message about ROBOT, which was to go to (X,Y): ERR is an error code, or NIL."
+  (case err
+    ((nil) (message-set (format nil "go-to: Robot is near ~A ~A, as it believes" x y)))
+    (:no-way (error-set (format nil "go-to: There is no way to ~A ~A for " x y) robot))
+    (:gave-up (error-set (format nil "go-to: Something was in the way to ~A ~A too often for "
+                                 x y)
+                         robot))
+    (t (error-set (format nil "go-to: Interrupted on the way to ~A ~A" x y)))))
+
+(define-line "GO-TO" (session (x number "metres from the left") (y number "metres from the top"))
+    (:moving)
+    "Let the robot find its way to X, Y, through doorways and round obstacles."
+  (let ((errand (make-errand)))
+    (robot-go-to (session-robot) x y
+                 (lambda (err robot)
+                   (tell-arrival err robot x y)
+                   (setf (errand-done-p errand) t)))
+    (push errand (session-errands session))))

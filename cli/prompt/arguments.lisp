@@ -1,0 +1,167 @@
+;;;; arguments.lisp -- from the characters of a line to the arguments of a command.
+
+(in-package :ars-magna.cli)
+
+;;; Arguments are read by the Lisp reader and not evaluated (manual E), and reading them runs
+;;; nothing; numbers stand for cameras, hands, storage bins and designators. What follows a
+;;; semicolon, or a # that stands alone, is a comment.
+
+;; As reading 227 says.
+(defgeneric read-argument (type datum robot)
+  (:documentation
+   "Return the argument of the type called TYPE (a keyword) that DATUM, as typed, stands for with
+ROBOT; signal BAD-LINE if it stands for none. Parts go by their numbers. Otherwise, without a
+method, DATUM is the argument.")
+  (:method (type datum robot)
+    (if (part-type-p type)
+        (numbered datum (parts-of-kind robot type) (kind-words type) robot)
+        datum)))
+
+(defun part-type-p (type)
+  "True if TYPE is the name of a kind of part."
+  (and (find type (all-kinds 'part) :key #'kind-name :test #'same-name-p) t))
+
+(defun kind-words (type)
+  "Return TYPE, the name of a kind of part, as people write it."
+  (substitute #\Space #\- (string-downcase type)))
+
+;;; Parts by number.
+
+(defun numbered (index elements kind robot)
+  "Return the element INDEX of the vector ELEMENTS of ROBOT, of things of KIND."
+  (let ((count (length elements)))
+    (cond ((zerop count) (reject-line "~A has no ~A." robot kind))
+          ((not (typep index 'unsigned-byte))
+           (reject-line "~S is no ~A. Give its number." index kind))
+          ((< index count) (aref elements index))
+          (t (reject-line "There is no ~A ~D. ~A has ~D, numbered from 0."
+                          kind index robot count)))))
+
+(defun designator-numbered (datum robot)
+  (or (find-designator robot datum)
+      (reject-line "There is no designator ~S. STATUS lists the designators." datum)))
+
+(defmethod read-argument ((type (eql :designator)) datum robot)
+  (designator-numbered datum robot))
+
+(defmethod read-argument ((type (eql :destination)) datum robot)
+  (designator-numbered datum robot))
+
+(defmethod read-argument ((type (eql :designator-type)) datum robot)
+  (declare (ignore robot))
+  (if (and datum (symbolp datum)) (make-keyword (symbol-name datum)) datum))
+
+(defun by-number-p (type)
+  "True if what is of TYPE, a keyword, is called by number."
+  (or (member type '(:designator :destination))
+      (part-type-p type)))
+
+(defun number-words (type)
+  "Return what is typed for what is of TYPE and called by number."
+  (format nil "the number of a ~A" (if (part-type-p type) (kind-words type) "designator")))
+
+(defun type-key (type) (make-keyword (symbol-name type)))
+
+(defmethod argument-words ((type symbol))
+  (if (by-number-p (type-key type))
+      (number-words (type-key type))
+      (argument-type-text type)))
+
+(defmethod argument-words ((type (eql 'designator-type)))
+  "local or non-local")
+
+;;; The prompt's own types.
+
+(define-argument-type 'count #'whole-p "a whole number, from 0 to 1e9")
+
+;;; Reading.
+
+(defun comment-at-p (text position)
+  "True if a comment begins in TEXT at POSITION: with ;, or with # between blanks or ends of the
+line."
+  (flet ((blank-at-p (position)
+           (or (not (array-in-bounds-p text position))
+               (blank-p (char text position)))))
+    (case (char text position)
+      (#\; t)
+      (#\# (and (blank-at-p (1- position)) (blank-at-p (1+ position)))))))
+
+(defun skip-blanks (text start)
+  "Return where, from START, TEXT goes on after blanks; its length if no more than a comment does."
+  (let ((position (position-if-not #'blank-p text :start start)))
+    (if (and position (not (comment-at-p text position)))
+        position
+        (length text))))
+
+(defun token-end (text start)
+  "Return where the token that begins in TEXT at START ends; one in double quotes may hold blanks."
+  (let ((quote (and (char= (char text start) #\")
+                    (position #\" text :start (1+ start)))))
+    (if quote
+        (1+ quote)
+        (or (position-if #'blank-p text :start start) (length text)))))
+
+(defun without-quotes (token)
+  "Return TOKEN without the double quotes around it, if any."
+  (string-trim "\"" token))
+
+(defun refuse-syntax (stream char argument)
+  (declare (ignore stream argument))
+  (error "#~C is for programs" char))
+
+(defun data-readtable ()
+  "Return the readtable that is in use, without what makes objects by calling functions."
+  (let ((readtable (copy-readtable)))
+    (set-dispatch-macro-character #\# #\S #'refuse-syntax readtable)
+    readtable))
+
+(defun read-data-from-string (text start)
+  "Return the Lisp datum in TEXT at START and where it ends. Nothing that it says is evaluated."
+  (let ((*read-eval* nil) (*readtable* (data-readtable)))
+    (read-from-string text t nil :start start :preserve-whitespace t)))
+
+(defun read-datum (text start line)
+  "Return the Lisp datum in TEXT at START and where it ends (reading 196)."
+  (handler-case (read-data-from-string text start)
+    (end-of-file ()
+      (reject-line "~A is not complete: a parenthesis or quote is missing. ~A"
+                   (subseq text start) (takes line)))
+    (error (condition)
+      (reject-line "~A cannot be read: ~A. ~A" (subseq text start)
+                   (one-line (if (typep condition 'reader-error)
+                                 (reading-trouble condition)
+                                 (condition-text condition)))
+                   (takes line)))))
+
+(defun check-read (value slot line)
+  (unless (argument-of-type-p value (slot-type slot))
+    (reject-line "~A cannot be ~S. ~A" (slot-name slot) value (takes line))))
+
+(defun read-slot (slot text start line)
+  "Return what TEXT has at START for SLOT of LINE, and where that ends."
+  (case (slot-type slot)
+    (:rest (values (string-trim " " (subseq text start)) (length text)))
+    (:token (let ((end (token-end text start)))
+              (values (without-quotes (subseq text start end)) end)))
+    (t (multiple-value-bind (datum end) (read-datum text start line)
+         (let ((value (read-argument (type-key (slot-type slot)) datum (reading-robot line))))
+           (check-read value slot line)
+           (values value end))))))
+
+(defun reading-robot (line)
+  "Return the robot whose parts the arguments of LINE name; NIL if they name none."
+  (and (some (lambda (slot) (by-number-p (type-key (slot-type slot))))
+             (line-parameters line))
+       (session-robot)))
+
+(defun read-arguments (line text)
+  "Return the arguments that TEXT, what follows the name of LINE, holds for it."
+  (let ((position (skip-blanks text 0)))
+    (flet ((over-p () (= position (length text)))
+           (advance (value end) (setf position (skip-blanks text end)) value))
+      (prog1 (loop for slot in (line-parameters line)
+                   until (and (over-p) (slot-optional-p slot))
+                   when (over-p) do (reject-line "~A is missing. ~A" (slot-name slot) (takes line))
+                   collect (multiple-value-call #'advance (read-slot slot text position line)))
+        (unless (over-p)
+          (reject-line "~A is too much. ~A" (subseq text position) (takes line)))))))

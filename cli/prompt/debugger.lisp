@@ -1,0 +1,262 @@
+;;;; debugger.lisp -- what comes up when a program breaks: how to go on is for the user to say.
+
+(in-package :ars-magna.cli)
+
+;;; Only the thread that has the prompt reads what is typed. When a program in it breaks, by (BREAK)
+;;; or an error that the user wants to look into, it asks how to go on before it reads the next
+;;; line. When one in another thread breaks, such as the simulator's, that thread waits, and the
+;;; lines typed at the prompt are for it until one says how it goes on. Where nobody sits, there is
+;;; no debugger: a break is a message. So it is for what is typed to answer a break: there is no
+;;; break in a break.
+
+(defstruct (breakage (:constructor make-breakage (condition restarts thread)) (:copier nil))
+  "A program that has broken and waits in THREAD. ORDER is what it is to do next, a function."
+  (condition nil :type condition :read-only t)
+  (restarts '() :type list :read-only t)
+  (thread nil :read-only t)
+  (order nil :type (or null function))
+  (ordered (make-semaphore "order") :read-only t)
+  (done (make-semaphore "order done") :read-only t))
+
+(defvar *session* nil "The session that the debugger asks, in whatever thread; the newest.")
+
+(defun restarts-within (condition)
+  "Return the restarts for CONDITION up to the one that ends the line, of each name the innermost."
+  (let* ((all (remove nil (compute-restarts condition) :key #'restart-name))
+         (last (position 'end-line all :key #'restart-name)))
+    (remove-duplicates (subseq all 0 (and last (1+ last))) :test #'string=
+                       :key #'restart-name :from-end t)))
+
+(defun rank (restart condition)
+  "Return a number for RESTART, a lower one the more likely it is what the user wants."
+  (let ((first-names (if (typep condition 'serious-condition)
+                         '("ABORT" "RETRY" "STOP-SIMULATOR")
+                         '("CONTINUE"))))
+    (or (position (restart-name restart) first-names :test #'string=) (length first-names))))
+
+(defparameter *asking-restarts*
+  '("USE-VALUE" "STORE-VALUE" "RETURN-VALUE" "CALL-FORM" "REPLACE-FUNCTION" "SPECIFY-PACKAGE"
+    "USE-PACKAGE" "RENAME")
+  "The names of restarts, Lisp's own, that ask for what they need.")
+
+(defun asks-p (restart)
+  (member (restart-name restart) *asking-restarts* :test #'string=))
+
+(defun restarts-to-offer (condition session)
+  "Return the ways to go on after CONDITION that the user of SESSION can choose, those first that he
+may be expected to. Only the thread that has the prompt can ask him for a value."
+  (let ((restarts (restarts-within condition)))
+    (stable-sort (if (eq (session-thread session) (current-thread))
+                     restarts
+                     (remove-if #'asks-p restarts))
+                 #'< :key (lambda (restart) (rank restart condition)))))
+
+(defun here-p (breakage)
+  (eq (breakage-thread breakage) (current-thread)))
+
+;;; What the user sees.
+
+(defun whereabouts (session breakage)
+  "Return in words where BREAKAGE is, if not in this thread."
+  (let ((thread (breakage-thread breakage)))
+    (cond ((eq thread (session-thread session)) nil)
+          ((and *simulation* (eq thread (simulation-thread *simulation*))) "the simulator's thread")
+          (t "another thread"))))
+
+(defun break-words (condition)
+  "Return what CONDITION says: on a line, unless it is that a plan has stopped, with its stack."
+  (if (plan-break-p condition)
+      (visible (condition-text condition))
+      (complaint-text (condition-text condition))))
+
+(defun break-text (session breakage)
+  (format nil "*BREAK* -> ~A~@[ (in ~A)~]~%~:{  ~2D  ~16A ~A~%~}~
+               A number chooses. BACKTRACE tells where it is; a line in parentheses is Lisp.~%"
+          (break-words (breakage-condition breakage))
+          (whereabouts session breakage)
+          (loop for restart in (breakage-restarts breakage)
+                for number from 0
+                collect (list number (plain-name (restart-name restart))
+                              (complaint-text (own-text restart))))))
+
+(defun tell-break (session breakage)
+  "Show what has happened, and let the prompt that stands be the debugger's."
+  (let ((console (session-console session)))
+    (write-fresh (break-text session breakage) console)
+    (if (console-prompt console)
+        (show-prompt console "Break> ")
+        (finish-output console))))
+
+;;; What the user says.
+
+(defun nothing-to-read (session)
+  "Return a stream for questions to the user, which another thread than the prompt's cannot ask."
+  (make-two-way-stream (make-concatenated-stream) (session-console session)))
+
+(defun call-ordered (session function)
+  "Call FUNCTION, ordered by SESSION, in this thread, which is not the prompt's."
+  (let ((*standard-output* (session-console session))
+        (*query-io* (nothing-to-read session)))
+    (with-simple-restart (end-line "End the line.")
+      (call-complaining session function))))
+
+(defun hand-order (session breakage function)
+  "Let the thread of BREAKAGE, which is another, call FUNCTION, as soon as it can."
+  (setf (breakage-order breakage) (lambda () (call-ordered session function)))
+  (signal-semaphore (breakage-ordered breakage)))
+
+(defun order (session breakage function)
+  "Let the thread of BREAKAGE call FUNCTION, and wait until it has done so, or goes on."
+  (cond ((here-p breakage) (funcall function))
+        (t (hand-order session breakage function)
+           (wait-on-semaphore (breakage-done breakage)))))
+
+(defun restart-called (word breakage)
+  "Return the restart that WORD, a number or the beginning of a name, means. Signals BAD-LINE."
+  (let ((number (ignore-errors (parse-integer word)))
+        (restarts (breakage-restarts breakage)))
+    (or (and number (<= 0 number) (nth number restarts))
+        (find-if (lambda (restart)
+                   (starts-with-subseq (string-upcase word) (string (restart-name restart))))
+                 restarts)
+        (reject-line "~A is no way to go on. Give the number of one of ~{~A~^, ~}; or BACKTRACE, ~
+                      QUIT, or a form in parentheses."
+                     word (mapcar (lambda (restart) (plain-name (restart-name restart)))
+                                  restarts)))))
+
+(defun broken-calls ()
+  "Return the calls under way that led into the debugger, the newest first, as far as they are the
+user's."
+  (let* ((calls (calls-under-way 100))
+         (start (position 'invoke-debugger calls :key #'first))
+         (user-calls (if start (nthcdr (1+ start) calls) calls)))
+    (subseq user-calls 0 (position-if (lambda (name)
+                                        (member name
+                                                '(eval-quietly call-user-code call-until-error)))
+                                      user-calls :key #'first))))
+
+(defun write-backtrace ()
+  (dolist (call (broken-calls))
+    (put-line "  ~A" (visible (cut (one-line (format-briefly nil "~S" call)) 300)))))
+
+(defun debug-line (session breakage text)
+  "Do what TEXT, a line typed at the debugger, says to BREAKAGE."
+  (flet ((says-p (word) (string-equal word (split-line text))))
+    (cond ((comment-p text))
+          ((lisp-p text) (let ((form (read-form session text)))
+                           (order session breakage (lambda () (evaluate session form)))))
+          ((says-p "quit") (setf (session-over-p session) t))
+          ((says-p "backtrace") (order session breakage #'write-backtrace))
+          (t (let ((restart (restart-called (split-line text) breakage)))
+               (order session breakage
+                      (lambda () (invoke-restart-interactively restart))))))))
+
+(defun read-debug-line (session breakage)
+  (let ((text (read-input session "Break> ")))
+    (if text
+        (debug-line session breakage text)
+        (setf (session-over-p session) t))))
+
+;;; How a program waits.
+
+(defun debug-here (session breakage)
+  "Read lines for BREAKAGE, of this thread, until one says how to go on."
+  (tell-break session breakage)
+  (flet ((read-lines ()
+           (loop until (session-over-p session)
+                 do (call-guarded session (lambda () (read-debug-line session breakage))))))
+    (if (session-visit session)
+        (call-aside #'read-lines)
+        (read-lines)))
+  (invoke-restart 'end-line))
+
+(defun debug-elsewhere (session breakage)
+  "Do what the thread of SESSION orders for BREAKAGE, until that is to go on."
+  (push breakage (session-breaks session))
+  (unwind-protect (progn (tell-break session breakage)
+                         (loop
+                           (wait-on-semaphore (breakage-ordered breakage))
+                           (funcall (breakage-order breakage))
+                           (signal-semaphore (breakage-done breakage))))
+    (removef (session-breaks session) breakage)
+    (signal-semaphore (breakage-done breakage))))
+
+;; A line may wait for what has broken elsewhere, as RUN-PLAN does for a plan.
+(defun answer-breaks ()
+  "If this thread has the prompt, and carries out a line, read lines for what has broken in other
+threads, until that goes on."
+  (let ((session *session*))
+    (when (and session (eq (session-thread session) (current-thread)) (not *showing-p*))
+      (loop for breakage = (first (session-breaks session))
+            while breakage
+            do (when (session-over-p session) (invoke-restart 'end-line))
+               (call-complaining session (lambda () (read-debug-line session breakage)))))))
+
+(setf *while-waiting* 'answer-breaks)
+
+(defun give-up (condition)
+  "Leave what CONDITION has come up in, by the innermost restart that does."
+  (invoke-restart (or (find-if (lambda (restart)
+                                 (member (restart-name restart) '(abort end-line)))
+                               (restarts-within condition))
+                      'abort)))
+
+(defun debug-breakage (session breakage)
+  "Let the user of SESSION say how BREAKAGE, of this thread, is to go on."
+  (if (eq (session-thread session) (current-thread))
+      (debug-here session breakage)
+      (debug-elsewhere session breakage)))
+
+(defun enter-debugger (condition hook)
+  "Let the user of the prompt say how to go on after CONDITION. Called instead of Lisp's debugger."
+  (declare (ignore hook))
+  ;; What asks needs the room that is not there.
+  (when (typep condition 'storage-condition) (give-up condition))
+  (let ((session *session*))
+    (when session                       ; Or it has just ended: Lisp's own debugger comes up.
+      (with-debugger-hook ('debugger-disabled-hook)
+        (debug-breakage session
+                        (make-breakage condition (restarts-to-offer condition session)
+                                       (current-thread)))))))
+
+(defvar *own-process-p* nil "True in a process that does nothing but this program.")
+
+(defun make-process-own ()
+  "Let this Lisp, which is to be saved, do nothing but this program."
+  (setf *own-process-p* t
+        (debugger-hook) 'debugger-disabled-hook))
+
+(defun end-unheard (condition)
+  "End this process, which is starting or ending, as nothing handles CONDITION."
+  (when (typep condition 'user-interrupt) (end-interrupted))
+  (say-on-error-output (condition-text condition))
+  (end-process 1))
+
+;; By this name the rest of the program knows that there is none.
+(defun debugger-disabled-hook (condition hook)
+  "Say what CONDITION is and go on, if it is no error, or give up what this thread is at. Called
+instead of Lisp's debugger where nobody sits, or a break is being answered."
+  (declare (ignore hook))
+  (cond (*session* (complain *session* (format nil "Break: ~A" (condition-text condition))))
+        (*own-process-p* (end-unheard condition)))
+  (unless (typep condition 'serious-condition) (continue condition))
+  (give-up condition))
+
+;;; From when to when.
+
+(defun release-all (session)
+  "Let all that waits for SESSION, which is over, go on."
+  (dolist (breakage (session-breaks session))
+    (hand-order session breakage
+                (lambda () (invoke-restart (first (breakage-restarts breakage)))))))
+
+(defun call-with-debugger (session function)
+  "Call FUNCTION, while SESSION is what the debugger asks."
+  (let ((outer-session *session*) (outer-hook (debugger-hook)))
+    (setf *session* session
+          (session-thread session) (current-thread)
+          (debugger-hook) (if (terminal-p session) 'enter-debugger 'debugger-disabled-hook))
+    (unwind-protect (funcall function)
+      (setf *session* outer-session
+            (debugger-hook) outer-hook)
+      (release-all session))))

@@ -1,0 +1,110 @@
+;;;; errands.lisp -- what the prompt has issued to the robot, and waiting for it.
+
+(in-package :ars-magna.cli)
+
+;;; A command is issued and the prompt is back at once. A patient session, and each in a headless
+;;; simulation, reads on when what was issued has completed, that is, when its continuation is
+;;; called. REPEAT waits in the same way. Tracking a grasp goes on until the grasp is lost, so
+;;; nobody waits for that. Plans are errands, too: see plans.lisp.
+
+(defparameter *patience* 100000
+  "How many ticks a headless prompt waits for one command to complete.")
+
+(defparameter *endless-commands* '("HAND-TRACK")
+  "Commands that are not expected to complete.")
+
+(defstruct (errand (:constructor make-errand ()) (:copier nil))
+  "A command, or a plan, that the prompt has issued."
+  (done-p nil))
+
+;; It is the prompt's, whatever of a run leads to it.
+(define-shared errand)
+
+(defun endless-p (command)
+  (find (command-name command) *endless-commands* :test #'same-name-p))
+
+(defun issue-errand (command resource arguments)
+  "Issue COMMAND on RESOURCE with ARGUMENTS. Return an errand that is done when it completes."
+  (let ((errand (make-errand)))
+    (apply (command-name command) resource
+           (append arguments (list (lambda (&rest results)
+                                     (declare (ignore results))
+                                     (setf (errand-done-p errand) t)))))
+    errand))
+
+;;; Waiting.
+
+(defun await-live (test simulation)
+  (let ((true (make-semaphore "fact")))
+    (flet ((look (simulation)
+             (declare (ignore simulation))
+             (when (funcall test) (signal-semaphore true))))
+      (asking (simulation)
+        (add-observer #'look simulation)
+        (look simulation))
+      (unwind-protect (loop until (or (wait-a-while true 0.2)
+                                      (simulation-over simulation)))
+        (asking (simulation) (remove-observer #'look simulation)))))
+  (funcall test))
+
+(defun await (test)
+  "Let time pass until TEST, a function of no arguments, returns true between two ticks. Return
+NIL if it does not in good time, when nothing but the waiting lets time pass."
+  (cond ((simulation-over *simulation*) (funcall test))
+        ((simulation-gate *simulation*)
+         (reject-line "In a trial time passes between lines only. STEP and RESUME let it pass."))
+        ((live-p *simulation*) (await-live test *simulation*))
+        (t (run-until test :limit *patience* :simulation *simulation*))))
+
+(defgeneric await-errand (errand)
+  (:documentation "Wait until ERRAND is done; signal BAD-LINE if it is not in good time.")
+  (:method (errand)
+    (unless (await (lambda () (errand-done-p errand)))
+      (reject-line "The command has not completed within ~D ticks; it goes on." *patience*))))
+
+(defun send (session command resource arguments)
+  "Issue COMMAND on RESOURCE with ARGUMENTS."
+  (let ((errand (issue-errand command resource arguments)))
+    (unless (endless-p command) (push errand (session-errands session)))))
+
+(defun await-errands (session)
+  "Wait until all that SESSION has issued is done."
+  (mapc #'await-errand (reverse (shiftf (session-errands session) '()))))
+
+;;; Lisp may have issued commands too.
+
+(defun at-work-p (resource)
+  "True if RESOURCE, a robot or part, carries out a command that is expected to complete."
+  (let ((event (resource-event resource)))
+    (and (typep event 'operation) (not (endless-p (operation-command event))))))
+
+(defun robot-at-work-p (robot)
+  (or (at-work-p robot)
+      (some #'at-work-p (robot-cameras robot))
+      (some #'at-work-p (robot-hands robot))
+      (some #'at-work-p (robot-bins robot))))
+
+(defun settled-p ()
+  "True if no command waits to begin, or goes on, in the current simulation."
+  (and (null (timeline-inbox (timeline-of *simulation*)))
+       (notany #'robot-at-work-p (simulation-robots *simulation*))))
+
+(defun settle ()
+  "Let time pass until no robot carries out a command, within patience."
+  (let ((simulation *simulation*))
+    (await (lambda () (let ((*simulation* simulation)) (settled-p))))))
+
+(defun waits-p (session)
+  "True if SESSION reads on when what was issued has completed."
+  (and *simulation*
+       (null (session-visit session))
+       (null (simulation-over *simulation*))
+       (or (not (live-p *simulation*))
+           (and (session-patient-p session) (not (paused-p *simulation*))))))
+
+(defun catch-up (session)
+  "Wait for what SESSION has issued, itself or by Lisp, if it is one that waits."
+  (if (waits-p session)
+      (progn (await-errands session)
+             (when (shiftf (session-lisp-p session) nil) (settle)))
+      (setf (session-errands session) (remove-if #'errand-done-p (session-errands session)))))

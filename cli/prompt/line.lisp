@@ -1,0 +1,83 @@
+;;;; line.lisp -- what is known of a line command, and which one a user means.
+
+(in-package :ars-magna.cli)
+
+;;; The prompt's own commands are defined here and in the files that follow, each once, by
+;;; DEFINE-LINE; the robot's come from the command layer (see robot-lines.lisp). HELP, the menus and
+;;; what is said of wrong arguments come from these definitions. Manual E.
+
+(defstruct (parameter-of-line (:conc-name slot-) (:copier nil)
+                              (:constructor make-slot (name type text optional-p)))
+  "An argument of a line command. TYPE is an argument type of the command layer, or :TOKEN, for
+the characters up to the next blank, or :REST, for all that is left of the line."
+  (name "" :type string :read-only t)
+  (type nil :type symbol :read-only t)
+  (text "" :type string :read-only t)
+  (optional-p nil :type boolean :read-only t))
+
+(defstruct (line (:copier nil))
+  "A line command: ACTION is called with the session and the arguments, as read."
+  (name "" :type string :read-only t)
+  ;; The full name of the function that it stands for, or NIL.
+  (full-name nil :type (or null string) :read-only t)
+  (family nil :type symbol :read-only t)
+  (parameters '() :type list :read-only t)
+  (sentence "" :type string :read-only t)
+  (details '() :type list :read-only t)
+  (action nil :type function :read-only t))
+
+(document-functions
+  line-name "Return what the line command is called, in upper case."
+  line-parameters "Return the list of the line command's arguments."
+  line-sentence "Return the sentence that says what the line command does.")
+
+(defmethod print-object ((line line) stream)
+  (print-unreadable-object (line stream :type t) (write-string (line-name line) stream)))
+
+(defvar *lines* '() "The line commands made by DEFINE-LINE, in order of definition.")
+
+(defun register-line (line)
+  (let ((old (member (line-name line) *lines* :key #'line-name :test #'string=)))
+    (if old
+        (setf (first old) line)
+        (setf *lines* (append *lines* (list line))))
+    (line-name line)))
+
+(defun slot-form (parameter)
+  "Return a form that makes the slot for PARAMETER of DEFINE-LINE."
+  (destructuring-bind (variable type text &optional optional) parameter
+    `(make-slot ,(string-downcase variable) ',type ,text ,(eq optional :optional))))
+
+(defmacro define-line (name (session &rest parameters) (family) sentence &body body)
+  "Define the line command NAME, a string. Each of PARAMETERS is (variable type text [:optional]),
+the last ones optional; BODY runs with the variables bound to what was read, NIL if left out, and
+SESSION to the session. FAMILY, a keyword, says where HELP lists it, and SENTENCE what it says."
+  `(register-line
+    (make-line :name ,(string-upcase name) :family ,family :sentence ,sentence
+               :parameters (list ,@(mapcar #'slot-form parameters))
+               :action (lambda (,session &optional ,@(mapcar #'first parameters))
+                         (declare (ignorable ,session))
+                         ,@body))))
+
+;;; What a line command takes, in words.
+
+(defgeneric argument-words (type)
+  (:documentation "Return in words what is typed for an argument of TYPE, a symbol."))
+
+(defun usage (line)
+  "Return how LINE is typed, such as \"POS x y\"."
+  (format nil "~A~{ ~A~}" (line-name line)
+          (loop for slot in (line-parameters line)
+                collect (format nil "~:[~A~;[~A]~]" (slot-optional-p slot) (slot-name slot)))))
+
+(defun slot-words (slot)
+  "Return what the argument in SLOT has to be."
+  (case (slot-type slot)
+    ((:token :rest) (slot-text slot))
+    (t (argument-words (slot-type slot)))))
+
+(defun takes (line)
+  "Return in a sentence what LINE takes."
+  (format nil "~A~:[ takes no arguments~;~:*: ~{~A is ~A~^, ~}~]." (usage line)
+          (loop for slot in (line-parameters line)
+                collect (slot-name slot) collect (slot-words slot))))

@@ -1,0 +1,217 @@
+;;;; plans.lisp -- plans that the prompt has started: waiting for them and telling how they end.
+
+(in-package :ars-magna.cli)
+
+;;; A plan is an errand like a command to the robot. Live, a thread watches each plan and tells of
+;;; its end. Now and then it asks, between two reactions of the plans, whether they can still go on;
+;;; one that cannot is ended if the session waits for it. Headless, the prompt asks after each tick.
+;;;
+;;; It is the plan's business to recover from errors of its commands. So a session that waits for a
+;;; plan does not count those, only the plan's own failure: see VERDICT.
+
+(defstruct (plan-errand (:include errand) (:copier nil)
+                        (:constructor make-plan-errand (name session simulation)))
+  "A plan that the prompt has started. STUCK says what keeps it from ever going on, or is NIL."
+  (name nil :type symbol :read-only t)
+  (session nil :type session :read-only t)
+  (simulation nil :read-only t)
+  (task nil)
+  ;; Nothing is to be told of its end, as the run has been rewound.
+  (let-go-p nil)
+  (stuck nil :type (or null string))
+  ;; What has been told last of that.
+  (told-stuck nil :type (or null string))
+  (over (make-semaphore "plan over") :read-only t)
+  (told (make-semaphore "plan's end told") :read-only t))
+
+(defvar *plan-errands* '() "The plans that the prompt has started and not yet told the end of.")
+(defvar *plan-errands-lock* (make-lock "plans of prompts"))
+
+(defun plan-over-p (errand)
+  (let ((task (plan-errand-task errand)))
+    (and task (task-over-p task))))
+
+(defun plan-runner-now ()
+  "Return the runner of the plans of the robot that they drive, or NIL."
+  (handler-case (rpl-runner) (misuse () nil)))
+
+;;; A plan may end before BEGIN-PLAN has told which task it is.
+
+(defun errand-of-p (errand task)
+  (if (plan-errand-task errand)
+      (eq task (plan-errand-task errand))
+      (eq (task-name task) (plan-errand-name errand))))
+
+(defun errand-of (task)
+  "Return the errand whose plan TASK is, or NIL."
+  (with-lock (*plan-errands-lock*)
+    (let ((errand (find-if (lambda (errand) (errand-of-p errand task)) *plan-errands*)))
+      (when errand (setf (plan-errand-task errand) task))
+      errand)))
+
+(defun note-plan-end (task)
+  "Let who waits for TASK, a plan, know that it is over. True if the prompt has started it."
+  (let ((errand (errand-of task)))
+    (when errand
+      (signal-semaphore (plan-errand-over errand))
+      t)))
+
+(pushnew 'note-plan-end *plan-end-hooks*)
+
+;;; What is told.
+
+(defun user-text (function object)
+  "Return the string that FUNCTION makes of OBJECT, as users would read it, on a line."
+  (let ((*package* (user-package))
+        (*read-default-float-format* 'double-float)
+        (*print-pretty* nil))
+    (cut (one-line (funcall function object)) 300)))
+
+(defun reason-text (failure)
+  "Return in words why a plan failed."
+  (if (eq (type-of failure) 'plan-failure)
+      (format nil "~:[no reason given~;~:*~A~]~{ ~A~}"
+              (and (failure-class failure) (safe-text (failure-class failure)))
+              (mapcar #'safe-text (failure-data failure)))
+      (condition-text failure)))
+
+(defstruct (verdict (:constructor make-verdict (text)) (:copier nil))
+  "That a plan has failed, as an item of a message. Prints as TEXT."
+  (text "" :type string :read-only t))
+
+(defmethod print-object ((verdict verdict) stream)
+  (write-string (verdict-text verdict) stream))
+
+(defun tell-failure (errand control &rest arguments)
+  "Queue an error message that begins with the name of the plan of ERRAND."
+  (error-set (make-verdict (format nil "~(~A~) ~?" (plan-errand-name errand) control arguments))))
+
+(defmacro with-messages-to ((errand) &body body)
+  "Run BODY, whose messages are of the simulation of ERRAND."
+  `(let ((*message-queue* (simulation-messages (plan-errand-simulation ,errand)))) ,@body))
+
+(defun waiting-for-plan-p (session)
+  "True if a plan that SESSION has started, and waits for, is under way."
+  (and (session-patient-p session)
+       (with-lock (*plan-errands-lock*)
+         (find session *plan-errands* :key #'plan-errand-session))))
+
+(defun error-counts-p (message session)
+  "True if SESSION counts the error MESSAGE. Those of a trial are the trial's."
+  (and (null (session-visit session))
+       (or (verdict-p (first (message-items message)))
+           (not (waiting-for-plan-p session)))))
+
+(setf *error-counts-p* 'error-counts-p)
+
+(defun tell-end (errand)
+  "Queue a message that says how the plan of ERRAND has ended."
+  (let ((name (string-downcase (plan-errand-name errand)))
+        (result (task-result (plan-errand-task errand))))
+    (with-messages-to (errand)
+      (case (task-state (plan-errand-task errand))
+        (:succeeded (message-set name " succeeded: " (user-text #'safe-text result)))
+        (:failed (setf (session-failure (plan-errand-session errand))
+                       (list result (plan-errand-name errand)))
+                 (tell-failure errand "failed: ~A. PLANS tells more."
+                               (string-right-trim "." (user-text #'reason-text result))))
+        (t (message-set name " was stopped."))))))
+
+(defun tell-stuck (errand)
+  "Queue a message that says what the plan of ERRAND waits for in vain."
+  (with-messages-to (errand)
+    (let ((stuck (plan-errand-stuck errand)))
+      (if (session-patient-p (plan-errand-session errand))
+          (tell-failure errand "is in a deadlock: it ~A, which nothing can bring about; it was ~
+                                stopped." stuck)
+          (warning-set (string-downcase (plan-errand-name errand)) " " stuck
+                       ", which neither the robot nor time will bring about, but you may. "
+                       "STOP-PLAN ends it.")))))
+
+(defun close-errand (errand)
+  "Count ERRAND, whose end has been told, as done."
+  (with-lock (*plan-errands-lock*)
+    (setf *plan-errands* (remove errand *plan-errands*)))
+  (setf (errand-done-p errand) t)
+  (signal-semaphore (plan-errand-told errand)))
+
+;;; Deadlocks.
+
+(defun awaited-by (task)
+  "Return a list of what TASK and its parts wait for, in words."
+  (remove-duplicates (if (task-children task)
+                         (mapcan #'awaited-by (task-children task))
+                         (remove nil (list (task-awaits task))))
+                     :test #'string= :from-end t))
+
+(defun stuck-text (runner task)
+  "Return in words what TASK of RUNNER waits for, if no plan of RUNNER can ever go on; else NIL. To
+be called while no plan reacts."
+  (when (and (not (task-over-p task)) (plan-deadlocked-p runner))
+    (user-text (lambda (awaited)
+                 (format nil "waits for ~{~A~^, ~}" awaited))
+               (awaited-by task))))
+
+(defun note-if-stuck (errand runner)
+  (setf (plan-errand-stuck errand) (stuck-text runner (plan-errand-task errand))))
+
+;;; Live.
+
+(defun driving-p (errand runner)
+  "True if RUNNER still runs the plan of ERRAND."
+  (and (live-p (plan-errand-simulation errand))
+       (eq runner (plan-runner-now))))
+
+(defun tell-if-stuck (errand runner)
+  "Find out whether the plan of ERRAND is stuck; tell it, unless that has been told last. Return the
+answer to the last such question."
+  (let ((stuck (plan-errand-stuck errand)))
+    (unless (or (null stuck) (equal stuck (plan-errand-told-stuck errand)))
+      (setf (plan-errand-told-stuck errand) stuck)
+      (tell-stuck errand)
+      (when (session-patient-p (plan-errand-session errand))
+        (stop-plan runner (plan-errand-task errand))))
+    (post-call runner (lambda () (note-if-stuck errand runner)))
+    stuck))
+
+(defun watch-plan (errand runner)
+  "Wait until the plan of ERRAND is over, and tell how it has ended."
+  (loop with stuck = nil
+        until (or (plan-over-p errand) (plan-errand-let-go-p errand))
+        do (cond ((wait-on-semaphore (plan-errand-over errand) 0.2))
+                 ((driving-p errand runner) (setf stuck (tell-if-stuck errand runner)))
+                 (t (return)))
+        finally (unless (or (plan-errand-let-go-p errand)
+                            (and stuck (session-patient-p (plan-errand-session errand))))
+                  (tell-end errand)))
+  (close-errand errand))
+
+(defun start-watching-plan (errand)
+  (let ((runner (plan-runner-now)))
+    (start-thread (lambda () (watch-plan errand runner))
+                  (format nil "prompt's watch of ~A" (plan-errand-name errand)))))
+
+;;; Headless.
+
+(defun finish-headless (errand)
+  "Tell how the plan of ERRAND has ended, or end it if it is stuck. True unless it goes on."
+  (cond ((plan-over-p errand) (tell-end errand) t)
+        ((plan-errand-stuck errand)
+         (tell-stuck errand)
+         (end-plan (plan-errand-task errand))
+         t)))
+
+(defun await-plan-headless (errand)
+  (let ((runner (plan-runner-now)))
+    (await (lambda () (or (plan-over-p errand) (note-if-stuck errand runner))))
+    (let ((finished-p (finish-headless errand)))
+      (close-errand errand)
+      (unless finished-p
+        (reject-line "~(~A~) has not ended within ~D ticks; it goes on."
+                     (plan-errand-name errand) *patience*)))))
+
+(defmethod await-errand ((errand plan-errand))
+  (cond ((live-p (plan-errand-simulation errand))
+         (wait-on-semaphore (plan-errand-told errand))
+         (show-messages (plan-errand-session errand)))
+        (t (await-plan-headless errand))))

@@ -1,0 +1,197 @@
+;;;; session.lisp -- one run of the prompt: where it reads and writes, and what it shows when.
+
+(in-package :ars-magna.cli)
+
+;;; Messages come as they please (manual E). A plain message continues the line of the prompt; a
+;;; warning or an error starts a fresh one; then the prompt is shown again. What a tick has to say
+;;; is shown together, when the tick is over.
+
+(defvar *prompt-robot* nil
+  "The name of the robot that the prompt commands: the one last given to SIMULATOR, or chosen.")
+
+(pushnew 'note-robot *simulator-hooks*)
+
+(defun note-robot (robot options)
+  (declare (ignore options))
+  (setf *prompt-robot* (robot-name robot))
+  (call-by-name (mapcar #'robot-name (simulation-robots (robot-simulation robot)))))
+
+(defstruct (session (:constructor %make-session) (:copier nil))
+  "A prompt at work."
+  (input *standard-input* :type stream :read-only t)
+  (console (make-console *standard-output*) :type console :read-only t)
+  ;; No prompt is shown.
+  (batch-p nil :type boolean :read-only t)
+  ;; Each command completes before the next is read.
+  (patient-p nil :type boolean :read-only t)
+  ;; What is read is shown, for transcripts.
+  (echo-p nil :type boolean :read-only t)
+  (lock (make-lock "session") :read-only t)
+  ;; The simulation whose messages are shown as they arrive, and its observer if it is live.
+  (simulation nil)
+  (observer nil)
+  ;; True if there are messages that somebody will show soon.
+  (news-p nil)
+  (errors 0 :type fixnum)
+  ;; Files to load, and lines to do, before any is read.
+  (files '() :type list)
+  (lines '() :type list)
+  ;; The thread that reads, and what has entered the debugger in others, newest first.
+  (thread nil)
+  (breaks '() :type list)
+  ;; That of the last plan, if it failed, and the plan's name, in a list.
+  (failure nil)
+  ;; What has been issued and may not have ended, and whether Lisp may have issued more.
+  (errands '() :type list)
+  (lisp-p nil)
+  (over-p nil)
+  ;; The trial that the prompt is in, or NIL.
+  (visit nil)
+  ;; The robot to go on with, in batch mode, when this one's lines are over.
+  (next-robot nil))
+
+(defmethod print-object ((session session) stream)
+  (print-unreadable-object (session stream :type t)))
+
+(setf (documentation 'session-errors 'function)
+      "Return how many errors there were so far: lines that made no sense, plans that failed, and
+error messages, but not those of a plan that goes on.")
+
+(defun make-session (&key (input *standard-input*) (output *standard-output*) batch
+                       (patient batch) echo files lines)
+  "Return a session that loads FILES, does the list LINES, then reads others from INPUT, and writes
+to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes before
+the next is read; with ECHO, it shows what it reads."
+  (%make-session :input input :console (make-console output) :batch-p (and batch t)
+                 :patient-p (and patient t) :echo-p (and echo t)
+                 :files files :lines lines))
+
+(defun check-run ()
+  "Signal BAD-LINE if the run that the prompt is in is over."
+  (when (and *simulation* (simulation-over *simulation*))
+    (let ((name (simulation-name *simulation*)))
+      (reject-line "The run in ~(~A~) is over: ~A. ~:[WORLD shows where you can go~;~
+                    WORLD ~:*~(~A~) starts it anew~]."
+                   name (simulation-over *simulation*)
+                   (and (find-map name nil) name)))))
+
+(defun session-robot ()
+  "Return the robot that the prompt commands. Signals BAD-LINE when there is none, or its run is
+over."
+  (check-run)
+  (let ((robots (and *simulation* (simulation-robots *simulation*))))
+    (or (find *prompt-robot* robots :key #'robot-name)
+        (first robots)
+        (reject-line "There is no robot here. WORLD lists the worlds, WORLD name starts one."))))
+
+(defun terminal-p (session)
+  "True if somebody sits at SESSION."
+  (typed-by-hand-p (session-input session)))
+
+(defun watched-p (session)
+  "True if somebody sits at SESSION, and it can be found out whether he has typed something."
+  (and (terminal-p session)
+       (typep (source-of (session-input session)) 'descriptor-stream)))
+
+;;; Complaints and messages.
+
+(defun complain (session text)
+  "Show TEXT as an error."
+  (incf (session-errors session))
+  (write-fresh (format nil "*ERROR* -> ~A~%" (complaint-text text)) (session-console session)))
+
+(defun take-all-messages ()
+  (append (take-messages)
+          (when (and *simulation* (not (eq *message-queue* (simulation-messages *simulation*))))
+            (take-messages (simulation-messages *simulation*)))))
+
+;; As reading 197 says.
+(defun write-messages (messages console)
+  (let ((text (visible (with-output-to-string (out)
+                         (dolist (message messages) (write-message message out))))))
+    (if (and (unanswered-p console) (eq (message-kind (first messages)) :message))
+        (write-string text console)
+        (write-fresh text console))))
+
+;; Programs set it that know what an error belongs to, such as a plan under way.
+(defvar *error-counts-p* (constantly t)
+  "A function of an error message and a session: true if the session counts the error.")
+
+(defun counts-p (message session)
+  "True if MESSAGE is an error that SESSION counts."
+  (and (eq :error (message-kind message))
+       (funcall *error-counts-p* message session)))
+
+(defvar *showing-p* nil
+  "True while this thread shows messages; what the showing itself reports is left for later.")
+
+(defun show-messages (session)
+  "Show all queued messages, and the prompt again."
+  (unless *showing-p*
+    (with-lock ((session-lock session))
+      (setf (session-news-p session) nil)
+      (let ((*showing-p* t)
+            (console (session-console session))
+            (messages (take-all-messages)))
+        (incf (session-errors session)
+              (count-if (lambda (message) (counts-p message session)) messages))
+        (when (and messages (not flush-all-errors*)) (write-messages messages console))
+        (restore-prompt console)
+        (finish-output console)))))
+
+;;; Listening to a simulation.
+
+(defun show-after-changes (session simulation)
+  "Show messages when all changes of this tick are made, before programs are told of them."
+  (unless (session-news-p session)
+    (setf (session-news-p session) t)
+    (notify-later (timeline-of simulation) (lambda () (show-messages session)))))
+
+(defun hear (session simulation)
+  "Show the messages of SIMULATION, of which one is new."
+  (cond ((not (simulation-ticking-p simulation)) (show-messages session))
+        ((in-simulation-p simulation) (show-after-changes session simulation))
+        (t (setf (session-news-p session) t)
+           ;; The tick may have ended just now, without seeing the news.
+           (unless (simulation-ticking-p simulation) (look session)))))
+
+(defun in-simulation-p (simulation)
+  (or (not (live-p simulation))
+      (eq (simulation-thread simulation) (current-thread))))
+
+(defun look (session)
+  "Show what has not been shown at the end of a tick."
+  (when (or (session-news-p session) (spoilt-p (session-console session)))
+    (show-messages session)))
+
+(defun observer-for (session)
+  "Return an observer that shows what SESSION has not shown. It takes itself back when SESSION has
+another, so that nobody waits for the tick to end, which it may never."
+  (let ((observer nil))
+    (setf observer (lambda (simulation)
+                     (if (eq observer (session-observer session))
+                         (look session)
+                         (remove-observer observer simulation))))))
+
+(defun listen-to (session simulation)
+  "Let SESSION show what SIMULATION has to say when it says it."
+  (setf (session-simulation session) simulation
+        (message-queue-listener (simulation-messages simulation))
+        (lambda () (hear session simulation)))
+  (when (live-p simulation)
+    (let ((observer (observer-for session)))
+      (setf (session-observer session) observer)
+      (asking (simulation) (add-observer observer simulation)))))
+
+(defun stop-listening (session)
+  (let ((simulation (shiftf (session-simulation session) nil)))
+    (setf (session-observer session) nil)
+    (when simulation
+      (setf (message-queue-listener (simulation-messages simulation)) nil))))
+
+(defun follow-simulation (session)
+  "Let SESSION listen to the simulation that is current now."
+  (unless (and (eq *simulation* (session-simulation session))
+               (eq (and *simulation* (live-p *simulation*)) (and (session-observer session) t)))
+    (stop-listening session)
+    (when *simulation* (listen-to session *simulation*))))

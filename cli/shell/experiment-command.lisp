@@ -1,0 +1,181 @@
+;;;; experiment-command.lisp -- ./cli/ars-magna experiment FILE [NAME]: run it, here or spread.
+
+(in-package :ars-magna.cli)
+
+;;; What comes of an experiment is written to the standard output when it is over, and nothing else
+;;; is; how far it has come goes to the error output.
+
+(defun say (control &rest arguments)
+  "Tell the user something beside what he has asked for."
+  ;; A line that tells of progress may stand there.
+  (when (interactive-stream-p *error-output*)
+    (format *error-output* "~C~C[K" #\Return #\Escape))
+  (format *error-output* "ars-magna: ~?~%" control arguments)
+  (finish-output *error-output*))
+
+;; A shell has no prompt that would show them.
+(defun tell-doubts ()
+  "Say what is doubtful in the definitions that have been loaded."
+  (dolist (message (take-messages))
+    (say "~A" (complaint-text (message-text message)))))
+
+;;; Values of options.
+
+(defun parse-count (text)
+  (let ((number (number-in text)))
+    (if (and (integerp number) (<= 1 number 1000000000))
+        number
+        (reject-usage "~A is no number from 1 to 1e9, in digits." text))))
+
+(defun parse-width (text)
+  (let ((number (number-in text)))
+    (if (and number (< 0 number 1))
+        number
+        (reject-usage "--until takes the width of an interval, such as .02, not ~A." text))))
+
+(defconstant +largest-count-of-shards+ 100000
+  "Into how many shards trials can be divided. A command must have room for all their numbers.")
+
+(defun parse-shards (text)
+  (let ((count (number-in text)))
+    (if (and (integerp count) (<= 1 count +largest-count-of-shards+))
+        count
+        (reject-usage "--shards takes a number of parts, from 1 to ~D, not ~A."
+                      +largest-count-of-shards+ text))))
+
+(defun parse-shard (text)
+  "Return a cons (index . count) for TEXT, I/N."
+  (let* ((slash (position #\/ text))
+         (index (and slash (ignore-errors (parse-integer text :end slash))))
+         (count (and slash (ignore-errors (parse-integer text :start (1+ slash))))))
+    (if (and index count (< -1 index count (1+ +largest-count-of-shards+)))
+        (cons index count)
+        (reject-usage "--shard takes I/N, a part I from 0 to below their number N, which is at ~
+                       most ~D, not ~A."
+                      +largest-count-of-shards+ text))))
+
+(defun parse-path (text)
+  (if (string= text "") (reject-usage "A file or directory has a name, not an empty one.") text))
+
+(defparameter *experiment-options*
+  '(("--trials" :trials parse-count) ("--workers" :workers parse-count) ("--out" :out parse-path)
+    ("--until" :until parse-width) ("--plot" :plot nil) ("--quiet" :quiet nil)
+    ("--shard" :shard parse-shard) ("--parallel" :parallel identity :optional)
+    ("--slurm" :slurm identity :optional) ("--shards" :shards parse-shards)
+    ("--missing" :missing nil) ("--save-executable" :save-executable parse-path))
+  "The options of the command EXPERIMENT, as in *OPTIONS*.")
+
+(defparameter *options-that-need-others*
+  '(("--plot" :plot :out) ("--shard" :shard :out) ("--parallel" :parallel :out)
+    ("--slurm" :slurm :out) ("--missing" :missing :out) ("--missing" :missing :shards)
+    ("--shards" :shards :parallel :slurm :missing))
+  "Lists (option key key-of-another...): one of the others must be there, too.")
+
+(defparameter *options-that-exclude-others*
+  '((:shard :parallel :slurm :missing :save-executable) (:until :shard) (:until :parallel)
+    (:until :slurm) (:until :missing))
+  "Lists of keys of options of which there may be one at most.")
+
+(defun option-called (key)
+  (first (find key *experiment-options* :key #'second)))
+
+(defun check-together (options)
+  "Signal USAGE-ERROR if OPTIONS do not go together."
+  (flet ((given-p (key) (find key options :key #'first)))
+    (loop for (option key . others) in *options-that-need-others*
+          do (when (and (given-p key) (notany #'given-p others))
+               (reject-usage "~A needs ~{~A~^ or ~}." option (mapcar #'option-called others))))
+    (loop for keys in *options-that-exclude-others*
+          for given = (remove-if-not #'given-p keys)
+          do (when (rest given)
+               (reject-usage "~A and ~A do not go together." (option-called (first given))
+                             (option-called (second given)))))))
+
+;;; Running here.
+
+(defun directory-for-rows (options)
+  "Return the name of the directory that OPTIONS want rows in, or NIL."
+  (let ((out (option-value :out options)) (shard (option-value :shard options)))
+    (if shard (shard-directory out (car shard) (cdr shard)) out)))
+
+(defun results-of (experiment options)
+  "Run what OPTIONS want of EXPERIMENT in this process. Return the results."
+  (let ((directory (directory-for-rows options)))
+    (when directory (ensure-results-directory directory))
+    (run-experiment experiment
+                    :trials (option-value :trials options)
+                    :workers (option-value :workers options (processors))
+                    :until (option-value :until options)
+                    :shard (option-value :shard options)
+                    :directory directory
+                    :stream (and (not (option-value :quiet options)) *error-output*))))
+
+(defun run-here (experiment options)
+  "Run what OPTIONS want of EXPERIMENT in this process, and say what came of it."
+  (let ((shard (option-value :shard options)) (trials (trials-of experiment options)))
+    (cond ((null shard)
+           (report-results (results-of experiment options) (option-value :plot options)))
+          ((trials-in-shard-p shard trials) (results-of experiment options))
+          (t (say "shard ~D of ~D has no trials: there are only ~D of each condition."
+                  (car shard) (cdr shard) trials)))
+    0))
+
+(defun tell-stopped (command arguments options under-way)
+  "Say what is there when COMMAND with ARGUMENTS has been interrupted, and how to go on; UNDER-WAY
+tells what trial took long, or is NIL."
+  (let* ((out (option-value :out options))
+         (rows (and out (ignore-errors (count-rows out)))))
+    (if out
+        (say "stopped with ~D row~:P in ~A~@[; ~A~]. To go on:~%  ~A" (or rows 0) out under-way
+             (command-text (append (program-words) (list command) arguments)))
+        (say "stopped; ~@[~A; ~]nothing is kept without --out DIR." under-way))))
+
+(defun call-stoppable (function command arguments options)
+  "Call FUNCTION, which does COMMAND with ARGUMENTS, and return the status that it returns, or that
+of what has been interrupted."
+  (let ((under-way nil))
+    (flet ((look (condition)
+             (declare (ignore condition))
+             (setf under-way (trial-under-way))))
+      (call-until-interrupted (lambda ()
+                                (handler-bind ((user-interrupt #'look))
+                                  (funcall function)))
+                              (lambda ()
+                                ;; Who would read it may have been stopped, too.
+                                (ignore-errors
+                                 (tell-stopped command arguments options under-way))
+                                130)))))
+
+(defun print-missing (experiment options)
+  "Print the numbers of the shards that lack rows, in a line, or none."
+  (format t "~{~D~^ ~}~%" (missing-shards experiment (trials-of experiment options)
+                                          (option-value :shards options)
+                                          (option-value :out options)))
+  0)
+
+(defun conduct-experiment (experiment words options)
+  "Do with EXPERIMENT, which WORDS stand for, what OPTIONS want. Return the status to exit with."
+  (cond ((option-value :save-executable options)
+         (save-program (option-value :save-executable options)))
+        ((option-value :missing options) (print-missing experiment options))
+        ((option-value :parallel options) (spread-by-parallel experiment words options))
+        ((option-value :slurm options) (spread-by-slurm experiment words options))
+        (t (run-here experiment options))))
+
+(defun known-experiment (words)
+  "Return the experiment that WORDS, a file or name and perhaps another name, stand for."
+  (prog1 (apply #'experiment-called words)
+    (tell-doubts)))
+
+(defun experiment-command (arguments)
+  "Do what ./cli/ars-magna experiment ARGUMENTS does. Return the status to exit with."
+  (let* ((options (parse-options arguments :table *experiment-options* :others t))
+         (words (option-values :other options)))
+    (check-together options)
+    (unless (<= 1 (length words) 2)
+      (reject-usage "experiment takes a file or the name of an experiment, and one more name at ~
+                     most~@[, not ~{~A~^ ~}~].~@[ Known: ~{~A~^, ~}.~]"
+                    words (experiment-words (all-experiments))))
+    (when (option-value :save-executable options) (die-of-interrupts))
+    (call-stoppable (lambda () (conduct-experiment (known-experiment words) words options))
+                    "experiment" arguments options)))

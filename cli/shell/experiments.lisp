@@ -1,0 +1,76 @@
+;;;; experiments.lisp -- which experiment a user means by a file, a name, or both.
+
+(in-package :ars-magna.cli)
+
+;;; A file is meant by its very name, or without its type; an experiment that is known, as those of
+;;; worlds/ are, by its own. The very name of a file goes first, and then an experiment.
+
+(defun experiment-words (experiments)
+  "Return the names of EXPERIMENTS as people write them, in a list."
+  (mapcar (lambda (experiment) (string-downcase (experiment-name experiment))) experiments))
+
+(defun experiment-among (name experiments)
+  (find name experiments :key #'experiment-name :test #'same-name-p))
+
+(defun load-aside (path)
+  "Load the Lisp file at PATH. What it writes goes to the error output. It is not to end us."
+  (let ((*standard-output* *error-output*))
+    (unwind-protect (call-refusing-exits (lambda () (load-lisp path)))
+      (finish-output *error-output*))))
+
+(defun experiments-of (file experiments)
+  "Return those of EXPERIMENTS, of what was loaded with FILE, that are meant by it: its own, or if
+it has none, those of the files that it loads."
+  (or (remove (native-name (truename file)) experiments :key #'experiment-file :test-not #'equal)
+      experiments))
+
+(defun load-experiments (path)
+  "Load the Lisp file at PATH. Return the experiments that it defines. Signals BAD-LINE if there are
+none."
+  (let ((before (all-experiments)))
+    (load-aside path)
+    (or (experiments-of path (set-difference (all-experiments) before))
+        (reject-line "~A defines no experiment; a file of experiments has a DEFEXPERIMENT."
+                     (native-name path)))))
+
+(defun reject-experiment (name known)
+  (reject-line "There is no experiment ~A.~@[ Did you mean ~A?~] Known: ~{~A~^, ~}."
+               name (nearest-name name (experiment-words known)) (experiment-words known)))
+
+(defun reject-file-or-experiment (name)
+  (let ((known (experiment-words (all-experiments))))
+    (reject-line "There is no file ~A, nor an experiment of that name.~@[ Did you mean ~A?~]~@[ ~
+                  Known: ~{~A~^, ~}.~]"
+                 name (nearest-name name known) known)))
+
+(defun only-experiment (file experiments)
+  "Return the one of EXPERIMENTS, those of FILE. Signals BAD-LINE if there are several."
+  (if (rest experiments)
+      (reject-line "~A has several experiments: ~{~A~^, ~}. Say which, after the file."
+                   file (sort (experiment-words experiments) #'string<))
+      (first experiments)))
+
+(defun experiments-called (word)
+  "Return the experiments that WORD stands for: those of a file, which is loaded, or one by its
+name. Signals BAD-LINE."
+  (let* ((path (native-path word))
+         (known (experiment-among word (all-experiments)))
+         (file (or (and (pathname-name path) (existing-path path))
+                   (and (not known) (existing-file word)))))
+    (cond (file (load-experiments file))
+          (known (list known))
+          (t (reject-file-or-experiment word)))))
+
+(defun experiment-called (word &optional name)
+  "Return the experiment that a user means by WORD, a file or an experiment's name, and NAME, if it
+is one of several in a file. Signals BAD-LINE."
+  (let ((experiments (experiments-called word)))
+    (cond ((null name) (only-experiment word experiments))
+          ((experiment-among name experiments))
+          ((experiment-among name (all-experiments)))
+          (t (reject-experiment name experiments)))))
+
+(defun ensure-results-directory (name)
+  "Return the path of the directory NAME, made if there is none."
+  (handler-case (ensure-store-directory name)
+    (misuse (condition) (reject-line "~A" condition))))

@@ -1,0 +1,147 @@
+;;;; main.lisp -- what the saved core of ./cli/ars-magna does.
+
+(in-package :ars-magna.cli)
+
+;;; Interactively, the world is live. A batch without a rate is headless: a fresh world, whose ticks
+;;; pass only as its lines need them, so that the same lines and seed give the same run.
+
+(defparameter *default-world* "WATSON" "The world of a prompt that is not told another.")
+
+(defun first-robot (options)
+  "Return the name of the robot that OPTIONS ask for."
+  (let* ((robot (option-value :robot options))
+         (world (option-value :world options (and (null robot) *default-world*)))
+         (robots (and world (world-robots-called world))))
+    (cond ((null robot) (first robots))
+          ((null world) (robot-called robot))
+          ((find robot robots :test #'same-name-p))
+          (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world robots)))))
+
+(defun run-headless (session robot-name seed)
+  "Run the lines of SESSION, a batch, in a fresh world. Return the robot to go on with, or NIL."
+  (setf (session-next-robot session) nil
+        *prompt-robot* robot-name)
+  (call-by-name (robots-beside robot-name))
+  (call-with-simulation (lambda () (run-session session)) (robots-beside robot-name)
+                        :seed seed :journal t :keep *forks-to-keep*)
+  (session-next-robot session))
+
+(defun run-batch (session robot-name seed)
+  "Run the lines of SESSION, beginning with ROBOT-NAME."
+  (loop for name = robot-name then next
+        for next = (run-headless session name seed)
+        while next))
+
+(defun greet (session)
+  (let ((simulation (current-simulation)))
+    (format (session-console session)
+            "ARS MAGNA: ~A in ~A, seed ~D, ~A.~%HELP lists the commands, QUIT leaves.~%"
+            (session-robot) (simulation-name simulation) (simulation-seed simulation)
+            (rate-text (simulation-rate simulation)))))
+
+(defun run-live (session robot-name options)
+  "Run the lines of SESSION in the live world of ROBOT-NAME."
+  (apply #'simulator robot-name :rate (option-value :rate options *default-rate*)
+                                :display (terminal-p session)
+         (when (option-value :seed options) (list :seed (option-value :seed options))))
+  (when (terminal-p session) (greet session))
+  (run-session session))
+
+(defun plan-lines (options)
+  "Return the lines for the plans that OPTIONS ask for."
+  (loop for text in (option-values :plan options) collect (format nil "plan ~A" text)))
+
+(defun standard-session (options)
+  "Return a session that does what OPTIONS say and then the lines of the standard input. If nobody
+sits there, it shows what it reads and waits for each command, for a transcript like those of manual
+E. A batch that has plans to carry out does not wait for lines to be typed."
+  (let* ((input (standard-input))
+         (piped (not (typed-by-hand-p input)))
+         (batch (option-value :batch options))
+         (lines (plan-lines options)))
+    (make-session :input (if (and batch lines (not piped)) (make-concatenated-stream) input)
+                  :output *standard-output* :batch batch
+                  :files (option-values :load options) :lines lines
+                  :patient (or batch piped) :echo (and piped (not batch)))))
+
+(defun run-prompt (options)
+  "Do what OPTIONS say. Return the status to exit with."
+  (let ((robot-name (first-robot options))
+        (session (standard-session options)))
+    ;; What has been said of the world's definitions; a headless run has messages of its own.
+    (show-messages session)
+    (let ((*forks-to-keep* t))
+      (if (and (session-batch-p session) (null (option-value :rate options)))
+          (run-batch session robot-name (option-value :seed options 0))
+          (run-live session robot-name options)))
+    (if (and (session-batch-p session) (plusp (session-errors session))) 1 0)))
+
+(defun run-options (options)
+  "Do what OPTIONS say. Return the status to exit with."
+  (cond ((option-value :list options)
+         (when (option-value :world options) (world-robots-called (option-value :world options)))
+         (write-worlds)
+         0)
+        (t (run-prompt options))))
+
+(defun usage-wanted-p (arguments)
+  (intersection arguments '("--help" "-h") :test #'string=))
+
+(defun print-usage (arguments)
+  (write-string (usage-of-command (first arguments)))
+  0)
+
+(defun run-arguments (arguments)
+  "Do what ARGUMENTS, a list of strings, say. Return the status to exit with."
+  (cond ((usage-wanted-p arguments) (print-usage arguments))
+        ((equal arguments '("--version"))
+         (format t "ARS MAGNA ~A~%" *version*)
+         0)
+        ((and arguments (not (option-p (first arguments))))
+         (run-command-called (first arguments) (rest arguments)))
+        (t (run-options (parse-options arguments)))))
+
+;;; The process.
+
+(defun give-reason (condition status)
+  "Say on the error output what CONDITION says; return STATUS."
+  (ignore-errors (say-on-error-output (complaint-text (condition-text condition))))
+  status)
+
+(defun call-for-status (function)
+  "Call FUNCTION, which returns a status to exit with; return a status whatever happens."
+  (catch 'leave
+    (handler-case
+        (call-until-interrupted
+         (lambda () (let ((*leave-unheard-p* t)) (call-open-to-interrupts function)))
+         (lambda ()
+           (say-on-error-output "stopped.")
+           130))
+      (usage-error (condition) (give-reason condition 2))
+      ((or error storage-condition) (condition)
+        (regain-room condition)
+        (give-reason condition 1)))))
+
+(defun deliver (console status)
+  "Write what CONSOLE still has. Return STATUS, or another if it could not be written."
+  (finish-output console)
+  (let ((trouble (console-trouble console)))
+    (cond ((null trouble) status)
+          ;; That nobody wants to read more is no news to him.
+          ((search "Broken pipe" (own-text trouble)) (max 1 status))
+          (t (give-reason trouble (max 1 status))))))
+
+(defun run-process ()
+  "Do what the arguments of this process say. Return the status to exit with."
+  (let ((console (make-console (text-output 1))))
+    (setf *standard-output* console)
+    (deliver console (call-for-status (lambda () (run-arguments (process-arguments)))))))
+
+(defun main ()
+  "Run ./cli/ars-magna: do what the arguments of this process say, and end it. The argument --probe
+only asks whether the core starts."
+  (when (equal (process-arguments) '("--probe")) (end-process 0))
+  (die-of-termination)
+  (mind-interrupts)
+  ;; An interrupt that still waits when all is done is not to be taken then.
+  (call-holding-interrupts (lambda () (end-process (run-process)))))

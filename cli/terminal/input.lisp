@@ -1,0 +1,97 @@
+;;;; input.lisp -- lines as they are typed: any bytes, of any length, from what may go away.
+
+(in-package :ars-magna.cli)
+
+;;; What is not UTF-8 is read as question marks. A line that is too long is an error once it has
+;;; been read over, so that the next one is the next. What cannot be read any more, such as a
+;;; terminal that is gone, has ended.
+
+(defconstant +longest-line-typed+ 1000000 "How many bytes a line has at most.")
+
+(defclass typed-text (fundamental-character-input-stream)
+  ((octets :initarg :octets :reader typed-octets)
+   (by-hand-p :initarg :by-hand-p :initform nil :reader typed-by-hand-p)
+   ;; What is left of the line that is being read, and where that begins.
+   (rest :initform "" :accessor typed-line)
+   (position :initform 0 :accessor typed-position))
+  (:documentation "The text in UTF-8 that the characters of the stream OCTETS stand for. BY-HAND-P
+is true if somebody types it."))
+
+(defmethod typed-by-hand-p ((stream stream))
+  (interactive-stream-p stream))
+
+(defun read-octets (octets)
+  "Return the characters of the stream OCTETS up to and with the next newline, not many more than a
+line has at most; and whether there were more."
+  (let* ((count 0)
+         (line (with-output-to-string (out)
+                 (handler-case
+                     (loop for char = (read-char octets nil)
+                           while char
+                           do (when (<= count +longest-line-typed+) (write-char char out))
+                              (incf count)
+                           until (char= char #\Newline))
+                   (stream-error () nil)))))
+    (values line (< (1+ +longest-line-typed+) count))))
+
+(defun fill-line (stream)
+  "Let STREAM have something left of a line, unless it is at its end."
+  (when (= (typed-position stream) (length (typed-line stream)))
+    (multiple-value-bind (octets too-long-p) (read-octets (typed-octets stream))
+      (setf (typed-position stream) 0
+            (typed-line stream) (if too-long-p "" (decoded octets)))
+      (when too-long-p
+        (reject-line "The line is longer than ~D bytes. Put what is in it into a file, ~
+                      and (load \"FILE\")."
+                     +longest-line-typed+)))))
+
+(defmethod stream-read-line ((stream typed-text))
+  (fill-line stream)
+  (let* ((line (typed-line stream))
+         (start (shiftf (typed-position stream) (length line)))
+         (end (position #\Newline line :start start)))
+    (values (subseq line start end) (null end))))
+
+(defmethod stream-read-char ((stream typed-text))
+  (fill-line stream)
+  (let ((position (typed-position stream)))
+    (cond ((= position (length (typed-line stream))) :eof)
+          (t (incf (typed-position stream))
+             (char (typed-line stream) position)))))
+
+(defmethod stream-unread-char ((stream typed-text) char)
+  (declare (ignore char))
+  (decf (typed-position stream))
+  nil)
+
+;; A stream for questions that is made of this one asks for it.
+(defmethod stream-line-column ((stream typed-text))
+  nil)
+
+(defmethod stream-listen ((stream typed-text))
+  (or (< (typed-position stream) (length (typed-line stream)))
+      (listen (typed-octets stream))))
+
+(defmethod stream-clear-input ((stream typed-text))
+  (setf (typed-position stream) (length (typed-line stream)))
+  (clear-input (typed-octets stream)))
+
+(defun standard-input ()
+  "Return what is typed into this process."
+  (let ((octets (octet-input 0)))
+    (make-instance 'typed-text :octets octets :by-hand-p (interactive-stream-p octets))))
+
+;;; Whether something has been typed can be found out, without waiting for it, of this process's own
+;;; streams only.
+
+(defun source-of (stream)
+  "Return the stream that what STREAM reads comes from."
+  (typecase stream
+    (typed-text (typed-octets stream))
+    (synonym-stream (source-of (symbol-value (synonym-stream-symbol stream))))
+    (t stream)))
+
+(defun typed-within-p (stream seconds)
+  "Wait until something is typed into STREAM, or it ends, for SECONDS at most. True if it is."
+  (or (and (typep stream 'typed-text) (< (typed-position stream) (length (typed-line stream))))
+      (octets-within-p (source-of stream) seconds)))

@@ -1,0 +1,110 @@
+;;;; layout.lisp -- how the prompt writes numbers, values and descriptors.
+
+(in-package :ars-magna.cli)
+
+;;; As in the session of manual E: positions and angles with two decimals, readings with one, truth
+;;; as Yes and No, symbols capitalised, four attributes to a line.
+
+(defun amount-text (number)
+  "Return NUMBER, a size or weight that somebody specified, as he would write it."
+  (if (= number (round number))
+      (format nil "~D" (round number))
+      (string-right-trim "0" (format nil "~,4F" number))))
+
+(defun reading-text (number)
+  (format nil "~,1F" number))
+
+(defun value-text (value number-text)
+  "Return the VALUE of an attribute as STATUS and THINGS show it, numbers by NUMBER-TEXT."
+  (cond ((eq value t) "Yes")
+        ((null value) "No")
+        ((symbolp value) (string-capitalize value))
+        ((realp value) (funcall number-text value))
+        ((consp value) (format nil "(~{~A~^ ~})"
+                               (loop for element in value
+                                     collect (value-text element number-text))))
+        (t (princ-to-string value))))
+
+(defun write-descriptor (descriptor &optional (number-text #'reading-text))
+  "Write DESCRIPTOR, a list of lists (attribute value), four attributes to a line."
+  (loop for rest = descriptor then (nthcdr 4 rest)
+        while rest
+        do (format t "  ~{~{:~A ~A~}~^ ~}~%"
+                   (loop for (key value) in rest repeat 4
+                         collect (list key (value-text value number-text))))))
+
+(defun kind-text (designator)
+  "Return what DESIGNATOR is for, such as Local Object."
+  (format nil "~:(~A~) ~:[Place~;Object~]" (designator-type designator)
+          (listp (first (designator-data designator)))))
+
+(defun bearing-text (designator)
+  "Return the distance and the angle of DESIGNATOR."
+  (format nil "~,2F, ~,2F" (designator-distance designator) (designator-angle designator)))
+
+(defun location-text (part)
+  "Return where PART is, if inside something (manual E; reading 202)."
+  (let ((location (part-location part)))
+    (cond ((null location) nil)
+          ((storage-bin-p location) "Located in storage-bin.")
+          (t (format nil "Located in ~A." (location-name location))))))
+
+(defun put-line (control &rest arguments)
+  "Write a line formatted from CONTROL and ARGUMENTS, without blanks at its end."
+  (format t "~A~%" (string-right-trim " " (apply #'format nil control arguments))))
+
+(defun rate-text (rate)
+  (if (eq rate :free)
+      "as fast as it can"
+      (format nil "~A ticks a second" (amount-text rate))))
+
+;;; Running text.
+
+(defun split-words (text)
+  (loop for start = (position-if-not #'blank-p text)
+          then (position-if-not #'blank-p text :start end)
+        while start
+        for end = (or (position-if #'blank-p text :start start) (length text))
+        collect (subseq text start end)))
+
+(defun filled-lines (text width)
+  "Return the words of TEXT as a list of lines of at most WIDTH characters."
+  (loop with line = ""
+        for (word . more) on (split-words text)
+        for longer = (if (string= line "") word (format nil "~A ~A" line word))
+        if (<= (length longer) width)
+          do (setf line longer)
+        else
+          collect (shiftf line word)
+        unless more
+          collect line))
+
+(defun write-filled (text indent &optional (head ""))
+  "Write TEXT in lines of at most 79 characters from column INDENT on, after HEAD, which has a line
+of its own if it is too long."
+  (when (and (plusp indent) (>= (length head) indent))
+    (format t "~A~%" (shiftf head "")))
+  (loop for line in (filled-lines text (- 79 indent))
+        for start = head then ""
+        do (format t "~VA~A~%" indent start line)))
+
+(defun first-sentence (text)
+  "Return TEXT up to its first period, colon or semicolon that ends a clause."
+  (let* ((text (one-line text))
+         (end (loop for i from 0 below (length text)
+                    when (and (find (char text i) ".:;")
+                              (or (= (1+ i) (length text)) (blank-p (char text (1+ i)))))
+                      return i)))
+    (subseq text 0 end)))
+
+;;; A live world is looked at between two ticks.
+
+(defun call-still (function)
+  "Write what FUNCTION writes to standard output while the world stands still."
+  (let ((simulation (current-simulation)))
+    (write-string (asking (simulation)
+                    (with-output-to-string (*standard-output*) (funcall function))))))
+
+(defmacro still (&body body)
+  "Run BODY, which writes to standard output, while the world stands still."
+  `(call-still (lambda () ,@body)))

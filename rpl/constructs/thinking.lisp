@@ -1,0 +1,127 @@
+;;;; thinking.lisp -- think and with-charge: what takes time where thinking is charged for.
+
+(in-package :ars-magna.rpl.constructs)
+
+;;; A thought is a wait that there is only where thinking is charged for. Of others of the robot's
+;;; plans it keeps none from going on, or all.
+
+(defun price-of (operator span unit)
+  "Return for how many ticks OPERATOR, which costs SPAN of UNIT, is to think. Signals
+WRONG-ARGUMENT."
+  (let ((span (fluent-value span)))
+    (unless (amount-p span)
+      (reject-argument operator 'span span "a number not below 0, up to 1e15"))
+    (ticks-of span unit operator)))
+
+(defun price-lambda (operator span unit form scope)
+  "Return the lambda expression, of the environment, for the ticks that OPERATOR in FORM costs."
+  (check-unit unit form)
+  (value-lambda `(price-of ',operator ,span (or ,unit :ticks)) scope))
+
+(defun think-for (task ticks alone)
+  "Let TASK, whose step is under way, think for TICKS; if ALONE is true, nobody else goes on
+meanwhile."
+  (when alone (stand-still (task-runner task) ticks))
+  (park task (start-timer task ticks))
+  +parked+)
+
+(defun stop-thinking (task alone)
+  "Let others go on: TASK, which kept them from that if ALONE is true, thinks no more."
+  (when alone (stand-no-longer (task-runner task))))
+
+(defun takes-time-p (task ticks)
+  "True if TASK has to think for TICKS."
+  (and (runner-charged-p (task-runner task)) (plusp ticks)))
+
+(define-construct think (span &key unit alone)
+  "Think in a plan for SPAN, counted in ticks, or in seconds if UNIT is :seconds: where thinking is
+charged for, wait for as long; elsewhere go on at once. Parts of ticks are rounded up. What else
+the robot's plans do goes on meanwhile; if ALONE is true, all of them stand still, policies too, and
+hear later of what happens. Return NIL. Signals WRONG-ARGUMENT (ours; manual 1.2)."
+  (:command)
+  (:arguments span alone)
+  (:parts (span function (price-lambda 'think span unit form scope))
+          (alone function (value-lambda alone scope)))
+  (:steps
+   (begin
+    (next thinking)
+    (let ((ticks (funcall span environment)))
+      (setf memory (funcall alone environment))
+      (if (takes-time-p task ticks)
+          (think-for task ticks memory)
+          (values (frame-up frame) nil))))
+   (thinking (values (frame-up frame) nil)))
+  (:unwind
+   (when (in-state-p thinking) (stop-thinking task memory))
+   nil))
+
+;;; What has a price. Its steps are not charged for, and its end, well or not, comes when it is due.
+
+(defstruct (thought (:constructor make-thought (ticks alone start)) (:copier nil))
+  "What a frame of WITH-CHARGE remembers: that it takes TICKS from the tick START on, perhaps ALONE,
+and what its body has come to: a RESULT, or a SIGNAL."
+  (ticks 0 :type real :read-only t)
+  (alone nil :read-only t)
+  (start 0 :type real :read-only t)
+  (result nil)
+  (signal nil))
+
+(defun begin-thought (task ticks alone)
+  "Return what a frame of TASK is to remember of a thought of TICKS."
+  (make-thought (if (takes-time-p task ticks) ticks 0) alone (runner-tick (task-runner task))))
+
+(defun ticks-left (thought task)
+  "Return for how many ticks TASK is yet to think."
+  (let ((now (runner-tick (task-runner task))))
+    (if (runner-charged-p (task-runner task))
+        (max 0 (- (+ (thought-start thought) (thought-ticks thought)) now))
+        0)))
+
+(defun start-priced-branch (body task environment)
+  "Start BODY as a part of TASK, whose steps are not charged for if thinking is. Return what a step
+returns."
+  (let ((branch (start-branch body task environment 0 (task-level task))))
+    (when (runner-charged-p (task-runner task)) (setf (task-uncounted-p branch) t)))
+  (await-parts task))
+
+(defun end-thought (thought task frame)
+  "Let TASK go on after FRAME with what THOUGHT has come to. Return what a step returns."
+  (let ((signal (thought-signal thought)))
+    (if signal
+        (unwind task (frame-up frame) signal)
+        (values (frame-up frame) (thought-result thought)))))
+
+(define-construct with-charge ((span &key unit alone) &body body)
+  "Run BODY in a plan, as a task of its own, as a thought that costs SPAN, in ticks, or in seconds
+if UNIT is :seconds, and return its value, one. Where thinking is charged for the steps of BODY do
+not count, and its value or failure comes SPAN after its beginning, or when there is one. ALONE is
+as for THINK, for the wait that follows BODY. Elsewhere BODY is all. If it evaporates, that is at
+once. Signals WRONG-ARGUMENT (ours; manual 1.2)."
+  (:arguments span alone)
+  (:parts (span function (price-lambda 'with-charge span unit form scope))
+          (alone function (value-lambda alone scope))
+          (body node (body-code body scope)))
+  (:steps
+   (begin
+    (next inside)
+    (setf memory (begin-thought task (funcall span environment) (funcall alone environment)))
+    (start-priced-branch body task environment))
+   (inside
+    (next thinking)
+    (setf (thought-result memory) value)
+    (let ((ticks (ticks-left memory task)))
+      (if (plusp ticks)
+          (think-for task ticks (thought-alone memory))
+          (end-thought memory task frame))))
+   (thinking (end-thought memory task frame)))
+  (:unwind
+   (cond ((in-state-p thinking)
+          (stop-thinking task (thought-alone memory))
+          nil)
+         ((and (in-state-p inside) (not (eq signal :evaporate)) (plusp (ticks-left memory task)))
+          (next thinking)
+          (setf (thought-signal memory) signal)
+          (values t (think-for task (ticks-left memory task) (thought-alone memory)) nil))))
+  (:child-ended
+   (or (fail-or-escape task how result)
+       (complete task (and (eq how :succeeded) result)))))

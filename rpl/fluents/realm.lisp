@@ -1,0 +1,164 @@
+;;;; realm.lisp -- whose state a fluent has: that of the runs that are no forks, or of one fork.
+
+(in-package :ars-magna.rpl.fluents)
+
+;;; A fluent is an identity: plans, vectors, networks and global variables lead to it. A fork has
+;;; states of its own for all of them. So each object that is an ENTITY belongs to a realm, and has
+;;; a twin in each realm that came of that by forking: HERE finds it, by whatever road one has come
+;;; to the entity. Twins have the same TOKEN, a number. Those that a fork's plans lead to are made
+;;; with the fork. Others are made when somebody asks for them, with the state of the moment of the
+;;; fork: before an entity changes, the forks made since its last change (SEEN counts them) get
+;;; their twins.
+
+(defstruct (realm (:constructor make-realm (parent number)) (:copier nil))
+  "What belongs to one fork, number NUMBER of those of PARENT; or, without one, to all runs that are
+no forks. TWINS has entities by token, FORKS is a list (number . weak realm), the newest first, of
+COUNT there have been; there is ROOM for so many more before those that are gone are left out.
+SOURCE leads to the home of which this is a fork."
+  (parent nil :type (or null realm) :read-only t)
+  (number 0 :type fixnum :read-only t)
+  (twins (make-hash-table :test 'eq :size 100) :type hash-table :read-only t)
+  (lock (make-lock "realm") :read-only t)
+  (forks '() :type list)
+  (room 16 :type fixnum)
+  (count 0 :type fixnum)
+  (source nil)
+  (tokens 0 :type atomic-count))
+
+(define-global +root+ (make-realm nil 0)
+  "The realm of all runs that are no forks.")
+
+(declaim (type realm *realm*))
+(defvar *realm* +root+
+  "The realm of the run that this thread works in.")
+
+(defstruct (entity (:constructor nil) (:copier nil))
+  "What has a twin in each fork: a fluent or a valve."
+  (realm *realm* :type realm)
+  (token 0 :type fixnum)
+  (seen 0 :type fixnum))
+
+(declaim (inline here))
+(defun here (entity)
+  "Return ENTITY or, if this thread works in a fork of what that belongs to, its twin there."
+  (if (eq *realm* (entity-realm entity))
+      entity
+      (entity-in entity *realm*)))
+
+(defun descends-p (realm ancestor)
+  (loop for each = realm then (realm-parent each)
+        while each thereis (eq each ancestor)))
+
+(defun entity-in (entity realm)
+  "Return ENTITY, or its twin in REALM if that is a fork of what ENTITY belongs to."
+  (if (or (eq realm (entity-realm entity))
+          (not (descends-p realm (entity-realm entity))))
+      entity
+      (or (known-twin entity realm)
+          (add-twin entity realm (fresh-twin (entity-in entity (realm-parent realm)) realm)))))
+
+(defun known-twin (entity realm)
+  "Return the twin of ENTITY in REALM if it is there, or NIL."
+  (and (plusp (entity-token entity))
+       (with-lock ((realm-lock realm))
+         (gethash (entity-token entity) (realm-twins realm)))))
+
+(defun entity-like (entity)
+  "Return what is here for ENTITY, of this run or of any fork that has come of the same one."
+  (or (known-twin entity *realm*) (here entity)))
+
+(defgeneric fresh-twin (entity realm)
+  (:documentation "Return a new object like ENTITY for REALM, that nobody uses."))
+
+(defun ensure-token (entity)
+  "Return the token of ENTITY, given to it now if it has none."
+  (when (zerop (entity-token entity))
+    (with-lock ((realm-lock (entity-realm entity)))
+      (when (zerop (entity-token entity))
+        (setf (entity-token entity) (1+ (atomic-incf (realm-tokens +root+)))))))
+  (entity-token entity))
+
+(defun add-twin (entity realm twin)
+  "Let TWIN be that of ENTITY in REALM, unless there is one. Return the one that there is."
+  (let ((token (ensure-token entity)))
+    (with-lock ((realm-lock realm))
+      (or (gethash token (realm-twins realm))
+          (setf (entity-realm twin) realm
+                (entity-token twin) token
+                (entity-seen twin) (realm-count realm)
+                (gethash token (realm-twins realm)) twin)))))
+
+(document-functions
+  entity-realm "Return the realm that the entity belongs to."
+  realm-source "Return a weak reference to the home of which the realm is a fork, or NIL. Can be
+set.")
+
+;;; Forking.
+
+(defun fork-realm (realm)
+  "Return a new fork of REALM."
+  (with-lock ((realm-lock realm))
+    (let ((fork (make-realm realm (incf (realm-count realm)))))
+      (push (cons (realm-number fork) (make-weak fork)) (realm-forks realm))
+      (when (minusp (decf (realm-room realm))) (forget-gone-forks realm))
+      fork)))
+
+(defun forget-gone-forks (realm)
+  (let ((forks (remove-if-not #'weak-value (realm-forks realm) :key #'cdr)))
+    (setf (realm-forks realm) forks
+          (realm-room realm) (max 16 (length forks)))))
+
+(defmethod copy-plan-value ((realm realm) fork)
+  (if (eq realm (source-realm fork))
+      (note-copy realm (fork-realm realm) fork)
+      realm))
+
+(defun source-realm (copier)
+  "Return the realm of the run that COPIER copies."
+  (or (copier-variable copier '*realm*) +root+))
+
+(defgeneric foreign-p (entity copier)
+  (:documentation "True if ENTITY is of another run than the one that COPIER copies.")
+  (:method (entity copier) (declare (ignore entity copier)) nil))
+
+(defmethod copy-plan-value ((entity entity) fork)
+  (let ((own (entity-in entity (source-realm fork))))
+    (cond ((not (eq own entity)) (note-copy entity (forked own fork) fork))
+          ((not (eq (entity-realm entity) (source-realm fork))) entity)
+          ((foreign-p entity fork) entity)
+          (t (copy-entity entity fork)))))
+
+(defun copy-entity (entity copier)
+  "Return the twin of ENTITY in the fork that COPIER makes."
+  (let ((realm (forked (entity-realm entity) copier))
+        (copy (copy-slots entity copier)))
+    (setf (entity-token copy) (ensure-token entity)
+          (entity-seen copy) 0)
+    ;; Runs in other threads, of the same realm, may add twins of what they have.
+    (with-lock ((realm-lock realm))
+      (setf (gethash (entity-token entity) (realm-twins realm)) copy))
+    (when (>= (entity-seen entity) (1- (realm-number realm)))
+      (setf (entity-seen entity) (realm-number realm)))
+    copy))
+
+;;; Changes.
+
+(defgeneric concerns-p (entity realm)
+  (:documentation "True if REALM, a fork, may come to ask for ENTITY.")
+  (:method (entity realm) (declare (ignore entity realm)) t))
+
+(defun serve-forks (entity)
+  "Let the forks made since ENTITY changed last have their twins of it."
+  (let ((realm (entity-realm entity)))
+    (loop for (number . weak) in (realm-forks realm)
+          while (> number (entity-seen entity))
+          do (let ((fork (weak-value weak)))
+               (when (and fork (concerns-p entity fork))
+                 (entity-in entity fork))))
+    (setf (entity-seen entity) (realm-count realm))))
+
+(declaim (inline before-change))
+(defun before-change (entity)
+  "To be called before what ENTITY says changes."
+  (when (< (entity-seen entity) (realm-count (entity-realm entity)))
+    (serve-forks entity)))

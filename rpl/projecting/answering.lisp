@@ -1,0 +1,60 @@
+;;;; answering.lisp -- the answer to a question: its projections, and what follows.
+
+(in-package :ars-magna.rpl-projecting)
+
+(defun charge-for-rollouts (projections interface)
+  "Let the plans of INTERFACE, where their steps have a budget, pay for those of PROJECTIONS."
+  (charge-steps (min (steps-of projections) 1000000000) (interface-runner interface)))
+
+(defun project-branch (question moment branch)
+  "Return the projection of BRANCH of QUESTION by rollouts from MOMENT, see SCENE."
+  (let ((scene (make-scene question moment branch)))
+    (make-projection (text-of question branch)
+                     (if moment (simulation-tick moment) 0)
+                     (option question :horizon)
+                     (loop for trial from 1 to (option question :trials)
+                           collect (roll-out scene trial (seed-of-trial question trial))))))
+
+(defun project-branches (question moment)
+  "Return a list of projections, one for each branch of QUESTION, or of the one that there is."
+  (loop for branch below (max 1 (length (question-branches question)))
+        collect (project-branch question moment branch)))
+
+(defun steps-of (projections)
+  "Return how many steps of plans PROJECTIONS took."
+  (loop for projection in projections
+        sum (reduce #'+ (projection-rollouts projection) :key #'rollout-steps)))
+
+;;; Questions of plans.
+
+(defun answer-by-chance (question)
+  "Answer QUESTION, in a rollout: by any branch, or a projection that knows nothing."
+  (grant-wish question
+              (if (question-branches question)
+                  (roll-index (length (question-branches question))
+                              (runner-dice (interface-runner (wish-interface question))))
+                  (nothing-known question))))
+
+(defun tell-choice (question projections best)
+  "Tell who wants to know that of PROJECTIONS the one number BEST was chosen."
+  (when (option question :tell)
+    (call-user-code (option question :tell) "the function :TELL of a TRY-BEST" projections best)))
+
+(defun answer-by-rollouts (question)
+  "Answer QUESTION, of a plan, by what rollouts tell. Return :LATER if nobody wants that any more."
+  (let* ((interface (wish-interface question))
+         (moment (and (null (option question :world)) (lighten (fork-at-rest interface))))
+         (projections (catch 'abandoned
+                        (let ((*asked* question)) (project-branches question moment)))))
+    (cond ((null projections) :later)
+          (t (charge-for-rollouts projections interface)
+             (if (question-branches question)
+                 (let ((best (best-of projections)))
+                   (tell-choice question projections best)
+                   (grant-wish question best))
+                 (grant-wish question (first projections)))))))
+
+(defmethod serve-wish ((question question))
+  (if *rolling-out*
+      (answer-by-chance question)
+      (answer-by-rollouts question)))

@@ -1,0 +1,35 @@
+;;;; package.lisp -- plans that are tried in forks before they are done.
+
+(defpackage :ars-magna.rpl-projecting
+  (:documentation "Projecting plans: what may become of them, in forks of their run or in a world
+that a robot believes in, and choosing by that.")
+  (:use :cl :ars-magna.base :ars-magna.rpl.language :ars-magna.rpl-robot)
+  (:import-from :ars-magna.statistics #:wilson-interval)
+  (:import-from :ars-magna.world #:*world* #:map-name #:world-map)
+  (:import-from :ars-magna.time #:*simulation* #:current-simulation)
+  (:import-from :ars-magna.robot #:robot-name)
+  (:import-from :ars-magna.run
+                #:*simulation-variables* #:simulation-tick #:simulation-seed #:simulation-robots
+                #:simulation-participants #:simulation-journal #:simulation-world
+                #:fork-simulation #:call-in-fork #:release-fork)
+  (:import-from :ars-magna.rpl
+                #:*break-on-plan-failures* #:*step-plans* #:+parked+ #:enter #:environment
+                #:awaited-text #:charge-steps #:check-arguments #:failure-class #:failure-of
+                #:failure-text
+                #:find-procedure
+                #:fluent-value #:form-text #:frame #:frame-up #:lisp-failure #:node #:park
+                #:plan-failure #:plan-runner-steps #:procedure #:procedure-name #:procedure-p
+                #:runner-client #:runner-dice #:stop-trace #:task #:task-label #:task-p
+                #:task-result #:task-runner #:task-top #:value #:escape-p #:entity)
+  (:import-from :ars-magna.trails #:note-places #:ways-along #:ways-chart #:part-of-map)
+  (:import-from :ars-magna.display #:take-snapshot #:picture-kind #:snapshot-map)
+  (:import-from :ars-magna.plots #:save-chart)
+  ;; rollout
+  (:export #:rollout-p #:rollout-seed #:rollout-state #:rollout-succeeded-p #:rollout-ticks
+           #:rollout-cost #:rollout-failure #:rollout-value)
+  ;; projection
+  (:export #:projection-p #:projection-text #:projection-rollouts #:projection-horizon
+           #:projection-tick #:projection-successes #:projection-probability
+           #:projection-interval #:projection-failures #:projection-mean-ticks)
+  ;; projecting, looking, picture
+  (:export #:project-plan #:with-rollout #:save-projection-picture))

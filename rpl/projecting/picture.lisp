@@ -1,0 +1,42 @@
+;;;; picture.lisp -- a projection as a bundle of ways over the map.
+
+(in-package :ars-magna.rpl-projecting)
+
+(defun start-of (projection)
+  "Return a snapshot of the world in which a rollout of PROJECTION began, or one like it."
+  (let* ((rollout (first (projection-rollouts projection)))
+         (scene (rollout-scene rollout)))
+    (if (scene-moment scene)
+        (take-snapshot (simulation-world (scene-moment scene)))
+        (roll-out scene (rollout-trial rollout) (rollout-seed rollout)
+                  (lambda (again)
+                    (declare (ignore again))
+                    (take-snapshot *world*))))))
+
+(defun subtitle-of (projection)
+  (multiple-value-bind (low high) (projection-interval projection)
+    (format nil "~D of ~D rollouts succeeded within ~D ticks: ~,2F to ~,2F. The ways of all, with a
+~
+                 marker at the end of each."
+            (projection-successes projection) (length (projection-rollouts projection))
+            (projection-horizon projection) low high)))
+
+(addition save-projection-picture)
+(defun save-projection-picture (projection file &key part)
+  "Save in FILE, replacing it, a map with the ways that robots went in the rollouts of PROJECTION:
+in colours that say what became of each, with a marker where it ended. PART (left top right bottom),
+in cells, is what is wanted of the map, by default all. FILE is SVG or, where the program
+rsvg-convert is installed, PNG, as its name ends. Return its truename. Signals WRONG-ARGUMENT, and
+MISUSE without that program."
+  (check-argument save-projection-picture projection
+                  (and (projection-p projection) (projection-rollouts projection) t)
+                  "a projection with rollouts, as PROJECT returns")
+  (picture-kind 'save-projection-picture file)
+  (let ((snapshot (start-of projection)))
+    (save-chart file
+                (ways-chart snapshot
+                            (mapcan (lambda (rollout) (copy-list (rollout-ways rollout)))
+                                    (projection-rollouts projection))
+                            (part-of-map 'save-projection-picture part (snapshot-map snapshot))
+                            (projection-text projection)
+                            (subtitle-of projection)))))

@@ -1,0 +1,135 @@
+;;;; projecting.lisp -- project: what may become of a plan, asked by a plan or from outside.
+
+(in-package :ars-magna.rpl-projecting)
+
+(defun make-question (task interface plan arguments options)
+  "Return the question of TASK, or of nobody in a plan, what may become of PLAN: a task, a plan with
+the list ARGUMENTS, or a list of both. INTERFACE is whose plans they are. Signals UNKNOWN-NAME and
+WRONG-ARGUMENT."
+  (let ((options (checked-options 'project options)))
+    (unless (proper-list-p arguments)
+      (reject-argument 'project :arguments arguments "a list"))
+    (cond ((task-p plan)
+           (%make-question :task task :interface interface :subject (checked-subject plan interface)
+                           :options options))
+          (t (let ((call (if (consp plan) plan (cons plan arguments))))
+               (when (and (consp plan) arguments)
+                 (reject-argument 'project :arguments arguments
+                                  "none, since the plan is a list with arguments"))
+               (check-arguments (if (procedure-p (first call))
+                                    (first call)
+                                    (find-procedure (first call)))
+                                (rest call))
+               (%make-question :task task :interface interface :plan (first call)
+                               :arguments (rest call) :options options))))))
+
+(defun checked-subject (task interface)
+  "Return TASK. Signals WRONG-ARGUMENT unless it is of the plans of INTERFACE."
+  (unless (and interface (task-runner task) (eq interface (runner-client (task-runner task))))
+    (reject-argument 'project 'plan task "a task of the plans of the robot that is driven here"))
+  task)
+
+;;; In plans.
+
+(defun asking-interface (task)
+  "Return the interface of the plan of TASK. Signals MISUSE if no robot is driven by it."
+  (let ((interface (runner-client (task-runner task))))
+    (if (interface-p interface)
+        interface
+        (reject-use "There is no run to be projected: plans are projected by those that run on a ~
+                     robot, see RUN-PLAN."))))
+
+(defun ask (question task)
+  "Let TASK wait for the answer to QUESTION. Return what a step returns."
+  (park task question)
+  (add-wish question)
+  +parked+)
+
+(defun question-of-plan (task plan arguments options)
+  "Return the question of TASK, of a plan, what may become of PLAN with the list ARGUMENTS, given
+the plist OPTIONS. All may be fluents."
+  (let ((question (make-question task (asking-interface task) (fluent-value plan)
+                                 (fluent-value arguments) options)))
+    (when (option question :world) (check-believable question))
+    question))
+
+(define-construct project (plan &key arguments trials horizon seed cost world)
+  "Return a projection: what may become of PLAN, found out by TRIALS rollouts, 20 if not given. Each
+is a fork of the run, with a seed of its own, in which PLAN goes on until it has ended, or HORIZON
+ticks have passed, 600 if not given. PLAN is a plan procedure or the name of one, which is given the
+list ARGUMENTS; a list of both; or a task, of which it is found out what is left. See
+PROJECTION-PROBABILITY and others.
+  SEED, an integer, decides the seeds; by default the run's does, and the tick.
+  COST, a function without arguments, is called in each fork at the end and returns a number.
+  WORLD, a function, makes worlds that rollouts are run in instead of forks, such as the one that
+the robot believes in. It is called with a function and a seed, and is to call that function inside
+of (with-simulation (robot :seed seed) ...). The true run cannot be seen there; PLAN has a name
+then, and ARGUMENTS are no objects of a run.
+In a plan, it waits until all plans rest, and goes on in the same tick; PLAN begins as if called
+there. Elsewhere, as in a continuation, in a test or at the prompt, PLAN begins on top, as by
+BEGIN-PLAN. The run itself takes no notice: its dice are not rolled, and messages and traces of
+rollouts are dropped. In rollouts, PROJECT returns a projection without rollouts. Errors in rollouts
+are failures of these. Fails with a CANNOT-FORK if the run cannot be forked (ours; McDermott's
+projection of reactive plans, 1992)."
+  (:arguments plan arguments trials horizon seed cost world)
+  (:parts (request function
+                   (value-lambda `(list ,plan ,arguments :trials ,trials :horizon ,horizon
+                                        :seed ,seed :cost ,cost :world ,world)
+                                 scope)))
+  (:in-lisp `(project-plan ,plan :arguments ,arguments :trials ,trials :horizon ,horizon
+                                 :seed ,seed :cost ,cost :world ,world))
+  (:steps
+   (begin
+    (next answered)
+    (destructuring-bind (plan arguments . options) (funcall request environment)
+      (ask (setf memory (question-of-plan task plan arguments options)) task)))
+   (answered
+    (cond ((eq value :do-it)
+           (next inside)
+           (enter-application (question-plan memory) (question-arguments memory) frame))
+          (t (values (frame-up frame) value))))
+   (inside
+    (note-ended memory :succeeded value)
+    (at-once ended))
+   ;; A rollout goes no further.
+   (ended
+    (park task "the end of the rollout")
+    +parked+))
+  (:unwind
+   (when (in-state-p inside)
+     (note-signal memory signal)
+     (when (typep signal 'plan-failure)
+       (next ended)
+       (values t frame nil)))))
+
+;;; From outside.
+
+(defun interface-to-ask (plan)
+  "Return the interface whose plans are to be projected with PLAN. Signals MISUSE at a plan's step."
+  (let ((interface (if (and (task-p plan) (task-runner plan)
+                            (interface-p (runner-client (task-runner plan))))
+                       (runner-client (task-runner plan))
+                       (ensure-interface))))
+    (when (holding-p interface)
+      (reject-use "project: a plan is at work here. Write PROJECT in the text of the plan itself, ~
+                   outside of any lambda."))
+    interface))
+
+(defun moment-with (question)
+  "Return a fork of the run that QUESTION, asked from outside, is about, with it in it."
+  (let ((interface (wish-interface question)))
+    (call-with-plans (lambda () (add-wish question)) interface)
+    (unwind-protect (lighten (fork-simulation (interface-simulation interface)))
+      (call-with-plans (lambda () (forget-wish question)) interface))))
+
+(addition project-plan)
+(defun project-plan (plan &key arguments trials horizon seed cost world)
+  "Return what may become of PLAN: what PROJECT is, for Lisp code outside of plans. Signals
+UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE at a plan's own step."
+  (let* ((interface (if world nil (interface-to-ask plan)))
+         (question (make-question nil interface plan arguments
+                                  (list :trials trials :horizon horizon :seed seed :cost cost
+                                        :world world))))
+    (when world (check-believable question))
+    (cond (*rolling-out* (nothing-known question))
+          (t (first (project-branches question (if world nil (moment-with question))))))))

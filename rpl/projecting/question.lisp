@@ -1,0 +1,101 @@
+;;;; question.lisp -- what is to be found out by rollouts, and by how many.
+
+(in-package :ars-magna.rpl-projecting)
+
+;;; A question is a wish of an interface: so it is copied with the plans, and in a fork its twin
+;;; tells which task waits for the answer, and with which branches and arguments. Twins have the
+;;; same TOKEN, a symbol.
+
+(defstruct (question (:include wish) (:constructor %make-question) (:copier nil))
+  "What may become of BRANCHES, texts, in what is left of the plan, of PLAN with ARGUMENTS, or of
+the task SUBJECT. ENDED and RESULT say in a rollout how that has ended which the asking task does."
+  (token (gensym "QUESTION") :type symbol :read-only t)
+  (branches '() :type list :read-only t)
+  (plan nil :read-only t)
+  (arguments '() :type list :read-only t)
+  (subject nil :type (or null task) :read-only t)
+  (options '() :type list :read-only t)
+  (ended nil :type (or null keyword))
+  (result nil))
+
+(defun option (question key)
+  (getf (question-options question) key))
+
+(defmethod awaited-text ((question question))
+  (format nil "what ~:[may become of ~A~;is the best of ~A branches~]"
+          (question-branches question)
+          (if (question-branches question)
+              (length (question-branches question))
+              (text-of question))))
+
+(defun text-of (question &optional (branch 0))
+  "Return a text for what QUESTION is about, or for its BRANCH."
+  (cond ((question-branches question) (nth branch (question-branches question)))
+        ((question-subject question) (task-label (question-subject question)))
+        (t (let ((plan (question-plan question)))
+             (form-text (cons (or (if (procedure-p plan) (procedure-name plan) plan) 'interp-lambda)
+                              (question-arguments question)))))))
+
+(defun note-ended (question state result)
+  "Note that what the task of QUESTION does has ended in STATE with RESULT, for a rollout to see."
+  (when question
+    (setf (question-ended question) state
+          (question-result question) result)))
+
+(defun note-signal (question signal)
+  "Note that what the task of QUESTION does is left by SIGNAL. A RETURN-FROM is a good end."
+  (cond ((typep signal 'plan-failure) (note-ended question :failed signal))
+        ((escape-p signal) (note-ended question :succeeded nil))
+        ((eq signal :evaporate) (note-ended question :evaporated nil))))
+
+;;; Options.
+
+(defparameter *default-trials* 20
+  "How many rollouts there are of what is projected, unless somebody says otherwise.")
+(defparameter *default-horizon* 600
+  "How many ticks a rollout is given, unless somebody says otherwise.")
+
+(defun callable-p (object)
+  (or (functionp object)
+      (and object (symbolp object) (fboundp object) (not (macro-function object)))))
+
+(defun check-option (operator name value)
+  "Signal WRONG-ARGUMENT unless VALUE is one of the option NAME of OPERATOR."
+  (flet ((check (good-p expected)
+           (unless good-p (reject-argument operator name value expected))))
+    (ecase name
+      (:trials (check (whole-p value 1 100000) "how many rollouts, from 1 to 100000"))
+      (:horizon (check (whole-p value 1) "how many ticks, from 1 to 1e9"))
+      (:seed (check (integerp value) "an integer"))
+      (:until (check (member value '(:plan :branch)) ":plan or :branch"))
+      ((:cost :tell :world) (check (callable-p value) "a function")))))
+
+(defun checked-options (operator options)
+  "Return the plist OPTIONS of OPERATOR, without those that are NIL, and with :trials and :horizon.
+Values may be fluents. Signals WRONG-ARGUMENT."
+  (let ((given (loop for (name value) on options by #'cddr
+                     for known = (fluent-value value)
+                     when known
+                       append (progn (check-option operator name known) (list name known)))))
+    (append given (list :trials *default-trials* :horizon *default-horizon*))))
+
+;;; Seeds. The same trial of all branches has the same one.
+
+(defun mixed (&rest numbers)
+  "Return an integer below 2^62 that depends on NUMBERS, integers."
+  (let ((digest (make-digest)))
+    (digest-add digest numbers)
+    (ldb (byte 62 0) (digest-value digest))))
+
+(defun seed-of-trial (question trial)
+  "Return the seed of TRIAL, a number, of QUESTION: by its option :seed, or else by the seed of its
+run, the tick, and how many questions plans have asked before in that."
+  (let* ((interface (wish-interface question))
+         (simulation (if interface (interface-simulation interface) *simulation*))
+         (seed (option question :seed)))
+    (cond (seed (mixed seed trial))
+          ((null simulation) (mixed 0 trial))
+          (t (mixed (simulation-seed simulation)
+                    (simulation-tick simulation)
+                    (if (wish-task question) (wishes-in-tick interface) -1)
+                    trial)))))

@@ -1,0 +1,100 @@
+;;;; charging.lisp -- what thinking costs the plans of a runner: steps of a tick's budget, or ticks.
+
+(in-package :ars-magna.rpl.tasks)
+
+;;; A runner that is CHARGED-P takes what plans say of their thoughts for true: WITH-CHARGE and
+;;; THINK wait, CHARGE-TICKS and CHARGE-STEPS count. If it has a BUDGET too, that is how many steps
+;;; its tasks may take in a tick, all together, however often it reacts in that; it was ALLOTTED for
+;;; the last time at one. What is charged for beyond it is a DEBT, which is paid from the budgets of
+;;; the ticks that follow. Nobody runs, and nothing posted is heard, before the tick STILL-UNTIL.
+;;; Steps of tasks that are UNCOUNTED-P are given back, but for those of a task that runs away.
+
+(defun set-charges (runner charged-p budget)
+  "Let RUNNER be charged for thoughts from now on if CHARGED-P is true, and have BUDGET steps a
+tick, or as many as it needs if that is NIL."
+  (unless (and (eq charged-p (runner-charged-p runner))
+               (eql budget (runner-budget runner)))
+    (setf (runner-charged-p runner) charged-p
+          (runner-budget runner) budget
+          (runner-allotted runner) nil
+          (runner-debt runner) 0
+          (runner-still-until runner) nil
+          (runner-broken-off-p runner) nil)))
+
+(declaim (inline standing-still-p))
+(defun standing-still-p (runner)
+  "True if no task of RUNNER goes on in this tick."
+  (let ((tick (runner-still-until runner)))
+    (and tick (< (runner-tick runner) tick))))
+
+;;; Giving steps.
+
+(defun allow (runner steps)
+  "Let the tasks of RUNNER take STEPS from now on."
+  (setf (runner-exhausted runner) nil
+        (runner-uncounted runner) 0
+        (runner-limit runner) (+ (runner-steps runner) steps)))
+
+(defun pay-debt (runner budget)
+  "Pay of the debt of RUNNER what BUDGET, a number of steps, is enough for. Return what is left."
+  (let ((paid (min budget (runner-debt runner))))
+    (decf (runner-debt runner) paid)
+    (- budget paid)))
+
+(defun give-budget (runner)
+  "Let the reaction of RUNNER that begins take its steps: what is left of this tick's budget, if
+that is counted."
+  (let ((budget (runner-budget runner)) (tick (runner-tick runner)))
+    (setf (runner-slice runner)
+          (max 1 (min +slice+ (floor (or budget *runaway-limit*) 10))))
+    (cond ((null budget) (allow runner *runaway-limit*))
+          ((not (runner-charged-p runner)) (allow runner budget))
+          ((not (eql tick (runner-allotted runner)))
+           (setf (runner-allotted runner) tick)
+           (allow runner (pay-debt runner budget))))))
+
+(defun give-back (runner steps)
+  "Let STEPS that a task of RUNNER has taken not count, unless these are too many in one tick."
+  (when (runner-budget runner)
+    (incf (runner-uncounted runner) steps)
+    (when (<= (runner-uncounted runner) *runaway-limit*)
+      (incf (runner-limit runner) steps))))
+
+;;; Taking steps and ticks.
+
+(defun stand-still (runner ticks)
+  "Let no task of RUNNER go on for TICKS, after those for which that is so already, once the step
+under way has ended."
+  (setf (runner-still-until runner)
+        (+ ticks (max (runner-tick runner) (or (runner-still-until runner) 0)))
+        (runner-pause runner) 0))
+
+(defun stand-no-longer (runner)
+  "Let tasks of RUNNER go on."
+  (setf (runner-still-until runner) nil))
+
+(addition charge-ticks)
+(defun charge-ticks (ticks &optional (runner *runner*))
+  "In Lisp code of a plan that has just found out what it costs: where thinking is charged for, let
+all plans of the robot stand still for TICKS, 0 or more, once the step under way has ended. Commands
+go on, and what happens meanwhile is heard after that. Elsewhere do nothing. Returns nothing.
+Signals WRONG-ARGUMENT."
+  (check-argument charge-ticks ticks (amount-p ticks) "a number of ticks, from 0 to 1e15")
+  (when (and runner (runner-charged-p runner) (plusp ticks))
+    (stand-still runner ticks))
+  (values))
+
+(addition charge-steps)
+(defun charge-steps (steps &optional (runner *runner*))
+  "In Lisp code of a plan that has just found out what it costs: where the steps of plans have a
+budget, let STEPS, a whole number, count as if the plans of the robot had taken them. What is more
+than is left of this tick's budget takes the next ones. Elsewhere do nothing. Returns nothing.
+Signals WRONG-ARGUMENT."
+  (check-argument charge-steps steps (whole-p steps) "a whole number of steps, from 0 to 1e9")
+  (when (and runner (runner-charged-p runner) (runner-budget runner))
+    (let* ((left (max 0 (- (runner-limit runner) (runner-steps runner))))
+           (now (min steps left)))
+      (decf (runner-limit runner) now)
+      (incf (runner-debt runner) (- steps now))
+      (setf (runner-pause runner) (min (runner-pause runner) (runner-limit runner)))))
+  (values))

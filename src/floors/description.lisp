@@ -1,0 +1,141 @@
+;;;; description.lisp -- what the YAML file of a floor says: its image, and how to read that.
+
+(in-package :ars-magna.floors)
+
+;;; The keys and what they mean are those of ROS's map_server (wiki.ros.org/map_server) and of
+;;; nav2_map_server after it. All but mode must be there; others are nobody's business here.
+
+(defconstant +most-octets+ 65536 "How many bytes the description of a floor has at most.")
+
+(defstruct (description (:copier nil))
+  "Of a floor: its IMAGE, a pathname; metres to a pixel; where the lower left corner of the image
+lies, in metres, and how the image is turned, radians against the clock; whether white is occupied;
+above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
+  (file nil :type pathname :read-only t)
+  (image nil :type pathname :read-only t)
+  (resolution 1 :type rational :read-only t)
+  (origin '(0 0 0) :type list :read-only t)
+  (negated-p nil :type boolean :read-only t)
+  (occupied 13/20 :type rational :read-only t)
+  (free 49/250 :type rational :read-only t)
+  (mode :trinary :type (member :trinary :scale :raw) :read-only t))
+
+(defparameter *example-lines*
+  '(("image" . "floor.pgm") ("resolution" . "0.05") ("origin" . "[0.0, 0.0, 0.0]")
+    ("negate" . "0") ("occupied_thresh" . "0.65") ("free_thresh" . "0.196"))
+  "The keys that must be there, each with a value as map savers write it.")
+
+(defun find-entry (key entries)
+  (find key entries :key #'entry-key :test #'string=))
+
+(defun required-entry (file key entries)
+  "Return the entry for KEY. Signals UNUSABLE-FLOOR if there is none."
+  (or (find-entry key entries)
+      (let ((slip (nearest-name key (set-difference (mapcar #'entry-key entries)
+                                                    (mapcar #'car *example-lines*)
+                                                    :test #'string=))))
+        (reject-floor file nil "there is no line with the key ~A~@[ (is ~A meant to be it?)~]; add ~
+                                one such as ~A: ~A"
+                      key slip key (cdr (assoc key *example-lines* :test #'string=))))))
+
+(defun reject-entry (file entry expected)
+  "Signal UNUSABLE-FLOOR about the value of ENTRY."
+  (reject-floor file (entry-line entry) "~A is ~:[~A~;[~{~A~^, ~}]~]; give ~A"
+                (entry-key entry) (consp (entry-value entry))
+                (if (equal "" (entry-value entry)) "empty" (entry-value entry))
+                expected))
+
+(defun number-in (file entry least most expected)
+  "Return the number that ENTRY has, from LEAST to MOST."
+  (let ((number (and (stringp (entry-value entry)) (read-decimal (entry-value entry)))))
+    (unless (and number (<= least number most)) (reject-entry file entry expected))
+    number))
+
+(defun threshold-in (file entry)
+  (number-in file entry 0 1 "a probability from 0 to 1"))
+
+(defun origin-in (file entry)
+  "Return the list of three numbers that ENTRY has."
+  (let ((numbers (and (consp (entry-value entry)) (mapcar #'read-decimal (entry-value entry)))))
+    (unless (and (= 3 (length numbers))
+                 (every (lambda (number) (and number (within-reason-p number))) numbers))
+      (reject-entry file entry
+                    "a list [x, y, yaw] of numbers from -1e9 to 1e9, metres and radians"))
+    numbers))
+
+(defun truth-in (file entry)
+  "Return the boolean that ENTRY has."
+  (let ((value (entry-value entry)))
+    (cond ((member value '("0" "false") :test #'equalp) nil)
+          ((member value '("1" "true") :test #'equalp) t)
+          (t (reject-entry file entry "0, if black is occupied, or 1, if white is")))))
+
+(defun mode-in (file entry)
+  "Return the mode that ENTRY has; :TRINARY if ENTRY is NIL."
+  (cond ((null entry) :trinary)
+        ((find (entry-value entry) '(:trinary :scale :raw)
+               :test (lambda (value mode) (and (stringp value) (string-equal value mode)))))
+        (t (reject-entry file entry "trinary, scale or raw"))))
+
+(defun image-in (file entry)
+  "Return the pathname of the image that ENTRY names: relative to the directory of FILE."
+  (let ((name (entry-value entry)))
+    (unless (and (stringp name) (string/= "" name))
+      (reject-entry file entry "the name of the image, such as floor.pgm"))
+    (let* ((image (merge-pathnames (file-called name) (uiop:pathname-directory-pathname file)))
+           (trouble (unusable-file-text image)))
+      (when trouble
+        (reject-floor file (entry-line entry) "the image ~A cannot be read: ~A. Put the image ~
+                                               there, or correct the line"
+                      (shown-file image) trouble))
+      image)))
+
+(defun check-thresholds (file free occupied entry)
+  (when (< occupied free)
+    (reject-floor file (entry-line entry) "free_thresh, ~A, is above occupied_thresh, ~A; exchange ~
+                                           them, as savers write 0.196 and 0.65"
+                  (decimal free) (decimal occupied))))
+
+(defun description-from (file entries)
+  "Return the description that ENTRIES, of FILE, come to."
+  (flet ((entry (key) (required-entry file key entries)))
+    (dolist (line *example-lines*) (entry (car line)))
+    (let ((free (threshold-in file (entry "free_thresh")))
+          (occupied (threshold-in file (entry "occupied_thresh"))))
+      (check-thresholds file free occupied (entry "free_thresh"))
+      (make-description
+       :file file
+       :resolution (number-in file (entry "resolution") 1/1000000 1000000
+                              "how many metres a pixel is wide, from 0.000001 to 1000000")
+       :origin (origin-in file (entry "origin"))
+       :negated-p (truth-in file (entry "negate"))
+       :free free :occupied occupied
+       :mode (mode-in file (find-entry "mode" entries))
+       :image (image-in file (entry "image"))))))
+
+(defun first-octets (file count)
+  "Return the first COUNT bytes of FILE as characters, fewer if there are no more."
+  (with-open-file (in file :external-format :latin-1)
+    (let ((text (make-string count)))
+      (subseq text 0 (read-sequence text in)))))
+
+(defun check-description-file (file)
+  "Signal UNUSABLE-FLOOR if FILE can be no description of a floor, by its size and beginning."
+  (check-readable file)
+  (when (member (first-octets file 2) '("P2" "P5") :test #'string=)
+    (reject-floor file nil "this is an image; give the .yaml file that names it"))
+  (let ((size (with-open-file (in file :element-type '(unsigned-byte 8)) (file-length in))))
+    (when (< +most-octets+ size)
+      (reject-floor file nil "it has ~D bytes, and the description of a floor at most ~D; give the ~
+                              .yaml file that names the image"
+                    size +most-octets+))))
+
+(defun read-description (name)
+  "Return the description in the file NAME, a string or pathname. Signals UNUSABLE-FLOOR."
+  (let ((file (file-called name)))
+    (check-description-file file)
+    (let ((file (truename file)))
+      (description-from
+       file
+       (read-entries file (handler-case (file-text file)
+                            (error (condition) (reject-floor file nil (reason-of condition)))))))))

@@ -1,0 +1,92 @@
+;;;; exporting.lisp -- EXPORT-MAP: the walls of a map as an occupancy grid.
+
+(in-package :ars-magna.floors)
+
+;;; What is written is what ROS's map_saver writes: black walls, white floor, 205 for what is not
+;;; known, and the thresholds that tell these three apart.
+
+(define-constant +shades+ #(254 0 205) :test 'equalp
+  :documentation "How bright, from 0 to 255, pixels for +FREE+, +OCCUPIED+ and +UNKNOWN+ are.")
+
+(defun number-of-substance (map substance)
+  "Return the number that the name SUBSTANCE has in MAP, NIL if it is NIL. Signals UNKNOWN-NAME."
+  (let ((names (map-substance-types map)))
+    (and substance
+         (or (position substance names :start 1 :test #'same-name-p)
+             (reject-name "substance of walls in the map" substance
+                          (rest (coerce names 'list)))))))
+
+(defun map-grid (map unknown)
+  "Return the cells of MAP as a grid, with walls of the substance UNKNOWN, perhaps NIL, as such."
+  (let* ((grid (make-grid (map-width map) (map-height map)))
+         (cells (grid-cells grid)) (number (number-of-substance map unknown)))
+    (dotimes (index (length cells) grid)
+      (when (logtest +wall+ (aref (map-flags map) index))
+        (setf (aref cells index)
+              (if (eql number (aref (map-substances map) index)) +unknown+ +occupied+))))))
+
+(defun write-image (grid out)
+  "Write GRID as PGM in bytes to OUT, a stream whose characters are octets."
+  (format out "P5~%~D ~D~%255~%" (grid-width grid) (grid-height grid))
+  (let ((row (make-string (grid-width grid))))
+    (dotimes (y (grid-height grid))
+      (dotimes (x (grid-width grid))
+        (setf (char row x)
+              (code-char (aref +shades+ (aref (grid-cells grid) (+ x (* y (grid-width grid))))))))
+      (write-string row out))))
+
+(defun plain-name-p (name)
+  "True if NAME needs no quotes in YAML."
+  (and (alpha-char-p (char name 0))
+       (every (lambda (char) (or (alphanumericp char) (find char "._-"))) name)))
+
+(defun name-as-value (name)
+  "Return NAME, that of a file, as a value of YAML."
+  (if (plain-name-p name)
+      name
+      (with-output-to-string (out)
+        (write-char #\' out)
+        (loop for char across name
+              do (when (char= #\' char) (write-char char out))
+                 (write-char char out))
+        (write-char #\' out))))
+
+(defun bare-name (path)
+  "Return the name of the file PATH, as the system knows it, without its directories."
+  (let ((name (native-name path)))
+    (subseq name (1+ (or (position #\/ name :from-end t) -1)))))
+
+(defun write-description (map image out)
+  "Write the description of MAP, whose IMAGE is called so, to OUT."
+  (destructuring-bind (size &rest origin) (map-frame map)
+    (format out "image: ~A~%mode: trinary~%resolution: ~A~%origin: [~{~A~^, ~}]~%negate: 0~%~
+                 occupied_thresh: 0.65~%free_thresh: 0.196~%"
+            (name-as-value image) (decimal size) (mapcar #'decimal origin))))
+
+(defun write-floor-file (file format function)
+  "Let FUNCTION write FILE, at one stroke. Signals UNUSABLE-FLOOR if that cannot be."
+  (handler-case (call-replacing-file function file :external-format format)
+    (error (condition)
+      (reject-floor file nil "it cannot be written, and is as it was: ~A. Give the name of a file ~
+                              that you may write"
+                    (reason-of condition)))))
+
+(addition export-map)
+(defun export-map (map file &key unknown)
+  "Write the walls of MAP, a map or its name, as an occupancy grid for ROS's map_server: the YAML
+file FILE, a string or pathname whose name ends in .yaml or .yml, and beside it an image in PGM that
+is called the same. ~/ is the home directory. A pixel is a cell, as wide as MAP-FRAME says, and
+IMPORT-MAP makes the same cells of it. Walls of the substance UNKNOWN, a symbol, are written as
+what nobody knows. Substances and things are not written. Files of these names are replaced. Return
+the truenames of both. Signals UNUSABLE-FLOOR, WRONG-ARGUMENT and UNKNOWN-NAME."
+  (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
+  (let ((map (map-from 'export-map map)) (path (file-called file)))
+    (unless (member (pathname-type path) '("yaml" "yml") :test #'equalp)
+      (reject-argument 'export-map 'file file
+                       "a name that ends in .yaml; the image goes beside it"))
+    (let* ((grid (map-grid map unknown))
+           (image (make-pathname :type "pgm" :defaults path))
+           (written (write-floor-file image :latin-1 (lambda (out) (write-image grid out)))))
+      (values (write-floor-file path :utf-8
+                                (lambda (out) (write-description map (bare-name image) out)))
+              written))))

@@ -1,0 +1,154 @@
+;;;; importing.lisp -- IMPORT-MAP: a map of ours from an occupancy grid.
+
+(in-package :ars-magna.floors)
+
+;;; What comes of the files is a DEFMAP form, with a wall for each line of cells and the frame. So a
+;;; map from elsewhere is a map like any other: journals know it by name and by the number of its
+;;; form, which is another if the files say something else at replay.
+
+(define-constant +most-pixels+ 25000000
+  :documentation "How many pixels an image has at most, unless :limit says otherwise.")
+
+;;; The options.
+
+(defun check-option (option test value expected)
+  (unless test (reject-argument 'import-map option value expected)))
+
+(defun plain-number (value)
+  "Return VALUE, as an integer if it is whole."
+  (if (= value (round value)) (round value) value))
+
+(defun sort-of-wall (option value)
+  "Return a list (substance parameter) for VALUE of OPTION. Signals UNKNOWN-NAME if nobody has
+defined the substance."
+  (destructuring-bind (name &optional (parameter nil given) &rest more)
+      (if (proper-list-p value) (or value '(nil)) (list value))
+    (check-option option (and name (symbolp name) (null more)
+                              (or (not given) (quantity-p parameter)))
+                  value
+                  "the name of a substance, or a list of that and a parameter, as in (bricks 20)")
+    (let ((substance (find-substance name)))
+      (list (substance-name substance)
+            (if given parameter (plain-number (substance-parameter substance)))))))
+
+(defun sort-of-unknown (value walls)
+  "Return a list (substance parameter) for VALUE of :unknown, or NIL; WALLS is that of walls."
+  (case value
+    (:walls walls)
+    ((nil) nil)
+    (t (sort-of-wall :unknown value))))
+
+(defun name-in (text)
+  "Return what a map from a file called TEXT is called: letters and digits, with dashes between."
+  (let ((words (substitute-if #\Space (complement #'alphanumericp) (string-upcase text))))
+    (substitute #\- #\Space (one-line (string-trim " " words)))))
+
+(defun name-for (name file)
+  "Return the symbol that the map from FILE is called: NAME, or if that is NIL, one of the current
+package that FILE is called like."
+  (let ((own (name-in (or (pathname-name file) ""))))
+    (check-option :name (and (symbolp name) (not (keywordp name)) (not (eq name t))
+                             (or name (some #'alpha-char-p own)))
+                  name
+                  (if name
+                      "a symbol, but no keyword"
+                      "a symbol, as the name of the file has no letters"))
+    (or name (intern own))))
+
+(defun side-in-pixels (description pixels cell)
+  "Return how many pixels wide a cell is, as PIXELS or CELL, in metres, say; one if both are NIL."
+  (check-option :pixels (or (null pixels) (whole-p pixels 1 32767)) pixels
+                "how many pixels wide a cell is, an integer from 1 to 32767")
+  (check-option :cell (or (null cell) (and (within-reason-p cell) (plusp cell) (null pixels))) cell
+                "how many metres wide a cell is, or :pixels instead, not both")
+  (if (null cell)
+      (or pixels 1)
+      (let* ((resolution (description-resolution description))
+             (exact (/ (rational cell) resolution)) (side (max 1 (round exact))))
+        (check-option :cell (and (<= side 32767) (< (abs (- exact side)) 1/1000)) cell
+                      (format nil "a multiple of ~A, the metres that a pixel is wide, such as ~A"
+                              (decimal resolution) (decimal (* (min side 32767) resolution))))
+        side)))
+
+;;; The form.
+
+(defun wall-clauses (lines sort)
+  (loop for (start end) in lines collect `(:wall ,start ,end ,@sort)))
+
+(defun grid-clauses (grid walls unknown)
+  "Return clauses of DEFMAP for the cells of GRID that are occupied, of the sort WALLS, and for
+those that are not known, of the sort UNKNOWN, unless that is NIL."
+  (flet ((clauses (sort needed &optional (allowed needed))
+           (wall-clauses (fewest-lines grid needed allowed) sort)))
+    (cond ((null unknown) (clauses walls (list +occupied+)))
+          ((equal unknown walls) (clauses walls (list +occupied+ +unknown+)))
+          ;; Later walls are drawn over earlier ones, so what is not known may go on below them.
+          (t (append (clauses unknown (list +unknown+) (list +unknown+ +occupied+))
+                     (clauses walls (list +occupied+)))))))
+
+(defun frame-of (description side)
+  "Return the frame of a map with cells of SIDE pixels: see MAP-FRAME."
+  (mapcar #'double (cons (* side (description-resolution description))
+                         (description-origin description))))
+
+(defun check-grid-size (description image side)
+  "Signal UNUSABLE-FLOOR if IMAGE is too wide or high for a map with cells of SIDE pixels."
+  (let ((most (ceiling (max (image-width image) (image-height image)) side)))
+    (when (< 32767 most)
+      (reject-floor (description-image description) nil
+                    "it would make a map of ~D cells in a row or column, and maps have at most ~
+                     32767; give IMPORT-MAP :pixels ~D or more"
+                    most (ceiling (max (image-width image) (image-height image)) 32767)))))
+
+(defun report-on (grid frame clauses)
+  "Return what is said of an import, a plist."
+  (list :width (grid-width grid) :height (grid-height grid) :cell (first frame)
+        :free (count-of +free+ grid) :occupied (count-of +occupied+ grid)
+        :unknown (count-of +unknown+ grid) :walls (length clauses)))
+
+(addition imported-map-form)
+(defun imported-map-form (file &key name pixels cell (share 0) (substance 'bricks)
+                                 (unknown :walls) clauses cache (limit +most-pixels+))
+  "Return the DEFMAP form that IMPORT-MAP would evaluate, given the same arguments, and what it says
+of it. Nothing is defined. Signals the same."
+  (check-argument imported-map-form file (typep file '(or string pathname)) "the name of a file")
+  (check-argument imported-map-form limit (whole-p limit 1 1000000000) "an integer from 1 to 1e9")
+  (check-option :share (probability-p share) share "a number from 0 to 1")
+  (let* ((walls (sort-of-wall :substance substance))
+         (unknown (sort-of-unknown unknown walls))
+         (description (read-description file))
+         (name (name-for name (description-file description)))
+         (side (side-in-pixels description pixels cell))
+         (image (read-image (description-image description) limit)))
+    (check-grid-size description image side)
+    (let* ((grid (image-grid image description side (rational share)))
+           (frame (frame-of description side))
+           (lines (grid-clauses grid walls unknown)))
+      (values `(defmap ,name (,(grid-width grid) ,(grid-height grid) :frame ,frame
+                              ,@(and cache (list :cache cache)))
+                 ,@lines ,@clauses)
+              (report-on grid frame lines)))))
+
+(addition import-map)
+(defun import-map (file &rest options &key name pixels cell share substance unknown clauses cache
+                                        limit)
+  "Define a map from an occupancy grid as ROS's map_server keeps it: FILE, a string or pathname, is
+the YAML file that names the image, PGM in text or bytes. ~/ is the home directory. The map is
+called NAME, by default the file's name as a symbol of the current package, and is like one of
+DEFMAP's from then on. OPTIONS:
+  :pixels -- how many pixels wide a cell is, by default 1; or :cell -- how many metres, instead
+  :share -- which share of its pixels must be occupied for a cell to be, by default 0: any one
+  :substance -- that of the walls, by default bricks, or a list such as (bricks 20)
+  :unknown -- what cells are that nobody knows: :walls, the default, NIL for nothing, or a
+substance, or a list such as (glass 5)
+  :clauses -- more clauses of DEFMAP, such as things
+  :cache -- as for DEFMAP
+  :limit -- how many pixels are too many, by default 25000000
+A robot's metre is a side of a cell, whatever that is elsewhere; MAP-TO-FRAME and FRAME-TO-MAP go
+between the two. Return the map and a plist: :width and :height in cells, the metres elsewhere of a
+:cell, how many cells are :free, :occupied and :unknown, and how many :walls they became, which is
+as few as can be. Signals UNUSABLE-FLOOR, with the file and line, WRONG-ARGUMENT, UNKNOWN-NAME for a
+substance, and MALFORMED-DEFINITION."
+  (declare (ignore name pixels cell share substance unknown clauses cache limit))
+  (multiple-value-bind (form report) (apply #'imported-map-form file options)
+    (values (find-map (eval form)) report)))

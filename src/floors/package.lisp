@@ -1,0 +1,18 @@
+;;;; package.lisp -- the floors layer: maps from elsewhere, and ours for others.
+
+(defpackage :ars-magna.floors
+  (:documentation "Occupancy grids as ROS's map_server keeps them, a flat YAML file and a PGM image:
+read as maps, written from maps, and the way between their metres and our cells.")
+  (:use :cl :ars-magna.base)
+  (:shadowing-import-from :ars-magna.world #:map)
+  (:import-from :ars-magna.world #:map-p #:map-name #:map-width #:map-height #:map-flags #:map-frame
+                #:map-substances #:map-substance-types #:+wall+ #:find-map #:defmap
+                #:find-substance #:substance-name #:substance-parameter #:bricks)
+  ;; trouble
+  (:export #:unusable-floor #:unusable-floor-file #:unusable-floor-line #:unusable-floor-reason)
+  ;; frames
+  (:export #:map-to-frame #:frame-to-map)
+  ;; importing
+  (:export #:import-map #:imported-map-form)
+  ;; exporting
+  (:export #:export-map))

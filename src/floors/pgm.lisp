@@ -1,0 +1,166 @@
+;;;; pgm.lisp -- images in grey: PGM files, as numbers in text or as bytes.
+
+(in-package :ars-magna.floors)
+
+;;; A PGM file begins with P2 (numbers in text) or P5 (bytes), then come width, height and the
+;;; greatest value, with blanks between and perhaps comments, then the rows from the top down. In
+;;; P5 one blank ends the head, and a value takes two bytes, the higher first, if 256 or more can
+;;; be. (netpbm.sourceforge.net/doc/pgm.html)
+
+(deftype octets () '(simple-array (unsigned-byte 8) (*)))
+(deftype samples () '(simple-array (unsigned-byte 16) (*)))
+
+(defstruct (image (:constructor make-image (width height white samples)) (:copier nil))
+  "An image in grey of WIDTH by HEIGHT pixels, whose SAMPLES, row by row from the top, go from 0,
+black, to WHITE."
+  (width 1 :type (integer 1) :read-only t)
+  (height 1 :type (integer 1) :read-only t)
+  (white 255 :type (integer 1 65535) :read-only t)
+  (samples (make-array 0 :element-type '(unsigned-byte 16)) :type samples :read-only t))
+
+(defstruct (tape (:constructor make-tape (file octets)) (:copier nil))
+  "The OCTETS of FILE, read up to POSITION."
+  (file nil :type pathname :read-only t)
+  (octets (make-array 0 :element-type '(unsigned-byte 8)) :type octets :read-only t)
+  (position 0 :type fixnum))
+
+(defun reject-image (tape control &rest arguments)
+  (reject-floor (tape-file tape) nil "~?" control arguments))
+
+;;; Words of the head, and of what is written in text.
+
+(declaim (inline white-octet-p))
+(defun white-octet-p (octet)
+  "True if OCTET is a blank: a space, tab, line feed, vertical tab, form feed or return."
+  (or (= octet 32) (<= 9 octet 13)))
+
+(defun skip-blanks (tape)
+  "Go on to the next word of TAPE, past blanks and comments."
+  (let* ((octets (tape-octets tape)) (end (length octets)) (position (tape-position tape)))
+    (declare (type octets octets) (type fixnum end position))
+    (loop while (< position end)
+          do (let ((octet (aref octets position)))
+               (cond ((white-octet-p octet) (incf position))
+                     ((= octet 35)
+                      (setf position (or (position 10 octets :start position) end)))
+                     (t (return)))))
+    (setf (tape-position tape) position)))
+
+(defun next-number (tape what)
+  "Return the number that comes next in TAPE, at most 9 digits; WHAT it should be, for errors."
+  (skip-blanks tape)
+  (let ((octets (tape-octets tape)) (start (tape-position tape)) (number 0))
+    (declare (type octets octets) (type fixnum start) (type (unsigned-byte 32) number))
+    (loop for position of-type fixnum from start below (min (length octets) (+ start 10))
+          for digit of-type fixnum = (- (aref octets position) 48)
+          while (and (<= 0 digit 9) (< position (+ start 9)))
+          do (setf number (+ (* 10 number) digit))
+             (setf (tape-position tape) (1+ position)))
+    (when (or (= start (tape-position tape))
+              (and (< (tape-position tape) (length octets))
+                   (not (white-octet-p (aref octets (tape-position tape))))
+                   (/= 35 (aref octets (tape-position tape)))))
+      (reject-image tape "the image is damaged: at byte ~D there is no number that could be ~A; ~
+                          save it anew as PGM" (tape-position tape) what))
+    number))
+
+;;; The head.
+
+(defun image-kind (tape)
+  "Return 2 or 5, of P2 and P5. Signals UNUSABLE-FLOOR if TAPE begins as no such image does."
+  (let ((octets (tape-octets tape)))
+    (setf (tape-position tape) 2)
+    (cond ((and (< 2 (length octets)) (= 80 (aref octets 0))
+                (find (aref octets 1) #(50 53)))
+           (- (aref octets 1) 48))
+          (t (reject-image tape "the image is no PGM file, P2 or P5, by its first bytes; save it ~
+                                 as one, as with: convert floor.png -colorspace gray -depth 8 ~
+                                 floor.pgm")))))
+
+(defun check-pixels (tape width height limit)
+  (unless (and (plusp width) (plusp height))
+    (reject-image tape "the image has ~D by ~D pixels; save one that has some" width height))
+  (when (< limit (* width height))
+    (reject-image tape "the image has ~D by ~D pixels, and the limit is ~D; cut out what you need, ~
+                        or give IMPORT-MAP a higher :limit"
+                  width height limit)))
+
+(defun white-level (tape)
+  (let ((white (next-number tape "the greatest value")))
+    (unless (<= 1 white 65535)
+      (reject-image tape "the greatest value of a pixel is ~D; save the image with one from 1 to ~
+                          65535, usually 255" white))
+    white))
+
+;;; The pixels.
+
+(defun check-sample (tape sample white)
+  (when (< white sample)
+    (reject-image tape "the image is damaged: a pixel has the value ~D, above the greatest, ~D; ~
+                        save it anew" sample white)))
+
+(defun read-text-samples (tape count white)
+  "Return the next COUNT values of TAPE, which are written in text."
+  (let ((samples (make-array count :element-type '(unsigned-byte 16))))
+    (dotimes (index count)
+      (skip-blanks tape)
+      (when (= (tape-position tape) (length (tape-octets tape)))
+        (reject-image tape "the image has ~D of the ~D values that its head promises; save it anew"
+                      index count))
+      (let ((sample (next-number tape "a value")))
+        (check-sample tape sample white)
+        (setf (aref samples index) sample)))
+    (skip-blanks tape)
+    (unless (= (tape-position tape) (length (tape-octets tape)))
+      (reject-image tape "the image goes on behind the ~D values that its head promises; save one ~
+                          image only" count))
+    samples))
+
+(defun check-octets-left (tape needed)
+  "Signal UNUSABLE-FLOOR unless NEEDED octets are left in TAPE; one line end more does no harm."
+  (let* ((end (length (tape-octets tape))) (left (- end (tape-position tape))))
+    (unless (or (= left needed)
+                (and (= left (1+ needed)) (= 10 (aref (tape-octets tape) (1- end)))))
+      (reject-image tape "the head of the image promises ~D bytes of pixels, but ~D follow; copy ~
+                          or save it anew, as bytes and not as text" needed left))))
+
+(defun read-binary-samples (tape count white)
+  "Return the next COUNT values of TAPE, which are bytes or pairs of them."
+  (incf (tape-position tape))
+  (let ((wide (< 255 white)))
+    (check-octets-left tape (if wide (* 2 count) count))
+    (let ((samples (make-array count :element-type '(unsigned-byte 16)))
+          (octets (tape-octets tape)) (start (tape-position tape)))
+      (declare (type octets octets) (type fixnum start count))
+      (if wide
+          (dotimes (index count)
+            (setf (aref samples index) (logior (ash (aref octets (+ start (* 2 index))) 8)
+                                               (aref octets (+ start 1 (* 2 index))))))
+          (replace samples octets :start2 start :end2 (+ start count)))
+      (let ((high (find-if (lambda (sample) (< white sample)) samples)))
+        (when high (check-sample tape high white)))
+      samples)))
+
+(defun read-octets (file limit)
+  "Return what FILE holds. Signals UNUSABLE-FLOOR if that is too much for LIMIT pixels."
+  (with-open-file (in file :element-type '(unsigned-byte 8))
+    (when (< (+ +most-octets+ (* 8 limit)) (file-length in))
+      (reject-floor file nil "the image has ~D bytes, too many for the limit of ~D pixels; cut out ~
+                              what you need, or give IMPORT-MAP a higher :limit"
+                    (file-length in) limit))
+    (let ((octets (make-array (file-length in) :element-type '(unsigned-byte 8))))
+      (read-sequence octets in)
+      octets)))
+
+(defun read-image (file limit)
+  "Return the image in FILE, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
+  (let* ((tape (make-tape file (read-octets file limit)))
+         (kind (image-kind tape))
+         (width (next-number tape "the width"))
+         (height (next-number tape "the height")))
+    (check-pixels tape width height limit)
+    (let ((white (white-level tape)) (count (* width height)))
+      (make-image width height white
+                  (if (= 2 kind)
+                      (read-text-samples tape count white)
+                      (read-binary-samples tape count white))))))

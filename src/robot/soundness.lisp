@@ -1,0 +1,95 @@
+;;;; soundness.lisp -- robots that were put together from a file are some, or it is said why not.
+
+(in-package :ars-magna.robot)
+
+(defun check-parts (robot parts type)
+  "Signal CONTRADICTION unless PARTS, a vector, are ROBOT's own, of TYPE."
+  (loop for part across parts
+        for position from 0
+        do (must-hold (and (typep part type)
+                           (eq robot (part-robot part))
+                           (or (eq type 'part) (= position (part-index part))))
+                      "number ~D of the parts of ~A is none of them" position robot)
+           (must-hold (typep (part-location part) '(or null thing storage-bin))
+                      "~A is inside of nothing" part)
+           (check-occupant part)))
+
+(defun check-contents (holder contents most)
+  "Signal CONTRADICTION unless CONTENTS are at most MOST things that HOLDER holds."
+  (must-hold (and (proper-list-of-p #'thing-p contents)
+                  (<= (length contents) most)
+                  (every (lambda (thing) (eq holder (thing-location thing))) contents))
+             "what ~A holds is not in it" holder))
+
+(defun check-track (camera)
+  (let ((track (camera-tracking camera)))
+    (must-hold (or (null track)
+                   (and (track-p track)
+                        (designator-p (track-designator track))
+                        (eq (camera-robot camera)
+                            (designator-robot (track-designator track)))
+                        (designator-valid-p (track-designator track))))
+               "~A tracks nothing that could be tracked" camera)))
+
+(defun check-designator (robot number designator)
+  (must-hold (or (null designator)
+                 (and (designator-p designator)
+                      (eq robot (designator-robot designator))
+                      (= number (designator-number designator))
+                      (designator-valid-p designator)
+                      (< -1 (designator-serial designator) (robot-designators-made robot))
+                      (typep (designator-location designator) '(or null thing storage-bin))
+                      (proper-list-p (designator-data designator))))
+             "designator ~D of ~A makes no sense" number robot))
+
+(defun check-designators (robot)
+  (let ((designators (robot-designators robot)))
+    (must-hold (and (arrayp designators) (array-has-fill-pointer-p designators))
+               "the designators of ~A cannot become more" robot)
+    (loop for designator across designators
+          for number from 0
+          do (check-designator robot number designator))
+    (must-hold (proper-list-of-p (lambda (end) (typep end '(cons track keyword)))
+                                 (robot-ended-tracks robot))
+               "the tracks of ~A that have ended are none" robot)))
+
+(defun check-odometers (robot)
+  (must-hold (and (proper-list-of-p (lambda (odometer)
+                                      (and (odometer-p odometer)
+                                           (eq robot (odometer-robot odometer))))
+                                    (robot-odometer-list robot))
+                  (robot-main-odometer robot))
+             "the odometers of ~A are not its own" robot))
+
+(defun check-stance (robot)
+  "Signal CONTRADICTION unless ROBOT stands somewhere in its map, and could move from there."
+  (must-hold (every #'within-reason-p
+                    (list (robot-x robot) (robot-y robot) (robot-angle robot)
+                          (robot-speed robot) (robot-turn-angle robot)))
+             "~A is beyond all bounds" robot)
+  (must-hold (robot-cell-index robot) "~A is outside of its map" robot)
+  ;; On another machine the last bit may be another.
+  (must-hold (and (< (abs (- (robot-cos robot) (cos (robot-angle robot)))) 1d-9)
+                  (< (abs (- (robot-sin robot) (sin (robot-angle robot)))) 1d-9))
+             "~A does not look where it looks" robot))
+
+(defun check-robot (robot world)
+  "Signal an error, CONTRADICTION as far as we know, unless ROBOT of WORLD, which was put together
+from a file, could have come about by itself."
+  (must-hold (and (robot-p robot)
+                  (eq world (robot-world robot))
+                  (robot-blueprint robot)
+                  (eq (robot-name robot) (blueprint-name (robot-blueprint robot))))
+             "its robots are not those of its world")
+  (check-occupant robot)
+  (check-stance robot)
+  (check-parts robot (robot-cameras robot) 'camera)
+  (check-parts robot (robot-hands robot) 'hand)
+  (check-parts robot (robot-bins robot) 'storage-bin)
+  (check-parts robot (robot-sensors robot) 'part)
+  (loop for hand across (robot-hands robot) do (check-contents hand (hand-contents hand) 1))
+  (loop for bin across (robot-bins robot)
+        do (check-contents bin (storage-bin-contents bin) (world-live-count world)))
+  (check-designators robot)
+  (map nil #'check-track (robot-cameras robot))
+  (check-odometers robot))

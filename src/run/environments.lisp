@@ -1,0 +1,97 @@
+;;;; environments.lisp -- what a run has bound for those who work in it.
+
+(in-package :ars-magna.run)
+
+;;; Robots' names, and what *SIMULATION-VARIABLES* lists, are bound by WITH-SIMULATION; for a live
+;;; run they are global. A fork keeps their values, and they are bound while somebody works in it.
+
+(defvar *simulation-variables* '()
+  "Symbols that a headless simulation binds, to the values they have, so that what is set in it
+ends with it and simulations side by side do not meet.")
+
+(pushnew '*simulation-variables* *kept-variables*)
+
+(defun fork-p (simulation)
+  "True if SIMULATION is a fork of another."
+  (timeline-fork-p (simulation-timeline simulation)))
+
+(defun variables-of (simulation)
+  "Return the symbols that are bound, or set at top level, for SIMULATION."
+  (or (simulation-variables simulation)
+      (append (mapcar #'robot-name (simulation-robots simulation)) *simulation-variables*)))
+
+(defun environment-here (simulation)
+  "Return a list (symbol . value) of what the variables of SIMULATION are here."
+  (let ((value-of (if (or (headless-p simulation) (eq simulation *simulation*))
+                      #'symbol-value
+                      #'global-value)))
+    (loop for symbol in (variables-of simulation)
+          when (boundp symbol)
+            collect (cons symbol (funcall value-of symbol)))))
+
+(defun known-environment (simulation)
+  "Return a list (symbol . value) of what the variables of SIMULATION were when a thread at work in
+it last said so. Can be set."
+  (if (fork-p simulation) (simulation-environment simulation) (simulation-left simulation)))
+
+(defun (setf known-environment) (environment simulation)
+  (if (fork-p simulation)
+      (setf (simulation-environment simulation) environment)
+      (setf (simulation-left simulation) environment)))
+
+(defun note-environment (simulation)
+  "Let SIMULATION, in which this thread works, know what its variables are."
+  (setf (known-environment simulation) (environment-here simulation)))
+
+(defun environment-of (simulation)
+  "Return a list (symbol . value) of what the variables of SIMULATION are, wherever this is."
+  (or (and (headless-p simulation)
+           (not (eq simulation *simulation*))
+           (known-environment simulation))
+      (environment-here simulation)))
+
+(defun take-up-environment (simulation)
+  "Set the variables of SIMULATION, to which this thread comes back, to what they have become."
+  (when (headless-p simulation)
+    (loop for (symbol . value) in (known-environment simulation)
+          do (unless (eq value (symbol-value symbol)) (setf (symbol-value symbol) value)))))
+
+(defun keep-environment (simulation environment)
+  "Let what the variables in ENVIRONMENT, a list (symbol . value), have become here be what
+SIMULATION, in which this thread does not work, has."
+  (if (headless-p simulation)
+      (setf (known-environment simulation)
+            (loop for (symbol) in environment collect (cons symbol (symbol-value symbol))))
+      (loop for (symbol . value) in environment
+            do (unless (eq value (symbol-value symbol))
+                 (setf (global-value symbol) (symbol-value symbol))))))
+
+(defun call-in-environment (simulation function)
+  "Call FUNCTION with the variables of SIMULATION, in which this thread does not work, bound, and
+keep what they are then."
+  (let* ((environment (environment-of simulation)) (symbols (mapcar #'car environment)))
+    (progv symbols (mapcar #'cdr environment)
+      (unwind-protect (funcall function)
+        (keep-environment simulation environment)))))
+
+(defun call-elsewhere (simulation function)
+  "Call FUNCTION with the parameters and variables of SIMULATION, which is not the current one."
+  (let ((around *simulation*))
+    (when around (note-environment around))
+    (unwind-protect
+         (call-with-parameter-values (simulation-known-parameters simulation)
+                                     (lambda () (call-in-environment simulation function)))
+      (when around (take-up-environment around)))))
+
+(defun call-inside (simulation function)
+  "Call FUNCTION where SIMULATION is the current one: with its world, its message queue and, if it
+is not the current one out here, its parameters and, of a fork, its variables."
+  (flet ((call ()
+           (let ((*simulation* simulation)
+                 (*world* (simulation-world simulation))
+                 (*message-queue* (simulation-messages simulation))
+                 (*tick-dice* nil))
+             (funcall function))))
+    (if (eq simulation *simulation*)
+        (call)
+        (call-elsewhere simulation #'call))))

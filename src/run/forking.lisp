@@ -1,0 +1,226 @@
+;;;; forking.lisp -- a run copied in its present state, plans and all, to go on by itself.
+
+(in-package :ars-magna.run)
+
+;;; A fork is a run like any other, headless, of a world of its own. What the original has bound for
+;;; those who work in it (its robots, the fluents of plans) belongs to it too: a fork keeps that as
+;;; its environment, which is bound while somebody works in the fork.
+
+(defmethod copy-plan-value ((simulation simulation) fork)
+  (if (eq simulation (copier-option fork :simulation))
+      (copy-slots simulation fork)
+      simulation))
+
+(defmethod copy-plan-value ((timeline timeline) fork)
+  (if (eq timeline (simulation-timeline (copier-option fork :simulation)))
+      (copy-slots timeline fork)
+      timeline))
+
+(defun copy-of-run (simulation copier)
+  "Return a copy by COPIER of SIMULATION, with what is said to take part in it, but no journal."
+  (let ((copy (copying (copier)
+                (forked (simulation-world simulation) copier)
+                (let ((copy (forked simulation copier)))
+                  (setf (simulation-participants copy)
+                        (loop for participant in (copier-option copier :participants)
+                              for twin = (participant-copy participant copy copier)
+                              when twin collect twin)
+                        (simulation-environment copy)
+                        (loop for (symbol . value) in (copier-environment copier)
+                              collect (cons symbol (forked value copier)))
+                        (simulation-variables copy)
+                        (mapcar #'car (copier-environment copier)))
+                  copy))))
+    (setf (timeline-run (simulation-timeline copy)) copy
+          (timeline-fork-p (simulation-timeline copy)) t)
+    copy))
+
+(defun place-among-participants (value simulation)
+  "Return a text that says which of those who take part in SIMULATION has VALUE, and where, or NIL."
+  (some (lambda (participant) (participant-place participant value))
+        (simulation-participants simulation)))
+
+(defun fork-options (simulation continuations decisions)
+  "Return what a copier must know to fork SIMULATION. CONTINUATIONS says whether it copies those of
+commands under way, DECISIONS, an alist, what the fork is to have for what cannot be copied."
+  (list :simulation simulation
+        :world (simulation-world simulation)
+        :participants (simulation-participants simulation)
+        :continuations continuations
+        :decisions decisions
+        :place-of (lambda (value) (place-among-participants value simulation))))
+
+(defun copy-alone (simulation)
+  "Return a copy of SIMULATION, which stands still here, without anything that takes part in it."
+  (with-copier (copier :options (list :simulation simulation
+                                      :world (simulation-world simulation)))
+    (copy-of-run simulation copier)))
+
+(defun environment-of-fork (simulation)
+  "Return a list (symbol . value) of what is copied for those who work in a fork of SIMULATION. Of
+a live run's there are no dice: each of its threads has its own."
+  (let ((environment (environment-of simulation)))
+    (if (assoc *lisps-dice* environment)
+        environment
+        (acons *lisps-dice* (seeded-lisps-dice (+ (simulation-seed simulation)
+                                                  (simulation-tick simulation)))
+               environment))))
+
+(defun fork-now (simulation continuations decisions)
+  "Return a fork of SIMULATION, which stands still here; see FORK-OPTIONS. Signals MISUSE inside a
+tick, and CANNOT-FORK."
+  (when (simulation-ticking-p simulation)
+    (reject-use "fork-simulation: a tick is under way. Fork the run between ticks, as in a ~
+                 continuation."))
+  (when (eq simulation *simulation*) (follow-settings simulation))
+  (let ((copy (with-copier (copier :environment (environment-of-fork simulation)
+                                   :options (fork-options simulation continuations decisions))
+                (copy-of-run simulation copier)))
+        (journal (simulation-journal simulation)))
+    (setf (simulation-messages copy) (copy-message-queue (simulation-messages simulation)))
+    (when journal
+      (setf (simulation-journal copy) (copied-journal journal (simulation-tick simulation))))
+    copy))
+
+;;; Whoever takes part may be busy just now, in another thread.
+
+(defun call-at-rest (participants function)
+  "Call FUNCTION while none of PARTICIPANTS does anything. Return its value, or :BUSY."
+  (if participants
+      (participant-at-rest (first participants)
+                           (lambda () (call-at-rest (rest participants) function)))
+      (funcall function)))
+
+(defun call-as-all-make-way (participants function)
+  "Call FUNCTION, and return its value. Meanwhile PARTICIPANTS come to rest as soon as they can."
+  (if participants
+      (call-as-participant-makes-way (first participants)
+                                     (lambda ()
+                                       (call-as-all-make-way (rest participants) function)))
+      (funcall function)))
+
+(defun try-to-fork (simulation continuations decisions)
+  "Return a fork of SIMULATION, see FORK-NOW, or :BUSY if somebody who takes part in it is."
+  (asking (simulation)
+    (call-at-rest (simulation-participants simulation)
+                  (lambda () (fork-now simulation continuations decisions)))))
+
+(defconstant +patience+ 2000 "How often in a row a fork tries to find all at rest, once a tick or
+once in some milliseconds.")
+
+(defun keep-trying-to-fork (simulation continuations decisions)
+  "Return a fork of SIMULATION as soon as one can be made. Signals MISUSE if that takes too long."
+  (loop with moment = (make-semaphore "fork")
+        repeat +patience+
+        do (let ((fork (try-to-fork simulation continuations decisions)))
+             (unless (eq :busy fork) (return fork)))
+           (wait-a-while moment 0.002)
+        finally (reject-use "fork-simulation: plans of ~A do not come to rest. Let them ~
+                             wait between long calls of Lisp functions, or (end-plan :all)."
+                            (simulation-name simulation))))
+
+(defun await-fork (simulation continuations decisions)
+  "Return a fork of SIMULATION as soon as it, and all that takes part in it, stands still. See
+FORK-NOW."
+  (let ((fork (try-to-fork simulation continuations decisions)))
+    (if (eq :busy fork)
+        (call-as-all-make-way
+         (simulation-participants simulation)
+         (lambda () (keep-trying-to-fork simulation continuations decisions)))
+        fork)))
+
+;; The restarts are here, where whoever asks for the fork can see them: another thread may have the
+;; run in its hands.
+(defun decide (condition)
+  "Signal CONDITION, a CANNOT-FORK. Return what the fork is to have for its value, and true; or NIL
+and false if there is to be no fork."
+  (restart-case (error condition)
+    (share-value ()
+      :report "Let both runs have the same one."
+      (values (cannot-fork-value condition) t))
+    (leave-out-value () :report "Let the fork have NIL instead." (values nil t))
+    (make-no-fork () :report "Make no fork, but return NIL." (values nil nil))))
+
+(defun fork-deciding (simulation continuations)
+  "Return a fork of SIMULATION, or NIL if somebody has given that up."
+  (let ((decisions '()))
+    (loop
+      (handler-case (return (await-fork simulation continuations decisions))
+        (cannot-fork (condition)
+          (multiple-value-bind (replacement decided-p) (decide condition)
+            (unless decided-p (return nil))
+            (push (cons (cannot-fork-value condition) replacement) decisions)))))))
+
+(defun fork-arguments (arguments)
+  "Return what ARGUMENTS of FORK-SIMULATION say: the simulation, and a plist."
+  (if (keywordp (first arguments))
+      (values (current-simulation) arguments)
+      (values (if arguments (simulation-meant (first arguments)) (current-simulation))
+              (rest arguments))))
+
+(defun check-fork-options (options)
+  (check-argument fork-simulation options
+                  (and (evenp (length options))
+                       (loop for key in options by #'cddr
+                             always (member key '(:seed :continuations))))
+                  "(fork-simulation [simulation] [:seed integer] [:continuations boolean])")
+  (let ((seed (getf options :seed)))
+    (check-argument fork-simulation seed (typep seed '(or null integer)) "an integer, or NIL")))
+
+(addition fork-simulation)
+(defun fork-simulation (&rest arguments)
+  "Return a fork of a run: a headless twin at the same tick that goes on by itself, with a world,
+robots, agenda, parameters, dice, messages and journal of its own, and the plans under way.
+ARGUMENTS are the simulation, by default the current one, and
+  :seed           an integer that all its chance is to come from; without it the fork goes on as the
+                  original will, given the same requests;
+  :continuations  true if the continuations of commands under way are to be called in the fork as
+                  well, with what they have closed over copied; those of plans always are.
+Each run has its own state of a fluent and a valve, also of one that a global variable holds: code
+of a fork finds that of the fork. WITH-FORK binds the robots' names; any other global variable is
+the same for all. To change things, or command robots, of the run around a fork from inside of that
+is MISUSE: COUNTERPART says what they are there. A live run is forked between two ticks. Observers
+stay with the original. Signals MISUSE inside a tick, in which no continuation runs, and inside a
+plan's own step, and CANNOT-FORK for what is part of the world outside, with restarts; MAKE-NO-FORK
+returns NIL."
+  (multiple-value-bind (simulation options) (fork-arguments arguments)
+    (check-fork-options options)
+    (check-not-over simulation 'fork-simulation)
+    (mapc #'check-forkable (simulation-participants simulation))
+    (let ((fork (fork-deciding simulation (getf options :continuations)))
+          (seed (getf options :seed)))
+      (when (and fork seed) (call-inside fork (lambda () (set-seed seed fork))))
+      fork)))
+
+(addition release-fork)
+(defun release-fork (fork)
+  "Let FORK, a simulation that FORK-SIMULATION returned, be over: nothing of it goes on, nobody is
+told of anything. Return nothing. Signals WRONG-ARGUMENT for what is no fork."
+  (check-argument release-fork fork (and (simulation-p fork) (fork-p fork))
+                  "a fork, as FORK-SIMULATION returns")
+  (unless (simulation-over fork)
+    (setf (timeline-over (simulation-timeline fork)) "the fork has been released"))
+  (values))
+
+(defun call-with-fork (function &rest options)
+  "Call FUNCTION in a fork of the current simulation, made with OPTIONS; see WITH-FORK."
+  (let ((fork (apply #'fork-simulation options)))
+    (when fork
+      (unwind-protect (call-inside fork function)
+        (release-fork (latest fork))))))
+
+(addition with-fork)
+(define-user-macro with-fork ((&key seed continuations) &body body)
+  "Run BODY in a fork of the current simulation, see FORK-SIMULATION: there the current one is the
+fork, and the robots' names are those of the fork. When BODY has ended the fork is over. Return the
+values of BODY; NIL if the fork was given up."
+  `(call-with-fork (lambda () ,@body) :seed ,seed :continuations ,continuations))
+
+(addition call-in-fork)
+(defun call-in-fork (fork function)
+  "Call FUNCTION, with no arguments, where FORK is the current simulation, with robots bound as in
+WITH-FORK. Return its values. To be done as often as one likes."
+  (check-argument call-in-fork fork (and (simulation-p fork) (fork-p fork))
+                  "a fork, as FORK-SIMULATION returns")
+  (check-argument call-in-fork function (functionp function) "a function of no arguments")
+  (call-inside fork function))

@@ -1,0 +1,254 @@
+;;;; loading.lisp -- a run that goes on from a file.
+
+(in-package :ars-magna.run)
+
+(addition damaged-simulation load-anyway)
+(define-condition damaged-simulation (damaged-file)
+  ()
+  (:report (lambda (condition stream)
+             (format stream "~A is no usable saved run: ~A. Save one with SAVE-SIMULATION; ~
+                             nothing was changed."
+                     (shown-name (damaged-file-name condition))
+                     (damaged-file-reason condition))))
+  (:documentation "A file that should hold a saved run cannot be used."))
+
+;;; The head.
+
+(defun check-saved-head (datum)
+  "Signal an error unless DATUM begins a saved run of this version."
+  (unless (typep datum '(cons (eql :ars-magna-run) (cons t (cons t null))))
+    (error "it does not begin like one"))
+  (unless (eql +saved-version+ (second datum)) (error "another version wrote it"))
+  (let* ((head (third datum))
+         (trouble (or (header-trouble (if (plist-p head) (list* :seed 0 head) head))
+                      (saved-head-trouble head))))
+    (when trouble (error "its head makes no sense: ~A" trouble))))
+
+(defun saved-head-trouble (head)
+  "Return what is wrong with HEAD besides what HEADER-TROUBLE finds, or NIL."
+  (cond ((not (settings-p (getf head :noise))) "its noise makes no sense")
+        ((settings-trouble (getf head :noise)))
+        ((not (typep (getf head :tick) 'tick-count)) "its tick is none")
+        ((not (typep (getf head :digest) '(unsigned-byte 64))) "its digest is none")))
+
+;;; Lines. What comes in which order is known: so each is read knowing what it must be.
+
+(defstruct (reading (:constructor make-reading (in sum number)) (:copier nil))
+  "What is being read: a stream, the check sum so far, and the number of the line."
+  (in nil :read-only t)
+  (sum 0 :type (unsigned-byte 32))
+  (number 0 :type fixnum))
+
+(defun next-datum (reading)
+  "Return the datum in the next line of READING. Signals an error if there is none, or damage."
+  (let ((line (or (next-line (reading-in reading)) (error "its end is missing"))))
+    (incf (reading-number reading))
+    (multiple-value-bind (datum sum)
+        (handler-case (checked-datum line (reading-sum reading))
+          (error (trouble)
+            (error "line ~D is damaged: ~A" (reading-number reading) (one-line-text trouble))))
+      (setf (reading-sum reading) sum)
+      datum)))
+
+(defun tagged-p (tag datum)
+  (and (consp datum) (eq tag (first datum)) (proper-list-p datum)))
+
+(defun read-numbers (reading loaded)
+  "Learn from READING what the numbers in it stand for."
+  (loop for datum = (next-datum reading)
+        until (tagged-p :objects datum)
+        do (cond ((tagged-p :found datum) (add-outer (rest datum) loaded))
+                 ((and (tagged-p :new datum) (<= 3 (length datum)))
+                  (add-batch (second datum) (third datum) (nthcdr 3 datum) loaded))
+                 (t (error "it does not say what its numbers stand for")))
+        finally (unless (equal (rest datum) (list (1- (length (loaded-objects loaded)))))
+                  (error "it has not as many objects as it says"))))
+
+(defun read-contents (reading loaded)
+  "Learn from READING what is in the objects that are LOADED. Return the requests that wait."
+  (let ((*numbered* (loaded-objects loaded)))
+    (loop until (all-said-p loaded) do (fill-next (next-datum reading) loaded))
+    (fill-tables loaded)
+    (loop for datum = (next-datum reading)
+          do (unless (and (tagged-p :waiting datum) (<= (length datum) 2))
+               (error "it does not say which requests wait"))
+          while (rest datum)
+          collect (second datum))))
+
+(defun read-entries (reading)
+  "Return the entries of the journal in READING, and the datum behind them."
+  (loop for datum = (next-datum reading)
+        until (tagged-p :end datum)
+        collect datum into entries
+        finally (return (values entries datum))))
+
+(defun journal-of-data (datum entries)
+  "Return the journal whose first line is DATUM, with ENTRIES."
+  (unless (typep datum '(cons (eql :journal) (cons boolean (cons t (cons list null)))))
+    (error "its journal makes no sense"))
+  (destructuring-bind (full-p end header) (rest datum)
+    (let ((journal (journal-from (append (list (list :ars-magna-journal +journal-version+ header))
+                                         entries
+                                         (list (list :end end))))))
+      (setf (journal-full-p journal) full-p)
+      journal)))
+
+(defun read-journal-of (reading head)
+  "Return the journal in READING, of a run with HEAD, or NIL if it keeps none."
+  (let ((first (and (getf head :journal) (next-datum reading)))
+        (tick (getf head :tick)))
+    (multiple-value-bind (entries end) (read-entries reading)
+      (unless (equal end (list :end tick)) (error "its end is not that of the run"))
+      (when (next-line (reading-in reading)) (error "something stands behind its end"))
+      (when (and entries (null first)) (error "it has entries of a journal that it does not keep"))
+      (let ((journal (and first (journal-of-data first entries))))
+        (when (and journal (not (if (journal-full-p journal)
+                                    (<= (journal-end journal) tick)
+                                    (= (journal-end journal) tick))))
+          (error "its journal does not end where the run is"))
+        journal))))
+
+;;; What the objects come to.
+
+(defun sole-object (type loaded)
+  "Return the one object of TYPE, a kind, among those LOADED. Signals an error if there is another."
+  (let ((objects (remove-if-not (lambda (object) (typep object type)) (loaded-objects loaded))))
+    (unless (= 1 (length objects))
+      (error "it has ~R of what there is one of in a run, ~(~A~)" (length objects) type))
+    (aref objects 0)))
+
+(defun renamed-parameters (values settings)
+  "Return the VALUES of the parameters that SETTINGS name, in order, as a vector of those at hand."
+  (unless (and (= (length values) (length settings))
+               (every (lambda (value setting) (eql value (second setting))) values settings))
+    (error "its parameters contradict each other"))
+  (map 'vector
+       (lambda (parameter)
+         (let ((setting (find (parameter-name parameter) settings
+                              :key #'first :test #'string=)))
+           (if setting (second setting) (parameter-default parameter))))
+       (all-parameters)))
+
+(defun check-objects (simulation requests)
+  "Signal an error unless what was put together for SIMULATION could have come about by itself."
+  (let ((world (simulation-world simulation)) (timeline (simulation-timeline simulation)))
+    (must-hold (and world timeline (eq timeline (world-timeline world)))
+               "its world is not that of its run")
+    (check-world world)
+    (must-hold (proper-list-p (world-robots world)) "its robots go round")
+    (dolist (robot (world-robots world)) (check-robot robot world))
+    (dolist (request requests)
+      (check-request request)
+      (let ((resource (resource-of request)))
+        (must-hold (or (not (typep resource 'resource)) (eq timeline (timeline-of resource)))
+                   "something is asked of another run")))))
+
+(defun resource-of (request)
+  "Return what REQUEST, an operation or one with a resource as its argument, is to occupy or free."
+  (if (operation-p request) (operation-resource request) (first (request-arguments request))))
+
+(defun complete (simulation head loaded requests)
+  "Let SIMULATION, which is all that was LOADED, be ready to go on, with REQUESTS waiting."
+  (let ((world (simulation-world simulation)) (timeline (simulation-timeline simulation)))
+    (destructuring-bind (agenda tick . events) (loaded-agenda loaded)
+      (unless (eq agenda (timeline-agenda timeline)) (error "its agenda is not that of its run"))
+      (check-commands timeline events)
+      (must-hold (null (intersection events requests)) "a request that waits is under way already")
+      (fill-agenda agenda tick events))
+    (check-objects simulation requests)
+    (setf (timeline-inbox timeline) (reverse requests)
+          (timeline-run timeline) simulation
+          (simulation-messages simulation) (make-message-queue)
+          (simulation-known-parameters simulation)
+          (renamed-parameters (simulation-known-parameters simulation) (getf head :parameters))
+          (world-kicker-generation world) (- *kicker-generation*
+                                             (if (getf head :kickers-old-p) 1 0)))
+    simulation))
+
+(defun check-tick-and-digest (simulation head)
+  "Return SIMULATION. Signals an error unless it has come to what HEAD says."
+  (unless (= (getf head :tick) (simulation-tick simulation))
+    (error "its tick is not what it says"))
+  (unless (= (getf head :digest) (state-digest simulation))
+    (error "what it comes to is not what was saved"))
+  simulation)
+
+(defun simulation-from (reading head octets)
+  "Return the simulation whose saved run, of so many OCTETS, READING is, behind its HEAD."
+  (let ((loaded (begin-loading octets)))
+    (read-numbers reading loaded)
+    (let* ((requests (read-contents reading loaded))
+           (simulation (sole-object 'simulation loaded)))
+      (sole-object 'world loaded)
+      (sole-object 'timeline loaded)
+      (setf (simulation-journal simulation) (read-journal-of reading head))
+      (complete simulation head loaded requests))))
+
+(defun read-head (reading)
+  "Return the head of the saved run that READING is."
+  (let ((datum (next-datum reading)))
+    (check-saved-head datum)
+    (third datum)))
+
+;;; Loading. The head is read first, so that it can be said what else must be loaded.
+
+(defun saved-head (file)
+  "Return the head of the saved run in FILE. Signals DAMAGED-SIMULATION."
+  (reading-file (file 'damaged-simulation)
+    (call-with-saved-text (lambda (in) (read-head (make-reading in 0 0))) file)))
+
+(defun read-simulation (file)
+  "Return the simulation that is saved in FILE. Signals DAMAGED-SIMULATION and UNKNOWN-NAME."
+  (reading-file (file 'damaged-simulation)
+    (call-with-saved-text (lambda (in)
+                            (let* ((reading (make-reading in 0 0)) (head (read-head reading)))
+                              (check-tick-and-digest
+                               (simulation-from reading head (file-length in))
+                               head)))
+                          file)))
+
+(defun check-saved-definitions (head)
+  "Signal UNKNOWN-NAME if a robot that HEAD of a saved run names is not defined, and
+DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if what is defined is not what it was."
+  (let ((differences (differences-from head (mapcar #'find-blueprint (getf head :robots)))))
+    (when differences
+      (restart-case (error 'different-definitions :differences differences
+                                                  :file "saved run" :verb "load")
+        (load-anyway ()
+          :report "Load it all the same.")))))
+
+(defun load-saved (file anyway)
+  "Do what LOAD-SIMULATION says. Return also, as settings by symbol, what noise may come back."
+  (check-argument load-simulation file (typep file '(or string pathname)) "the name of a file")
+  (let ((head (saved-head file)))
+    (unless anyway (check-saved-definitions head))
+    (values (read-simulation file)
+            (loop for (name value) in (getf head :noise)
+                  collect (list (parameter-symbol (find-parameter name)) value)))))
+
+(addition load-simulation)
+(defun load-simulation (file &key anyway)
+  "Return a new headless simulation in the state that SAVE-SIMULATION has saved in FILE: it has the
+same STATE-DIGEST, and goes on from there as the saved one would have, given the same requests. It
+keeps the journal that the saved one kept, if any. Map, robots and all else that it uses must be
+loaded. Signals DAMAGED-SIMULATION if FILE holds none, or a damaged one: nothing in it is ever
+executed; UNKNOWN-NAME if what it uses is not defined, and DIFFERENT-DEFINITIONS, with the restart
+LOAD-ANYWAY, if that is defined differently from what it was, unless ANYWAY is true; and
+WRONG-ARGUMENT unless FILE is a name."
+  (values (load-saved file anyway)))
+
+(defun call-with-loaded-simulation (function file &key anyway)
+  "Call FUNCTION in the simulation that is saved in FILE; see WITH-LOADED-SIMULATION."
+  (multiple-value-bind (simulation noise) (load-saved file anyway)
+    (call-with-parameters
+     (settings-of simulation)
+     (lambda ()
+       (setf *noise-before-cleaning* noise)
+       (call-as-headless function simulation)))))
+
+(addition with-loaded-simulation)
+(define-user-macro with-loaded-simulation ((file &key anyway) &body body)
+  "Run BODY in the simulation that LOAD-SIMULATION returns for FILE and ANYWAY, headless, with its
+robots and parameters bound as in WITH-SIMULATION. When BODY has ended, the run is over. Return the
+values of BODY. Signals what LOAD-SIMULATION does."
+  `(call-with-loaded-simulation (lambda () ,@body) ,file :anyway ,anyway))

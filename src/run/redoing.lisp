@@ -1,0 +1,123 @@
+;;;; redoing.lisp -- a fork of the past goes on as the run had gone on, up to a tick.
+
+(in-package :ars-magna.run)
+
+;;; The world, kickers, commands under way and plans repeat by themselves what they did. Everything
+;;; else is done to the fork again, at the same tick and in the same phase. What a plan asks for is
+;;; performed at the same place among the requests as the first time: so the world goes the same way
+;;; even if a live plan had been slow to answer. If a plan does not ask for what it asked for the
+;;; first time, that is asked for in its place: the plan has STRAYED, which can happen if it depends
+;;; on something that forks do not copy.
+
+(defstruct (redoing (:constructor make-redoing (simulation acts)) (:copier nil))
+  "That SIMULATION is given again what ACTS, those yet to come, the oldest first, were. HELD are
+requests that it has come to by itself and that are not due, the oldest first. STRAYED is the first
+tick at which it did not come to what it had come to, or NIL."
+  (simulation nil :type simulation :read-only t)
+  (acts '() :type list)
+  (held '() :type list)
+  (strayed nil :type (or null fixnum)))
+
+(defun note-straying (redoing)
+  (unless (redoing-strayed redoing)
+    (setf (redoing-strayed redoing) (simulation-tick (redoing-simulation redoing)))))
+
+(defun perform-act (act simulation)
+  "Do again in SIMULATION, which is the current one, what ACT says."
+  (if (functionp (act-operator act))
+      (apply (act-operator act) (internalize (act-arguments act) simulation))
+      (perform-operator (act-operator act) (act-arguments act) simulation
+                        (or (act-asker act) "the past"))))
+
+;; What failed then fails again.
+(defun do-again (act redoing)
+  "Do again what ACT says."
+  (handler-case (perform-act act (redoing-simulation redoing))
+    (error () (unless (functionp (act-operator act)) (note-straying redoing)))))
+
+;;; Requests.
+
+(defun of-itself-p (request)
+  "True if a fork comes to REQUEST by itself."
+  (or (request-forked-p request) (request-inside-p request)))
+
+(defun take-own-requests (simulation)
+  "Empty the inbox of SIMULATION. Return the requests that it has come to by itself, oldest first."
+  (remove-if-not #'of-itself-p (take-requests (simulation-timeline simulation))))
+
+(defun same-request-p (request act)
+  "True if REQUEST asks for what ACT says. Which of its own commands a plan withdraws is seen only
+when that is performed."
+  (destructuring-bind (operator . arguments) (request-entry request)
+    (let ((arguments (externalize arguments)))
+      (and (eq operator (act-operator act))
+           (equal (first arguments) (first (act-arguments act)))
+           (or (not (operation-p request)) (equal arguments (act-arguments act)))))))
+
+(defun ask-again (act redoing)
+  "Ask again for what ACT, a request, says; if the fork has come to that by itself, for that."
+  (let* ((held (redoing-held redoing))
+         (own (and (act-own-p act)
+                   (find-if (lambda (request) (same-request-p request act)) held))))
+    (when (and (act-own-p act) (null own)) (note-straying redoing))
+    (cond (own (setf (redoing-held redoing) (remove own held))
+               (post-again own (simulation-timeline (redoing-simulation redoing))))
+          (t (do-again act redoing)))))
+
+;;; Going on.
+
+(defun next-act (redoing test)
+  "Return the next act, removed, if it was done by now and TEST is true of it; or NIL."
+  (let ((act (first (redoing-acts redoing))))
+    (when (and act
+               (<= (act-tick act) (simulation-tick (redoing-simulation redoing)))
+               (funcall test act))
+      (pop (redoing-acts redoing)))))
+
+(defun redo-in-tick (redoing)
+  "Do again what was done in this tick before plans and other participants acted."
+  (loop for act = (next-act redoing (lambda (act) (<= 5 (act-phase act) 6)))
+        while act
+        unless (act-own-p act) do (do-again act redoing)))
+
+(defun redo-between-ticks (redoing)
+  "Do again what was done before the next tick."
+  (loop for act = (next-act redoing (lambda (act) (eq :change (act-kind act))))
+        while act
+        unless (act-own-p act) do (do-again act redoing))
+  (setf (redoing-held redoing)
+        (append (redoing-held redoing) (take-own-requests (redoing-simulation redoing))))
+  (loop for act = (next-act redoing (constantly t))
+        while act
+        do (if (eq :request (act-kind act))
+               (ask-again act redoing)
+               (unless (act-own-p act) (do-again act redoing)))))
+
+(defun ticks-to-go (redoing goal)
+  "Return how many ticks may pass before something is to be done again, or GOAL is reached."
+  (let* ((simulation (redoing-simulation redoing)) (act (first (redoing-acts redoing))))
+    (cond ((simulation-participants simulation) 1)
+          (act (- (min goal (act-tick act)) (simulation-tick simulation)))
+          (t (- goal (simulation-tick simulation))))))
+
+(defun go-on-to (goal redoing)
+  "Pass ticks up to GOAL, and do all again on the way."
+  (let ((simulation (redoing-simulation redoing))
+        (observer (lambda (simulation) (declare (ignore simulation)) (redo-in-tick redoing))))
+    (add-observer observer simulation)
+    (loop (redo-between-ticks redoing)
+          (when (>= (simulation-tick simulation) goal) (return))
+          (run-ticks (ticks-to-go redoing goal) simulation))
+    (remove-observer observer simulation)))
+
+(defun redo (simulation acts goal)
+  "Let SIMULATION, a fork of the past that is the current one, go on to the tick GOAL, given ACTS
+again, the oldest first. Return the tick at which plans strayed from what they did then, or NIL.
+What they print has been printed."
+  (let ((redoing (make-redoing simulation acts))
+        (*standard-output* (make-broadcast-stream)))
+    (go-on-to goal redoing)
+    (dolist (request (redoing-held redoing))
+      (post-again request (simulation-timeline simulation)))
+    (follow-settings simulation)
+    (redoing-strayed redoing)))

@@ -1,0 +1,196 @@
+;;;; rewinding.lisp -- a run goes back to an earlier tick, to go on from there in another way.
+
+(in-package :ars-magna.run)
+
+;;; To rewind a run is to fork the newest kept fork that is not later than the tick wanted, to let
+;;; the new fork go on to that tick, and to put it in the place of the run, which is then over. The
+;;; fork becomes the current simulation and the value of the variables, has the run's observers and
+;;; messages, and is live if the run was.
+
+(defvar *rewind-hooks* '()
+  "Functions of a run that is being rewound and of the one that is to go on in its place.")
+
+;;; What may be rewound, and how far.
+
+(defun check-place-to-rewind (simulation)
+  "Signal MISUSE where SIMULATION cannot be rewound because it is at work here, or not meant."
+  (cond ((goes-on-in-forks-p)
+         (reject-use "rewind: a plan is at work here, and would undo itself. PROJECT and TRY-BEST ~
+                      look ahead instead."))
+        ((or (eq (current-thread) (simulation-thread simulation))
+             (and (owner-p simulation)
+                  (or (timeline-passing-p (simulation-timeline simulation))
+                      (plusp (timeline-phase (simulation-timeline simulation))))))
+         (reject-use "rewind: ticks are passing here. Rewind the run when RUN-TICKS has returned, ~
+                      or from another thread."))
+        ((and (headless-p simulation) (not (eq simulation *simulation*)))
+         (reject-use "rewind: ~A is headless, and not the current simulation here. Rewind it where ~
+                      it is: in the body of WITH-SIMULATION, or in CALL-IN-FORK."
+                     (simulation-name simulation)))))
+
+(defun check-past (simulation)
+  "Signal MISUSE if SIMULATION has no past to go back to."
+  (let ((past (simulation-past simulation)))
+    (unless (and past (past-forks past))
+      (reject-use "rewind: nothing is kept of ~A that one could go back to. Ask for that at its ~
+                   beginning, (with-simulation (ROBOT :keep t) ...) or (simulator ROBOT :keep t), ~
+                   or from now on by (keep-forks)."
+                  (simulation-name simulation)))))
+
+(defun check-how-far (ticks simulation)
+  "Signal WRONG-ARGUMENT unless SIMULATION can go back TICKS."
+  (let* ((first (kept-tick (first (last (past-forks (simulation-past simulation))))))
+         (most (- (simulation-tick simulation) first)))
+    (unless (<= ticks most)
+      (error 'wrong-argument
+             :operator "rewind" :name "ticks" :value ticks
+             :expected (format nil "at most ~D: one can go back to tick ~D" most first)))))
+
+;;; The run that goes on.
+
+(defun past-until (tick past)
+  "Return what PAST was at the end of TICK."
+  (make-past (past-limit past) (past-keeper past)
+             :forks (remove-if (lambda (kept) (> (kept-tick kept) tick)) (past-forks past))
+             :acts (acts-until tick (past-acts past))
+             :cost (past-cost past)))
+
+(defun warn-of-straying (run tick)
+  (let ((*message-queue* (simulation-messages run)))
+    (warning-set (format nil "Not all is as it was: a plan goes another way than it went from tick ~
+                              ~D on, as it may if it depends on what is outside of its run."
+                         tick))))
+
+(defun repeat-past (past tick)
+  "Return a run that is what the one of PAST was at the end of TICK, and the tick at which plans
+strayed on the way, or NIL."
+  (let* ((kept (first (past-forks past)))
+         (run (await-fork (kept-fork kept) nil '()))
+         (done-p nil))
+    (unwind-protect
+         (let ((strayed (call-inside run (lambda ()
+                                           (redo run (acts-since kept (past-acts past)) tick)))))
+           (setf (simulation-past run) past
+                 done-p t)
+           (values run strayed))
+      (unless done-p (release-fork run)))))
+
+;;; Its place.
+
+(defun set-everywhere (symbol value)
+  (setf (global-value symbol) value
+        (symbol-value symbol) value))
+
+(defun variable-setter (old)
+  "Return the function of a symbol and a value that sets what is bound, or global, for OLD."
+  (cond ((headless-p old) #'set)
+        ((not (eq old *simulation*)) (lambda (symbol value) (setf (global-value symbol) value)))
+        ((eq old (global-value '*simulation*)) #'set-everywhere)
+        (t #'set)))
+
+(defun set-variables (new old)
+  "Let the variables be what they are for NEW, where they are bound, or global, for OLD."
+  (let ((setter (variable-setter old)))
+    (loop for (symbol . value) in (simulation-environment new)
+          do (funcall setter symbol value))
+    (loop for parameter in (all-parameters)
+          for value across (simulation-known-parameters new)
+          do (funcall setter (parameter-symbol parameter) value))
+    (funcall setter '*simulation* new)
+    (funcall setter '*world* (simulation-world new))))
+
+(defun settle-in-map (new)
+  "Let the world of NEW be the one that top-level code works in, and its robots be called by name."
+  (let ((world (simulation-world new)))
+    (setf (map-resident (world-map world)) world)
+    (dolist (robot (world-robots world))
+      (set-robot (robot-blueprint robot) robot))))
+
+(defun hand-over-looks (new old)
+  "Let NEW have what OLD has of those outside: who looks on, the gate, the messages."
+  (setf (simulation-observers new) (simulation-observers old)
+        (simulation-gate new) (simulation-gate old)
+        (simulation-messages new) (simulation-messages old)
+        (simulation-messages old) (make-message-queue))
+  (dolist (hook *rewind-hooks*) (funcall hook old new)))
+
+(defun end-rewound (old new)
+  "Let OLD be over, as NEW goes on in its place."
+  (let ((reason (format nil "it was rewound to tick ~D, and *SIMULATION* goes on from there"
+                        (simulation-tick new))))
+    (setf (simulation-successor old) new)
+    (retire-robots (simulation-robots old) reason)
+    (end-simulation old reason)
+    (setf (simulation-past old) nil)))
+
+(defun take-the-place (new old)
+  "Let NEW go on in the place of OLD, which this thread has in custody."
+  (check-not-over old 'rewind)
+  (let ((resident-p (not (headless-p old)))
+        (current-p (or (eq old *simulation*) (eq old (global-value '*simulation*))))
+        (from (simulation-tick old)))
+    (hand-over-looks new old)
+    (end-rewound old new)
+    (note-rewound from new)
+    (when current-p (set-variables new old))
+    (when resident-p (settle-in-map new))
+    (unless (fork-p old)
+      (setf (simulation-environment new) '()
+            (simulation-variables new) (simulation-variables old)
+            (timeline-fork-p (simulation-timeline new)) nil))))
+
+(defun replace-run (new old)
+  "Let NEW go on in the place of OLD, live if that is. Return NEW."
+  (let ((live-p (live-p old)) (rate (simulation-rate old)) (paused-p (paused-p old)))
+    (call-alone (simulation-timeline old)
+                (lambda ()
+                  (take-the-place new old)
+                  (when live-p
+                    (start-clock new :rate rate :paused-p paused-p
+                                     :real (eq :real (simulation-thinking new))))))
+    new))
+
+;;; What the journal says of it.
+
+(defun note-rewound (from &optional (simulation (current-simulation)))
+  "Let the journal of SIMULATION say that it had come to the tick FROM, and was rewound to now."
+  (note simulation 'rewound (list from)))
+
+(define-operator 'rewound '(integer) #'note-rewound)
+
+(defvar *rewinding-lock* (make-lock "rewinding")
+  "What whoever rewinds a run holds: one after the other.")
+
+(defun rewind-now (ticks simulation)
+  "Do what REWIND says, while nobody else rewinds anything."
+  (multiple-value-bind (past tick)
+      (asking (simulation)
+        (check-past simulation)
+        (check-how-far ticks simulation)
+        (let ((tick (- (simulation-tick simulation) ticks)))
+          (values (past-until tick (simulation-past simulation)) tick)))
+    (multiple-value-bind (run strayed) (repeat-past past tick)
+      (replace-run run simulation)
+      (when strayed (warn-of-straying run strayed))
+      run)))
+
+(addition rewind)
+(defun rewind (ticks &optional (simulation (current-simulation)))
+  "Go back TICKS ticks, to how SIMULATION was at the end of an earlier one, plans included. Return
+the simulation that goes on from there: it is the current one then, its robots are the values of
+their variables, and it is live, at the same rate, if SIMULATION was. That is over, and its robots
+take no more commands; who waits for the end of one is told :INTERRUPT. What was asked for or
+changed after that tick has not happened. Commands and plans under way go on; continuations of
+programs are not called for those. The journal is that of the past, and says where it was rewound.
+Variables that programs set themselves stay as they are.
+SIMULATION must keep forks, see KEEP-FORKS. TICKS is a number from 0, for what was done since the
+last tick, to how many have passed since it began to. Signals WRONG-ARGUMENT that says how far one
+can go back; MISUSE inside of ticks and plans, and where SIMULATION is over."
+  (let ((simulation (simulation-meant simulation)))
+    (check-argument rewind ticks (whole-p ticks 0) "a whole number of ticks, 0 or more")
+    (check-not-over simulation 'rewind)
+    (check-place-to-rewind simulation)
+    (with-lock (*rewinding-lock*)
+      ;; Another thread may have been first.
+      (check-not-over simulation 'rewind)
+      (rewind-now ticks simulation))))

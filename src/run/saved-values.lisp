@@ -1,0 +1,136 @@
+;;;; saved-values.lisp -- the objects of an inventory as lines of text.
+
+(in-package :ars-magna.run)
+
+;;; First there are lines that say what the numbers stand for, in order:
+;;;
+;;;   (found map "ARS-WORLDS::OFFICE")         what is beside the run, by its name
+;;;   (new object 31 |...::THING| ("NAME" ...))  how many there are of a shape; of which slots
+;;;   (new array 2 |...::T| (75) nil)            it will be said what is in them
+;;;
+;;; then at least one line for each that is new: its number, and what is in it. Of arrays that is
+;;; how often an element stands there, the element, and so on.
+
+(defun write-number (number out)
+  (write-char #\@ out)
+  (prin1 number out))
+
+(defun write-tail (tail inventory out)
+  (when tail
+    (write-string " . " out)
+    (write-value tail inventory out)))
+
+(defun write-elements (list inventory out)
+  "Write the elements of LIST, a space before each, up to where it has a number or ends."
+  (loop for tail = list then (cdr tail)
+        while (and (consp tail)
+                   (or (eq tail list) (null (number-of tail inventory))))
+        do (write-char #\Space out)
+           (write-value (car tail) inventory out)
+        finally (write-tail tail inventory out)))
+
+(defun write-short-list (list inventory out)
+  "Write LIST, which has no number, in parentheses."
+  (write-char #\( out)
+  (write-value (car list) inventory out)
+  (if (and (consp (cdr list)) (null (number-of (cdr list) inventory)))
+      (write-elements (cdr list) inventory out)
+      (write-tail (cdr list) inventory out))
+  (write-char #\) out))
+
+(defun write-value (value inventory out)
+  "Write VALUE to OUT: its number in INVENTORY, if it has one."
+  (let ((number (and (not (typep value '(or symbol fixnum))) (number-of value inventory))))
+    (cond (number (write-number number out))
+          ((consp value) (write-short-list value inventory out))
+          (t (write-datum value out)))))
+
+;;; Lines.
+
+(defun element-count (array)
+  (if (array-has-fill-pointer-p array) (fill-pointer array) (array-total-size array)))
+
+(defun write-run (array start inventory out)
+  "Write how often the element of ARRAY at START is repeated there, and it. Return where others
+begin."
+  (let* ((element (row-major-aref array start))
+         (end (or (loop for index from (1+ start) below (element-count array)
+                        unless (eql element (row-major-aref array index)) return index)
+                  (element-count array))))
+    (format out " ~D " (- end start))
+    (write-value element inventory out)
+    end))
+
+(defun write-part (array start inventory out)
+  "Write what is in ARRAY from START on, as much as there is room for in a line. Return where that
+ends."
+  (cond ((stringp array)
+         (let ((end (min (length array) (+ start (* 10 +longest-row+)))))
+           (write-char #\Space out)
+           (write-quoted (subseq array start end) #\" out)
+           end))
+        (t (loop repeat +longest-row+
+                 while (< start (element-count array))
+                 do (setf start (write-run array start inventory out)))
+           start)))
+
+(defun values-in (object fields)
+  "Return a list of what is in OBJECT, no array or cons, as LOADED-VALUES takes it."
+  (typecase object
+    (dice (list (dice-state object)))
+    (agenda (cons (agenda-tick object) (pending-events object)))
+    (hash-table (let ((values '()))
+                  (maphash (lambda (key value) (setf values (list* value key values))) object)
+                  (nreverse values)))
+    (t (loop for field in fields collect (funcall (field-reader field) object)))))
+
+(defun write-row (values inventory out)
+  "Write the first of VALUES, as many as there is room for in a line. Return the others."
+  (loop repeat +longest-row+
+        while values
+        do (write-char #\Space out)
+           (write-value (pop values) inventory out))
+  values)
+
+(defun write-line-of (object more inventory out)
+  "Write to OUT what a line says of OBJECT, and return what is left to be said, or NIL. MORE is what
+was left before: values, or where in an array."
+  (typecase object
+    (cons (write-elements object inventory out) nil)
+    (array (let ((end (write-part object more inventory out)))
+             (and (< end (element-count object)) end)))
+    (t (write-row more inventory out))))
+
+(defun object-lines (object fields inventory seal)
+  "Call SEAL with each line that says what is in OBJECT, which has FIELDS if it is a structure."
+  (let ((more (typecase object
+                (cons nil)
+                (array 0)
+                (t (values-in object fields)))))
+    (loop do (funcall seal (with-output-to-string (out)
+                             (write-char #\( out)
+                             (write-number (number-of object inventory) out)
+                             (setf more (write-line-of object more inventory out))
+                             (write-char #\) out)))
+          while more)))
+
+(defun field-names (fields)
+  (mapcar (lambda (field) (symbol-name (field-name field))) fields))
+
+(defun batch-line (batch)
+  "Return what says how many objects BATCH has, and what they are."
+  (destructuring-bind (kind . more) (batch-shape batch)
+    (datum-text `(:new ,kind ,(length (batch-members batch)) ,@more
+                       ,@(and (eq :object kind) (list (field-names (batch-fields batch))))))))
+
+(defun inventory-lines (inventory seal)
+  "Call SEAL, a function, with each line, a string, of what INVENTORY is."
+  (loop for (nil . name) in (inventory-outer inventory)
+        do (funcall seal (datum-text (cons :found name))))
+  (let ((batches (batches-in-order inventory)))
+    (dolist (batch batches) (funcall seal (batch-line batch)))
+    (funcall seal (datum-text (list :objects (inventory-size inventory))))
+    (with-plain-syntax
+      (dolist (batch batches)
+        (loop for object across (batch-members batch)
+              do (object-lines object (batch-fields batch) inventory seal))))))

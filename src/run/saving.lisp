@@ -1,0 +1,189 @@
+;;;; saving.lisp -- the state of a run in a file, from which it goes on exactly as it would have.
+
+(in-package :ars-magna.run)
+
+;;; A saved run is lines of plain data like a journal's, each with a check sum of it and all before
+;;; it: a head; the objects, see saved-values.lisp; the requests that wait; the journal, if the run
+;;; keeps one; and the end.
+
+(defconstant +saved-version+ 1)
+(define-constant +saved-title+ ";;;; A run of ARS MAGNA, saved." :test #'string=
+  :documentation "The first line of files that hold saved runs.")
+
+;;; What cannot be saved, and may be left out.
+
+(addition unsavable unsavable-parts save-without)
+(define-condition unsavable (ars-magna-error)
+  ((name  :initarg :name  :reader unsavable-name)
+   (parts :initarg :parts :reader unsavable-parts))
+  (:report (lambda (condition stream)
+             (format stream "The run in ~(~A~) cannot be saved whole: ~{~A~^; ~}. Wait for their ~
+                             end, or leave them out, by the restart SAVE-WITHOUT."
+                     (unsavable-name condition) (unsavable-parts condition))))
+  (:documentation "A run is to be saved in which something goes on that no file can hold."))
+
+(setf (documentation 'unsavable-parts 'function)
+      "Return a list of strings: what an UNSAVABLE condition says that no file can hold.")
+
+(defun functional-p (request)
+  "True if REQUEST holds a function of a user's."
+  (typecase request
+    (scheduled t)
+    (withdrawal (withdrawal-continuation request))))
+
+(defun requests-waiting (simulation)
+  "Return the requests that wait for the next tick of SIMULATION, in order."
+  (reverse (timeline-inbox (simulation-timeline simulation))))
+
+(defun events-waiting (simulation)
+  (pending-events (simulation-agenda simulation)))
+
+(defun unsavable-texts (simulation journal)
+  "Return in words, in a list, what goes on in SIMULATION, or stands in JOURNAL, that no file can
+hold."
+  (append (mapcan #'participant-unsavable (copy-list (simulation-participants simulation)))
+          (loop for event in (events-waiting simulation)
+                when (functional-p event)
+                  collect (format nil "an event of SCHEDULE waits for tick ~D" (event-time event)))
+          (loop for request in (requests-waiting simulation)
+                when (functional-p request)
+                  collect (if (typep request 'scheduled)
+                              "an event of SCHEDULE was asked for"
+                              "a command was withdrawn by a plan"))
+          (and journal
+               (some (lambda (entry) (unprintable-in (cddr entry))) (journal-entries journal))
+               (list "its journal has entries with functions in them"))))
+
+(defun stripped-copy (simulation)
+  "Return a copy of SIMULATION without what no file can hold."
+  (let* ((copy (copy-alone simulation)) (timeline (simulation-timeline copy)))
+    (dolist (event (events-waiting copy))
+      (when (functional-p event) (cancel-event (timeline-agenda timeline) event)))
+    (setf (timeline-inbox timeline) (remove-if #'functional-p (timeline-inbox timeline)))
+    copy))
+
+(defun journal-to-save (simulation)
+  "Return the journal of SIMULATION, reaching to now, or NIL."
+  (and (simulation-journal simulation) (end-of-journal simulation)))
+
+(defun call-with-savable (function simulation)
+  "Call FUNCTION with SIMULATION and its journal or, where these have what no file can hold and the
+restart SAVE-WITHOUT is chosen, a copy of SIMULATION without that. Signals UNSAVABLE."
+  (let* ((journal (journal-to-save simulation))
+         (texts (unsavable-texts simulation journal)))
+    (if texts
+        (restart-case (error 'unsavable :name (simulation-name simulation) :parts texts)
+          (save-without ()
+            :report "Save the run without them."
+            (funcall function (stripped-copy simulation)
+                     (and journal (notany #'unprintable-in (journal-entries journal)) journal))))
+        (funcall function simulation journal))))
+
+;;; Writing.
+
+(defun settings-of (simulation)
+  "Return a list (name value) for each parameter of SIMULATION."
+  (loop for parameter in (all-parameters)
+        for value across (simulation-known-parameters simulation)
+        collect (list (parameter-name parameter) value)))
+
+(defun noise-to-come-back (simulation)
+  "Return as settings what DIRTY-SIMULATION would do, if SIMULATION is the one that it would do it
+to."
+  (and (eq simulation *simulation*)
+       (loop for (symbol value) in *noise-before-cleaning*
+             collect (list (string-downcase symbol) value))))
+
+(defun commands-under-way (simulation)
+  "Return, as definitions, the users' commands that are under way or wait in SIMULATION."
+  (loop for request in (append (events-waiting simulation) (requests-waiting simulation))
+        for command = (request-operator request)
+        for entry = (and (command-p command) (lookup-entry (command-name command) *commands*))
+        when (and entry (users-p entry))
+          collect (definition-of :command entry)))
+
+(defun head-of (simulation noise journal)
+  "Return the head of the file in which SIMULATION is saved. NOISE is what may come back."
+  (let ((used (append (definitions-of simulation) (at-hand (commands-under-way simulation)))))
+    (list :map (qualified-name (map-name (world-map (simulation-world simulation))))
+          :robots (robot-names simulation)
+          :tick (simulation-tick simulation)
+          :digest (state-digest simulation)
+          :kickers-old-p (/= *kicker-generation*
+                             (world-kicker-generation (simulation-world simulation)))
+          :parameters (settings-of simulation)
+          :noise noise
+          :journal (and journal t)
+          :definitions (remove-duplicates used :test #'same-definition-p :from-end t))))
+
+(defun journal-lines-of (journal seal)
+  "Call SEAL with each line of JOURNAL in a saved run."
+  (funcall seal (datum-text (list :journal (journal-full-p journal) (journal-end journal)
+                                  (journal-header journal))))
+  (dolist (entry (journal-entries journal)) (funcall seal (datum-text (entry-datum entry)))))
+
+(defun write-saved (simulation journal noise out)
+  "Write to OUT what SIMULATION is and its JOURNAL, or NIL."
+  (let* ((requests (requests-waiting simulation))
+         (inventory (take-inventory simulation requests))
+         (sum 0))
+    (flet ((seal (text) (setf sum (write-sealed text sum out))))
+      (write-line +saved-title+ out)
+      (seal (datum-text (list :ars-magna-run +saved-version+
+                              (head-of simulation noise journal))))
+      (inventory-lines inventory #'seal)
+      (with-plain-syntax
+        (dolist (request requests)
+          (seal (format nil "(waiting @~D)" (number-of request inventory)))))
+      (seal (datum-text '(:waiting)))
+      (when journal (journal-lines-of journal #'seal))
+      (seal (datum-text (list :end (simulation-tick simulation)))))))
+
+(defun begins-as-saved-p (path)
+  "True if the file PATH is empty, or begins as those do that hold saved runs."
+  (with-open-file (in path :external-format :latin-1)
+    (let* ((start (make-string (length +saved-title+)))
+           (end (read-sequence start in)))
+      (or (zerop end)
+          (and (= end (length start)) (string= start +saved-title+))))))
+
+(defun foreign-file-p (file)
+  "True if there is something called FILE that is not a saved run, whole or damaged, or that cannot
+be told."
+  (and (ignore-errors (probe-file file))
+       (not (ignore-errors (and (plain-file-p file) (begins-as-saved-p file))))))
+
+(defun write-simulation (simulation file)
+  "Do what SAVE-SIMULATION says, where SIMULATION stands still."
+  (when (simulation-ticking-p simulation)
+    (reject-use "save-simulation: a tick is under way. Save the run between ticks."))
+  (check-not-over simulation 'save-simulation)
+  (when (eq simulation *simulation*) (follow-settings simulation))
+  (let ((noise (noise-to-come-back simulation)))
+    (call-with-savable
+     (lambda (simulation journal)
+       (handler-case
+           (call-replacing-file (lambda (out) (write-saved simulation journal noise out)) file)
+         (ars-magna-error (trouble) (error trouble))
+         (error (trouble)
+           (reject-use "The run cannot be written to ~A: ~A. What was there is as before."
+                       (cut (princ-to-string (shown-name file)) 200)
+                       (cut (one-line-text trouble) 200)))))
+     simulation)))
+
+(addition save-simulation)
+(defun save-simulation (file &optional (simulation (current-simulation)))
+  "Write the state of SIMULATION, between two ticks, to FILE, from which LOAD-SIMULATION has it go
+on as it would have: world, things, kickers, robots and their parts, designators, tracks, odometers,
+commands under way and asked for, parameters, seed and dice; and the journal, so that a replay
+still repeats all of the run. Who is told of the ends of commands and tracks, observers and messages
+are left out. FILE is replaced when all is written. Return its truename. Signals UNSAVABLE, with the
+restart SAVE-WITHOUT, where plans or events of SCHEDULE are under way; MISUSE if the run is over or
+inside a tick, has what has no printed form, such as a kicker of PUT-KICKER's, or cannot be written,
+as where FILE is something else than a saved run; and WRONG-ARGUMENT unless FILE is a name. Whatever
+it signals, FILE is as it was."
+  (check-argument save-simulation file (typep file '(or string pathname)) "the name of a file")
+  (check-argument save-simulation simulation (simulation-p simulation) "a simulation")
+  (when (foreign-file-p file)
+    (reject-use "~A is no saved run, and is left as it is. Give another name." (shown-name file)))
+  (asking (simulation) (write-simulation simulation file)))

@@ -1,0 +1,111 @@
+;;;; sealed-lines.lisp -- lines of text with check sums, in files that are read with suspicion.
+
+(in-package :ars-magna.run)
+
+;;; Behind each line a comment has a check sum of it and all before it, so that damage is found, and
+;;; where. Comments of people's own, empty lines and the line ends of others do no harm. Files are
+;;; read as octets, since some are no text in UTF-8.
+
+(defconstant +longest-line+ 1000000 "How many characters a line of a saved file has at most.")
+(defconstant +longest-file+ (expt 2 28) "How many bytes a saved file has at most.")
+
+(defun shown-name (file)
+  "Return FILE, a pathname or string, as the operating system writes it; an empty name in quotes."
+  (let ((name (if (and (pathnamep file) (not (wild-pathname-p file))) (native-name file) file)))
+    (if (equal name "") "\"\"" name)))
+
+(addition damaged-file)
+(define-condition damaged-file (ars-magna-error)
+  ((file   :initarg :file   :reader damaged-file-name)
+   (reason :initarg :reason :reader damaged-file-reason))
+  (:documentation "A file that should hold what the simulator has saved cannot be used."))
+
+;;; Writing.
+
+(defun write-sealed (text sum out)
+  "Write TEXT to OUT as a line with its check sum, which is returned. SUM is that of what comes
+before."
+  (when (<= (- +longest-line+ 10) (length text))
+    (error "one of its entries takes ~D characters" (length text)))
+  (let ((sum (text-checksum text sum)))
+    (format out "~A ;~8,'0X~%" text sum)
+    (when (< (- +longest-file+ (expt 2 20)) (file-position out))
+      (error "it takes more than ~D bytes" (- +longest-file+ (expt 2 20))))
+    sum))
+
+;;; Reading.
+
+(defun one-line-text (condition)
+  "Return what CONDITION says as the part of a sentence."
+  (string-right-trim "." (cut (one-line (text-of-condition condition)) 400)))
+
+(defun ascii-p (text)
+  (every (lambda (char) (char< char #.(code-char 128))) (the simple-string text)))
+
+(defun read-short-line (in)
+  "Return the next line of IN, or NIL; of one that is too long, no more than its beginning."
+  (let* ((last nil)
+         (line (with-output-to-string (out)
+                 (loop repeat +longest-line+
+                       do (setf last (read-char in nil))
+                       until (member last '(nil #\Newline))
+                       do (write-char last out)))))
+    (when (or last (plusp (length line)))
+      (string-right-trim '(#\Return) (if (ascii-p line) line (decoded line))))))
+
+(defun comment-line-p (line)
+  "True if LINE is a comment or empty; an editor may have put a byte order mark before it."
+  (let ((text (string-left-trim '(#\Space #\Tab #.(code-char #xFEFF)) line)))
+    (or (string= "" text) (char= #\; (char text 0)))))
+
+(defun begins-with-p (text line)
+  (and (<= (length text) (length line))
+       (string-equal text line :end2 (length text))))
+
+(defun line-checksum (line start)
+  "Return the check sum that stands in LINE from START on, or NIL."
+  (and (<= 0 start)
+       (string= " ;" line :start2 start :end2 (+ 2 start))
+       (parse-integer line :start (+ 2 start) :radix 16 :junk-allowed t)))
+
+(defun checked-datum (line sum)
+  "Return the datum in LINE and its check sum. SUM is that of what comes before."
+  (when (= +longest-line+ (length line)) (error "it has ~D characters or more" +longest-line+))
+  (let* ((start (- (length line) 10))
+         (text (subseq line 0 (max 0 start)))
+         (sum (text-checksum text sum)))
+    (unless (eql sum (line-checksum line start)) (error "it is not as it was written"))
+    (multiple-value-bind (datum end) (read-datum text)
+      (unless (= end (length text)) (error "something stands behind it"))
+      (values datum sum))))
+
+(defun next-line (in)
+  "Return the next line of IN that is no comment, or NIL."
+  (loop for line = (read-short-line in)
+        unless (and line (comment-line-p line)) return line))
+
+;;; Files.
+
+(defun call-with-saved-text (function file)
+  "Call FUNCTION with a stream of the octets of FILE, for NEXT-LINE. Signals an error if that is no
+file of bytes, or too long."
+  (let ((trouble (unusable-file-text file)))
+    (when trouble (error "~A" trouble)))
+  (with-open-file (in file :external-format :latin-1)
+    (when (< +longest-file+ (file-length in))
+      (error "it has ~D bytes, more than such files have" (file-length in)))
+    (with-homeless-symbols () (funcall function in))))
+
+(defun call-reading-file (function file damage)
+  "Return what FUNCTION returns; if it signals an error other than UNKNOWN-NAME, signal one of the
+class DAMAGE, which says that FILE is to blame."
+  (handler-case (funcall function)
+    (unknown-name (trouble) (error trouble))
+    (stream-error ()
+      (error damage :file file :reason "the system does not let it be read"))
+    ((or error storage-condition) (trouble)
+      (error damage :file file :reason (one-line-text trouble)))))
+
+(defmacro reading-file ((file damage) &body body)
+  "Run BODY as CALL-READING-FILE would a function."
+  `(call-reading-file (lambda () ,@body) ,file ,damage))

@@ -1,0 +1,15 @@
+;;;; package.lisp -- where robots went in many trials, as a picture.
+
+(defpackage :ars-magna.trails
+  (:documentation "The ways of robots over their map. Knows neither experiments nor plans.")
+  (:use :cl :ars-magna.base :ars-magna.canvas)
+  (:import-from :ars-magna.run #:simulation-robots)
+  (:import-from :ars-magna.robot #:robot-x #:robot-y)
+  (:import-from :ars-magna.world #:map-width #:map-height)
+  (:import-from :ars-magna.display #:snapshot-map #:draw-terrain #:draw-movers)
+  (:import-from :ars-magna.plots #:drawing-chart #:look-color #:draw-marker)
+  ;; trails
+  (:export #:way-trial #:way-outcome #:way-points #:note-places #:ways-along
+           #:straightened)
+  ;; picture
+  (:export #:ways-chart #:part-of-map))

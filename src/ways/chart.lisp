@@ -1,0 +1,194 @@
+;;;; chart.lisp -- a map as one robot knows it: with cells that it found barred.
+
+(in-package :ars-magna.ways)
+
+;;; A chart belongs to one plan or program. What it shares with others is its terrain, and the
+;;; fields of goals as long as no cell is barred; a copy of the run that it is in gets a chart of
+;;; its own.
+
+(addition chart)
+(defstruct (chart (:constructor %make-chart (terrain)) (:copier nil))
+  "A map as somebody knows it: a TERRAIN, and which of its cells are barred, or cost more."
+  (terrain nil :type terrain :read-only t)
+  ;; Pairs (node . cost): what a metre costs more than on the terrain.
+  (barred '() :type list)
+  ;; A field in which cells are barred, and the nodes that have changed since it was looked at.
+  (field nil :type (or null field))
+  (changed '() :type list))
+(declaim-final chart)
+
+(addition chart-p chart-terrain)
+(document-functions
+ chart-p "True of a chart."
+ chart-terrain "Return the terrain of the chart, which it shares with others of its map.")
+
+(addition chart-map)
+(defun chart-map (chart)
+  "Return the map that CHART is of."
+  (terrain-map (chart-terrain chart)))
+
+(defmethod print-object ((chart chart) stream)
+  (print-unreadable-object (chart stream :type t)
+    (format stream "of ~A, ~D cell~:P barred" (map-name (chart-map chart))
+            (length (chart-barred chart)))))
+
+;;; Making one.
+
+(defun cost-p (cost)
+  (and (realp cost) (<= 1 cost 1000)))
+
+(defun costs-p (costs)
+  "True if COSTS is a list of (name cost), each name being that of a place type."
+  (and (proper-list-p costs)
+       (every (lambda (entry)
+                (and (proper-list-p entry) (= 2 (length entry))
+                     (symbolp (first entry)) (find-place-type (first entry) nil)
+                     (cost-p (second entry))))
+              costs)))
+
+(defun map-of (operator map)
+  "Return the map that MAP, an argument of OPERATOR, means: itself, or its name."
+  (cond ((map-p map) map)
+        ((or (stringp map) (and map (symbolp map))) (find-map map))
+        (t (reject-argument operator 'map map "a map, or the name of one"))))
+
+(addition make-chart)
+(defun make-chart (map &key (clearance 3/4) (costs '((doorway 2))))
+  "Return a new chart of MAP, a map or the name of one, on which no cell is barred. A metre costs 1,
+but 4 nearer to a wall than CLEARANCE, from 0 to 10 metres, and in places of the types in COSTS, a
+list of (name cost), what that says, from 1 to 1000. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+  (check-argument make-chart clearance (and (realp clearance) (<= 0 clearance 10))
+                  "a number of metres, from 0 to 10")
+  (check-argument make-chart costs (costs-p costs)
+                  "a list such as ((doorway 2)), of place types and costs from 1 to 1000")
+  (%make-chart (terrain-of (map-of 'make-chart map) (rational clearance)
+                           (loop for (name cost) in costs collect (list name (double cost))))))
+
+;;; Points.
+
+(defun point-p (point)
+  (or (pt-p point) (number-pair-p point)))
+
+(declaim (inline point-x point-y))
+(defun point-x (point) (double (if (pt-p point) (pt-x point) (first point))))
+(defun point-y (point) (double (if (pt-p point) (pt-y point) (second point))))
+
+(defun node-at (chart x y)
+  "Return the number of the cell of CHART with the point (X,Y), which is inside the map."
+  (declare (type (double-float 0d0 32768d0) x y))
+  (cell-node (chart-terrain chart) (truncate x) (truncate y)))
+
+(defun node-of-point (operator chart point)
+  "Return the number of the cell with POINT. Signals WRONG-ARGUMENT, by OPERATOR, unless it is a
+point inside the map."
+  (unless (and (point-p point) (inside-p (chart-map chart) (point-x point) (point-y point)))
+    (reject-argument operator 'point point
+                     (let ((map (chart-map chart)))
+                       (format nil "a PT or a list (x y) inside ~A: x from 0 and below ~D, y ~
+                                    from 0 and below ~D"
+                               (map-name map) (map-width map) (map-height map)))))
+  (node-at chart (point-x point) (point-y point)))
+
+;;; Barred cells.
+
+(defun cost-of-node (chart node)
+  "Return what a metre costs in the cell NODE of CHART now."
+  (min +barred+ (+ (aref (terrain-cells (chart-terrain chart)) node)
+                   (or (cdr (assoc node (chart-barred chart))) 0d0))))
+
+(defun set-extra-cost (chart node cost)
+  "Let the cell NODE of CHART cost COST more than on the terrain, not at all if COST is NIL."
+  (let ((entry (assoc node (chart-barred chart))))
+    (unless (eql cost (cdr entry))
+      (setf (chart-barred chart)
+            (let ((others (remove entry (chart-barred chart))))
+              (if cost (acons node cost others) others)))
+      (pushnew node (chart-changed chart)))))
+
+(addition bar-cell)
+(defun bar-cell (chart point &optional cost)
+  "Remember on CHART that the cell with POINT, a PT or a list (x y), cannot be crossed; or, given a
+COST from 0 to 1e6, that a metre in it costs so much more. It replaces what was said of that cell
+before. Return CHART. Signals WRONG-ARGUMENT."
+  (check-argument bar-cell chart (chart-p chart) "a chart")
+  (check-argument bar-cell cost (or (null cost) (and (realp cost) (<= 0 cost 1000000)))
+                  "a cost from 0 to 1e6, or NIL for what cannot be crossed")
+  (set-extra-cost chart (node-of-point 'bar-cell chart point)
+                  (cond ((null cost) +barred+)
+                        ((zerop cost) nil)
+                        (t (double cost))))
+  chart)
+
+(addition free-cell)
+(defun free-cell (chart point)
+  "Let the cell of CHART with POINT, a PT or a list (x y), be as it is on the map again. Return
+CHART. Signals WRONG-ARGUMENT."
+  (check-argument free-cell chart (chart-p chart) "a chart")
+  (set-extra-cost chart (node-of-point 'free-cell chart point) nil)
+  chart)
+
+(addition free-all-cells)
+(defun free-all-cells (chart)
+  "Let all cells of CHART be as they are on the map again. Return CHART. Signals WRONG-ARGUMENT."
+  (check-argument free-all-cells chart (chart-p chart) "a chart")
+  (loop for (node) in (chart-barred chart) do (set-extra-cost chart node nil))
+  chart)
+
+(addition barred-cells)
+(defun barred-cells (chart)
+  "Return a list of (x y cost) for the cells that were barred on CHART, newest first: COST is what a
+metre costs more, or NIL if they cannot be crossed."
+  (loop with terrain = (chart-terrain chart)
+        for (node . cost) in (chart-barred chart)
+        collect (list (node-column terrain node) (node-row terrain node)
+                      (if (< cost +barred+) cost nil))))
+
+(addition crossing-cost)
+(defun crossing-cost (chart point)
+  "Return what a metre costs in the cell of CHART with POINT, a PT or a list (x y): 1 or more, or
+NIL if it cannot be crossed. Signals WRONG-ARGUMENT."
+  (let ((cost (cost-of-node chart (node-of-point 'crossing-cost chart point))))
+    (if (< cost +barred+) cost nil)))
+
+;;; The field of a goal. All charts of a terrain share one, until they bar a cell.
+
+(defconstant +nodes-kept+ 2000000
+  "How many nodes the fields that a terrain keeps may have together; but it keeps two at least.")
+
+(defun fields-to-keep (terrain)
+  (clamp (floor +nodes-kept+ (length (terrain-cells terrain))) 2 50))
+
+(defun known-field (terrain goal)
+  (find goal (terrain-fields terrain) :key #'field-goal))
+
+(defun shared-field (terrain goal)
+  "Return the field of TERRAIN with the goal in the node GOAL that all threads share."
+  (or (known-field terrain goal)
+      (with-lock ((terrain-lock terrain))
+        (or (known-field terrain goal)
+            (let ((field (make-field terrain goal)) (others (terrain-fields terrain)))
+              (setf (field-lock field) (make-lock "field")
+                    (terrain-fields terrain)
+                    (cons field (subseq others 0 (min (length others)
+                                                      (1- (fields-to-keep terrain))))))
+              field)))))
+
+(defun take-over-field (chart goal)
+  "Let CHART have the field of the node GOAL for itself, with nothing barred yet."
+  (let* ((shared (shared-field (chart-terrain chart) goal))
+         (own (with-lock ((field-lock shared)) (copy-field shared))))
+    (setf (chart-changed chart) (mapcar #'car (chart-barred chart))
+          (chart-field chart) own)))
+
+(defun follow-changes (chart)
+  "Bring the cells of the field of CHART up to date."
+  (dolist (node (shiftf (chart-changed chart) '()))
+    (change-cell (chart-field chart) node (cost-of-node chart node))))
+
+(defun field-to (chart goal)
+  "Return the field for CHART as it is now that has its goal in the node GOAL."
+  (cond ((null (chart-barred chart)) (shared-field (chart-terrain chart) goal))
+        (t (unless (and (chart-field chart) (= goal (field-goal (chart-field chart))))
+             (take-over-field chart goal))
+           (follow-changes chart)
+           (chart-field chart))))

@@ -1,0 +1,20 @@
+;;;; package.lisp -- the ways layer: how to get from one point of a map to another.
+
+(defpackage :ars-magna.ways
+  (:documentation "Ways through a map, at any angle: away from walls where there is room, round what
+was found barred, planned anew at little cost. Field D* of Ferguson and Stentz (2006). Knows walls
+and places, and neither robots nor things.")
+  (:use :cl :ars-magna.base)
+  (:import-from :ars-magna.geometry #:pt #:pt-p #:make-pt #:pt-x #:pt-y)
+  (:shadowing-import-from :ars-magna.world #:map)
+  (:import-from :ars-magna.world #:map-p #:map-name #:map-width #:map-height #:map-flags
+                #:map-places #:map-place-types #:+wall+ #:find-map #:number-pair-p
+                #:place-type-name #:place-type-index #:find-place-type #:doorway)
+  ;; terrain
+  (:export #:terrain #:terrain-p #:terrain-of #:terrain-map #:terrain-clearance)
+  ;; chart
+  (:export #:chart #:chart-p #:make-chart #:chart-terrain #:chart-map #:bar-cell #:free-cell
+           #:free-all-cells #:barred-cells #:crossing-cost)
+  ;; ways
+  (:export #:nearest-free-point #:find-way #:next-point #:way-cost #:straight-cost
+           #:way-length))

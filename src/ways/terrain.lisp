@@ -1,0 +1,169 @@
+;;;; terrain.lisp -- what it costs to cross each cell of a map: computed once, shared by all.
+
+(in-package :ars-magna.ways)
+
+;;; A metre costs 1 in the open, four times as much nearer to a wall than the clearance, and as much
+;;; as the caller says in a cell of a place type that is named. Costs are numbers from 1 up, and
+;;; +BARRED+ for walls. Cells have numbers, row by row, with a margin of walls, one cell wide,
+;;; around them: so each cell of the map has neighbours on all sides. The number of a cell stands
+;;; for its middle too, and is called a node then.
+
+(defconstant +barred+ 1d100
+  "More than any way costs: the cost of what cannot be crossed, or from where no way is known.")
+
+(defconstant +close-to-wall+ 4d0
+  "What a metre costs nearer to a wall than the clearance.")
+
+(deftype node () '(unsigned-byte 31))
+(deftype amounts () '(simple-array double-float (*)))
+
+(declaim (inline make-amounts))
+(defun make-amounts (size amount)
+  (make-array size :element-type 'double-float :initial-element amount))
+
+(defstruct (terrain (:constructor %make-terrain (map places clearance costs columns cells))
+                    (:copier nil))
+  "A map and what a metre costs in each of its cells, for one clearance and one table of the costs
+of places. It does not change, so all threads and copies of runs share it."
+  (map nil :type map :read-only t)
+  ;; What the map's places were.
+  (places nil :type simple-array :read-only t)
+  (clearance 0 :type real :read-only t)
+  (costs '() :type list :read-only t)
+  ;; How many cells a row has, with its margin.
+  (columns 0 :type (integer 0 40000) :read-only t)
+  (cells nil :type amounts :read-only t)
+  ;; Fields of goals that were asked for, newest first. The list is replaced, never altered.
+  (fields '() :type list)
+  (lock (make-lock "terrain") :read-only t))
+(declaim-final terrain)
+
+(addition terrain-p terrain-map terrain-clearance)
+(document-functions
+ terrain-p "True of a terrain, which is what charts of a map share."
+ terrain-map "Return the map that the terrain is of."
+ terrain-clearance "Return how near to walls the terrain's cells cost more, in metres.")
+
+(defmethod print-object ((terrain terrain) stream)
+  (print-unreadable-object (terrain stream :type t)
+    (format stream "of ~A" (map-name (terrain-map terrain)))))
+
+(define-shared terrain)
+
+;;; Cells.
+
+(declaim (inline cell-node node-column node-row))
+(defun cell-node (terrain x y)
+  "Return the number of the cell (X Y) of the map, which may be of the margin."
+  (declare (type (integer -1 32767) x y))
+  (+ (1+ x) (* (1+ y) (terrain-columns terrain))))
+
+(defun node-column (terrain node)
+  (declare (type node node))
+  (1- (mod node (terrain-columns terrain))))
+
+(defun node-row (terrain node)
+  (declare (type node node))
+  (1- (floor node (terrain-columns terrain))))
+
+(defun inside-p (map x y)
+  "True if the point (X,Y) is inside MAP."
+  (and (<= 0 x) (< x (map-width map)) (<= 0 y) (< y (map-height map))))
+
+;;; Making one.
+
+(defun open-ground (map columns)
+  "Return the cells of MAP: 1 where they are free."
+  (let ((cells (make-amounts (* columns (+ 2 (map-height map))) +barred+)) (index 0))
+    (dotimes (y (map-height map) cells)
+      (dotimes (x (map-width map))
+        (unless (logtest +wall+ (aref (map-flags map) index))
+          (setf (aref cells (+ 1 x (* columns (1+ y)))) 1d0))
+        (incf index)))))
+
+(defun offsets-within (clearance columns)
+  "Return how the number of a cell differs from that of a wall, for all cells whose middles are
+nearer than CLEARANCE to the wall's cell: a list of lists (dx offset)."
+  (flet ((gap (d) (max 0 (- (abs d) 1/2))))
+    (loop with radius = (ceiling clearance)
+          for dy from (- radius) to radius
+          append (loop for dx from (- radius) to radius
+                       when (< (+ (expt (gap dx) 2) (expt (gap dy) 2)) (expt clearance 2))
+                         collect (list dx (+ dx (* dy columns)))))))
+
+(defun beside-free-p (cells columns node)
+  "True if a cell next to NODE, straight or diagonally, is free."
+  (declare (type amounts cells))
+  (loop for row in (list (- columns) 0 columns)
+        thereis (loop for offset from (1- row) to (1+ row)
+                      for other = (+ node offset)
+                      thereis (and (< -1 other (length cells)) (< (aref cells other) +barred+)))))
+
+(defun mark-near-walls (cells columns clearance)
+  "Let those of CELLS that are free and nearer to a wall than CLEARANCE cost more."
+  (declare (type amounts cells))
+  (let ((offsets (offsets-within clearance columns)))
+    (dotimes (node (length cells))
+      (when (and (= +barred+ (aref cells node)) (beside-free-p cells columns node))
+        (loop for (dx offset) in offsets
+              for other = (+ node offset)
+              when (and (< -1 other (length cells))
+                        (< -1 (+ dx (mod node columns)) columns)
+                        (= 1d0 (aref cells other)))
+                do (setf (aref cells other) +close-to-wall+))))
+    cells))
+
+(defun mark-places (cells columns map costs)
+  "Let those of CELLS that are places cost what COSTS, a list of (name cost), says of their types."
+  (let ((factors (cl:map 'vector
+                         (lambda (type)
+                           (second (and type (assoc (place-type-name type) costs
+                                                    :test #'same-name-p))))
+                         (map-place-types map)))
+        (index 0))
+    (dotimes (y (map-height map) cells)
+      (dotimes (x (map-width map))
+        (let ((cost (aref factors (aref (map-places map) index))))
+          (when cost (setf (aref cells (+ 1 x (* columns (1+ y)))) cost)))
+        (incf index)))))
+
+(defun make-terrain (map clearance costs)
+  (let* ((columns (+ 2 (map-width map)))
+         (cells (open-ground map columns)))
+    (mark-near-walls cells columns clearance)
+    (mark-places cells columns map costs)
+    (%make-terrain map (map-places map) clearance costs columns cells)))
+
+;;; Keeping them.
+
+(define-global **terrains** (make-hash-table :test 'eq :weakness :key :synchronized t)
+  "Lists of terrains by their maps, newest first. Whoever needs one shares it.")
+
+(define-global **terrains-lock** (make-lock "terrains")
+  "Held while a terrain is made, so that none is made twice.")
+
+(defconstant +terrains-kept+ 8
+  "How many terrains of one map are kept, with different clearances and costs.")
+
+(defun known-terrain (map clearance costs)
+  (find-if (lambda (terrain)
+             (and (eq (terrain-places terrain) (map-places map))
+                  (= clearance (terrain-clearance terrain))
+                  (equal costs (terrain-costs terrain))))
+           (gethash map **terrains**)))
+
+(defun keep-terrain (terrain)
+  (let* ((map (terrain-map terrain))
+         (others (remove (map-places map) (gethash map **terrains**)
+                         :key #'terrain-places :test-not #'eq)))
+    (setf (gethash map **terrains**)
+          (cons terrain (subseq others 0 (min (length others) (1- +terrains-kept+)))))
+    terrain))
+
+(defun terrain-of (map clearance costs)
+  "Return the terrain of MAP as it is now, for CLEARANCE, in metres, and COSTS, a list of (name
+cost), in which the cost is a double-float. It is shared: equal arguments give the same one."
+  (or (known-terrain map clearance costs)
+      (with-lock (**terrains-lock**)
+        (or (known-terrain map clearance costs)
+            (keep-terrain (make-terrain map clearance costs))))))

@@ -1,0 +1,139 @@
+;;;; ways.lisp -- ways from one point to another, as users ask for them.
+
+(in-package :ars-magna.ways)
+
+;;; Points in walls.
+
+(defconstant +near+ 5 "How many cells away a point in a wall may be from a free one.")
+
+(defun free-node-p (chart x y)
+  "True if the cell (X Y) is on the map of CHART and can be crossed."
+  (and (inside-p (chart-map chart) x y)
+       (< (cost-of-node chart (cell-node (chart-terrain chart) x y)) +barred+)))
+
+(defun nearest-free-middle (chart x y)
+  "Return the middle, nearest to (X,Y), of a cell that can be crossed, as two values; NIL if none is
+near."
+  (loop with least = nil and best-x = nil and best-y = nil
+        for column from (- (floor x) +near+) to (+ (floor x) +near+)
+        do (loop for row from (- (floor y) +near+) to (+ (floor y) +near+)
+                 for square = (+ (expt (- (+ column 0.5d0) x) 2) (expt (- (+ row 0.5d0) y) 2))
+                 when (and (or (null least) (< square least)) (free-node-p chart column row))
+                   do (setf least square best-x (+ column 0.5d0) best-y (+ row 0.5d0)))
+        finally (return (and least (values best-x best-y)))))
+
+(defun free-coordinates (chart x y)
+  "Return X and Y if the cell there can be crossed, or else the nearest middle of one, or NIL."
+  (if (free-node-p chart (floor x) (floor y))
+      (values x y)
+      (nearest-free-middle chart x y)))
+
+(defun chart-from (operator chart)
+  "Return the chart that CHART, an argument of OPERATOR, means: itself, or a new one of a map."
+  (if (chart-p chart)
+      chart
+      (make-chart (map-of operator chart))))
+
+(addition nearest-free-point)
+(defun nearest-free-point (chart point)
+  "Return POINT, as a PT, if it is in a cell of CHART that can be crossed; or else the nearest
+middle of one, up to five cells away, or NIL. POINT is a PT or a list (x y), perhaps outside the
+map. CHART may be a map or the name of one. Signals WRONG-ARGUMENT."
+  (check-argument nearest-free-point point (point-p point) "a PT or a list (x y)")
+  (multiple-value-bind (x y) (free-coordinates (chart-from 'nearest-free-point chart)
+                                               (point-x point) (point-y point))
+    (and x (make-pt x y))))
+
+(defun end-of-way (operator chart point)
+  "Return the coordinates of the POINT, or of what is free near it. Signals WRONG-ARGUMENT."
+  (node-of-point operator chart point)
+  (multiple-value-bind (x y) (free-coordinates chart (point-x point) (point-y point))
+    (unless x
+      (reject-argument operator 'point point
+                       (format nil "a point of ~A within ~D cells of one that can be crossed"
+                               (map-name (chart-map chart)) +near+)))
+    (values x y)))
+
+;;; Ways between points that are free.
+
+(defun place-test (chart name)
+  "Return a function that is true of the column and row of a place of the type called NAME."
+  (let* ((map (chart-map chart)) (places (map-places map)) (width (map-width map))
+         (number (place-type-index map (find-place-type name))))
+    (declare (type (simple-array (unsigned-byte 8) (*)) places))
+    (lambda (x y)
+      (declare (type (unsigned-byte 15) x y))
+      (eql number (aref places (+ x (* y width)))))))
+
+(defun points-of-way (chart x y goal-x goal-y until turns)
+  "Return the points of the way on CHART from (X,Y) to (GOAL-X,GOAL-Y), both free, without the
+first: () if there is none. UNTIL and TURNS are as for DRAW-WAY."
+  (let* ((field (field-to chart (node-at chart goal-x goal-y)))
+         (total (find-total field (node-at chart x y))))
+    (when (< total +barred+)
+      (let ((pencil (make-pencil x y)))
+        (draw-way pencil (make-descent field x y total) goal-x goal-y until turns)
+        (nreverse (pencil-points pencil))))))
+
+;;; What users call.
+
+(defmacro with-ends ((operator chart start goal) &body body)
+  "Run BODY with the coordinates X, Y, GOAL-X and GOAL-Y of START and GOAL on CHART."
+  `(multiple-value-bind (x y) (end-of-way ',operator ,chart ,start)
+     (multiple-value-bind (goal-x goal-y) (end-of-way ',operator ,chart ,goal)
+       ,@body)))
+
+(addition find-way)
+(defun find-way (chart start goal &key until)
+  "Return the way on CHART from START to GOAL, as a list of the points, PTs, where it begins, turns
+and ends; () if there is none. CHART may be a map or the name of one. START and GOAL are PTs or
+lists (x y); for one in a wall the nearest free point stands, up to five cells away. The way ends in
+the first cell, after that of START, that is a place of the type called UNTIL, or for whose column
+and row UNTIL, a function, returns true. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+  (check-argument find-way until (or (functionp until) (symbolp until))
+                  "the name of a place type, or a function of a column and a row")
+  (let* ((chart (chart-from 'find-way chart))
+         (until (if (and until (symbolp until)) (place-test chart until) until)))
+    (with-ends (find-way chart start goal)
+      (let ((points (points-of-way chart x y goal-x goal-y until nil)))
+        (and points (cons (make-pt x y) points))))))
+
+(addition next-point)
+(defun next-point (chart start goal)
+  "Return to which point, a PT, somebody at START is to go straight on the way to GOAL on CHART:
+where the way first turns, or GOAL; NIL if there is no way. Signals WRONG-ARGUMENT. See FIND-WAY."
+  (let ((chart (chart-from 'next-point chart)))
+    (with-ends (next-point chart start goal)
+      (first (points-of-way chart x y goal-x goal-y nil 1)))))
+
+(addition way-cost)
+(defun way-cost (chart start goal)
+  "Return what the way from START to GOAL on CHART costs, between the middles of their cells:
+metres, each counted as often as where it is costs. NIL if there is no way. Signals WRONG-ARGUMENT.
+See FIND-WAY."
+  (let ((chart (chart-from 'way-cost chart)))
+    (with-ends (way-cost chart start goal)
+      (let ((total (find-total (field-to chart (node-at chart goal-x goal-y))
+                               (node-at chart x y))))
+        (and (< total +barred+) total)))))
+
+(addition way-length)
+(defun way-length (way)
+  "Return how long WAY is, a list of PTs or of lists (x y), in metres. Signals WRONG-ARGUMENT."
+  (check-argument way-length way (and (proper-list-p way) (every #'point-p way))
+                  "a list of PTs, or of lists (x y)")
+  (loop for (point next) on way
+        while next
+        sum (let ((dx (- (point-x next) (point-x point))) (dy (- (point-y next) (point-y point))))
+              (sqrt (+ (* dx dx) (* dy dy))))))
+
+(addition straight-cost)
+(defun straight-cost (chart start goal)
+  "Return what the straight line from START to GOAL on CHART costs: metres, each counted as often as
+where it is costs. NIL if it is not free, that is, nearer than half a metre to a wall, or through a
+cell that cannot be crossed. Signals WRONG-ARGUMENT. See FIND-WAY."
+  (let ((chart (chart-from 'straight-cost chart)))
+    (with-ends (straight-cost chart start goal)
+      (let ((cost (free-line-cost (field-to chart (node-at chart goal-x goal-y))
+                                  x y goal-x goal-y (/ +barred+ 2) t)))
+        (and (< cost +barred+) cost)))))

@@ -1,0 +1,33 @@
+;;;; budgets.lisp -- how many seconds each suite may take before somebody should look why.
+
+(in-package :ars-magna.tests)
+
+;;; About twice what a suite takes on two cores of a shared machine. One that takes longer has not
+;;; failed; ./tests/run says so at its end.
+
+(defparameter *usual-budget* 2 "How many seconds a suite may take that *BUDGETS* does not name.")
+
+(defparameter *budgets*
+  '((newcomer 30) (abuse 20) (cli-hostile 10) (rpl 9) (plots 8) (forking 8) (saving 8)
+    (searching 7) (architecture 7) (rpl-robot 7) (random-driver 6) (projecting 6) (outliving 6)
+    (listings 6) (rewinding 4) (experiment-shell 4) (digests 4) (manual-4 4)
+    (inference-coverage 4) (experiments-tables 4) (manual-3-4-3 4) (definitions 3))
+  "How many seconds suites may take: a list of lists (suite seconds).")
+
+(defvar *seconds* (make-hash-table) "How many seconds each suite has taken, in these runs.")
+
+(defun budget-of (suite)
+  (or (second (assoc suite *budgets*)) *usual-budget*))
+
+(defun seconds-taken (suite)
+  (gethash suite *seconds* 0))
+
+(defun within-budget-p (suite)
+  (<= (seconds-taken suite) (budget-of suite)))
+
+(defun call-timed (function suite)
+  "Call FUNCTION and return its value; what it takes counts for SUITE."
+  (let ((start (get-internal-real-time)))
+    (multiple-value-prog1 (funcall function)
+      (incf (gethash suite *seconds* 0)
+            (/ (- (get-internal-real-time) start) internal-time-units-per-second)))))

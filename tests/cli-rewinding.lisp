@@ -1,0 +1,30 @@
+;;;; cli-rewinding.lisp -- the prompt goes back to an earlier tick.
+
+(in-package :ars-magna.tests)
+
+(def-suite* cli-rewinding :in ars-magna)
+
+(test rewind.at-a-prompt-that-keeps-forks
+  (is-true (answers-p '("Tick 5." "Tick 2, headless." "Tick 0, headless.")
+                      '("(keep-forks)" "step 5" "rewind 3" "rewind 2")))
+  (is-true (has-words-p (complaint "rewind 3") "keep-forks"))
+  (is-true (has-words-p (complaint "rewind") "REWIND n" "missing"))
+  (is-true (has-words-p (joined (type-batch "(keep-forks)" "rewind 3")) "at most 0" "tick 0")))
+
+(test rewind.commands-go-to-the-robot-of-now
+  (let ((lines (type-batch "(keep-forks)" "turn .5" "(rewind (simulation-tick))" "rewind 0"
+                           "(robot-angle butler)" "turn .3" "(robot-angle butler)")))
+    (is-true (has-words-p (joined lines) "turned 0.50" "at tick 0" "Tick 0, headless."
+                          "turned 0.30"))
+    (is (equal '("0.0" "0.3") (list (nth 3 lines) (nth 5 lines))))))
+
+(test rewind.live-plans-are-watched-again
+  "Of the plan of the run that is over nothing is told."
+  (let ((text (let ((run:*forks-to-keep* t))
+                (joined (type-live '("pause" "plan dawdle 1000000" "step 20" "rewind 10" "plans"
+                                     "quit"))))))
+    (is-true (has-words-p text "Plan 1 is under way" "paused. Plans under way: dawdle."
+                          "1 waiting: dawdle")
+             "~A" text)
+    (is (null (search "was stopped" text))))
+  (awaiting (null cli::*plan-errands*)))

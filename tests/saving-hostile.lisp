@@ -1,0 +1,216 @@
+;;;; saving-hostile.lisp -- files that are no saved runs, or damaged, or forged.
+
+(in-package :ars-magna.tests)
+
+(in-suite saving)
+
+(defun write-saved-ride (file)
+  "Save a moment of a random ride in FILE. Return the digest."
+  (run:with-simulation ((keeper helper) :seed 5 :journal t)
+    (let ((*ride* (make-ride (base:make-dice 5 "hostile"))))
+      (populate)
+      (loop repeat 40 do (step-ride) (base:take-messages))
+      (run:save-simulation file)
+      (run:state-digest))))
+
+(defun loading-outcome (file &rest options)
+  "Return the digest of what is saved in FILE, or the condition of ours that its loading signals.
+What else may be signalled is not caught."
+  (handler-case (run:state-digest (apply #'run:load-simulation file options))
+    (base:ars-magna-error (trouble) trouble)))
+
+(defun harmless-p (outcome digest)
+  "True if OUTCOME of a loading is that damage was found, or did no harm."
+  (or (typep outcome 'run:damaged-simulation) (eql digest outcome)))
+
+(test saved-damage.is-found
+  "200 damages to the text, 100 to its bytes."
+  (with-temporary-file (file)
+    (let* ((digest (write-saved-ride file)) (dice (base:make-dice 79))
+           (bytes (alexandria:read-file-into-byte-vector file))
+           (text (base:read-file-into-string file)))
+      (dotimes (i 200)
+        (write-text (damaged-text text dice) file)
+        (is (harmless-p (loading-outcome file) digest) "damage ~D" i))
+      (dotimes (i 100)
+        (let ((copy (copy-seq bytes)))
+          (setf (aref copy (base:roll-index (length copy) dice)) (base:roll-index 256 dice))
+          (alexandria:write-byte-vector-into-file copy file :if-exists :supersede))
+        (is (harmless-p (loading-outcome file) digest) "damage ~D to bytes" i)))))
+
+;;; Forgeries: the check sums are right.
+
+(defun saved-texts (file)
+  "Return the texts of the lines of the saved run in FILE, without check sums."
+  (loop for line in (rest (journal-lines file))
+        collect (subseq line 0 (- (length line) 10))))
+
+(defun write-saved-texts (texts file)
+  (write-lines (cons run::+saved-title+ (sealed-lines texts)) file))
+
+(defun word-places (text)
+  "Return where the words in TEXT, outside of quotes, begin and end: conses."
+  (loop with start = nil and quote = nil
+        for char across text
+        for position from 0
+        for inside = (not (find char "() \"|"))
+        do (when (find char "\"|")
+             (setf quote (cond ((null quote) char) ((eql quote char) nil) (t quote))))
+        if (and inside (null quote) (null start))
+          do (setf start position)
+        else if (and start (not inside))
+               collect (cons start position) into places and do (setf start nil)
+        finally (return places)))
+
+(defun forged-text (text words dice)
+  "Return TEXT with one of WORDS instead of one that it has, by DICE."
+  (let ((places (rest (word-places text))))
+    (if places
+        (destructuring-bind (start . end) (base:roll-element places dice)
+          (concatenate 'string (subseq text 0 start) (base:roll-element words dice)
+                       (subseq text end)))
+        text)))
+
+(defun load-and-run (file)
+  "Load the saved run in FILE, whatever its digest, and pass some ticks. Return :RAN, or the
+condition of ours that loading signals."
+  (handler-case
+      (run::reading-file (file 'run:damaged-simulation)
+        (run::call-with-saved-text
+         (lambda (in)
+           (let* ((reading (run::make-reading in 0 0)) (head (run::read-head reading)))
+             (run::simulation-from reading head (file-length in))))
+         file))
+    (base:ars-magna-error (trouble) trouble)
+    (:no-error (simulation) (run:run-ticks 30 simulation) :ran)))
+
+(test saved-forgery.does-no-harm
+  "400 words replaced by others: what makes no sense is found, and what is not found runs."
+  (with-temporary-file (file)
+    (write-saved-ride file)
+    (let* ((texts (saved-texts file)) (dice (base:make-dice 80)) (found 0)
+           (words (append '("nil" "t" "0" "-1" "1" "7" "99999" "4611686018427387904" "1.5" "1.0e300"
+                            "floor" "(1 2)" "(nil . t)" "\"x\"" "|COMMON-LISP::ABORT|"
+                            "|ARS-MAGNA.COMMAND::COAST|" "@0" "@1" "@999999")
+                          (loop for number from 1 to 99 by 3 collect (format nil "@~D" number))))
+           (count (length texts)))
+      (dotimes (i 400)
+        (let ((copy (copy-list texts)) (number (1+ (base:roll-index (1- count) dice))))
+          (setf (nth number copy) (forged-text (nth number copy) words dice))
+          (write-saved-texts copy file)
+          (let ((outcome (load-and-run file)))
+            (unless (eq :ran outcome)
+              (incf found)
+              (is (typep outcome '(or run:damaged-simulation base:unknown-name))
+                  "~A: ~A" (nth number copy) outcome)))))
+      (is (< 250 found)))))
+
+(defun says-when-forged-p (words file texts old new)
+  "True if loading a file of TEXTS, in which NEW stands instead of OLD, says WORDS."
+  (write-saved-texts (mapcar (lambda (text)
+                               (let ((place (search old text)))
+                                 (if place
+                                     (concatenate 'string (subseq text 0 place) new
+                                                  (subseq text (+ place (length old))))
+                                     text)))
+                             texts)
+                     file)
+  (let ((outcome (loading-outcome file)))
+    (says-p words outcome)))
+
+(test saved-forgery.is-named
+  (with-temporary-file (file)
+    (with-rover (:seed 3 :journal t)
+      (command:robot-go-forward rover 30)
+      (run:run-ticks 9)
+      (run:save-simulation file))
+    (let ((texts (saved-texts file)))
+      (loop for (old new words)
+              in '(("(ars-magna-run 1 " "(ars-magna-run 2 " "another version")
+                   ("(ars-magna-run 1 " "(ars-magna-journal 1 " "begin like one")
+                   ("tick 9" "tick 8" "its end") ("digest " "digest -" "digest is none")
+                   ("motion-noise*" "no-noise*" "no simulation parameter")
+                   ("::DRIVE-A-WHILE|" "::DRIVE-TICK|" "no step")
+                   ("|ARS-MAGNA.COMMAND::DRIVE-A-WHILE|" "|COMMON-LISP::ABORT|" "no step")
+                   ("|ARS-MAGNA.COMMAND::DRIVE-A-WHILE|" "|ARS-MAGNA.COMMAND::WATCH-GRIP|"
+                    "has not")
+                   ("function |ARS-MAGNA.COMMAND::RUN-OPERATION|" "function |COMMON-LISP::ABORT|"
+                    "hold")
+                   ("found map " "found file " "nothing that a run uses")
+                   ("found map " "find map " "its numbers")
+                   ("found map \"" "found map \"NO-" "NO-")
+                   ("new dice 9" "new dice 999999999" "more objects")
+                   ("new dice 9" "new dice 8" "not as many")
+                   ("new dice 9" "new dice -9" "more objects")
+                   ("new agenda 1 1" "new agenda 2 1" "not as many")
+                   ("new agenda 1 1" "new agenda 1 0" "too much")
+                   ("t (9) nil" "t (4000000000) nil" "more room")
+                   ("t (9) nil" "nil (9) nil" "arrays makes no sense")
+                   ("|ARS-MAGNA.WORLD::THING|" "|COMMON-LISP::PATHNAME|" "not loaded")
+                   ("(\"NAME\" \"SERIAL\"" "(\"SERIAL\" \"NAME\"" "another version")
+                   ("(waiting)" "(waiting @1)" "which requests wait")
+                   ("(waiting)" "(journal)" "which requests wait"))
+            do (is-true (says-when-forged-p words file texts old new) "~A" new))
+      (write-saved-texts (butlast texts) file)
+      (is-true (says-p "end is missing" (loading-outcome file)))
+      (write-saved-texts (append texts '("(end 9)")) file)
+      (is-true (says-p "behind its end" (loading-outcome file))))))
+
+(test saved-files.that-are-none
+  (with-temporary-file (file)
+    (loop for (text words) in `(("" "end is missing") ("hello" "damaged")
+                                (,(make-string 2000000 :initial-element #\() "damaged")
+                                ("(ars-magna-run 1 ())" "damaged"))
+          do (write-text text file)
+             (is-true (says-p words (loading-outcome file)) "~A" words))
+    (with-rover (:journal t) (run:save-journal file))
+    (is (typep (loading-outcome file) 'run:damaged-simulation))
+    (is (typep (loading-outcome (uiop:temporary-directory)) 'run:damaged-simulation))
+    (is (typep (loading-outcome "/no-such-directory/run") 'run:damaged-simulation))
+    (signals base:wrong-argument (run:load-simulation 7))
+    (signals base:wrong-argument (with-rover () (run:save-simulation 7)))))
+
+(test saving.replaces-nothing-else
+  (with-temporary-file (file)
+    (with-rover (:journal t)
+      (write-text "My own." file)
+      (signals base:misuse (run:save-simulation file))
+      (is (equal '("My own.") (journal-lines file)))
+      (write-text "" file)
+      (run:save-simulation file)
+      (run:run-ticks 1)
+      (is (equal (truename file) (run:save-simulation file)))
+      (is (= 1 (run:simulation-tick (run:load-simulation file))))
+      (signals base:misuse (run:save-simulation "/no-such-directory/run"))
+      (signals base:misuse (run:save-simulation (uiop:temporary-directory)))
+      (time:schedule (nil) (is (typep (saving-refusal file) 'base:misuse) "inside a tick"))
+      (run:run-ticks 1))))
+
+(test loading.interns-nothing-of-users
+  (with-temporary-file (file)
+    (with-rover ()
+      (world:set-attribute (world:find-thing 'crate) :mood 'ars-magna.tests::glum-or-so)
+      (run:save-simulation file))
+    (let ((texts (saved-texts file)) (before (count-symbols)))
+      (is-true (says-when-forged-p "what was saved" file texts "::GLUM-OR-SO" "::NO SUCH NAME"))
+      (is (= before (count-symbols))))))
+
+(test loading.needs-the-same-definitions
+  (with-temporary-file (file)
+    (base:with-own-definitions ()
+      (eval '(world:defkicker saved-sway (thing) (:prob 1/2) (world:kick-thing thing .01 0 nil)))
+      (with-rover ()
+        (world:set-kicker (world:find-thing 'crate) 'saved-sway)
+        (run:save-simulation file))
+      (is (integerp (loading-outcome file)))
+      (eval '(world:defkicker saved-sway (thing) (:prob 1/2) (world:kick-thing thing .02 0 nil)))
+      (is (typep (loading-outcome file) 'run:different-definitions))
+      (is (integerp (loading-outcome file :anyway t)))
+      (handler-bind ((run:different-definitions
+                       (lambda (trouble)
+                         (declare (ignore trouble))
+                         (invoke-restart 'run:load-anyway))))
+        (is (integerp (run:state-digest (run:load-simulation file)))))
+      (base:undefine 'world:kicker 'saved-sway)
+      (is (typep (loading-outcome file) 'run:different-definitions))
+      (is (typep (loading-outcome file :anyway t) 'base:unknown-name)))))

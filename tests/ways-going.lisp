@@ -1,0 +1,83 @@
+;;;; ways-going.lisp -- robots that are sent along ways: by programs, and at the prompt; pictures.
+
+(in-package :ars-magna.tests)
+
+(in-suite ways)
+
+(defun going-trial (x y seed &key clean (options '()))
+  "Send MARVIN to (X,Y). Return the error code, or :THERE, and how far from there it really is."
+  (let ((answers '()))
+    (run:with-simulation (ars-worlds:marvin :seed seed :clean clean)
+      (apply #'ars-worlds:robot-go-to ars-worlds:marvin x y
+             (lambda (err robot) (push (list (or err :there) robot) answers))
+             options)
+      (run:run-until (lambda () answers) :limit 2000)
+      (multiple-value-bind (at-x at-y) (robot:robot-position ars-worlds:marvin)
+        (is (= 1 (length answers)))
+        (is (eq ars-worlds:marvin (second (first answers))))
+        (values (first (first answers))
+                (ars:way-length (list (list x y) (list at-x at-y))))))))
+
+(defun there-p (x y seed &rest options)
+  (multiple-value-bind (answer distance) (apply #'going-trial x y seed options)
+    (and (eq :there answer) (< distance 2))))
+
+(test going.always-arrives-in-the-default-office
+  (loop for (x y) in '((109 24) (108.5 70.5) (10 25) (95 28))
+        do (loop for seed from 1 to 5
+                 do (is-true (there-p x y seed) "(~A,~A), seed ~D" x y seed))))
+
+(test going.arrives-without-noise-as-near-as-wanted
+  (multiple-value-bind (answer distance)
+      (going-trial 109 24 1 :clean t :options '(:tolerance 1/10))
+    (is (eq :there answer))
+    (is (< distance 1/10))))
+
+(test going.says-why-it-ends
+  (is (eq :no-way (let ((seed 1))
+                    (world:defmap apart (9 5)
+                      (rect (0 0) (8 4) stone 1)
+                      (wall (4 0) (4 4) stone 1))
+                    (robot:defrobot settler (apart (2.5 2.5) 0) :cameras ((1 5)))
+                    (let ((answer nil))
+                      (run:with-simulation (settler :seed seed)
+                        (ars-worlds:robot-go-to settler 6.5 2.5
+                                                (lambda (err robot)
+                                                  (declare (ignore robot))
+                                                  (setf answer err)))
+                        (run:run-ticks 50))
+                      answer))))
+  (run:with-simulation (ars-worlds:marvin :seed 1)
+    (let ((answer nil))
+      (ars-worlds:robot-go-to ars-worlds:marvin 109 24
+                              (lambda (err robot) (declare (ignore robot)) (setf answer err)))
+      (run:run-ticks 20)
+      (ars:robot-turn ars-worlds:marvin 1)
+      (run:run-ticks 20)
+      (is (eq :interrupt answer)))
+    (signals base:wrong-argument
+      (ars-worlds:robot-go-to ars-worlds:marvin 500 1 #'list))))
+
+(test going.is-decided-by-the-seed
+  (flet ((distance (seed) (nth-value 1 (going-trial 109 24 seed))))
+    (is (= (distance 3) (distance 3)))
+    (is (/= (distance 3) (distance 4)))))
+
+(test go-to.is-a-line-of-the-prompt
+  (is-true (has-words-p (complaint "go-to 3") "GO-TO x y" "y"))
+  (is-true (has-words-p (complaint "go-to 300 7") "300" "point")))
+
+(defun occurrences (word text)
+  (loop for place = (search word text) then (search word text :start2 (1+ place))
+        while place count t))
+
+(test pictures.show-ways-on-the-map
+  (uiop:with-temporary-file (:pathname file :type "svg")
+    (flet ((lines (&rest ways)
+             (ars:save-way-picture 'two-doors ways file :scale 10)
+             (occurrences "<p" (base:file-text file))))
+      (let ((way (ars:find-way 'two-doors '(3 5.5) '(17 5.5))))
+        (is (= (+ 2 (lines way)) (lines way '((3 3) (4 4)) '((5 5) (6 6)))))
+        (is (search "210" (base:file-text file)))
+        (signals base:wrong-argument (lines '((1 2 3))))
+        (signals base:wrong-argument (ars:save-way-picture 'two-doors (list way) "a.gif"))))))

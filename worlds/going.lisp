@@ -1,0 +1,188 @@
+;;;; going.lisp -- a robot goes to a point of its map: with continuations instead of a plan.
+
+;;; Good for programs without plans, and for the line GO-TO of the prompt. It takes the same steps
+;;; as the plan TRAVEL-TO (see doorways.lisp) and reckons in the same way. Each step is a function
+;;; that issues a command and returns at once; its continuation takes the next. What the steps
+;;; share is in a JOURNEY.
+;;;
+;;;   (with-simulation (ars-worlds:marvin :seed 1)
+;;;     (ars-worlds:robot-go-to ars-worlds:marvin 109 24
+;;;       (continuation (err robot) (out (or err "there") t)))
+;;;     (run-ticks 500))
+
+(in-package :ars-worlds)
+(in-readtable :nisp)
+
+(defstruct (journey (:copier nil))
+  "Where a robot is to go, where it believes to be, and how much more trouble it puts up with."
+  (robot nil :type robot :read-only t)
+  (me nil :type reckoning :read-only t)
+  (goal '() :type list :read-only t)
+  (tolerance 1 :type real :read-only t)
+  (camera nil :read-only t)
+  (continuation nil :read-only t)
+  (steps 300 :type fixnum)
+  (patience 40 :type fixnum))
+
+(defun widest-of (robot)
+  "Return the camera of ROBOT that sees widest, or NIL if it has none."
+  (let ((cameras (coerce (robot-cameras robot) 'list)))
+    (and cameras
+         (reduce (lambda (a b) (if (> (camera-field-of-view b) (camera-field-of-view a)) b a))
+                 cameras))))
+
+(defun goal-near (chart x y)
+  "Return the point (X,Y), a list, or the nearest that is free on CHART. Signals WRONG-ARGUMENT."
+  (let ((point (nearest-free-point chart (list x y))))
+    (unless point
+      (ars-magna.base:reject-argument 'robot-go-to "the point" (list x y)
+                                      (format nil "the coordinates of a point of ~A, within five ~
+                                                   cells of a free one"
+                                              (chart-map chart))))
+    (as-list point)))
+
+(defun robot-go-to (robot x y continuation &key start (tolerance 1) (patience 40))
+  "Let ROBOT go to the point (X,Y) of its map, or the nearest that is free, as near as TOLERANCE
+metres, through doorways and round obstacles: by its odometer, its place sense and a camera. START
+is where it is, a list (x y heading); by default it finds that out. Returns at once. CONTINUATION
+gets, in the end, an error code or NIL, and ROBOT. The codes: :NO-WAY, :GAVE-UP after PATIENCE
+troubles, and :INTERRUPT if another command took the robot or the camera over. Signals
+WRONG-ARGUMENT for a point that is nowhere near."
+  (let ((me (begin-reckoning (or start (here robot)) robot)))
+    (go-on-journey (make-journey :robot robot :me me
+                                 :goal (goal-near (reckoning-chart me) x y)
+                                 :tolerance tolerance :patience patience
+                                 :camera (widest-of robot) :continuation continuation))
+    (values)))
+
+(defun end-journey (journey err)
+  "End JOURNEY with the error code ERR, or NIL for success."
+  (funcall (journey-continuation journey) err (journey-robot journey)))
+
+(defun after-command (journey err next otherwise)
+  "Go on with NEXT, a function of no arguments, if a command ended without ERR; with OTHERWISE if it
+ended with one, but not if somebody has interrupted it."
+  (cond ((eq err :interrupt) (end-journey journey err))
+        (err (funcall otherwise))
+        (t (funcall next))))
+
+(defun go-on-journey (journey)
+  "Take the next step of JOURNEY, if it is not over."
+  (let* ((me (journey-me journey)) (goal (journey-goal journey))
+         (step (next-step-of me goal)))
+    (cond ((<= (distance-left me goal) (journey-tolerance journey)) (end-journey journey nil))
+          ((null step) (end-journey journey :no-way))
+          ((zerop (decf (journey-steps journey))) (end-journey journey :gave-up))
+          ((eq :door (first step))
+           (face-point journey (middle-of (second step))
+                       (lambda () (look-for-doorway journey (second step) (third step)))))
+          (t (drive-to-point journey (second step) #'go-on-journey)))))
+
+;;; Driving.
+
+(defun face-point (journey point next)
+  "Turn the robot of JOURNEY to face POINT; go on with NEXT."
+  (robot-turn (journey-robot journey) (angle-towards (journey-me journey) point)
+    (continuation (err robot angle) (after-command journey err next next))))
+
+(defun drive-to-point (journey point next)
+  "Let the robot of JOURNEY drive straight to POINT; take the step NEXT, a function of JOURNEY."
+  (face-point journey point
+              (lambda ()
+                (drive-straight journey (distance-left (journey-me journey) point) next))))
+
+(defun drive-straight (journey distance next)
+  "Let the robot of JOURNEY drive DISTANCE metres; take the step NEXT, a function of JOURNEY."
+  (let ((ticks (max 1 (ceiling distance driving-speed*))))
+    (if (< distance .05)
+        (funcall next journey)
+        (robot-set-speed (journey-robot journey) (/ distance ticks)
+          (continuation (err robot speed)
+            (robot-go-forward robot ticks
+              (continuation (err robot)
+                (after-command journey err
+                               (lambda () (funcall next journey))
+                               (lambda () (note-obstacle journey))))))))))
+
+;;; Trouble.
+
+(defun note-obstacle (journey)
+  "Something has stopped the robot of JOURNEY: a wall, by which it corrects its reckoning, or a
+thing, round which it goes. Each third time it goes somewhere else first."
+  (let ((me (journey-me journey)))
+    (reckon me)
+    (unless (correct-by-wall me) (bar-ahead me))
+    (cond ((zerop (decf (journey-patience journey))) (end-journey journey :gave-up))
+          ((zerop (mod (journey-patience journey) 3))
+           (robot-turn (journey-robot journey) (if (evenp (journey-patience journey)) 2.4 -2.4)
+             (continuation (err robot angle)
+               (after-command journey err
+                              (lambda () (drive-straight journey 2 #'go-on-journey))
+                              (lambda () (go-on-journey journey))))))
+          (t (go-on-journey journey)))))
+
+;;; Doorways: a camera leads the robot there, as in PASS-DOORWAY.
+
+(defun look-for-doorway (journey cell beyond)
+  "Let the robot of JOURNEY, which faces the doorway CELL, go into it and to the point BEYOND."
+  (flet ((blindly ()
+           (drive-to-point journey (middle-of cell)
+                           (lambda (journey) (leave-doorway journey beyond)))))
+    (if (journey-camera journey)
+        (camera-align-robot (journey-camera journey)
+          (continuation (err camera angle)
+            (camera-get-all-place-designators camera 'doorway
+              (continuation (err camera designators)
+                (let ((doorway (nearest-ahead designators)))
+                  (if (and doorway (not (eq err :interrupt)))
+                      (go-to-doorway journey doorway beyond)
+                      (after-command journey err #'blindly #'blindly)))))))
+        (blindly))))
+
+(defun go-to-doorway (journey doorway beyond)
+  "Let the robot of JOURNEY go to what the designator DOORWAY denotes."
+  (let ((begun nil))
+    (camera-track (journey-camera journey) doorway
+      (continuation (err camera designator)
+        ;; It is called again when the track ends.
+        (unless begun
+          (setf begun t)
+          (after-command journey err
+                         (lambda () (follow-to-doorway journey beyond))
+                         (lambda () (note-obstacle journey))))))))
+
+(defun follow-to-doorway (journey beyond)
+  (robot-set-speed (journey-robot journey) driving-speed*
+    (continuation (err robot speed)
+      (robot-goto-designator robot (journey-camera journey)
+        (continuation (err robot camera designator)
+          (camera-untrack camera
+            (continuation (untrack-err camera)
+              (after-command journey err
+                             (lambda () (leave-doorway journey beyond))
+                             (lambda ()
+                               (if (eq err :robot-blocked)
+                                   (note-obstacle journey)
+                                   (leave-doorway journey beyond)))))))))))
+
+(defun leave-doorway (journey beyond)
+  "Let the robot of JOURNEY correct its reckoning, if it senses a doorway, and drive on to BEYOND."
+  (flet ((on () (drive-to-point journey beyond #'go-on-journey)))
+    (robot-place (journey-robot journey)
+      (continuation (err robot type)
+        (let ((cell (doorway-nearby (journey-me journey))))
+          (if (and cell (eq type 'doorway))
+              (take-place journey cell #'on)
+              (after-command journey err #'on #'on)))))))
+
+(defun take-place (journey cell next)
+  "Let the robot of JOURNEY, which is in the doorway CELL, know that and how it is turned."
+  (let ((me (journey-me journey)))
+    (correct-by-cell me cell)
+    (robot-align-place (journey-robot journey)
+      (continuation (err robot angle)
+        (after-command journey err
+                       (lambda ()
+                         (correct-by-direction me cell)
+                         (funcall next))
+                       next)))))
