@@ -104,7 +104,7 @@
                  (:file "operators")))
    (:module "rpl/tasks" :serial t
     :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
-                 (:file "task") (:file "trace") (:file "runner") (:file "charging")
+                 (:file "task") (:file "trace") (:file "runner") (:file "words") (:file "charging")
                  (:file "tracing") (:file "machine") (:file "ending") (:file "stepping")
                  (:file "blame") (:file "shape") (:file "procedure") (:file "forking")
                  (:file "report") (:file "courtesy") (:file "repair") (:file "care")

@@ -69,4 +69,6 @@ them."
                                (and (interface-p participant)
                                     (eq robot (interface-robot participant))))
                              (simulation-participants *simulation*))))
-    (and interface (task-numbered (task-serial task) (interface-runner interface)))))
+    (and interface
+         (eq (interface-valve interface) (entity-like (interface-valve client)))
+         (task-numbered (task-serial task) (interface-runner interface)))))

@@ -80,6 +80,7 @@ all plans of the robot stand still for TICKS, 0 or more, once the step under way
 go on, and what happens meanwhile is heard after that. Elsewhere do nothing. Returns nothing.
 Signals WRONG-ARGUMENT."
   (check-argument charge-ticks ticks (amount-p ticks) "a number of ticks, from 0 to 1e15")
+  (note-from-outside #'charge-ticks runner ticks)
   (when (and runner (runner-charged-p runner) (plusp ticks))
     (stand-still runner ticks))
   (values))
@@ -91,6 +92,7 @@ budget, let STEPS, a whole number, count as if the plans of the robot had taken 
 than is left of this tick's budget takes the next ones. Elsewhere do nothing. Returns nothing.
 Signals WRONG-ARGUMENT."
   (check-argument charge-steps steps (whole-p steps) "a whole number of steps, from 0 to 1e9")
+  (note-from-outside #'charge-steps runner steps)
   (when (and runner (runner-charged-p runner) (runner-budget runner))
     (let* ((left (max 0 (- (runner-limit runner) (runner-steps runner))))
            (now (min steps left)))

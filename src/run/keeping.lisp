@@ -114,6 +114,9 @@ first and the last are needed."
 (defun begin-keeping (simulation limit)
   "Let SIMULATION, which this thread has in custody, keep forks, at most LIMIT, from now on."
   (let ((past (setf (simulation-past simulation) (make-past limit #'keep-fork-in-time))))
+    ;; One can go back as far as here: what has been asked for stays so.
+    (dolist (request (timeline-inbox (simulation-timeline simulation)))
+      (when (zerop (request-phase request)) (setf (request-phase request) 5)))
     (when (zerop (timeline-phase (simulation-timeline simulation)))
       (keep-fork simulation past))))
 

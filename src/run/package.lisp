@@ -15,7 +15,7 @@ takes part in it. Manual 2.3 and appendix A.")
            #:simulation-tick #:simulation-seed #:simulation-robots #:simulation-journal
            #:simulation-gate #:simulation-observers #:simulation-participants
            #:simulation-messages #:simulation-over #:simulation-agenda #:simulation-ticking-p
-           #:simulation-rate #:simulation-thinking #:simulation-thread
+           #:simulation-rate #:simulation-thinking #:simulation-thread #:latest
            #:add-observer #:remove-observer #:add-participant #:remove-participant
            #:idle-p #:robot-simulation #:fresh-simulation #:headless-p
            #:set-seed #:end-simulation)

@@ -48,12 +48,20 @@
 
 ;;; The run that goes on.
 
-(defun past-until (tick past)
-  "Return what PAST was at the end of TICK."
-  (make-past (past-limit past) (past-keeper past)
-             :forks (remove-if (lambda (kept) (> (kept-tick kept) tick)) (past-forks past))
-             :acts (acts-until tick (past-acts past))
-             :cost (past-cost past)))
+(defun past-until (tick simulation)
+  "Return what the past of SIMULATION was at the end of TICK; and in a list, the newest first, what
+had been asked of it by then and not yet been done."
+  (let* ((past (simulation-past simulation))
+         (acts (past-acts past)))
+    (when (= tick (simulation-tick simulation))
+      (setf acts (append (pending-acts simulation) acts)))
+    (multiple-value-bind (done asked) (acts-until tick acts)
+      (values (make-past (past-limit past) (past-keeper past)
+                         :forks (remove-if (lambda (kept) (> (kept-tick kept) tick))
+                                           (past-forks past))
+                         :acts done
+                         :cost (past-cost past))
+              asked))))
 
 (defun warn-of-straying (run tick)
   (let ((*message-queue* (simulation-messages run)))
@@ -61,15 +69,15 @@
                               ~D on, as it may if it depends on what is outside of its run."
                          tick))))
 
-(defun repeat-past (past tick)
-  "Return a run that is what the one of PAST was at the end of TICK, and the tick at which plans
-strayed on the way, or NIL."
+(defun repeat-past (past asked tick)
+  "Return a run that is what the one of PAST was at the end of TICK, when ASKED had been asked of it,
+and the tick at which plans strayed on the way, or NIL."
   (let* ((kept (first (past-forks past)))
          (run (await-fork (kept-fork kept) nil '()))
+         (acts (acts-since kept (append asked (past-acts past))))
          (done-p nil))
     (unwind-protect
-         (let ((strayed (call-inside run (lambda ()
-                                           (redo run (acts-since kept (past-acts past)) tick)))))
+         (let ((strayed (call-inside run (lambda () (redo run acts tick)))))
            (setf (simulation-past run) past
                  done-p t)
            (values run strayed))
@@ -118,7 +126,8 @@ strayed on the way, or NIL."
   "Let OLD be over, as NEW goes on in its place."
   (let ((reason (format nil "it was rewound to tick ~D, and *SIMULATION* goes on from there"
                         (simulation-tick new))))
-    (setf (simulation-successor old) new)
+    (setf (simulation-successor old) new
+          (simulation-rewound-p new) t)
     (retire-robots (simulation-robots old) reason)
     (end-simulation old reason)
     (setf (simulation-past old) nil)))
@@ -163,13 +172,13 @@ strayed on the way, or NIL."
 
 (defun rewind-now (ticks simulation)
   "Do what REWIND says, while nobody else rewinds anything."
-  (multiple-value-bind (past tick)
+  (multiple-value-bind (tick past asked)
       (asking (simulation)
         (check-past simulation)
         (check-how-far ticks simulation)
         (let ((tick (- (simulation-tick simulation) ticks)))
-          (values (past-until tick (simulation-past simulation)) tick)))
-    (multiple-value-bind (run strayed) (repeat-past past tick)
+          (multiple-value-call #'values tick (past-until tick simulation))))
+    (multiple-value-bind (run strayed) (repeat-past past asked tick)
       (replace-run run simulation)
       (when strayed (warn-of-straying run strayed))
       run)))

@@ -19,6 +19,7 @@
    (environment '() list "what they are, a list (symbol . value), in a fork")
    (left '() list "what they were when a thread at work in the simulation last said so")
    (past nil t "what is kept of the past, or NIL")
+   (rewound-p nil boolean "it goes on since another was rewound")
    (successor nil t "the simulation that goes on since this one was rewound, or NIL")
    (messages *message-queue* message-queue "the message queue that the simulation reports to")
    (gate nil (or null function)
