@@ -169,7 +169,7 @@ SEED. See reading 218."
     (dolist (participant (simulation-participants simulation))
       (participant-reseed participant seed))
     (when (member *lisps-dice* (simulation-variables simulation))
-      (setf (symbol-value *lisps-dice*) (seeded-lisps-dice seed))))
+      (reseed-lisps-dice seed)))
   seed)
 
 (define-operator 'set-seed '(integer) #'set-seed)
