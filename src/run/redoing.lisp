@@ -110,13 +110,18 @@ acted as often as it has by now."
           (act (- (min goal (act-tick act)) (simulation-tick simulation)))
           (t (- goal (simulation-tick simulation))))))
 
+;; Who takes part is known before the first of them acts: so what came before that is done by then.
 (defun go-on-to (goal redoing)
   "Pass ticks up to GOAL, and do all again on the way."
-  (let* ((simulation (redoing-simulation redoing)) (timeline (simulation-timeline simulation)))
+  (let* ((simulation (redoing-simulation redoing))
+         (timeline (simulation-timeline simulation))
+         (observer (lambda (simulation) (declare (ignore simulation)) (redo-in-tick redoing))))
     (setf (timeline-on-moment timeline) (lambda () (redo-in-tick redoing)))
+    (add-observer observer simulation)
     (loop (redo-between-ticks redoing)
           (when (>= (simulation-tick simulation) goal) (return))
           (run-ticks (ticks-to-go redoing goal) simulation))
+    (remove-observer observer simulation)
     (setf (timeline-on-moment timeline) nil)))
 
 (defun redo (simulation acts goal)
