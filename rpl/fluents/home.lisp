@@ -16,7 +16,8 @@
   "Where changes are heard. HOLDER is the thread that has it, ON-POST is called after each post.
 ATTENDED-P says whether a thread is there that will hear what is posted. LEFT-P is true while a
 thread has it, and afterwards if that has left it in the middle of something: then REPAIRER is
-called with it before anything else is done. CLOSED-P says that it hears nothing any more. For whoever keeps a trace, ON-CHANGE is called with
+called with it before anything else is done. CLOSED-P says that it hears nothing any more.
+For whoever keeps a trace, ON-CHANGE is called with
 :SET or :PULSE, a base fluent and its value, before anybody hears of that, and WRAPPER with each
 entry: it returns what is posted instead."
   (holder nil :type t)

@@ -76,3 +76,15 @@ VALUE."
     (note-doing *simulation* #'change-again function (name-of-fluent fluent) value)))
 
 (setf *on-outside-change* #'note-outside-change)
+
+;;; What the run was that is over is forgotten.
+
+(defun realm-of (simulation)
+  "Return what the fluents of SIMULATION belong to."
+  (cdr (assoc '*realm* (environment-of simulation))))
+
+(defun leave-fluents (old new)
+  "Let no fluent of NEW, which is to go on in the place of OLD, lead back to that."
+  (leave-realm (realm-of old) (realm-of new)))
+
+(pushnew 'leave-fluents *rewind-hooks*)

@@ -183,8 +183,8 @@ MISUSE."
           (t (want-end interface task)))))
 
 (defun elsewhere-p (interface)
-  "True if this thread works in another run than that of INTERFACE, where that may have come to: in a
-fork of it, or in the one that goes on since it was rewound."
+  "True if this thread works in another run than that of INTERFACE, where that may have come to: in
+a fork of it, or in the one that goes on since it was rewound."
   (and *simulation*
        (not (eq *simulation* (interface-simulation interface)))
        (or (fork-p *simulation*)

@@ -15,8 +15,8 @@ their plan runner.")
     (values)))
 
 (defgeneric task-now (client task)
-  (:documentation "Return what TASK, one of the plans of CLIENT, is in the run that this thread works
-in, or that goes on since that of TASK was rewound: TASK itself if it is not there.")
+  (:documentation "Return what TASK, one of the plans of CLIENT, is in the run that this thread
+works in, or that goes on since that of TASK was rewound: TASK itself if it is not there.")
   (:method (client task)
     (declare (ignore client))
     task))
@@ -33,8 +33,8 @@ in, or that goes on since that of TASK was rewound: TASK itself if it is not the
         (task-now (runner-client runner) task))))
 
 (defun note-from-outside (word subject &rest arguments)
-  "Note that the function WORD is called with ARGUMENTS and then SUBJECT, a task or a plan runner, if
-that comes from outside of the plans of SUBJECT."
+  "Note that the function WORD is called with ARGUMENTS and then SUBJECT, a task or a plan runner,
+if that comes from outside of the plans of SUBJECT."
   (let ((runner (if (task-p subject) (task-runner subject) subject)))
     (unless (inside-plans-p runner)
       (note-word (runner-client runner) word arguments subject))))

@@ -36,6 +36,6 @@ goes on since it was rewound, by default the current one. OBJECT may be a robot,
 thing, a designator, an odometer, a task, a fluent or a valve. NIL if FORK does not have it: a thing
 that is destroyed there, a designator that is invalid, a task that is over. Signals WRONG-ARGUMENT."
   (check-argument counterpart fork
-                  (and (simulation-p fork) (or (fork-p fork) (simulation-rewound-p (latest fork))))
+                  (and (simulation-p fork) (or (fork-p fork) (simulation-line fork)))
                   "a fork, as FORK-SIMULATION returns, or a run that was rewound")
   (call-inside (latest fork) (lambda () (counterpart-here object))))

@@ -10,10 +10,10 @@
 (defstruct (act (:constructor make-act (kind tick phase moment own-p operator arguments asker))
                 (:copier nil))
   "That something was done. KIND is :REQUEST, for what a tick has begun with, or else :CHANGE. TICK
-had passed, or was under way in its PHASE, a number, 0 between ticks; of a request PHASE says when it
-was asked for. MOMENT is how often by then in the tick what goes on in forks too had acted. OWN-P is
-true of what a fork does by itself. OPERATOR is the name of an operator, or a function; ARGUMENTS are
-externalized. ASKER is a note of who asked for it, or NIL."
+had passed, or was under way in its PHASE, a number, 0 between ticks; of a request PHASE says when
+it was asked for. MOMENT is how often by then in the tick what goes on in forks too had acted. OWN-P
+is true of what a fork does by itself. OPERATOR is the name of an operator, or a function; ARGUMENTS
+are externalized. ASKER is a note of who asked for it, or NIL."
   (kind :change :type (member :request :change) :read-only t)
   (tick 0 :type fixnum :read-only t)
   (phase 0 :type fixnum :read-only t)
@@ -34,7 +34,8 @@ externalized. ASKER is a note of who asked for it, or NIL."
   "What is kept of a run's past: at most LIMIT FORKS, and COUNT ACTS, the newest of both first. The
 next fork is to be made at the tick NEXT, not before DUE, a time in seconds; KEEPER, a function of
 the run and its past, is then called. PACE is in how many ticks that is looked at again. COST is how
-many seconds a fork takes, on the average."
+many seconds a fork takes, on the average. WANTED is since when, in seconds, a fork is due that could
+not be made, as somebody was at work in the run; or NIL."
   (limit 0 :type fixnum)
   (keeper nil :type function :read-only t)
   (forks '() :type list)
@@ -44,6 +45,7 @@ many seconds a fork takes, on the average."
   (due 0d0 :type double-float)
   (cost 2d-4 :type double-float)
   (pace 1 :type fixnum)
+  (wanted nil :type (or null double-float))
   (warned-p nil :type boolean))
 
 (defun noting-p (simulation)

@@ -17,12 +17,14 @@
   (cond ((goes-on-in-forks-p)
          (reject-use "rewind: a plan is at work here, and would undo itself. PROJECT and TRY-BEST ~
                       look ahead instead."))
-        ((or (eq (current-thread) (simulation-thread simulation))
-             (and (owner-p simulation)
-                  (or (timeline-passing-p (simulation-timeline simulation))
-                      (plusp (timeline-phase (simulation-timeline simulation))))))
-         (reject-use "rewind: ticks are passing here. Rewind the run when RUN-TICKS has returned, ~
-                      or from another thread."))
+        ((eq (current-thread) (simulation-thread simulation))
+         (reject-use "rewind: ticks of ~A are passing here, in the thread of its clock. Rewind it ~
+                      at the prompt or the REPL, or from a thread of your own."
+                     (simulation-name simulation)))
+        ((and (owner-p simulation)
+              (or (timeline-passing-p (simulation-timeline simulation))
+                  (plusp (timeline-phase (simulation-timeline simulation)))))
+         (reject-use "rewind: ticks are passing here. Rewind the run when RUN-TICKS has returned."))
         ((and (headless-p simulation) (not (eq simulation *simulation*)))
          (reject-use "rewind: ~A is headless, and not the current simulation here. Rewind it where ~
                       it is: in the body of WITH-SIMULATION, or in CALL-IN-FORK."
@@ -70,8 +72,8 @@ had been asked of it by then and not yet been done."
                          tick))))
 
 (defun repeat-past (past asked tick)
-  "Return a run that is what the one of PAST was at the end of TICK, when ASKED had been asked of it,
-and the tick at which plans strayed on the way, or NIL."
+  "Return a run that is what the one of PAST was at the end of TICK, when ASKED had been asked of
+it, and the tick at which plans strayed on the way, or NIL."
   (let* ((kept (first (past-forks past)))
          (run (await-fork (kept-fork kept) nil '()))
          (acts (acts-since kept (append asked (past-acts past))))
@@ -126,8 +128,7 @@ and the tick at which plans strayed on the way, or NIL."
   "Let OLD be over, as NEW goes on in its place."
   (let ((reason (format nil "it was rewound to tick ~D, and *SIMULATION* goes on from there"
                         (simulation-tick new))))
-    (setf (simulation-successor old) new
-          (simulation-rewound-p new) t)
+    (succeed-in-line new old)
     (retire-robots (simulation-robots old) reason)
     (end-simulation old reason)
     (setf (simulation-past old) nil)))
@@ -196,7 +197,8 @@ SIMULATION must keep forks, see KEEP-FORKS. TICKS is a number from 0, for what w
 last tick, to how many have passed since it began to. Signals WRONG-ARGUMENT that says how far one
 can go back; MISUSE inside of ticks and plans, and where SIMULATION is over."
   (let ((simulation (simulation-meant simulation)))
-    (check-argument rewind ticks (whole-p ticks 0) "a whole number of ticks, 0 or more")
+    (check-argument rewind ticks (typep ticks 'unsigned-byte)
+                    "a whole number of ticks, 0 or more")
     (check-not-over simulation 'rewind)
     (check-place-to-rewind simulation)
     (with-lock (*rewinding-lock*)
