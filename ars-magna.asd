@@ -308,6 +308,7 @@
                  (:file "rpl-seeing-truth") (:file "thinking") (:file "thinking-runs")
                  (:file "skipping")
                  (:file "kinds") (:file "digests") (:file "runs") (:file "rewinding")
+                 (:file "rewinding-words") (:file "rewinding-handles")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")
                  (:file "forking-values") (:file "forking-unforkable") (:file "forking-uses")
                  (:file "forking-plans") (:file "forking-live") (:file "forking-borders")
