@@ -83,8 +83,14 @@ VALUE."
   "Return what the fluents of SIMULATION belong to."
   (cdr (assoc '*realm* (environment-of simulation))))
 
+(defun shared-realm-p (realm simulation)
+  "True if REALM, that of SIMULATION, is also that of the live run around it."
+  (and (eq realm (global-value '*realm*))
+       (not (eq simulation (global-value '*simulation*)))))
+
 (defun leave-fluents (old new)
   "Let no fluent of NEW, which is to go on in the place of OLD, lead back to that."
-  (leave-realm (realm-of old) (realm-of new)))
+  (unless (shared-realm-p (realm-of old) old)
+    (leave-realm (realm-of old) (realm-of new))))
 
 (pushnew 'leave-fluents *rewind-hooks*)

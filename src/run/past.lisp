@@ -34,8 +34,8 @@ are externalized. ASKER is a note of who asked for it, or NIL."
   "What is kept of a run's past: at most LIMIT FORKS, and COUNT ACTS, the newest of both first. The
 next fork is to be made at the tick NEXT, not before DUE, a time in seconds; KEEPER, a function of
 the run and its past, is then called. PACE is in how many ticks that is looked at again. COST is how
-many seconds a fork takes, on the average. WANTED is since when, in seconds, a fork is due that could
-not be made, as somebody was at work in the run; or NIL."
+many seconds a fork takes, on the average. WANTED is since when, in seconds, a fork is due that
+could not be made, as somebody was at work in the run; or NIL."
   (limit 0 :type fixnum)
   (keeper nil :type function :read-only t)
   (forks '() :type list)
