@@ -69,6 +69,4 @@ them."
                                (and (interface-p participant)
                                     (eq robot (interface-robot participant))))
                              (simulation-participants *simulation*))))
-    (and interface
-         (eq (interface-valve interface) (entity-like (interface-valve client)))
-         (task-numbered (task-serial task) (interface-runner interface)))))
+    (and interface (task-numbered (task-serial task) (interface-runner interface)))))
