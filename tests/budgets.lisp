@@ -17,7 +17,7 @@
 (defvar *seconds* (make-hash-table) "How many seconds each suite has taken, in these runs.")
 
 (defun budget-of (suite)
-  (or (second (assoc suite *budgets*)) *usual-budget*))
+  (or (second (assoc suite *budgets* :test #'string=)) *usual-budget*))
 
 (defun seconds-taken (suite)
   (gethash suite *seconds* 0))

@@ -15,10 +15,24 @@
                      (loop for trial from 1 to (option question :trials)
                            collect (roll-out scene trial (seed-of-trial question trial))))))
 
+(defun tell-of-errors (question projections)
+  "Say once, if functions that QUESTION gives have broken off rollouts of PROJECTIONS, in how many
+they did, and why the first time."
+  (let* ((rollouts (mapcan (lambda (projection) (copy-list (projection-rollouts projection)))
+                           projections))
+         (broken (remove-if-not #'rollout-broken rollouts)))
+    (when broken
+      (report-user-error (error-of (first broken))
+                         (format nil "the function ~S of ~A, in ~D of ~D rollouts; the first time"
+                                 (rollout-broken (first broken)) (operator-of question)
+                                 (length broken) (length rollouts))))))
+
 (defun project-branches (question moment)
   "Return a list of projections, one for each branch of QUESTION, or of the one that there is."
-  (loop for branch below (max 1 (length (question-branches question)))
-        collect (project-branch question moment branch)))
+  (let ((projections (loop for branch below (max 1 (length (question-branches question)))
+                           collect (project-branch question moment branch))))
+    (tell-of-errors question projections)
+    projections))
 
 (defun steps-of (projections)
   "Return how many steps of plans PROJECTIONS took."
@@ -43,7 +57,9 @@
 (defun answer-by-rollouts (question)
   "Answer QUESTION, of a plan, by what rollouts tell. Return :LATER if nobody wants that any more."
   (let* ((interface (wish-interface question))
-         (moment (and (null (option question :world)) (lighten (fork-at-rest interface))))
+         (moment (and (null (option question :world))
+                      (let ((*fork-asker* (operator-of question)))
+                        (lighten (fork-at-rest interface)))))
          (projections (catch 'abandoned
                         (let ((*asked* question)) (project-branches question moment)))))
     (cond ((null projections) :later)
