@@ -13,8 +13,7 @@ UNKNOWN-NAME and WRONG-ARGUMENT."
       (unless (and (proper-list-p call)
                    (first call)
                    (typep (first call) '(or procedure symbol string)))
-        (reject 'plan plan "a plan or the name of one, a list (name argument...), or a task, as ~
-                            BEGIN-PLAN returns it"))
+        (reject 'plan plan "the name of a plan, a list (name argument...), a plan, or a task"))
       (check-arguments (if (procedure-p (first call)) (first call) (find-procedure (first call)))
                        (rest call))
       call)))
@@ -78,8 +77,8 @@ In a plan, it waits until all plans rest, and goes on in the same tick; PLAN beg
 there. Elsewhere, as in a continuation, in a test or at the prompt, PLAN begins on top, as by
 BEGIN-PLAN. The run itself takes no notice: its dice are not rolled, and messages and traces of
 rollouts are dropped. In rollouts, PROJECT returns a projection without rollouts. Errors in rollouts
-are failures of these; of those in COST or WORLD one message tells. Fails with a CANNOT-FORK if the run cannot be forked (ours; McDermott's
-projection of reactive plans, 1992)."
+are failures of these; of those in COST or WORLD one message tells. Fails with a CANNOT-FORK if the
+run cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
   (:arguments plan arguments trials horizon seed cost world print)
   (:parts (request function
                    (value-lambda `(list ,plan ,arguments :trials ,trials :horizon ,horizon
