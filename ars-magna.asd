@@ -340,6 +340,7 @@
                  (:file "floors-readme")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
                  (:file "experiments-tables") (:file "experiments-fingerprints")
+                 (:file "thinking-experiments")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "experiment-compare-levels")
                  (:file "experiment-compare-versions") (:file "rates") (:file "projecting")
