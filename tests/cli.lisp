@@ -146,8 +146,7 @@ of lines, and the number of errors."
 (test status.says-what-thinking-costs-unless-that-is-as-usual
   (flet ((said (form)
            (find "Thinking:" (type-batch form "status") :test #'search)))
-    (is (null (said "(set-thinking :real)")))
-    (is (equal "Thinking:          free" (said "(set-thinking :free)")))
+    (is (null (said "(set-thinking :free)")))
     (is (equal "Thinking:          charged" (said "(set-thinking :charged)")))
     (is (equal "Thinking:          charged, and a tick for 30 steps"
                (said "(set-thinking '(:charged :budget 30))")))))

@@ -7,7 +7,8 @@
   (:import-from :ars-magna.tests
                 #:ars-magna #:def-suite* #:in-suite #:test #:is #:is-true #:signals #:live
                 #:fitter #:await)
-  (:import-from :ars-magna.base #:take-messages #:message-text #:start-thread #:join-thread #:make-lock
+  (:import-from :ars-magna.base #:take-messages #:message-text #:start-thread #:join-thread
+                #:make-lock
                 #:with-lock #:*message-queue* #:make-message-queue))
 
 (in-package :ars-test-projecting)

@@ -2,9 +2,11 @@
 
 (in-package :ars-magna.rpl-projecting)
 
-(defun charge-for-rollouts (projections interface)
-  "Let the plans of INTERFACE, where their steps have a budget, pay for those of PROJECTIONS."
-  (charge-steps (min (steps-of projections) 1000000000) (interface-runner interface)))
+(defun charge-for-rollouts (projections question)
+  "Let the plans that ask QUESTION, where their steps have a budget, pay for those of PROJECTIONS."
+  (count-steps (steps-of projections)
+               (interface-runner (wish-interface question))
+               (wish-task question)))
 
 (defun project-branch (question moment branch)
   "Return the projection of BRANCH of QUESTION by rollouts from MOMENT, see SCENE."
@@ -63,7 +65,7 @@ they did, and why the first time."
          (projections (catch 'abandoned
                         (let ((*asked* question)) (project-branches question moment)))))
     (cond ((null projections) :later)
-          (t (charge-for-rollouts projections interface)
+          (t (charge-for-rollouts projections question)
              (if (question-branches question)
                  (let ((best (best-of projections)))
                    (tell-choice question projections best)

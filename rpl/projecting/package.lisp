@@ -14,7 +14,7 @@ that a robot believes in, and choosing by that.")
                 #:fork-simulation #:call-in-fork #:release-fork #:*fork-asker*)
   (:import-from :ars-magna.rpl
                 #:*break-on-plan-failures* #:*step-plans* #:+parked+ #:enter #:environment
-                #:awaited-text #:charge-steps #:check-arguments #:failure-class #:failure-of
+                #:awaited-text #:count-steps #:check-arguments #:failure-class #:failure-of
                 #:failure-text
                 #:find-procedure
                 #:fluent-value #:form-text #:frame #:frame-up #:lisp-failure

@@ -23,7 +23,7 @@
 
 (defun thinking-modes-text ()
   "Return in words which thinking modes there are."
-  (format nil ":free, :real, :charged, or (:charged :budget steps) with the steps of plans in a ~
+  (format nil ":FREE, :REAL, :CHARGED, or (:CHARGED :BUDGET steps) with the steps of plans in a ~
                tick, a whole number from 1 to 1e9"))
 
 (defun check-thinking (operator mode)
