@@ -311,7 +311,7 @@
   "Return how often a plan chose, beside many fluents that nobody waits for and that change."
   (on-court (:seed seed)
     (let ((fluents (loop repeat 300 collect (create-fluent 'f 0))))
-      (first (told-of (n-times 60
+      (first (told-of (n-times 40
                         (dolist (fluent fluents)
                           (set-value fluent (+ 1 (fluent-value fluent))))
                         (try-best (:trials 3 :until :branch) (wait-time 1) (wait-time 2)))
@@ -330,7 +330,7 @@
                                              (count (busy-choosing seed)))
                                         (with-lock (lock) (push count counts))))
                                     "choosing")))))
-    (is (equal '(60 60 60 60 60 60 60 60 60) counts))))
+    (is (equal '(40 40 40 40 40 40 40 40 40) counts))))
 
 ;;; To be looked at.
 
@@ -363,10 +363,10 @@
 
 (test try-best.is-worth-it
   "On the office, where the better way depends on what stands in it."
-  (let ((seeds (loop for seed from 1 to 12 collect seed)))
-    (is (<= (successes-of :first seeds) 8))
-    (is (<= (successes-of :second seeds) 8))
-    (is (<= 10 (successes-of :best seeds)))))
+  (let ((seeds (loop for seed from 5 to 12 collect seed)))
+    (is (<= (successes-of :first seeds) 5))
+    (is (<= (successes-of :second seeds) 5))
+    (is (<= 7 (successes-of :best seeds)))))
 
 (defun square (number) (* number number))
 
