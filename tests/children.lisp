@@ -37,11 +37,12 @@
   "Call FUNCTION, write down what it returns, and end this process."
   (unwind-protect
        (handler-case
-           (progn (redirect-child name root)
-                  (write-value (funcall function) (child-file :value name root)))
-         (serious-condition (condition) (format t "~&~A~%" condition)))
-    (finish-output)
-    (finish-output *error-output*)
+           (let ((*standard-output* uiop:*stdout*) (*error-output* uiop:*stderr*))
+             (redirect-child name root)
+             (write-value (funcall function) (child-file :value name root)))
+         (serious-condition (condition) (format uiop:*stdout* "~&~A~%" condition)))
+    (finish-output uiop:*stdout*)
+    (finish-output uiop:*stderr*)
     (sb-ext:exit :abort t)))
 
 (defun start-child (function name root)
