@@ -39,7 +39,8 @@ plans nor a simulator.")
   ;; words
   (:export #:note-word #:task-now)
   ;; charging
-  (:export #:charge-steps #:charge-ticks #:runner-charged-p #:set-charges #:stand-no-longer
+  (:export #:charge-steps #:charge-ticks #:count-steps
+           #:runner-charged-p #:set-charges #:stand-no-longer
            #:stand-still #:standing-still-p)
   ;; machine
   (:export #:+nothing+ #:+parked+ #:awaited-text #:bundle-p #:bundle-values #:call-leaf
