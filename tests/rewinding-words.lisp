@@ -23,7 +23,7 @@
       (say-so name sum))
     (rpl:wait-time 1)))
 
-(rpl:def-interp-proc wander (name)
+(rpl:def-interp-proc roam-about (name)
   (rpl:n-times 400
     (rpl:with-policy (rpl:whenever *bell*
                        (say-so name :bell (rpl:fluent-value driver:robot-movement-error*))
@@ -85,7 +85,7 @@
       (ecase (word-roll 5)
         (0 (driver:begin-plan 'mutter name (1+ (word-roll 3))))
         (1 (driver:begin-plan 'brood name (word-roll 40)))
-        (2 (driver:begin-plan 'wander name))
+        (2 (driver:begin-plan 'roam-about name))
         (3 (driver:begin-plan 'peer name))
         (4 (driver:begin-plan 'brief name))))))
 
