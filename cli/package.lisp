@@ -27,7 +27,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:plan-ending-p #:begin-plan #:end-plan #:plans #:print-plans
                 #:call-with-plans-in-use)
   (:import-from :ars-magna.rpl-robot #:*trace-plans*)
-  (:import-from :ars-worlds #:robot-go-to)
+  (:import-from :ars-worlds #:robot-go-to #:robot-go-distance)
   (:import-from :ars-magna.rpl-pictures #:save-plan-timeline)
   (:import-from :ars-magna.experiment
                 #:find-experiment #:all-experiments #:experiment-name #:experiment-documentation

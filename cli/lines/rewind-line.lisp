@@ -33,7 +33,7 @@
   (call-letting-go (errands-in *simulation*) (lambda () (rewind ticks)))
   (dolist (task (plans)) (take-up-plan session task)))
 
-(define-line "REWIND" (session (n count "how many ticks"))
+(define-line "REWIND" (session (n tick-span "how far"))
     (:running)
     "Go back N ticks, plans included, and go on from there; 0 undoes what was done since the last
 tick. What came after has not happened; the journal says that there was something."

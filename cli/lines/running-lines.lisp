@@ -41,7 +41,7 @@
     (await (lambda () (>= (simulation-tick simulation) goal)))
     (format t "Tick ~D.~%" (simulation-tick simulation))))
 
-(define-line "STEP" (session (n integer "how many ticks; 1 if left out" :optional))
+(define-line "STEP" (session (n tick-span "how many; 1 if left out" :optional))
     (:running)
     "Let N ticks pass; a live simulator is paused after them."
   (if (session-visit session)

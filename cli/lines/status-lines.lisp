@@ -121,7 +121,7 @@ out, whose was interrupted last by whose, its designators."
 
 ;;; Putting the robot somewhere.
 
-(define-line "POS" (session (x number "metres from the left") (y number "metres from the top"))
+(define-line "POS" (session (x metres "metres from the left") (y metres "metres from the top"))
     (:seeing)
     "Put the robot at X, Y at once, without error and ignoring obstacles."
   (let ((robot (session-robot)))
