@@ -220,6 +220,7 @@
     ((:file "package")
      (:module "terminal" :serial t
       :components ((:file "process") (:file "telling") (:file "input") (:file "console")
+                   (:file "progress")
                    (:file "layout")))
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "session") (:file "line") (:file "quantities")
@@ -231,7 +232,9 @@
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
                    (:file "status-lines") (:file "running-lines") (:file "world-lines")
                    (:file "plan-lines") (:file "plan-views") (:file "help")
-                   (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")))
+                   (:file "topics") (:file "manipulate-line")
+                   (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")
+                   (:file "fork-line") (:file "import-line")))
      (:module "shell" :serial t
       :components ((:file "options") (:file "texts") (:file "report") (:file "experiments")
                    (:file "executable") (:file "spreading") (:file "experiment-command")
@@ -302,7 +305,7 @@
                  (:file "ways-going") (:file "cli-plans") (:file "cli-rewinding")
                  (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "experiment-replay")
-                 (:file "cli-trials") (:file "cli-files") (:file "cli-plan-tree")
+                 (:file "cli-trials") (:file "cli-newcomers") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "experiment-shell") (:file "experiment-shell-code")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
                  (:file "rpl-seeing-truth") (:file "thinking") (:file "thinking-runs")

@@ -35,6 +35,7 @@
   "Call FUNCTION, which writes to SESSION and asks its user."
   (let* ((*standard-output* (session-console session))
          (*standard-input* (session-input session))
+         (*robot-meant* #'session-robot)
          (*query-io* (make-two-way-stream *standard-input* *standard-output*)))
     (funcall function)))
 

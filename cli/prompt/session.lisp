@@ -47,6 +47,8 @@
   (over-p nil)
   ;; The trial that the prompt is in, or NIL.
   (visit nil)
+  ;; In how many forks it is, one in another.
+  (forks 0 :type fixnum)
   ;; The robot to go on with, in batch mode, when this one's lines are over.
   (next-robot nil))
 
