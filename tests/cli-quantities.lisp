@@ -5,8 +5,8 @@
 (def-suite* cli-quantities :in ars-magna)
 
 (test quantities.are-angles-as-people-say-them
-  (dolist (line '("turn 90 deg" "turn 90deg" "turn 90 degrees" "turn pi/2" "turn 0.5*pi" "turn 2pi/4"
-                  "turn 1/4 turn" "turn PI/2 ; a right angle" "turn 1.5707963 rad"))
+  (dolist (line '("turn 90 deg" "turn 90deg" "turn 90 degrees" "turn pi/2" "turn 0.5*pi"
+                  "turn 2pi/4" "turn 1/4 turn" "turn PI/2 ; a right angle" "turn 1.5707963 rad"))
     (is-true (answers-p '("robot-turn: Robot turned 1.57") (list line)) "~A" line))
   (is-true (answers-p '("robot-turn: Robot turned -3.14") '("turn -pi")))
   (is-true (answers-p '("camera-turn: Camera 0 turned 0.79") '("cam-turn 0 45 deg")))

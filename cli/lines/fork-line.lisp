@@ -3,8 +3,8 @@
 (in-package :ars-magna.cli)
 
 ;;; In a fork the prompt is in a headless run: time passes as its lines need it. The run that was
-;;; forked stands still meanwhile. As a trial, a fork is entered by a line that goes on until another
-;;; one leads out.
+;;; forked stands still meanwhile. As a trial, a fork is entered by a line that goes on until
+;;; another one leads out.
 
 (defun copied-run (seed)
   "Return a fork of the current run, all whose chance is to come from SEED unless that is NIL."
@@ -58,10 +58,10 @@
 (define-line "FORK" (session (seed :token "OFF, or an integer from which all its chance is to come"
                                    :optional))
     (:running)
-    "Go on in a copy of the run, plans and all, which goes the way that the run would, or with SEED as
-it might. The run itself waits. FORK OFF leads back to it, as it was, and the copy is forgotten."
+    "Go on in a copy of the run, plans and all, which goes the way that the run would, or with SEED
+as it might. The run itself waits. FORK OFF leads back to it, as it was; the copy is forgotten."
   (check-run)
-  (cond ((session-visit session) (reject-line "In a trial there are no forks. TRIAL OFF leads out."))
+  (cond ((session-visit session) (reject-line "A trial is what it is. TRIAL OFF leads out."))
         ((null seed) (go-to-fork session nil))
         ((string-equal seed "off")
          (when (zerop (session-forks session)) (reject-line "The prompt is in no fork."))

@@ -1,4 +1,4 @@
-;;;; import-line.lisp -- IMPORT: a map from elsewhere, as robots make them that find their way about.
+;;;; import-line.lisp -- IMPORT: a map from elsewhere, as robots make them that drive about.
 
 (in-package :ars-magna.cli)
 
@@ -18,5 +18,5 @@
 
 (define-line "IMPORT" (session (file :token "a YAML file, as ROS's map_server keeps them"))
     (:seeing)
-    "Make a map of the occupancy grid in FILE, and of the image that it names. It is called like FILE."
+    "Make a map of the occupancy grid in FILE and of the image that it names; it is called like FILE."
   (multiple-value-call #'tell-imported (import-map (native-path file))))

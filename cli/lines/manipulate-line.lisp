@@ -67,7 +67,8 @@ few."
     (push errand (session-errands session))))
 
 (define-line "MANIPULATE" (session (name :token "a manipulation" :optional)
-                                   (args :rest "numbers of designators, then of the part that does it" :optional))
+                                   (args :rest "numbers of designators, then of the hand or so"
+                                          :optional))
     (:manipulating)
     "List the manipulations, or carry out the manipulation NAME on the things that the designators
 with the numbers in ARGS denote."

@@ -117,7 +117,7 @@ those that have it in their names."
 (define-line "PARAMS" (session (name :token "the name of a parameter" :optional)
                                (value :rest "its new value" :optional))
     (:running)
-    "List the parameters of the simulation, or those whose names begin with NAME, or have it in them;
+    "List the parameters of the simulation, or those whose names begin with NAME or have it in them;
 give one a new VALUE."
   (let ((parameters (parameters-like (or name ""))))
     (cond ((rest parameters)

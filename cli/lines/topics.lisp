@@ -199,7 +199,8 @@ max-speed*."
 
 ;;; Searching.
 
-(defparameter *most-topics* 40 "How many topics APROPOS lists that have a word in their texts only.")
+(defparameter *most-topics* 40
+  "How many topics APROPOS lists that have a word in their texts only.")
 
 (defun topics-with (word)
   "Return the topics that have WORD in their names, and those that have it in their texts only."

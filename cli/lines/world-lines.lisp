@@ -27,8 +27,8 @@
 (define-line "WORLD" (session (name :token "a shipped world, or a Lisp file" :optional)
                               (robot :token "a robot there; the first if left out" :optional))
     (:seeing)
-    "List the worlds, or go to the world NAME, and command ROBOT there. There it is tick 0; what goes
-on here is over."
+    "List the worlds, or go to the world NAME, and command ROBOT there. There it is tick 0; what
+goes on here is over."
   (if name
       (start-robot session (robot-among (world-robots-called name) robot))
       (write-worlds)))
@@ -54,8 +54,8 @@ on here is over."
 
 (define-line "ROBOT" (session (name :token "the robot to command" :optional))
     (:seeing)
-    "List the robots of this world, or command the robot NAME of it from now on. WORLD leads to those
-of others."
+    "List the robots of this world, or command the robot NAME of it from now on. WORLD leads to
+those of others."
   (let ((name (and name (robot-called name))))
     (cond ((null name) (list-robots))
           ((member name (robots-here))

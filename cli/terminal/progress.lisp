@@ -17,8 +17,8 @@
   (setf (progress-line-width progress) (length text)))
 
 (defun note-progress (progress control &rest arguments)
-  "Let the line of PROGRESS, unless that is NIL, say what is formatted from CONTROL and ARGUMENTS, if
-it is time to."
+  "Let the line of PROGRESS, unless that is NIL, say what is formatted from CONTROL and ARGUMENTS,
+if it is time to."
   (when (and progress (>= (seconds-now) (progress-line-due progress)))
     (setf (progress-line-due progress) (+ (seconds-now) 0.2d0))
     (write-over progress (apply #'format nil control arguments))))
