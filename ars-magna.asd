@@ -220,10 +220,10 @@
     ((:file "package")
      (:module "terminal" :serial t
       :components ((:file "process") (:file "telling") (:file "input") (:file "console")
-                   (:file "progress")
+                   (:file "progress") (:file "json")
                    (:file "layout")))
      (:module "prompt" :serial t
-      :components ((:file "user-names") (:file "session") (:file "line") (:file "quantities")
+      :components ((:file "user-names") (:file "session") (:file "reporting") (:file "line") (:file "quantities")
                    (:file "arguments") (:file "errands") (:file "reading") (:file "robot-lines") (:file "finding")
                    (:file "evaluation") (:file "carrying-out") (:file "guarding")
                    (:file "plans") (:file "loading") (:file "worlds")
@@ -238,7 +238,7 @@
      (:module "shell" :serial t
       :components ((:file "options") (:file "texts") (:file "report") (:file "experiments")
                    (:file "executable") (:file "spreading") (:file "experiment-command")
-                   (:file "table-commands") (:file "commands") (:file "main")))))))
+                   (:file "table-commands") (:file "commands") (:file "scripts") (:file "main")))))))
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."

@@ -12,10 +12,26 @@
 (defun next-line (session)
   "Read a line of SESSION and do what it says; at the end of input, let the session be over."
   (follow-simulation session)
-  (let ((text (read-input session (if (session-breaks session) "Break> " "Robot> "))))
-    (if text
-        (do-next session text)
-        (setf (session-over-p session) t))))
+  (when (session-account session) (account-for-last session))
+  (let ((text (unless (stopped-p session)
+                (read-input session (if (session-breaks session) "Break> " "Robot> ")))))
+    (cond (text
+           (note-line-begun session text)
+           (do-next session text))
+          (t (setf (session-over-p session) t)))))
+
+(defun stopped-p (session)
+  "True if SESSION stops at an error, and there was one when all was done that it has asked for."
+  (when (session-stop-p session)
+    (catch-up session)
+    (show-messages session)
+    (plusp (session-errors session))))
+
+(defun account-for-last (session)
+  "Wait until all is done that the last line of SESSION has asked for, and report that it is."
+  (catch-up session)
+  (show-messages session)
+  (note-line-ended session))
 
 (defun load-first (session)
   "Load the files that SESSION begins with."
