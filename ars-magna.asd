@@ -350,7 +350,7 @@
                  (:module "newcomer" :serial t
                   :components ((:file "terminal") (:file "screens") (:file "pages")
                                (:file "session") (:file "newcomer")))
-                 (:file "isolation") (:file "budgets")
+                 (:file "cli-scripts") (:file "isolation") (:file "budgets")
                  (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))
