@@ -223,14 +223,15 @@
                    (:file "progress") (:file "json")
                    (:file "layout")))
      (:module "prompt" :serial t
-      :components ((:file "user-names") (:file "session") (:file "reporting") (:file "line") (:file "quantities")
+      :components ((:file "user-names") (:file "reporting") (:file "session") (:file "line") (:file "quantities")
                    (:file "arguments") (:file "errands") (:file "reading") (:file "robot-lines") (:file "finding")
                    (:file "evaluation") (:file "carrying-out") (:file "guarding")
                    (:file "plans") (:file "loading") (:file "worlds")
                    (:file "debugger") (:file "prompt") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
-                   (:file "status-lines") (:file "running-lines") (:file "world-lines")
+                   (:file "status-data") (:file "status-lines")
+                   (:file "running-lines") (:file "world-lines")
                    (:file "plan-lines") (:file "plan-views") (:file "help")
                    (:file "topics") (:file "manipulate-line")
                    (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")

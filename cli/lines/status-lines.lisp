@@ -82,7 +82,7 @@ were (reading 201)."
 speed, the views of its cameras, the place it sensed last, whose commands it and its parts carry
 out, whose was interrupted last by whose, its designators."
   (let ((robot (session-robot)))
-    (or (report-status session) (still (write-status robot)))))
+    (still (or (report-status session robot) (write-status robot)))))
 
 (defun where-text (thing)
   (let ((location (thing-location thing)))

@@ -50,7 +50,7 @@ goes on here is over."
   "Signal BAD-LINE that says how to get to the robot NAME, which is in another world."
   (reject-line "~A is in another world, ~(~A~). WORLD ~:*~(~A~) ~2:*~(~A~) goes there, where it is ~
                 tick 0; what goes on here is over then."
-               name (map-name (find-map (blueprint-map (find-blueprint name))))))
+               name (map-name (world-of name))))
 
 (define-line "ROBOT" (session (name :token "the robot to command" :optional))
     (:seeing)

@@ -16,7 +16,8 @@
   (let ((text (unless (stopped-p session)
                 (read-input session (if (session-breaks session) "Break> " "Robot> ")))))
     (cond (text
-           (note-line-begun session text)
+           (note-line-begun (session-account session) (if (comment-p text) nil text)
+                            (session-errors session))
            (do-next session text))
           (t (setf (session-over-p session) t)))))
 
@@ -31,7 +32,7 @@
   "Wait until all is done that the last line of SESSION has asked for, and report that it is."
   (catch-up session)
   (show-messages session)
-  (note-line-ended session))
+  (note-line-ended (session-account session) (session-errors session)))
 
 (defun load-first (session)
   "Load the files that SESSION begins with."

@@ -19,7 +19,7 @@ comes of earlier lines if the session waits for that."
               ((null line) (terpri console))
               ((or given (session-echo-p session)) (format console "~A~%" (visible line))))
         (answered console))
-      (note-read session)
+      (note-read (session-account session))
       line)))
 
 (defun comment-p (text)

@@ -50,7 +50,7 @@
   ;; The first line that is an error is the last.
   (stop-p nil :type boolean :read-only t)
   ;; Where it is in what it reads, if somebody wants to know; see reporting.lisp.
-  (account nil)
+  (account nil :type (or null account) :read-only t)
   ;; In how many forks it is, one in another.
   (forks 0 :type fixnum)
   ;; The robot to go on with, in batch mode, when this one's lines are over.
@@ -105,8 +105,8 @@ over."
 (defun complain (session text)
   "Show TEXT as an error."
   (incf (session-errors session))
-  (unless (report-trouble session text)
-    (write-fresh (format nil "*ERROR* -> ~A~%" (complaint-text (placed-text session text)))
+  (unless (report-trouble (session-account session) text)
+    (write-fresh (format nil "*ERROR* -> ~A~%" (complaint-text (placed-text (session-account session) text)))
                  (session-console session))))
 
 (defun take-all-messages ()
@@ -145,7 +145,8 @@ over."
         (incf (session-errors session)
               (count-if (lambda (message) (counts-p message session)) messages))
         (when (and messages (not flush-all-errors*))
-          (or (report-messages session messages) (write-messages messages console)))
+          (or (report-messages (session-account session) messages)
+              (write-messages messages console)))
         (restore-prompt console)
         (finish-output console)))))
 

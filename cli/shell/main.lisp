@@ -56,14 +56,14 @@
 sits there, it shows what it reads and waits for each command, for a transcript like those of manual
 E. A batch that has plans to carry out does not wait for lines to be typed."
   (let* ((script (option-value :script options))
-         (json (option-value :json options))
+         (objects (and (option-value :json options) (object-console)))
          (input (if script (open-script script) (standard-input)))
          (piped (not (typed-by-hand-p input)))
-         (batch (or script json (option-value :batch options)))
+         (batch (or script objects (option-value :batch options)))
          (lines (plan-lines options)))
     (make-session :input (if (and batch lines (not piped)) (make-concatenated-stream) input)
-                  :output (if json (object-console) *standard-output*) :batch batch
-                  :account (when (or script json) (make-account script json))
+                  :output (or objects *standard-output*) :batch batch
+                  :account (when (or script objects) (make-account script objects))
                   :stop (option-value :stop options)
                   :files (option-values :load options) :lines lines
                   :patient (or batch piped) :echo (and piped (not batch)))))

@@ -23,16 +23,22 @@
   "Return a console that turns what is written to it into objects on the standard output."
   (make-console (make-instance 'object-stream :stream (console-stream *standard-output*))))
 
+(defun world-of (robot-name)
+  "Return the map that the robot ROBOT-NAME is defined in."
+  (find-map (blueprint-map (find-blueprint robot-name))))
+
 (defun report-beginning (session robot-name options)
-  (report-object session "begin"
-          :program (format nil "ARS MAGNA ~A" *version*)
-          :robot (string-downcase robot-name)
-          :world (string-downcase (map-name (find-map (blueprint-map (find-blueprint robot-name)))))
-          :seed (option-value :seed options 0)
-          :rate (option-value :rate options)))
+  "Report what SESSION begins with, if it reports by objects."
+  (report-object (session-account session) "begin"
+                 :program (format nil "ARS MAGNA ~A" *version*)
+                 :robot (string-downcase robot-name)
+                 :world (string-downcase (map-name (world-of robot-name)))
+                 :seed (option-value :seed options 0)
+                 :rate (option-value :rate options)))
 
 (defun report-end (session status)
   "Report that SESSION is over, and the process will exit with STATUS. Return the status."
   (let ((status (if (console-trouble (session-console session)) (max 1 status) status)))
-    (report-object session "end" :status status :errors (session-errors session))
+    (report-object (session-account session) "end" :status status
+                                                   :errors (session-errors session))
     status))
