@@ -18,5 +18,6 @@
 
 (define-line "IMPORT" (session (file :token "a YAML file, as ROS's map_server keeps them"))
     (:seeing)
-    "Make a map of the occupancy grid in FILE and of the image that it names; it is called like FILE."
+    "Make a map of the occupancy grid in FILE, and of the image that it names. The map is called
+like FILE."
   (multiple-value-call #'tell-imported (import-map (native-path file))))

@@ -7,8 +7,9 @@
 ;;; there is no account, NIL stands for it, and nothing is reported.
 
 (defstruct (account (:constructor make-account (file &optional console)) (:copier nil))
-  "Where a session is in FILE, the name of a script or NIL. LINES have been read; the line under way,
-TEXT, begins at LINE; ERRORS were there before it. CONSOLE is where objects are written, or NIL."
+  "Where a session is in FILE, the name of a script or NIL. LINES have been read; the line under
+way, TEXT, begins at LINE; ERRORS were there before it. CONSOLE is where objects are written, or
+NIL."
   (file nil :type (or null string) :read-only t)
   (console nil :type (or null console) :read-only t)
   (lines 0 :type fixnum)
@@ -25,8 +26,8 @@ TEXT, begins at LINE; ERRORS were there before it. CONSOLE is where objects are 
   (and *simulation* (simulation-tick *simulation*)))
 
 (defun report-object (account type &rest properties)
-  "Write an object of TYPE, a string, with PROPERTIES, a property list, if ACCOUNT is of what reports
-by objects. True if it is."
+  "Write an object of TYPE, a string, with PROPERTIES, a property list, if ACCOUNT is of what
+reports by objects. True if it is."
   (when (reports-p account)
     (with-console (stream (account-console account))
       (write-object (list* :type type properties) stream))

@@ -105,9 +105,10 @@ over."
 (defun complain (session text)
   "Show TEXT as an error."
   (incf (session-errors session))
-  (unless (report-trouble (session-account session) text)
-    (write-fresh (format nil "*ERROR* -> ~A~%" (complaint-text (placed-text (session-account session) text)))
-                 (session-console session))))
+  (let ((account (session-account session)))
+    (unless (report-trouble account text)
+      (write-fresh (format nil "*ERROR* -> ~A~%" (complaint-text (placed-text account text)))
+                   (session-console session)))))
 
 (defun take-all-messages ()
   (append (take-messages)

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.cli)
 
-;;; A script is a batch: each line has completed before the next is read, and the same lines and seed
-;;; give the same run.
+;;; A script is a batch: each line has completed before the next is read, and the same lines and
+;;; seed give the same run.
 
 (defun script-path (name)
   "Return the path of the script NAME, or NIL if there is no such file."
