@@ -143,7 +143,7 @@ written."
                                                (column-starts line))
                                     :test #'string=))))
     (is (< 6 (length lines)))
-    (is (= 0 (nth-value 1 (run-script (joined (cons "pos 40 30" lines)) "--world" "hall")))
+    (is (= 0 (nth-value 1 (run-script (joined (cons "pos 48 15" lines)) "--world" "hall")))
         "~A" lines)))
 
 (defun column-starts (line)
