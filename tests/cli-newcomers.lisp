@@ -117,6 +117,20 @@
              (remove-if-not (lambda (line) (eql 0 (search "Tick" line)))
                             (type-batch "fork" "step 1" "fork" "step 2" "fork off" "fork off")))))
 
+(test fork.takes-the-plans-along
+  "They go on as time passes there, and in the run itself only afterwards."
+  (let ((text (joined (type-live '("pause" "plan dawdle 1000000" "step 5" "fork" "plans" "stop-plan"
+                                   "step 9" "plans" "world tiny" "fork off" "plans" "quit")))))
+    (is-true (has-words-p text "In a fork, at tick 5." "Plans under way: dawdle." "Tick 14."
+                          "No plan is under way" "A fork has one world"
+                          "Back from the fork. Tick 5"))
+    (is (search "dawdle" text :start2 (search "Back from the fork" text))))
+  (awaiting (null cli::*plan-errands*)))
+
+(test fork.can-be-left-with-the-prompt
+  (is-true (answers-p '("In a fork, at tick 0. STEP lets time pass, FORK OFF leads back." "3")
+                      '("fork" "(+ 1 2)" "quit" "(+ 2 2)"))))
+
 (test fork.says-what-it-takes
   (is-true (has-words-p (complaint "fork off") "in no fork"))
   (is-true (has-words-p (complaint "fork soon") "integer")))

@@ -8,6 +8,8 @@
          (call-outside session (lambda () (start-robot session robot-name))))
         ((not (and *simulation* (headless-p *simulation*))) (start-live session robot-name))
         ((session-batch-p session) (setf (session-next-robot session) robot-name))
+        ((plusp (session-forks session))
+         (reject-line "A fork has one world. FORK OFF leads out of it."))
         (t (reject-line "This prompt is in a headless simulation, which has one world."))))
 
 (defun start-live (session robot-name)
