@@ -72,7 +72,7 @@
                  (:file "matching") (:file "sightings") (:file "scanning") (:file "views")
                  (:file "tending") (:file "soundness")))
    (:module "src/command" :serial t
-    :components ((:file "package") (:file "command") (:file "steps") (:file "operation") (:file "ownership")
+    :components ((:file "package") (:file "command") (:file "steps") (:file "operation") (:file "ownership") (:file "failures")
                  (:file "define-command") (:file "turning") (:file "places") (:file "driving")
                  (:file "following") (:file "handling") (:file "hands") (:file "inserting")
                  (:file "bins") (:file "patterns") (:file "manipulations")
@@ -90,7 +90,7 @@
                  (:file "replaced-maps") (:file "sealed-lines")
                  (:file "journal-text") (:file "replay") (:file "redoing") (:file "rewinding")
                  (:file "outer-names") (:file "inventory") (:file "saved-values") (:file "saving")
-                 (:file "restoring") (:file "loading")))
+                 (:file "restoring") (:file "loading") (:file "status")))
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "gcontext") (:file "canvas")
                  (:file "drawing") (:file "text") (:file "svg") (:file "package")

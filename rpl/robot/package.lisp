@@ -11,7 +11,7 @@
                 #:wake-owner #:timeline-inbox #:agenda-pending #:*hog-seconds* #:hog-seconds)
   (:import-from :ars-magna.run
                 #:simulation-tick #:add-observer #:remove-observer #:run-ticks #:call-as-owner
-                #:simulation-over #:simulation-seed #:simulation-agenda #:simulation-thread
+                #:robot-meant #:simulation-over #:simulation-seed #:simulation-agenda #:simulation-thread
                 #:simulation-timeline #:simulation-robots #:robot-simulation
                 #:*simulation-variables* #:*simulator-hooks* #:add-participant
                 #:remove-participant #:participant-after-tick #:participant-busy-p
@@ -37,7 +37,7 @@
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p #:*realm*
                 #:realm-source #:source-realm #:at-home #:entity #:here
                 #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
-                #:decide #:withdraw #:task-frame #:entity-realm #:entity-like
+                #:reasons #:decide #:withdraw #:task-frame #:entity-realm #:entity-like
                 #:*on-outside-change* #:task-children)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
