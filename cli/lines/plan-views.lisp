@@ -45,7 +45,7 @@ before the plan starts."
   (if n
       (write-string (visible (task-why-text n)))
       (let ((robot (session-robot)))
-        (still (why robot)))))
+        (still (dolist (sentence (failure-sentences robot)) (write-filled sentence 0))))))
 
 (define-line "PLAN-TIMELINE" (session (file :token "a name that ends in .svg or .png"))
     (:planning)

@@ -11,7 +11,8 @@
                 #:wake-owner #:timeline-inbox #:agenda-pending #:*hog-seconds* #:hog-seconds)
   (:import-from :ars-magna.run
                 #:simulation-tick #:add-observer #:remove-observer #:run-ticks #:call-as-owner
-                #:robot-meant #:simulation-over #:simulation-seed #:simulation-agenda #:simulation-thread
+                #:robot-meant #:simulation-over
+                #:simulation-seed #:simulation-agenda #:simulation-thread
                 #:simulation-timeline #:simulation-robots #:robot-simulation
                 #:*simulation-variables* #:*simulator-hooks* #:add-participant
                 #:remove-participant #:participant-after-tick #:participant-busy-p

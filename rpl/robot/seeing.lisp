@@ -57,5 +57,6 @@ ALL is true, also the whole stack of each, its variables, and the valves: see PR
           finally (return last))))
 
 (defmethod reasons ((subject null) runner)
-  (declare (ignore runner))
-  (reasons (robot-that-failed-last (current-simulation)) nil))
+  (if runner
+      (call-next-method)
+      (reasons (robot-that-failed-last (current-simulation)) nil)))

@@ -215,8 +215,8 @@ not NIL, has the tasks that are meant.")
   (:method (subject runner)
     (declare (ignore runner))
     (reject-argument 'why 'subject subject
-                     "nothing, for the command that failed last; a robot, or a part of one; or a ~
-                      task, as begin-plan returns, or the number of one")))
+                     "a robot or a part of one, for the command that failed last; a task, or its
+number; or nothing")))
 
 (defun task-reasons (which runner)
   (multiple-value-bind (trace number) (trace-to-read which runner)

@@ -233,13 +233,16 @@ without ROLES, for each."
           collect (list (kind-slot-name slot) (slot-content slot object) (kind-slot-text slot))))
 
 (defun describe-by-kind (object stream)
-  "Write to STREAM what OBJECT is and what is in it, by role."
-  (format stream "~&~S~%" object)
+  "Write to STREAM what OBJECT is, what people want to know of it, and what is in it, by role."
+  (write-facts object stream)
   (loop for (role text) in '((:fixed "as it was made") (:state "state") (:memory "memory")
                              (:scratch "scratch") (:link "links"))
         for slots = (object-slots object role)
         do (when slots
-             (format stream "~& ~A:~%~:{  ~(~22A~) ~S  (~A)~%~}" text slots))))
+             (format stream "~& ~A:~%" text)
+             (loop for (name value text) in slots
+                   do (format stream "  ~(~22A~) ~A  (~A)~%" name (cut (fact-text value) 200)
+                              text)))))
 
 ;;; Reset.
 

@@ -100,6 +100,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:call-as-definition
            #:check-function-name #:other-definition-p #:in-file-p #:missing-name #:read-value
            #:clause-place #:skip-definition #:skip-clause #:read-again)
+  ;; facts
+  (:export #:facts #:known-facts #:define-facts #:listed #:fact-text)
   ;; user-macros
   (:export #:define-user-macro #:user-macro-form #:call-blaming-form)
   ;; registry

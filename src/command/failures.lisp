@@ -139,8 +139,8 @@ of the simulator's own."
     (and meaning (meaning-text meaning))))
 
 (defun error-code-remedy (code)
-  "Return what to try after a command has ended with CODE, an error code such as :ROBOT-BLOCKED, in a
-sentence; NIL if it is not one of the simulator's own."
+  "Return what to try after a command has ended with CODE, an error code such as :ROBOT-BLOCKED, in
+a sentence; NIL if it is not one of the simulator's own."
   (let ((meaning (find-meaning code)))
     (and meaning (plusp (length (meaning-remedy meaning))) (meaning-remedy meaning))))
 
@@ -151,8 +151,9 @@ sentence; NIL if it is not one of the simulator's own."
                         (tick asked command resource arguments asker code text
                                  interrupter))
                             (:copier nil))
-  "That COMMAND, asked for after the tick ASKED by ASKER, ended in TICK with the error CODE, of which
-TEXT was the message. INTERRUPTER is a list (name asker) of what interrupted it, if that is known."
+  "That COMMAND, asked for after the tick ASKED by ASKER, ended in TICK with the error CODE, of
+which TEXT was the message. INTERRUPTER is a list (name asker) of what interrupted it, if that is
+known."
   (tick 0 :type fixnum :read-only t)
   (asked 0 :type fixnum :read-only t)
   (command nil :type symbol :read-only t)
@@ -163,30 +164,51 @@ TEXT was the message. INTERRUPTER is a list (name asker) of what interrupted it,
   (text "" :type string :read-only t)
   (interrupter '() :type list :read-only t))
 
-(defun interrupter-of (operation tick)
-  "Return the name of what has interrupted OPERATION in TICK, and who asked for that, in a list."
-  (let ((interruption (resource-interruption (operation-resource operation))))
+(defun interruption-of (operation)
+  "Return what is known of the interruption of OPERATION just now, or NIL. Where requests are
+carried out, the tick that they begin has not been counted yet."
+  (let ((interruption (resource-interruption (operation-resource operation)))
+        (tick (timeline-tick (operation-timeline operation))))
     (and interruption
-         (= tick (interruption-tick interruption))
+         (<= tick (interruption-tick interruption) (1+ tick))
          (eq (request-name operation) (interruption-what interruption))
-         (list (interruption-by interruption) (interruption-by-asker interruption)))))
+         interruption)))
 
 (defun note-failure (operation code text)
   "Let the robot of OPERATION, which ends with the error CODE and the message TEXT, remember that."
-  (let ((tick (timeline-tick (operation-timeline operation))))
+  (let ((interruption (and (eq code :interrupt) (interruption-of operation))))
     (setf (robot-failure (resource-robot (operation-resource operation)))
-          (make-failure tick (operation-asked operation)
+          (make-failure (if interruption
+                            (interruption-tick interruption)
+                            (timeline-tick (operation-timeline operation)))
+                        (operation-asked operation)
                         (request-name operation) (resource-told operation)
                         (operation-arguments operation) (request-asker operation) code text
-                        (and (eq code :interrupt) (interrupter-of operation tick))))))
+                        (and interruption
+                             (list (interruption-by interruption)
+                                   (interruption-by-asker interruption)))))))
 
 ;;; Telling.
+
+(defun argument-as-typed (argument)
+  "Return ARGUMENT of a command as one would type it in Lisp, as far as one can."
+  (let ((index (and (part-p argument) (part-index argument))))
+    (typecase argument
+      (robot (robot-name argument))
+      (camera `(robot-camera ,(robot-name (part-robot argument)) ,index))
+      (hand `(robot-hand ,(robot-name (part-robot argument)) ,index))
+      (storage-bin `(robot-storage-bin ,(robot-name (part-robot argument)) ,index))
+      (designator `(find-designator ,(robot-name (designator-robot argument))
+                                    ,(designator-number argument)))
+      ((or symbol cons) (if (constantp argument) argument `',argument))
+      (t argument))))
 
 (defun call-text (failure)
   "Return what was asked for, as one would type it in Lisp."
   (let ((*print-case* :downcase) (*read-default-float-format* 'double-float))
-    (format-briefly nil "(~A ~A~{ ~A~})" (failure-command failure) (failure-resource failure)
-                    (failure-arguments failure))))
+    (safe-text (list* (failure-command failure)
+                     (mapcar #'argument-as-typed
+                             (cons (failure-resource failure) (failure-arguments failure)))))))
 
 (defun robot-with (resource)
   "Return the robot that RESOURCE, a robot or part of one, is or belongs to."
@@ -194,11 +216,11 @@ TEXT was the message. INTERRUPTER is a list (name asker) of what interrupted it,
 
 (addition last-failure)
 (defun last-failure (resource)
-  "Return, as a property list, what failed or was interrupted last of the commands given to RESOURCE,
-a robot or part of one, or to another part of that robot: :COMMAND, its name; :CALL, what was asked
-for, a string; :FOR, who asked; :ASKED and :TICK, after which tick and in which it ended; :ERROR, the
-code; :TEXT, the message; :BY, what interrupted it, if that is known, and :BY-FOR, who asked for
-that. NIL if none has failed. See WHY."
+  "Return, as a property list, what failed or was interrupted last of the commands given to
+RESOURCE, a robot or part of one, or to another part of that robot: :COMMAND, its name; :CALL, what
+was asked for, a string; :FOR, who asked; :ASKED, the tick after which that was; :TICK, the one in
+which it ended; :ERROR, the code; :TEXT, the message; :BY, what interrupted it, if that is known,
+and :BY-FOR, who asked for that. NIL if none has failed. See WHY."
   (check-resource 'last-failure resource)
   (let ((failure (robot-failure (robot-with resource))))
     (when failure

@@ -69,7 +69,8 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
   (:export #:robot-place-here #:sense-place-type #:canonical-directions #:nearest-direction)
   ;; blueprint, making
   (:export #:defrobot #:define-robot #:find-robot #:all-robots
-           #:blueprint #:blueprint-name #:blueprint-map)
+           #:blueprint #:blueprint-name #:blueprint-map #:blueprint-angle #:blueprint-cameras
+           #:blueprint-hands #:blueprint-bins #:blueprint-parts)
   ;; own-changes
   (:export #:place-robot)
   ;; soundness

@@ -56,6 +56,7 @@ were (reading 201)."
                                      (funcall (kind-slot-reader slot) part)))))
 
 (defun designator-status (designator)
+  "Return what STATUS tells of DESIGNATOR."
   (let ((data (designator-data designator)))
     (list :number (designator-number designator)
           :type (designator-type designator)
@@ -124,7 +125,27 @@ robot of the current simulation, as a property list: :ROBOT, :MAP, :TICK; :POSIT
 radians a tick; :CAMERAS, :HANDS, :BINS and :SENSORS, a property list for each part; :PLACE, the
 place type it sensed last, or NIL; :UNDER-WAY and :INTERRUPTED, lists of property lists that say
 whose commands it and its parts carry out, and whose were interrupted last by whose; :FAILED, what
-LAST-FAILURE returns; :DESIGNATORS, a property list for each. All of it is plain data, and looking changes nothing in the run. Signals
-UNKNOWN-NAME, and MISUSE if there is no robot."
+LAST-FAILURE returns; :DESIGNATORS, a property list for each. All of it is plain data, and looking
+changes nothing in the run. Signals UNKNOWN-NAME, and MISUSE if there is no robot."
   (let ((robot (robot-meant robot 'status)))
     (ask robot (lambda () (robot-status robot)))))
+
+(defun under-way-facts (status)
+  (format nil "~{~A~^; ~}"
+          (loop for entry in (getf status :under-way)
+                collect (destructuring-bind (&key part command for) entry
+                          (format nil "~@[~A: ~]~(~A~), for ~A" part command for)))))
+
+(defmethod facts ((robot robot))
+  (let ((status (robot-status robot)))
+    (known-facts
+     "Stands in" (format nil "~(~A~) at (~{~,2F~^,~}), heading ~,2F, tick ~D" (getf status :map)
+                         (getf status :position) (getf status :angle) (getf status :tick))
+     "Carries out" (and (getf status :under-way) (under-way-facts status))
+     "Holds" (listed (remove nil (loop for hand in (getf status :hands)
+                                           collect (getf hand :holds))))
+     "Carries in its bins" (listed (loop for bin in (getf status :bins)
+                                             append (getf bin :contents)))
+     "Designators" (listed (loop for designator in (getf status :designators)
+                                     collect (getf designator :number)))
+     "Failed last" (getf (getf status :failed) :text))))
