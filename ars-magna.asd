@@ -22,7 +22,7 @@
                  (:file "registry") (:file "own-definitions") (:file "messages")
                  (:file "askers") (:file "user-code") (:file "parameters") (:file "physics")
                  (:file "parameters-of-runs")
-                 (:file "kinds") (:file "facts") (:file "digesting") (:file "copiers")
+                 (:file "kinds") (:file "facts") (:file "csv") (:file "digesting") (:file "copiers")
                  (:file "manners") (:file "copying") (:file "holding") (:file "fields")
                  (:file "contradictions")
                  (:file "given")
@@ -153,7 +153,7 @@
                  (:file "survival-chart") (:file "rows") (:file "difference-chart")
                  (:file "measure-chart") (:file "drawing-chart") (:file "saving")))
    (:module "src/trails" :serial t
-    :components ((:file "package") (:file "trails") (:file "picture")))
+    :components ((:file "package") (:file "trails") (:file "trajectory") (:file "picture")))
    (:module "rpl/projecting" :serial t
     :components ((:file "package") (:file "rollout") (:file "projection") (:file "question")
                  (:file "rolling-out") (:file "believing") (:file "answering")
@@ -167,7 +167,7 @@
     :components ((:file "outcome") (:file "data") (:file "trial") (:file "version") (:file "reaching")
                  (:file "fingerprint")))
    (:module "src/experiment/table" :serial t
-    :components ((:file "csv") (:file "row") (:file "checking") (:file "lines") (:file "directory")
+    :components ((:file "row") (:file "checking") (:file "lines") (:file "directory")
                  (:file "description") (:file "results") (:file "merging") (:file "shards")))
    (:module "src/experiment/running" :serial t
     :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "rounds")
@@ -186,7 +186,7 @@
    (:module "src/experiment/replay" :serial t
     :components ((:file "aside") (:file "replaying") (:file "failures")))
    (:module "src" :serial t
-    :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
+    :components ((:file "slots") (:file "faces") (:file "user-package") (:file "editors") (:file "ars"))))
   ;; The packages are locked once they are loaded.
   :perform (prepare-op (operation system)
              (declare (ignore operation system))

@@ -81,15 +81,15 @@ but a function."
 ;;; Editors ask Lisp where a name is defined, as a function, a variable and so on. What only we know
 ;;; the place of is told with the declarations of that name, as nothing else is free for it.
 
-(defun source-at (file position words)
-  "Return, as SBCL has it, that something is defined in FILE at POSITION; WORDS say what it is."
+(defun source-at (file position operator)
+  "Return, as SBCL has it, that something is defined by OPERATOR in FILE at POSITION."
   (uiop:symbol-call :sb-introspect '#:make-definition-source
                     :pathname (uiop:parse-native-namestring file)
-                    :character-offset position :description (list words)))
+                    :character-offset position :description (list operator)))
 
 (defun tell-sources (function)
   "Let whoever asks where a symbol is defined be told also what FUNCTION of that returns, lists (file
-position words)."
+position operator)."
   (wrap-function 'sb-introspect:find-definition-sources-by-name
                  (lambda (original name type)
                    (append (funcall original name type)

@@ -22,9 +22,14 @@ string is written as people write it."
   (let ((*print-case* :downcase) (*read-default-float-format* 'double-float))
     (one-line (safe-text fact :length 400))))
 
-(defun listed (names)
-  "Return NAMES, symbols or other objects, as people list them; NIL if there are none."
-  (and names (format nil "~{~A~^, ~}" (names-to-show names))))
+(defun listed (objects)
+  "Return OBJECTS, such as names, as people list them; NIL if there are none."
+  (and objects
+       (format nil "~{~A~^, ~}"
+               (names-to-show (loop for object in objects
+                                    collect (if (typep object '(or symbol string))
+                                                object
+                                                (fact-text object)))))))
 
 (defun write-facts-of (facts stream &optional (indent 2))
   (loop for (label text) in facts
@@ -85,7 +90,8 @@ alternating, as KNOWN-FACTS takes them."
   (dolist (registry (open-registries))
     (let ((entry (lookup-entry symbol registry)))
       (when entry
-        (format stream "~&~%~A names a ~A:~%" symbol (registry-text registry))
+        (format stream "~&~%~A names ~:[a~;an~] ~A:~%" symbol
+                (find (char (registry-text registry) 0) "aeiou") (registry-text registry))
         (write-facts-of (append (facts (entry-object entry)) (facts-of-definition entry))
                         stream)))))
 
@@ -111,9 +117,9 @@ alternating, as KNOWN-FACTS takes them."
 ;;; Where definitions stand, for editors.
 
 (defun definition-sources (name)
-  "Return a list (file position words) for each definition called NAME, a symbol, whose place Lisp
-does not know by itself, as it does of variables and functions: where in its file, a string, it
-stands now, and words for what it is."
+  "Return a list (file position operator) for each definition called NAME, a symbol, whose place
+Lisp does not know by itself, as it does of variables and functions: where in its file, a string, it
+stands now, and what it begins with."
   (loop for registry in (open-registries)
         for entry = (lookup-entry name registry)
         for file = (and entry (not (entry-variable entry)) (source-file (entry-source entry)))
@@ -122,6 +128,6 @@ stands now, and words for what it is."
                          (ignore-errors
                            (first (definition-positions (file-text file) (entry-head entry)))))
         when place
-          collect (list file (first place) (substitute #\- #\Space (registry-text registry)))))
+          collect (list file (first place) (first (entry-head entry)))))
 
 (tell-sources #'definition-sources)

@@ -101,7 +101,9 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:check-function-name #:other-definition-p #:in-file-p #:missing-name #:read-value
            #:clause-place #:skip-definition #:skip-clause #:read-again)
   ;; facts
-  (:export #:facts #:known-facts #:define-facts #:listed #:fact-text)
+  (:export #:facts #:known-facts #:define-facts #:slots-to-show #:listed #:fact-text)
+  ;; csv
+  (:export #:csv-line #:csv-texts #:broken-line #:broken-line-text)
   ;; user-macros
   (:export #:define-user-macro #:user-macro-form #:call-blaming-form)
   ;; registry

@@ -16,8 +16,9 @@
   "Arguments" (specifications-text (command-parameters command))
   "Its continuation gets, after an error code or NIL"
   (specifications-text (cons (command-resource command) (command-results command)))
-  "Error codes" (listed (append (mapcar #'error-code-keyword (command-errors command))
-                                    '(:interrupt)))
+  "Error codes" (format nil "~{~S~^, ~}" (append (mapcar #'error-code-keyword
+                                                         (command-errors command))
+                                                 '(:interrupt)))
   "At the prompt" (command-prompt-name command)
   "Manual" (command-section command))
 

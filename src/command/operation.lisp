@@ -51,6 +51,11 @@ command that it cut short, or NIL"))
   "Return the command that OPERATION carries out."
   (the command (operation-operator operation)))
 
+(defmethod print-object ((operation operation) stream)
+  (print-unreadable-object (operation stream)
+    (format stream "~A of ~A" (command-name (operation-command operation))
+            (operation-resource operation))))
+
 (declaim (inline operation-agenda))
 (defun operation-agenda (operation)
   (timeline-agenda (the timeline (operation-timeline operation))))

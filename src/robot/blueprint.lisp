@@ -30,6 +30,9 @@
   blueprint-bins "Return the capacity of each of its bins, in a list."
   blueprint-parts "Return a list (kind initarg value ...) for each part of a kind of one's own.")
 
+(defmethod print-object ((blueprint blueprint) stream)
+  (print-unreadable-object (blueprint stream :type t) (princ (blueprint-name blueprint) stream)))
+
 (defmethod reference ((blueprint blueprint))
   (list :blueprint (name-string (blueprint-name blueprint))))
 

@@ -181,7 +181,7 @@ stands in, returns a form for its value."
       `',specification))
 
 (public defrobot)
-(define-user-macro defrobot (&whole form name &optional start &rest options
+(define-user-macro defrobot (&whole form name &optional start &body options
                              &environment environment)
   "Define a robot: (defrobot NAME (ENVIRONMENT (X Y) ANGLE) [:cameras ((FOV RESOLUTION) ...)]
 [:hands (STRENGTH ...)] [:bins (CAPACITY ...)] [:parts ((KIND INITARG VALUE ...) ...)]

@@ -133,7 +133,7 @@ See reading 120."
                                           :noticed ,noticed :supported-by ',supported-by)))))
 
 (public defattribute numeric)
-(define-user-macro defattribute (&whole form name &optional domain &rest options
+(define-user-macro defattribute (&whole form name &optional domain &body options
                                  &environment environment)
   "Define the attribute NAME, a keyword by convention (manual 5.4). DOMAIN is NUMERIC or a list
 of the possible values, unevaluated. Options, in any order:

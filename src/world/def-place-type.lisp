@@ -63,7 +63,7 @@
             :key ,(digest-value (digest-add (make-digest) (cons name options)))))))))
 
 (public def-place-type)
-(define-user-macro def-place-type (&whole form name (&rest lambda-list) &rest options
+(define-user-macro def-place-type (&whole form name (&rest lambda-list) &body options
                           &environment environment)
   "Define the place type NAME (manual 5.1.1). LAMBDA-LIST is (CELL); options, in any order:
   :confusion p -- probability of a false designator in a search for the type; default 0

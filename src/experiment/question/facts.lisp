@@ -3,7 +3,6 @@
 (in-package :ars-magna.experiment)
 
 (define-facts (experiment experiment)
-  "Question" (experiment-documentation experiment)
   "Robots" (listed (experiment-robots experiment))
   "Varies" (listed (factor-names experiment))
   "Conditions" (length (experiment-conditions experiment))
