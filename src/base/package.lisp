@@ -83,7 +83,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:debugger-hook #:with-debugger-hook)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:reading-trouble
-           #:text-of-condition)
+           #:text-of-condition #:editors-output)
   ;; dice, random
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice

@@ -20,6 +20,7 @@
    (left '() list "what they were when a thread at work in the simulation last said so")
    (past nil t "what is kept of the past, or NIL")
    (successor nil t "the simulation that goes on since this one was rewound, or NIL")
+   (output nil (or null stream) "where its threads write, if an editor wants that, or NIL")
    (messages *message-queue* message-queue "the message queue that the simulation reports to")
    (gate nil (or null function)
          "a function of the simulation that says how many ticks may pass before it is asked again")
