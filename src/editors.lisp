@@ -9,7 +9,7 @@
   "The packages in which the function may be.")
 
 (defun inspector-of (server)
-  "Return the symbol of the generic function that the inspector of SERVER, a package's name, asks, or
+  "Return the symbol of the generic function that the inspector of SERVER, a package's name, asks;
 NIL if that is not loaded."
   (let ((symbol (and (find-package server) (find-symbol "EMACS-INSPECT" server))))
     (and symbol (fboundp symbol) symbol)))

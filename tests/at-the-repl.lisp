@@ -54,7 +54,9 @@
         (load path)
         (funcall function (truename path))))))
 
-(defun users-name (name) (find-symbol name :ars-user))
+(defun users-name (name)
+  "Return the symbol called NAME in the file; attributes are keywords."
+  (find-symbol name (if (string= "GLOW" name) :keyword :ars-user)))
 
 (test documentation.is-kept-by-kind-of-definition
   (call-with-users-file
@@ -97,7 +99,7 @@
    (lambda (path)
      (let ((text (base:read-file-into-string path)))
        (loop for (name kind) in *users-names*
-             for symbol = (if (eq kind 'attribute) :glow (users-name name))
+             for symbol = (users-name name)
              for sources = (loop for type in '(:variable :function :declaration)
                                  append (uiop:symbol-call :sb-introspect
                                                           '#:find-definition-sources-by-name

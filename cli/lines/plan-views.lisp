@@ -39,9 +39,9 @@ it is in the middle of, its variables, what it waits for and since when; and who
 
 (define-line "WHY" (session (n count "the number of a task" :optional)) (:planning)
     "Tell why the command that failed last did so: what was asked for and when, what its error code
-means and what to try. With N, tell what brought the task N where it is, also one that is over: which
-fluent woke it, who had set that, and how it was started. That needs a trace: (setf *trace-plans* t)
-before the plan starts."
+means and what to try. With N, tell what brought the task N where it is, also one that is over:
+which fluent woke it, who had set that, and how it was started. That needs a trace:
+(setf *trace-plans* t) before the plan starts."
   (if n
       (write-string (visible (task-why-text n)))
       (let ((robot (session-robot)))

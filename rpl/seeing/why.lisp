@@ -233,9 +233,9 @@ number; or nothing")))
 ;; Who may leave the first argument out, and give the others by name, needs a list to take apart.
 (addition why)
 (defun why (&rest arguments)
-  "Write, to :STREAM (*STANDARD-OUTPUT*), in sentences why something is as it is, and return nothing.
-\(why) and (why ROBOT), or a part of one, tell of the command that failed or was interrupted last: what
-was asked for, when and by whom, which error code came of it, what that means and what to try.
+  "Write in sentences, to :STREAM (*STANDARD-OUTPUT*), why something is as it is. Return nothing.
+\(why) and (why ROBOT), or a part of one, tell of the command that failed or was interrupted last:
+what was asked for, when and by whom, which error code came of it, what that means and what to try.
 \(why TASK), or the number of one, tells from the trace what brought a task of a plan, over or not,
 where it is: what happened to it, the last first, which fluent woke it and who had set that, and how
 it and those that it is part of were started; :RUNNER says whose, of several. Signals MISUSE if no

@@ -88,8 +88,8 @@ but a function."
                     :character-offset position :description (list operator)))
 
 (defun tell-sources (function)
-  "Let whoever asks where a symbol is defined be told also what FUNCTION of that returns, lists (file
-position operator)."
+  "Let whoever asks where a symbol is defined be told also what FUNCTION of that returns, lists
+\(file position operator)."
   (wrap-function 'sb-introspect:find-definition-sources-by-name
                  (lambda (original name type)
                    (append (funcall original name type)

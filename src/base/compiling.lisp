@@ -85,8 +85,8 @@ is in, which element of this, and so on. Return NIL if that is not known."
            (and top positions (< top (length positions))
                 (cons (aref positions top) numbers)))))))
 
-;;; An editor may have a piece of a file compiled: it copies that to a file of its own, and tells the
-;;; compiler where it is from.
+;;; An editor may have a piece of a file compiled: it copies that to a file of its own, and tells
+;;; the compiler where it is from.
 
 (defun edited-file ()
   "Return the name of the file of which an editor has a piece compiled, a string, or NIL."

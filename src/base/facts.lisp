@@ -7,8 +7,8 @@
 ;;; by name.
 
 (defgeneric facts (object)
-  (:documentation "Return what people want to know of OBJECT: a list of lists (label text), in order,
-without those whose text is NIL.")
+  (:documentation "Return what people want to know of OBJECT: a list of lists (label text), in
+order, without those whose text is NIL.")
   (:method (object) (declare (ignore object)) '()))
 
 (defun known-facts (&rest labels-and-texts)
@@ -41,8 +41,8 @@ string is written as people write it."
   (write-facts-of (append (facts object) (facts-of-definition (entry-of object))) stream))
 
 (defmacro define-facts ((class variable) &rest labels-and-forms)
-  "Let DESCRIBE and inspectors show, of the object VARIABLE of CLASS, what FORMS return under LABELS,
-alternating, as KNOWN-FACTS takes them."
+  "Let DESCRIBE and inspectors show, of the object VARIABLE of CLASS, what FORMS return under
+LABELS, alternating, as KNOWN-FACTS takes them."
   `(progn
      (defmethod facts ((,variable ,class)) (known-facts ,@labels-and-forms))
      ,@(unless (kind-called class)

@@ -233,8 +233,8 @@ without ROLES, for each."
           collect (list (kind-slot-name slot) (slot-content slot object) (kind-slot-text slot))))
 
 (defun slots-to-show (object)
-  "Return lists (title (name value text)...) of the slots of OBJECT, a structure: by role if it is of
-a kind, else all under one title, without texts."
+  "Return lists (title (name value text)...) of the slots of OBJECT, a structure: by role if it is
+of a kind, else all under one title, without texts."
   (if (kind-of object)
       (loop for (role title) in '((:fixed "as it was made") (:state "state") (:memory "memory")
                                   (:scratch "scratch") (:link "links"))

@@ -142,7 +142,8 @@ robot."
     (unless (typep (getf options :documentation "") 'string)
       (reject (getf options :documentation) "a string as the documentation"))
     (loop for (key value) on options by #'cddr
-          do (unless (or (eq key :documentation) (proper-list-p value)) (reject (list key value) "a list after the keyword")))))
+          do (unless (or (eq key :documentation) (proper-list-p value))
+               (reject (list key value) "a list after the keyword")))))
 
 (defun value-form (definition form clause expected)
   "Return a form for the value of FORM, which stands in CLAUSE; that it has none is DEFINITION's."
@@ -185,8 +186,8 @@ stands in, returns a form for its value."
                              &environment environment)
   "Define a robot: (defrobot NAME (ENVIRONMENT (X Y) ANGLE) [:cameras ((FOV RESOLUTION) ...)]
 [:hands (STRENGTH ...)] [:bins (CAPACITY ...)] [:parts ((KIND INITARG VALUE ...) ...)]
-[:documentation TEXT]). NAME becomes a special variable bound to the robot, which stands in the resident world of the map
-ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in radians. Numbers are
+[:documentation TEXT]). NAME becomes a special variable bound to the robot, which stands in the
+resident world of the map ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in radians. Numbers are
 evaluated. Parts of kinds of one's own, which the manual does not have, are made as their KIND says
 \(see DEFINE-KIND). A robot that was called NAME before takes no more commands. Signals
 MALFORMED-DEFINITION (manual 5.2). See reading 9."

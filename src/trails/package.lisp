@@ -9,7 +9,8 @@
                 #:journal-header #:load-journal #:end-of-journal)
   (:import-from :ars-magna.robot
                 #:robot-x #:robot-y #:robot-angle #:robot-name #:robot-hands #:robot-last-place
-                #:robot-main-odometer #:odometer-estimate #:hand-holding)
+                #:robot-main-odometer #:odometer-estimate #:find-blueprint #:blueprint-name
+                #:hand-holding)
   (:import-from :ars-magna.world #:map-width #:map-height)
   (:import-from :ars-magna.display #:snapshot-map #:draw-terrain #:draw-movers)
   (:import-from :ars-magna.plots #:drawing-chart #:look-color #:draw-marker)
