@@ -8,11 +8,17 @@
 (defparameter *servers* '("SWANK/BACKEND" "SWANK-BACKEND" "SLYNK-BACKEND")
   "The packages in which the function may be.")
 
-(defun inspector-of (server)
-  "Return the symbol of the generic function that the inspector of SERVER, a package's name, asks;
-NIL if that is not loaded."
-  (let ((symbol (and (find-package server) (find-symbol "EMACS-INSPECT" server))))
-    (and symbol (fboundp symbol) symbol)))
+(defun inspectors ()
+  "Return the symbols of the generic functions that the inspectors of the servers that are loaded
+ask. Two of the names may be those of one package."
+  (remove-duplicates
+   (loop for server in *servers*
+         for symbol = (and (find-package server) (find-symbol "EMACS-INSPECT" server))
+         when (and symbol (fboundp symbol)) collect symbol)))
+
+(defun joined-p (inspector)
+  "True if the generic function INSPECTOR asks us already."
+  (find-method (fdefinition inspector) '(:around) (list (find-class 'structure-object)) nil))
 
 (defun fact-line (label text)
   (list (format nil "~A: ~A" label text) '(:newline)))
@@ -39,11 +45,10 @@ NIL if that is not loaded."
 robots, things, maps and the like as DESCRIBE does, with what their slots mean. That is done when
 the simulator is loaded; say it again where a server was loaded later. Return the packages of those
 that were found."
-  (loop for server in *servers*
-        for symbol = (inspector-of server)
-        when symbol
-          collect server
-          and do (eval `(defmethod ,symbol :around ((object structure-object))
-                          (if (known-object-p object) (window-of object) (call-next-method))))))
+  (loop for inspector in (inspectors)
+        collect (package-name (symbol-package inspector))
+        unless (joined-p inspector)
+          do (eval `(defmethod ,inspector :around ((object structure-object))
+                      (if (known-object-p object) (window-of object) (call-next-method))))))
 
 (join-editors)

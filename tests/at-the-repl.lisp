@@ -92,7 +92,11 @@
     (is-true (has-words-p said "how far in radians" "Error codes" "Manual 3.5")))
   (is-true (has-words-p (with-output-to-string (out)
                           (describe (command:find-command 'command:robot-go-forward) out))
-                        "GO-FORWARD" ":ROBOT-BLOCKED" "3.5")))
+                        "GO-FORWARD" ":ROBOT-BLOCKED" "3.5"))
+  (is-true (has-words-p (with-output-to-string (out) (describe 'turn-right out))
+                        "TURN-RIGHT names a command" "Turn ROBOT" "At the prompt: TURN-RIGHT"))
+  (is-true (has-words-p (with-output-to-string (out) (describe 'max-speed out))
+                        "MAX-SPEED names a simulation parameter" "cells per tick")))
 
 (test sources.of-definitions-are-told-to-editors
   (call-with-users-file
@@ -181,3 +185,50 @@
       (signals base:wrong-argument (trails:save-trajectory name)))
     (dolist (name '("/no/such/directory/run.csv" "/dev/null"))
       (signals base:misuse (trails:save-trajectory name)))))
+
+;;; Conditions print as sentences.
+
+(defun condition-classes ()
+  "Return a list of the classes of conditions that the packages of the project export."
+  (let ((classes '()))
+    (dolist (package (list-all-packages) classes)
+      (when (eql 0 (search "ARS-MAGNA." (package-name package)))
+        (do-external-symbols (symbol package)
+          (let ((class (find-class symbol nil)))
+            (when (and class (subtypep class 'condition)
+                       (eql 0 (search "ARS-MAGNA." (package-name (symbol-package symbol)))))
+              (pushnew class classes))))))))
+
+(defun report-of-its-own-p (class)
+  "True if conditions of CLASS say more than what they are called."
+  (let ((text (handler-case (princ-to-string (make-condition (class-name class)))
+                (error () "Its report needs to know more."))))
+    (not (search "was signalled" text))))
+
+(test conditions.say-more-than-what-they-are-called
+  (let ((classes (condition-classes)))
+    (is (< 20 (length classes)))
+    (dolist (class (remove (find-class 'base:ars-magna-error) classes))
+      (is-true (report-of-its-own-p class) "~A" class))))
+
+(defun complaint-of (function)
+  "Return what the condition says that FUNCTION signals, or NIL."
+  (handler-case (progn (funcall function) nil)
+    (condition (condition) (princ-to-string condition))))
+
+(test conditions.are-sentences
+  (with-skater ()
+    (dolist (function (list (lambda () (command:robot-turn skater "far"))
+                            (lambda () (world:find-map 'no-such-map))
+                            (lambda () (robot:robot-hand skater 7))
+                            (lambda () (run:status 'nobody))
+                            (lambda () (run:run-ticks -1))
+                            (lambda () (rpl:why 1))
+                            (lambda () (driver:run-plan 'no-such-plan))
+                            (lambda () (run:save-journal "/tmp/none.journal"))
+                            (lambda () (run:load-journal "/no/such/file"))
+                            (lambda () (trails:save-trajectory "none.csv"))
+                            (lambda () (macroexpand-1 '(world:defmap 5 (1 1))))))
+      (let ((said (complaint-of function)))
+        (is-true (and said (find (char said (1- (length said))) ".?"))
+                 "~S" said)))))

@@ -85,11 +85,18 @@ LABELS, alternating, as KNOWN-FACTS takes them."
   "Return the registries of what users define."
   (remove-if #'registry-fixed-p *registries*))
 
+(defun worth-telling-p (entry registry symbol)
+  "True if one who asks for SYMBOL wants to know of ENTRY, which that stands for in REGISTRY. What
+is ours, such as a command, Lisp tells of by itself, unless it is called otherwise there, as TURN."
+  (or (not (registry-fixed-p registry))
+      (and (not (eq symbol (entry-name entry)))
+           (facts (entry-object entry)))))
+
 (defun describe-definitions (symbol stream)
-  "Write to STREAM what definitions of users', or like theirs, are called SYMBOL."
-  (dolist (registry (open-registries))
+  "Write to STREAM what definitions are called SYMBOL."
+  (dolist (registry *registries*)
     (let ((entry (lookup-entry symbol registry)))
-      (when entry
+      (when (and entry (worth-telling-p entry registry symbol))
         (format stream "~&~%~A names ~:[a~;an~] ~A:~%" symbol
                 (find (char (registry-text registry) 0) "aeiou") (registry-text registry))
         (write-facts-of (append (facts (entry-object entry)) (facts-of-definition entry))

@@ -187,10 +187,10 @@ stands in, returns a form for its value."
   "Define a robot: (defrobot NAME (ENVIRONMENT (X Y) ANGLE) [:cameras ((FOV RESOLUTION) ...)]
 [:hands (STRENGTH ...)] [:bins (CAPACITY ...)] [:parts ((KIND INITARG VALUE ...) ...)]
 [:documentation TEXT]). NAME becomes a special variable bound to the robot, which stands in the
-resident world of the map ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in radians. Numbers are
-evaluated. Parts of kinds of one's own, which the manual does not have, are made as their KIND says
-\(see DEFINE-KIND). A robot that was called NAME before takes no more commands. Signals
-MALFORMED-DEFINITION (manual 5.2). See reading 9."
+resident world of the map ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in
+radians. Numbers are evaluated. Parts of kinds of one's own, which the manual does not have, are
+made as their KIND says (see DEFINE-KIND). A robot that was called NAME before takes no more
+commands. Signals MALFORMED-DEFINITION (manual 5.2). See reading 9."
   (let ((definition (title "defrobot" name)))
     (expand-definition form environment
                        (lambda ()
