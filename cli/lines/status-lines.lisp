@@ -41,6 +41,13 @@
         do (put-line "~19A~A" "Interrupted:"
                      (entry-text entry "~(~A~), for ~A, by ~(~A~), for ~A, at tick ~D"))))
 
+(defun thinking-text (status)
+  "Return in words what thinking costs, by STATUS, or NIL if that is as it is by default."
+  (let ((mode (getf status :thinking)))
+    (cond ((consp mode) (format nil "charged, and a tick for ~D steps" (third mode)))
+          ((eq :charged mode) "charged")
+          ((and (eq :free mode) (getf status :live)) "free"))))
+
 ;; As readings 17 and 199 say.
 (defun write-status (status)
   (loop for (label key) in '(("Position:" :position) ("D Position:" :last-move)
@@ -52,6 +59,8 @@
   (mapc #'write-sensor (getf status :sensors))
   (format t "~19A~A~%" "Place:" (getf status :place))
   (write-ownership status)
+  (let ((thinking (thinking-text status)))
+    (when thinking (format t "~19A~A~%" "Thinking:" thinking)))
   (format t "Designators:~%")
   (mapc #'write-designator (getf status :designators)))
 
@@ -59,7 +68,8 @@
     (:seeing)
     "Show the robot: position, last change of position, real and estimated, heading, speed, turning
 speed, the views of its cameras, the place it sensed last, whose commands it and its parts carry
-out, whose was interrupted last by whose, its designators. In Lisp: (status)."
+out, whose was interrupted last by whose, what thinking costs unless that is as usual, its
+designators. In Lisp: (status)."
   (let ((robot (session-robot)))
     (still (write-status (status robot)))))
 

@@ -103,6 +103,8 @@ were (reading 201)."
           :bins (map 'list #'bin-status (robot-bins robot))
           :sensors (map 'list #'sensor-status (robot-sensors robot))
           :place (robot-last-place robot)
+          :thinking (simulation-thinking (robot-simulation robot))
+          :live (live-p (robot-simulation robot))
           :under-way (mapcan #'under-way-status resources)
           :interrupted (mapcan #'interrupted-status resources)
           :failed (last-failure robot)
@@ -123,7 +125,8 @@ is NIL, the first of the current simulation."
 robot of the current simulation, as a property list: :ROBOT, :MAP, :TICK; :POSITION, :LAST-MOVE and
 :ESTIMATED-LAST-MOVE, lists (x y) in metres; :ANGLE in radians, :SPEED in metres and :TURN-ANGLE in
 radians a tick; :CAMERAS, :HANDS, :BINS and :SENSORS, a property list for each part; :PLACE, the
-place type it sensed last, or NIL; :UNDER-WAY and :INTERRUPTED, lists of property lists that say
+place type it sensed last, or NIL; :THINKING, what that costs, and :LIVE, true of a live
+run; :UNDER-WAY and :INTERRUPTED, lists of property lists that say
 whose commands it and its parts carry out, and whose were interrupted last by whose; :FAILED, what
 LAST-FAILURE returns; :DESIGNATORS, a property list for each. All of it is plain data, and looking
 changes nothing in the run. Signals UNKNOWN-NAME, and MISUSE if there is no robot."
