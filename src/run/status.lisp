@@ -125,11 +125,11 @@ is NIL, the first of the current simulation."
 robot of the current simulation, as a property list: :ROBOT, :MAP, :TICK; :POSITION, :LAST-MOVE and
 :ESTIMATED-LAST-MOVE, lists (x y) in metres; :ANGLE in radians, :SPEED in metres and :TURN-ANGLE in
 radians a tick; :CAMERAS, :HANDS, :BINS and :SENSORS, a property list for each part; :PLACE, the
-place type it sensed last, or NIL; :THINKING, what that costs, and :LIVE, true of a live
-run; :UNDER-WAY and :INTERRUPTED, lists of property lists that say
-whose commands it and its parts carry out, and whose were interrupted last by whose; :FAILED, what
-LAST-FAILURE returns; :DESIGNATORS, a property list for each. All of it is plain data, and looking
-changes nothing in the run. Signals UNKNOWN-NAME, and MISUSE if there is no robot."
+place type it sensed last, or NIL; :THINKING, how much time thinking costs, and :LIVE, true of a
+live run; :UNDER-WAY and :INTERRUPTED, lists of property lists that say whose commands it and its
+parts carry out, and whose were interrupted last by whose; :FAILED, what LAST-FAILURE returns;
+:DESIGNATORS, a property list for each. All of it is plain data, and looking changes nothing in the
+run. Signals UNKNOWN-NAME, and MISUSE if there is no robot."
   (let ((robot (robot-meant robot 'status)))
     (ask robot (lambda () (robot-status robot)))))
 
