@@ -256,6 +256,18 @@
     :components ((:file "package") (:file "deciding") (:file "subject") (:file "trying")
                  (:file "repeating") (:file "telling") (:file "checking")))))
 
+;;; Loaded by ./cli/ars-magna --manual.
+(defsystem "ars-magna/manual"
+  :description "Writes the manual as HTML pages."
+  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/cli" "ars-magna/fiveam")
+  :serial t
+  :components
+  ((:module "cli/manual" :serial t
+    :components ((:file "package") (:file "html") (:file "markdown") (:file "guide")
+                 (:file "examples") (:file "entries") (:file "command-entries")
+                 (:file "definition-entries") (:file "symbol-entries") (:file "book")
+                 (:file "linking") (:file "frame") (:file "reference") (:file "writing")))))
+
 ;;; Loaded by tests/clim.lisp, after the package of the tests, where McCLIM is found.
 (defsystem "ars-magna/clim-tests"
   :description "What the window claims."

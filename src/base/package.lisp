@@ -40,7 +40,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:define-function-class #:generic-name #:class-ancestors #:class-slot-names
            #:class-slot-types
            #:code-references #:method-code #:methods-on-class
-           #:function-file #:files-besides-functions
+           #:lambda-list-of #:function-file #:files-besides-functions
            #:call-as-from-file #:date-of-file
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
@@ -108,7 +108,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:entry-digest #:registry-entries #:users-p #:current-form-digest #:form-digest
            #:file-digest #:text-checksum
            #:name-string
-           #:defined-names #:find-definition #:definition-to-replace #:variable-in-use-p
+           #:defined-names #:find-definition #:all-definitions #:definition-to-replace #:variable-in-use-p
            #:entries-meant
            #:*kept-variables* #:undefine #:take-back #:reinstate #:become
            #:with-own-definitions #:call-with-own-definitions)

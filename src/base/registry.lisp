@@ -217,6 +217,13 @@ BEFORE is an object of the registry to come directly before, instead of last. Re
       (reject-name "kind of definition" kind
                    (mapcar #'usual-name (remove-if #'registry-fixed-p *registries*)))))
 
+(defun all-definitions (kind)
+  "Return lists (name object file) for all definitions of KIND, as UNDEFINE takes it, in order. FILE
+is NIL of what is the simulator's own, or was typed."
+  (loop for entry in (registry-entries (find-registry kind))
+        collect (list (entry-name entry) (entry-object entry)
+                      (and (users-p entry) (source-file (entry-source entry))))))
+
 (defun usual-name (registry)
   "Return what users call the kind of REGISTRY."
   (or (first (registry-synonyms registry)) (registry-kind registry)))

@@ -1,0 +1,172 @@
+;;;; examples.lisp -- which blocks of code in the guide are examples of what.
+
+(in-package :ars-magna.manual)
+
+;;; A block is an example of the names that its author gives it: those in a heading that has nothing
+;;; but names in code, as in "### `robot-turn`, `turn`", or before it in bold code, as in
+;;; "**`(par form...)`** succeeds when". The names hold for all blocks until others come, or a
+;;; heading. Of names that have no such block, the shortest that uses them is taken.
+
+(defstruct (example (:copier nil))
+  "A block of code in the guide: of Lisp, or of what is typed at the prompt. NAMES, strings, are what
+its author says that it shows, USES what it has in it. ID is that of the heading that it is under."
+  (page nil :type page :read-only t)
+  (id "" :type string :read-only t)
+  (heading "" :type string :read-only t)
+  (text "" :type string :read-only t)
+  (lisp-p nil :type boolean :read-only t)
+  (names '() :type list :read-only t)
+  (uses '() :type list :read-only t))
+
+;;; Names in text.
+
+(defun name-end-p (char)
+  (find char '(#\Space #\Newline #\( #\) #\' #\` #\, #\" #\;)))
+
+(defun first-name (code)
+  "Return the name that CODE begins with, perhaps after a parenthesis, in lower case."
+  (let* ((start (if (starts-with-subseq "(" code) 1 0))
+         (end (or (position-if #'name-end-p code :start start) (length code))))
+    (string-downcase (subseq code start end))))
+
+(defun names-in-heading (tokens)
+  "Return the names in TOKENS, a heading, if there is nothing else in it."
+  (let ((codes '()) (others '()))
+    (loop with rest = (rest (butlast tokens))
+          while rest
+          do (if (tag-called-p "code" (first rest))
+                 (multiple-value-bind (element left) (element-at rest)
+                   (push (first-name (text-of element)) codes)
+                   (setf rest left))
+                 (push (pop rest) others)))
+    (when (every (lambda (other) (string= "" (string-trim " ," other))) others)
+      (reverse codes))))
+
+(defun name-in-bold (tokens)
+  "Return the name that TOKENS, an element in bold, are about, if it is code alone, or NIL."
+  (when (tag-called-p "code" (second tokens))
+    (multiple-value-bind (element left) (element-at (rest tokens))
+      (when (null (rest left)) (first-name (text-of element))))))
+
+;;; Names in blocks.
+
+(defun name-at (text start)
+  "Return the name in TEXT at START, in lower case and without its package, and where it ends."
+  (let* ((end (or (position-if #'name-end-p text :start start) (length text)))
+         (colon (position #\: text :start start :end end :from-end t))
+         (package-p (and colon (< start colon))))
+    (values (string-downcase (subseq text (if package-p (1+ colon) start) end)) end)))
+
+(defun text-end (text start)
+  "Return where the string or comment that begins in TEXT at START ends, or NIL if none does."
+  (case (char text start)
+    (#\" (let ((end (position #\" text :start (1+ start)))) (if end (1+ end) (length text))))
+    (#\; (or (position #\Newline text :start start) (length text)))))
+
+(defun map-names (function text)
+  "Call FUNCTION with each name in TEXT, of Lisp, and where it starts and ends. Strings and comments
+have none."
+  (loop with i = 0
+        while (< i (length text))
+        do (let ((skipped (text-end text i)))
+             (cond (skipped (setf i skipped))
+                   ((or (name-end-p (char text i)) (char= #\# (char text i))) (incf i))
+                   (t (multiple-value-bind (name end) (name-at text i)
+                        (funcall function name i end)
+                        (setf i end)))))))
+
+(defun lisp-names (text)
+  "Return the names in TEXT, of Lisp, each once."
+  (let ((names '()))
+    (map-names (lambda (name start end)
+                 (declare (ignore start end))
+                 (pushnew name names :test #'string=))
+               text)
+    (nreverse names)))
+
+(defparameter *prompt* "Robot> " "What stands before what is typed in a session.")
+
+(defun typed-names (text)
+  "Return the first words of the lines in TEXT, a session, that have been typed."
+  (loop for line in (uiop:split-string text :separator '(#\Newline))
+        for start = (search *prompt* line)
+        when start
+          collect (first-name (subseq line (+ start (length *prompt*))))))
+
+;;; Blocks.
+
+(defun block-language (element)
+  "Return the language of ELEMENT, a block of code, or NIL."
+  (let ((class (attribute-value "class" (second element))))
+    (and class (starts-with-subseq "language-" class) (subseq class (length "language-")))))
+
+(defun example-in (element page heading names)
+  "Return the example that ELEMENT is, a block of code on PAGE under HEADING, a list (level id text),
+with NAMES; NIL if it is neither Lisp nor a session."
+  (let* ((text (text-of element))
+         (lisp-p (equal "lisp" (block-language element))))
+    (when (or lisp-p (search *prompt* text))
+      (make-example :page page :id (second heading) :heading (third heading) :text text
+                    :lisp-p lisp-p :names names
+                    :uses (if lisp-p (lisp-names text) (typed-names text))))))
+
+(defun examples-of-page (page)
+  "Return the examples on PAGE, in order. Names that follow each other share what follows them."
+  (loop with rest = (page-tokens page)
+        with names = '() and used-p = nil and heading = (list 1 "" (page-title page))
+        while rest
+        for token = (first rest)
+        append (flet ((take-names (new keep)
+                        (setf names (if (and keep (not used-p)) (append names new) new)
+                              used-p nil)))
+                 (cond ((heading-level token)
+                        (multiple-value-bind (element left) (element-at rest)
+                          (setf heading (list (heading-level token) (attribute-value "id" token)
+                                              (text-of element))
+                                rest left)
+                          (take-names (names-in-heading element) nil))
+                        '())
+                       ((tag-called-p "strong" token)
+                        (multiple-value-bind (element left) (element-at rest)
+                          (setf rest left)
+                          (let ((name (name-in-bold element)))
+                            (when name (take-names (list name) t))))
+                        '())
+                       ((tag-called-p "pre" token)
+                        (multiple-value-bind (element left) (element-at rest)
+                          (setf rest left
+                                used-p t)
+                          (let ((example (example-in element page heading names)))
+                            (and example (list example)))))
+                       (t (pop rest) '())))))
+
+(defun read-examples (pages)
+  "Return all examples on PAGES."
+  (mapcan #'examples-of-page (copy-list pages)))
+
+;;; Choosing.
+
+(defparameter *longest-example* 30
+  "How many lines a block may have that is shown for a name that only occurs in it.")
+
+(defun line-count (text)
+  (count #\Newline text))
+
+(defun uses-p (example name lisp-p)
+  (and (eq lisp-p (example-lisp-p example))
+       (member name (example-uses example) :test #'string=)))
+
+(defun examples-for (name lisp-p examples)
+  "Return those of EXAMPLES that show NAME, a string: what is LISP-P, or what is typed. The first
+value is those that name it, or the shortest that uses it; the second, whether they name it."
+  (let ((named (remove-if-not (lambda (example)
+                                (member name (example-names example) :test #'string=))
+                              examples)))
+    (if named
+        (values named t)
+        (let ((using (remove-if-not (lambda (example) (uses-p example name lisp-p)) examples)))
+          (values (and using
+                       (list (first (sort (copy-list using) #'<
+                                          :key (lambda (example)
+                                                 (length (example-text example)))))))
+                  nil)))))
