@@ -119,7 +119,11 @@
                                                 (map-height map))))
               :text (or (first-text name) "A map; see DEFMAP.") :file file))
 
-(defun robot-entry (name robot file)
+(defun robot-entry (name blueprint file)
+  (declare (ignore blueprint))
+  (make-robot-entry name (find-robot name) file))
+
+(defun make-robot-entry (name robot file)
   (make-entry :name (string-downcase name) :chapter :robots :section "Robots"
               :use (string-downcase name) :symbol name
               :facts (list (list "Map" (in-code (map-name (world-map (robot-world robot)))))

@@ -24,7 +24,8 @@
                        (end (if tag-p
                                 (1+ (position #\> html :start start))
                                 (or (position #\< html :start start) (length html)))))
-                  (subseq html start (shiftf start end)))))
+                  (prog1 (subseq html start end)
+                    (setf start end)))))
 
 (defun tag-p (token)
   (char= #\< (char token 0)))

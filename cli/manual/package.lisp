@@ -12,7 +12,7 @@ reference of what is defined in this Lisp.")
                 #:place-type-rank #:place-type-confusion #:place-type-invisible-p
                 #:kicker-prob #:map-width #:map-height #:world-map #:map-name)
   (:import-from :ars-magna.robot
-                #:robot-world #:robot-cameras #:robot-hands #:robot-bins)
+                #:find-robot #:robot-world #:robot-cameras #:robot-hands #:robot-bins)
   (:import-from :ars-magna.command
                 #:all-commands #:command-name #:command-prompt-name #:command-family
                 #:command-section #:command-documentation #:command-resource

@@ -68,9 +68,9 @@
 
 (defun section-html (section entries book)
   "Return the HTML of SECTION of a chapter, which has ENTRIES."
-  (format nil "~@[<h2 id=\"~A\">~A</h2>~%~]~A~{~A~}"
-          (and (string/= "" section) (format nil "section-~A" (anchor section)))
-          (escaped section)
+  (format nil "~@[~A~]~A~{~A~}"
+          (and (string/= "" section)
+               (format nil "<h2 id=\"section-~A\">~A</h2>~%" (anchor section) (escaped section)))
           (name-links entries)
           (mapcar (lambda (entry) (entry-html entry book)) entries)))
 

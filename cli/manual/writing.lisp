@@ -63,6 +63,10 @@ first page."
     (merge-pathnames "index.html" directory)))
 
 (defun main (directory)
-  "Write the manual into DIRECTORY, a name, and say where it begins."
-  (format t "~A~%" (native-name (write-manual directory)))
-  (finish-output))
+  "Write the manual into DIRECTORY, a name, and say where it begins, or why not. Return the status
+to exit with."
+  (handler-case (progn (format t "~A~%" (native-name (write-manual directory)))
+                       0)
+    (error (condition)
+      (format *error-output* "ars-magna: ~A~%" (text-of-condition condition))
+      1)))
