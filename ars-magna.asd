@@ -277,7 +277,7 @@
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
   :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/figures" "ars-magna/cli"
-               "ars-magna/fiveam" "fiveam")
+               "ars-magna/manual" "ars-magna/fiveam" "fiveam")
   :serial t
   :components
   ((:module "tests" :serial t
@@ -350,6 +350,7 @@
                  (:file "users-hands") (:file "src-readme") (:file "rpl-readme")
                  (:file "experiments-readme") (:file "tutorial") (:file "ways-readme")
                  (:file "floors-readme")
+                 (:file "our-manual") (:file "examples")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
                  (:file "experiments-tables") (:file "experiments-fingerprints")
                  (:file "experiments-report") (:file "experiment-compare")

@@ -98,7 +98,7 @@ by themselves is called a text."
                (write-string (escaped (subseq text done end)) out)
                (setf done end)))
         (map-names (lambda (name start end)
-                     (let ((entry (and (< 1 (length name)) (entry-called name book))))
+                     (let ((entry (and (call-p name text start) (entry-called name book))))
                        (when (and entry (member (entry-chapter entry) *chapters-of-lisp*))
                          (copy-to start)
                          (write-string (link (entry-address entry)

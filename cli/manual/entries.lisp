@@ -10,7 +10,7 @@ it is, FILE where it is defined."
   (chapter nil :type keyword :read-only t)
   (section "" :type string :read-only t)
   (symbol nil :type symbol :read-only t)
-  (use nil :type (or null string) :read-only t)
+  (use "" :type string :read-only t)
   (facts '() :type list :read-only t)
   (text "" :type string :read-only t)
   (file nil :type (or null string) :read-only t))

@@ -9,14 +9,16 @@
 
 (defstruct (example (:copier nil))
   "A block of code in the guide: of Lisp, or of what is typed at the prompt. NAMES, strings, are what
-its author says that it shows, USES what it has in it. ID is that of the heading that it is under."
+its author says that it shows, WORDS what it has in it, CALLS those of them that are surely no
+variables of its own. ID is that of the heading that it is under."
   (page nil :type page :read-only t)
   (id "" :type string :read-only t)
   (heading "" :type string :read-only t)
   (text "" :type string :read-only t)
   (lisp-p nil :type boolean :read-only t)
   (names '() :type list :read-only t)
-  (uses '() :type list :read-only t))
+  (words '() :type list :read-only t)
+  (calls '() :type list :read-only t))
 
 ;;; Names in text.
 
@@ -75,12 +77,22 @@ have none."
                         (funcall function name i end)
                         (setf i end)))))))
 
-(defun lisp-names (text)
-  "Return the names in TEXT, of Lisp, each once."
+(defun call-p (name text start)
+  "True if NAME in TEXT at START is surely no variable of that text's own: what is called, or quoted,
+or has a name as those of this simulator are."
+  (or (find #\- name :start (min 1 (length name)))
+      (find (char name (1- (length name))) "*:")
+      (char= #\: (char text start))
+      (and (plusp start) (find (char text (1- start)) "('"))))
+
+(defun lisp-names (text &optional (test (constantly t)))
+  "Return the names in TEXT, of Lisp, each once: those for which TEST, of the name, TEXT and where it
+starts, is true."
   (let ((names '()))
     (map-names (lambda (name start end)
-                 (declare (ignore start end))
-                 (pushnew name names :test #'string=))
+                 (declare (ignore end))
+                 (when (funcall test name text start)
+                   (pushnew name names :test #'string=)))
                text)
     (nreverse names)))
 
@@ -108,7 +120,8 @@ with NAMES; NIL if it is neither Lisp nor a session."
     (when (or lisp-p (search *prompt* text))
       (make-example :page page :id (second heading) :heading (third heading) :text text
                     :lisp-p lisp-p :names names
-                    :uses (if lisp-p (lisp-names text) (typed-names text))))))
+                    :words (if lisp-p (lisp-names text) (typed-names text))
+                    :calls (if lisp-p (lisp-names text #'call-p) '())))))
 
 (defun examples-of-page (page)
   "Return the examples on PAGE, in order. Names that follow each other share what follows them."
@@ -152,21 +165,25 @@ with NAMES; NIL if it is neither Lisp nor a session."
 (defun line-count (text)
   (count #\Newline text))
 
-(defun uses-p (example name lisp-p)
-  (and (eq lisp-p (example-lisp-p example))
-       (member name (example-uses example) :test #'string=)))
+(defun words-of-kind (example kind)
+  "Return the words of EXAMPLE that can stand for what is of KIND: :TYPED, :CALLED or :WRITTEN."
+  (ecase kind
+    (:typed (if (example-lisp-p example) '() (example-words example)))
+    (:called (example-calls example))
+    (:written (if (example-lisp-p example) (example-words example) '()))))
 
-(defun examples-for (name lisp-p examples)
-  "Return those of EXAMPLES that show NAME, a string: what is LISP-P, or what is typed. The first
-value is those that name it, or the shortest that uses it; the second, whether they name it."
-  (let ((named (remove-if-not (lambda (example)
-                                (member name (example-names example) :test #'string=))
-                              examples)))
-    (if named
-        (values named t)
-        (let ((using (remove-if-not (lambda (example) (uses-p example name lisp-p)) examples)))
-          (values (and using
-                       (list (first (sort (copy-list using) #'<
-                                          :key (lambda (example)
-                                                 (length (example-text example)))))))
-                  nil)))))
+(defun shortest (examples)
+  (first (sort (copy-list examples) #'< :key (lambda (example) (length (example-text example))))))
+
+(defun examples-for (name kind examples)
+  "Return those of EXAMPLES that show NAME, a string: those that name it, and true; or in a list the
+shortest that has it as a word of KIND, as WORDS-OF-KIND has it, and NIL."
+  (flet ((having (reader)
+           (remove-if-not (lambda (example)
+                            (member name (funcall reader example) :test #'string=))
+                          examples)))
+    (let ((named (having #'example-names)))
+      (if named
+          (values named t)
+          (let ((using (having (lambda (example) (words-of-kind example kind)))))
+            (values (and using (list (shortest using))) nil))))))

@@ -88,17 +88,22 @@ entries."
         collect (subseq text word end)
         do (setf start end)))
 
-(defun word-html (word book)
-  "Return the HTML of WORD, in prose."
+(defun own-word-p (name own)
+  "True if NAME is one of the names OWN, in lower case, of the arguments of what is told of."
+  (member name own :test #'string-equal))
+
+(defun word-html (word book own)
+  "Return the HTML of WORD, in prose of something with arguments called OWN."
   (let ((name (without-stops word)))
-    (cond ((or (loud-name-p name)
-               (and (< 1 (length name)) (char= #\: (char name 0))))
+    (cond ((and (or (loud-name-p name)
+                    (and (< 1 (length name)) (char= #\: (char name 0))))
+                (not (own-word-p name own)))
            (format nil "~A~A" (linked-name name (escaped name) book)
                    (escaped (subseq word (length name)))))
           (t (escaped word)))))
 
-(defun line-html (line book)
-  "Return the HTML of LINE, of prose without backquotes."
+(defun line-html (line book &optional own)
+  "Return the HTML of LINE, of prose without backquotes; OWN as for WORD-HTML."
   (with-output-to-string (out)
     (loop for (gap word next-gap next) on (words-and-gaps line) by #'cddr
           do (write-string (escaped gap) out)
@@ -106,18 +111,19 @@ entries."
                (let ((address (and (equal " " next-gap) next (citation-address word next book))))
                  (write-string (if address
                                    (link address (escaped word))
-                                   (word-html word book))
+                                   (word-html word book own))
                                out))))))
 
-(defun prose-html (text book)
-  "Return the HTML of TEXT, prose in which names are in backquotes or in capitals."
+(defun prose-html (text book &optional own)
+  "Return the HTML of TEXT, prose in which names are in backquotes or in capitals; OWN as for
+WORD-HTML."
   (with-output-to-string (out)
     (loop for part in (uiop:split-string text :separator "`")
           for code-p = nil then (not code-p)
           do (write-string (if code-p
                                (linked-name part (format nil "<code>~A</code>" (escaped part))
                                             book)
-                               (line-html part book))
+                               (line-html part book own))
                            out))))
 
 (defun indented-p (line)
@@ -133,11 +139,11 @@ entries."
              (push line (first groups)))
             (t (push (list line) groups))))))
 
-(defun docstring-html (text book)
-  "Return the HTML of TEXT, documentation of several paragraphs."
+(defun docstring-html (text book own)
+  "Return the HTML of TEXT, documentation of several paragraphs; OWN as for WORD-HTML."
   (with-output-to-string (out)
     (dolist (lines (remove nil (paragraphs text)))
       (if (indented-p (first lines))
           (format out "<pre>~{~A~^~%~}</pre>~%"
-                  (mapcar (lambda (line) (line-html line book)) lines))
-          (format out "<p>~A</p>~%" (prose-html (format nil "~{~A~^~%~}" lines) book))))))
+                  (mapcar (lambda (line) (line-html line book own)) lines))
+          (format out "<p>~A</p>~%" (prose-html (format nil "~{~A~^~%~}" lines) book own))))))

@@ -24,10 +24,11 @@ reference of what is defined in this Lisp.")
   (:import-from :ars-magna.cli
                 #:all-lines #:line-name #:line-family #:line-sentence #:line-details
                 #:line-parameters #:line-full-name #:line-action #:usage #:slot-help)
-  ;; html, anchors
-  (:export #:escaped #:anchor #:slug)
+  ;; html, markdown, guide
+  (:export #:escaped #:anchor #:html-tokens #:tag-p #:tag-name #:attribute-value
+           #:read-guide #:page-source #:page-file)
   ;; entries, examples
-  (:export #:all-entries #:entry-name #:entry-chapter #:entry-symbol #:examples-for
-           #:example-text)
+  (:export #:all-entries #:entry-name #:entry-chapter #:entry-symbol #:chapter-title
+           #:read-examples #:examples-of-entry)
   ;; writing
   (:export #:write-manual #:main))

@@ -27,13 +27,20 @@
   "True if EXAMPLE is to be shown with the entry, which it names if NAMED-P is true."
   (or named-p (<= (line-count (example-text example)) *longest-example*)))
 
-(defun examples-of-entry (entry book)
-  "Return the examples of BOOK for ENTRY, and true if they name it."
-  (examples-for (entry-key entry) (not (eq :prompt (entry-chapter entry))) (book-examples book)))
+(defun kind-of-words (entry)
+  "Return as what the name of ENTRY stands in examples, for WORDS-OF-KIND."
+  (let ((chapter (entry-chapter entry)))
+    (cond ((eq :prompt chapter) :typed)
+          ((member chapter *chapters-of-lisp*) :called)
+          (t :written))))
+
+(defun examples-of-entry (entry examples)
+  "Return those of EXAMPLES that are for ENTRY, and true if they name it."
+  (examples-for (entry-key entry) (kind-of-words entry) examples))
 
 (defun examples-html (entry book)
   "Return the HTML of the examples for ENTRY: those that name it, or where it is used."
-  (multiple-value-bind (examples named-p) (examples-of-entry entry book)
+  (multiple-value-bind (examples named-p) (examples-of-entry entry (book-examples book))
     (format nil "~{~A~}"
             (loop for example in examples
                   collect (if (shown-p example named-p)
@@ -44,10 +51,11 @@
 ;;; Entries and chapters.
 
 (defun entry-html (entry book)
-  (format nil "<section id=\"~A\">~%<h3>~A</h3>~%<p class=\"use\"><code>~A</code></p>~%~A~A~A~@[<p ~
-               class=\"from\">~A</p>~]~%</section>~%"
-          (anchor (entry-name entry)) (escaped (entry-name entry)) (escaped (entry-use entry))
-          (docstring-html (entry-text entry) book)
+  (format nil "<section id=\"~A\">~%<h3>~A</h3>~%~@[<p class=\"use\"><code>~A</code></p>~%~]~A~A~A~
+               ~@[<p class=\"from\">~A</p>~]~%</section>~%"
+          (anchor (entry-name entry)) (escaped (entry-name entry))
+          (and (string/= (entry-use entry) (entry-name entry)) (escaped (entry-use entry)))
+          (docstring-html (entry-text entry) book (lisp-names (entry-use entry)))
           (if (entry-facts entry)
               (list-html (mapcar (lambda (fact) (fact-html fact book)) (entry-facts entry)))
               "")

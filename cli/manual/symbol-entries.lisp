@@ -8,11 +8,11 @@
   "True if SYMBOL is what users define with."
   (let ((name (symbol-name symbol)))
     (and (fboundp symbol)
-         (not (find #\* name))
-         (or (starts-with-subseq "DEF" name)
+         (or (and (starts-with-subseq "DEF" name)
+                  (not (search "WARNING" name)))
              (member name '("UNDEFINE" "WITH-OWN-DEFINITIONS" "NEW-THING" "THING-DESCRIPTOR"
                             "MAKE-ODOMETER" "MAKE-POLICY" "MAKE-VALVE" "INTERP-LAMBDA" "MAKE-PLAN"
-                            "SET-KICKER" "PUT-KICKER" "REBUILD-MAP" "SELF")
+                            "SET-KICKER" "PUT-KICKER" "REBUILD-MAP")
                      :test #'string=)))))
 
 (defun colour-p (symbol)
@@ -22,9 +22,22 @@
        (typep (symbol-value symbol) '(or simple-vector (unsigned-byte 24)))
        (not (string= "GRAPHICS-SCALE*" (symbol-name symbol)))))
 
+(defparameter *words*
+  '((("NUMERIC") "The domain of an attribute whose values are numbers; see DEFATTRIBUTE.")
+    (("RED" "GREEN" "BLUE" "VIOLET" "LIGHTRED" "LIGHTGREEN" "LIGHTBLUE" "LIGHTVIOLET")
+     "A value of the attribute :COLOR.")
+    (("VOID" "LST" "~" "THING-DESCRIPTOR" "ROBOT-CONTINUATION")
+     "A word of Nisp's for types, which DEFFUNC, DEFPROC and LET take and pass over (manual 3.1)."))
+  "Lists (names text): words that are users' symbols, and no more.")
+
+(defun word-text (symbol)
+  "Return what SYMBOL means if it is one of *WORDS*, or NIL."
+  (second (find-if (lambda (names) (member (symbol-name symbol) names :test #'string=))
+                   *words* :key #'first)))
+
 (defun restart-name-p (symbol)
   "True if SYMBOL is no more than the name of a restart."
-  (and (null (sorts-of-symbol symbol)) (not (string= "SELF" (symbol-name symbol)))))
+  (and (null (sorts-of-symbol symbol)) (null (word-text symbol))))
 
 (defun condition-name-p (symbol)
   (and (find-class symbol nil) (subtypep symbol 'condition)))
@@ -71,7 +84,7 @@
                 :use (or (use-of-symbol symbol) (string-downcase symbol))
                 :facts (append (symbol-facts symbol)
                                (unless (member chapter '(:fluents :colours)) (value-facts symbol)))
-                :text (or (first-text symbol) (restart-text symbol))
+                :text (or (first-text symbol) (word-text symbol) (restart-text symbol))
                 :file (file-of-symbol symbol))))
 
 ;;; Which symbols.
