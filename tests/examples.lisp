@@ -43,15 +43,30 @@
 (defparameter *pages-of-sessions* '("cli/lines/README.md")
   "The pages whose blocks of text are sessions with DOT, in a world without noise.")
 
+(defun call-in-new-directory (function)
+  "Call FUNCTION where files may be written, and are then forgotten."
+  (uiop:with-temporary-file (:pathname place)
+    (let ((directory (uiop:ensure-directory-pathname (format nil "~A-files" place))))
+      (ensure-directories-exist directory)
+      (unwind-protect (uiop:with-current-directory (directory) (funcall function))
+        (uiop:delete-directory-tree directory :validate t)))))
+
+(defun check-session (lines page)
+  "Check that what has been typed in LINES, of PAGE, is answered as they say."
+  (let* ((typed (remove nil (mapcar #'typed-line lines)))
+         (answers (remove nil (mapcar #'answered-line lines)))
+         (written (apply #'type-to 'ars-worlds:dot typed)))
+    (is (not (null typed)))
+    (is (found-in-order-p answers written) "~A:~%~{~A~%~}is not what came:~%~{~A~%~}" page
+        answers written)))
+
 (test examples.of-sessions-are-so
-  (dolist (page *pages-of-sessions*)
-    (dolist (lines (blocks-of "text" (project-file page)))
-      (let* ((typed (remove nil (mapcar #'typed-line lines)))
-             (answers (remove nil (mapcar #'answered-line lines)))
-             (written (apply #'type-to 'ars-worlds:dot typed)))
-        (is (not (null typed)))
-        (is (found-in-order-p answers written) "~A:~%~{~A~%~}is not what came:~%~{~A~%~}" page
-            answers written)))))
+  (call-in-new-directory
+   (lambda ()
+     (dolist (page *pages-of-sessions*)
+       (dolist (lines (blocks-of "text" (project-file page)))
+         (let ((ars-magna.rpl-robot:*trace-plans* nil))
+           (check-session lines page)))))))
 
 (test examples.pages-have-lines-to-be-read
   (dolist (page (append (pages-of-examples) *pages-of-sessions*))
