@@ -9,9 +9,17 @@
     (:setting . "a setting"))
   "What the kinds of parameters are, in words.")
 
+(defun shortest-number (value)
+  "Return VALUE; of a double-float that a single-float was made of, that one, which has less digits."
+  (if (and (typep value 'double-float) (= value (coerce value 'single-float)))
+      (coerce value 'single-float)
+      value))
+
 (defun number-words (value)
-  (let ((*read-default-float-format* 'double-float) (*print-case* :downcase))
-    (prin1-to-string value)))
+  "Return VALUE, a parameter's, as people write it."
+  (let ((value (shortest-number value)) (*print-case* :downcase))
+    (let ((*read-default-float-format* (if (floatp value) (type-of value) 'single-float)))
+      (prin1-to-string value))))
 
 (defun parameter-facts (parameter)
   `(("Default" ,(format nil "~A ~A" (number-words (parameter-default parameter))
