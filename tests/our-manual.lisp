@@ -101,7 +101,8 @@
   (with-manual (directory)
     (let ((page (base:file-text (merge-pathnames "reference-names.html" directory))))
       (is (search "id=\"_7e\"" page))
-      (is (search "(~ " page)))))
+      (is (search "&amp;key" page))
+      (is (null (search "&key" page))))))
 
 ;;; Entries.
 

@@ -41,19 +41,18 @@
 
 ;;; What is defined by name. Where the simulator's own definitions are from is not kept with them.
 
-(defun definition-in-project (name file)
-  "Return FILE, of a definition of NAME, as a name in the project; NIL if it is not of the project."
-  (cond (file (let ((name (project-name (native-name file))))
-                (and name (not (starts-with-subseq "tests/" name)) name)))
-        ((and (symbolp name) (not (keywordp name)) (file-of-symbol name)))
-        (t "")))
+(defun file-in-project (source)
+  "Return the file SOURCE as a name in the project; NIL if it is not of the project, or of a test."
+  (let ((name (and (not (eq :own source)) source (project-name (native-name source)))))
+    (and name (not (starts-with-subseq "tests/" name)) name)))
 
 (defun definitions-of (kind)
-  "Return lists (name object file) for the definitions of KIND that are the project's."
-  (loop for (name object file) in (all-definitions kind)
-        for place = (definition-in-project name file)
-        when place
-          collect (list name object (and (string/= "" place) place))))
+  "Return lists (name object file) for the definitions of KIND that are the project's; FILE is NIL if
+it is not known."
+  (loop for (name object source) in (all-definitions kind)
+        for file = (file-in-project source)
+        when (or file (eq :own source))
+          collect (list name object file)))
 
 (defun entries-of (kind function)
   "Return what FUNCTION makes of name, object and file of each definition of KIND."

@@ -15,6 +15,11 @@ it is, FILE where it is defined."
   (text "" :type string :read-only t)
   (file nil :type (or null string) :read-only t))
 
+(document-functions
+  entry-name "Return what the entry is about, as people write it."
+  entry-chapter "Return the key of the chapter that the entry is in."
+  entry-symbol "Return the symbol that the entry is about, or NIL if it is about none.")
+
 (defparameter *chapters*
   '((:commands "Commands" "What robots, cameras, hands and storage bins can be told to do.")
     (:prompt "The prompt's lines" "What can be typed after Robot> besides Lisp.")
@@ -38,7 +43,9 @@ it is, FILE where it is defined."
     (:worlds-names "Other names of the worlds" "What else ARS-WORLDS has: things, and functions."))
   "Lists (key title introduction), in order. Of names that several have, the first is meant.")
 
-(defun chapter-title (chapter) (second (assoc chapter *chapters*)))
+(defun chapter-title (chapter)
+  "Return what CHAPTER, a key of *CHAPTERS*, is called."
+  (second (assoc chapter *chapters*)))
 
 (defun chapter-introduction (chapter) (third (assoc chapter *chapters*)))
 

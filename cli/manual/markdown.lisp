@@ -28,6 +28,7 @@
                     (setf start end)))))
 
 (defun tag-p (token)
+  "True if TOKEN, of HTML-TOKENS, is a tag."
   (char= #\< (char token 0)))
 
 (defun tag-name (token)

@@ -218,11 +218,11 @@ BEFORE is an object of the registry to come directly before, instead of last. Re
                    (mapcar #'usual-name (remove-if #'registry-fixed-p *registries*)))))
 
 (defun all-definitions (kind)
-  "Return lists (name object file) for all definitions of KIND, as UNDEFINE takes it, in order. FILE
-is NIL of what is the simulator's own, or was typed."
+  "Return lists (name object source) for all definitions of KIND, as UNDEFINE takes it, in order.
+SOURCE is the file that it is from, :OWN of what is the simulator's, or NIL of what was typed."
   (loop for entry in (registry-entries (find-registry kind))
         collect (list (entry-name entry) (entry-object entry)
-                      (and (users-p entry) (source-file (entry-source entry))))))
+                      (if (users-p entry) (source-file (entry-source entry)) :own))))
 
 (defun usual-name (registry)
   "Return what users call the kind of REGISTRY."
