@@ -51,8 +51,8 @@ their names in lower case. FILES are the project's files that are copied beside 
                         address)))
 
 (defun copied-name (name)
-  "Return the name beside the pages of the copy of the project's file NAME: what browsers do not show
-by themselves is called a text."
+  "Return the name beside the pages of the copy of the project's file NAME: what browsers do not
+show by themselves is called a text."
   (format nil "files/~A~:[.txt~;~]" name
           (member (pathname-type name) '("svg" "png" "txt" "html") :test #'equal)))
 

@@ -1,4 +1,4 @@
-;;;; definition-entries.lisp -- entries of what definers have defined: parameters, attributes, robots.
+;;;; definition-entries.lisp -- entries of what definers have defined: parameters, robots ....
 
 (in-package :ars-magna.manual)
 
@@ -10,7 +10,7 @@
   "What the kinds of parameters are, in words.")
 
 (defun shortest-number (value)
-  "Return VALUE; of a double-float that a single-float was made of, that one, which has less digits."
+  "Return VALUE; of a double-float that a single-float was made of, that one: it has less digits."
   (if (and (typep value 'double-float) (= value (coerce value 'single-float)))
       (coerce value 'single-float)
       value))
@@ -47,8 +47,8 @@
     (and name (not (starts-with-subseq "tests/" name)) name)))
 
 (defun definitions-of (kind)
-  "Return lists (name object file) for the definitions of KIND that are the project's; FILE is NIL if
-it is not known."
+  "Return lists (name object file) for the definitions of KIND that are the project's; FILE is NIL
+if it is not known."
   (loop for (name object source) in (all-definitions kind)
         for file = (file-in-project source)
         when (or file (eq :own source))
@@ -69,9 +69,10 @@ it is not known."
        (list (list "Error" (format nil "deviation ~A close by, up to ~A times that far away"
                                    (number-words (attribute-base attribute))
                                    (number-words (attribute-max-mult attribute))))))
-   (list (list "Noticed unasked" (format nil "with probability ~A~@[; more often with ~(~{~S~^, ~}~)~]"
-                                         (number-words (attribute-noticed attribute))
-                                         (attribute-supporters attribute))))))
+   (list (list "Noticed unasked"
+               (format nil "with probability ~A~@[; more often with ~(~{~S~^, ~}~)~]"
+                       (number-words (attribute-noticed attribute))
+                       (attribute-supporters attribute))))))
 
 (defun attribute-entry (name attribute file)
   (declare (ignore name))

@@ -2,14 +2,14 @@
 
 (in-package :ars-magna.manual)
 
-;;; A block is an example of the names that its author gives it: those in a heading that has nothing
-;;; but names in code, as in "### `robot-turn`, `turn`", or before it in bold code, as in
-;;; "**`(par form...)`** succeeds when". The names hold for all blocks until others come, or a
+;;; A block is an example of the names that its author gives it: those in a heading or paragraph
+;;; that has nothing but names in code, as in "### `robot-turn`, `turn`", or before it in bold code,
+;;; as in "**`(par form...)`** succeeds when". The names hold for all blocks until others come, or a
 ;;; heading. Of names that have no such block, the shortest that uses them is taken.
 
 (defstruct (example (:copier nil))
-  "A block of code in the guide: of Lisp, or of what is typed at the prompt. NAMES, strings, are what
-its author says that it shows, WORDS what it has in it, CALLS those of them that are surely no
+  "A block of code in the guide: of Lisp, or of what is typed at the prompt. NAMES, strings, are
+what its author says that it shows, WORDS what it has in it, CALLS those of them that are surely no
 variables of its own. ID is that of the heading that it is under."
   (page nil :type page :read-only t)
   (id "" :type string :read-only t)
@@ -31,8 +31,8 @@ variables of its own. ID is that of the heading that it is under."
          (end (or (position-if #'name-end-p code :start start) (length code))))
     (string-downcase (subseq code start end))))
 
-(defun names-in-heading (tokens)
-  "Return the names in TOKENS, a heading, if there is nothing else in it."
+(defun names-alone (tokens)
+  "Return the names in TOKENS, a heading or paragraph, if there is nothing else in it."
   (let ((codes '()) (others '()))
     (loop with rest = (rest (butlast tokens))
           while rest
@@ -41,7 +41,7 @@ variables of its own. ID is that of the heading that it is under."
                    (push (first-name (text-of element)) codes)
                    (setf rest left))
                  (push (pop rest) others)))
-    (when (every (lambda (other) (string= "" (string-trim " ," other))) others)
+    (when (every (lambda (other) (string= "" (string-trim '(#\Space #\, #\Newline) other))) others)
       (reverse codes))))
 
 (defun name-in-bold (tokens)
@@ -78,16 +78,16 @@ have none."
                         (setf i end)))))))
 
 (defun call-p (name text start)
-  "True if NAME in TEXT at START is surely no variable of that text's own: what is called, or quoted,
-or has a name as those of this simulator are."
+  "True if NAME in TEXT at START is surely no variable of that text's own: what is called, or
+quoted, or has a name as those of this simulator are."
   (or (find #\- name :start (min 1 (length name)))
       (find (char name (1- (length name))) "*:")
       (char= #\: (char text start))
       (and (plusp start) (find (char text (1- start)) "('"))))
 
 (defun lisp-names (text &optional (test (constantly t)))
-  "Return the names in TEXT, of Lisp, each once: those for which TEST, of the name, TEXT and where it
-starts, is true."
+  "Return the names in TEXT, of Lisp, each once: those for which TEST, of the name, TEXT and where
+it starts, is true."
   (let ((names '()))
     (map-names (lambda (name start end)
                  (declare (ignore end))
@@ -113,8 +113,8 @@ starts, is true."
     (and class (starts-with-subseq "language-" class) (subseq class (length "language-")))))
 
 (defun example-in (element page heading names)
-  "Return the example that ELEMENT is, a block of code on PAGE under HEADING, a list (level id text),
-with NAMES; NIL if it is neither Lisp nor a session."
+  "Return the example that ELEMENT is, a block of code on PAGE under HEADING, a list (level id
+text), with NAMES; NIL if it is neither Lisp nor a session."
   (let* ((text (text-of element))
          (lisp-p (equal "lisp" (block-language element))))
     (when (or lisp-p (search *prompt* text))
@@ -123,35 +123,64 @@ with NAMES; NIL if it is neither Lisp nor a session."
                     :words (if lisp-p (lisp-names text) (typed-names text))
                     :calls (if lisp-p (lisp-names text #'call-p) '())))))
 
+(defstruct (walk (:copier nil))
+  "How far somebody who looks for examples has come on PAGE: below HEADING, a list (level id text),
+with NAMES, which a block has shown if USED-P is true; EXAMPLES are those found, the last first."
+  (page nil :type page :read-only t)
+  (heading '() :type list)
+  (names '() :type list)
+  (used-p nil :type boolean)
+  (examples '() :type list))
+
+(defun take-names (walk names &key keep)
+  "Let NAMES be shown by what follows; with KEEP, beside those that nothing has shown yet."
+  (when names
+    (setf (walk-names walk) (if (and keep (not (walk-used-p walk)))
+                                (append (walk-names walk) names)
+                                names)
+          (walk-used-p walk) nil)))
+
+(defun pass-heading (walk element)
+  (setf (walk-heading walk) (list (heading-level (first element))
+                                  (attribute-value "id" (first element))
+                                  (text-of element))
+        (walk-names walk) '()
+        (walk-used-p walk) nil)
+  (take-names walk (names-alone element)))
+
+(defun pass-block (walk element)
+  (let ((example (example-in element (walk-page walk) (walk-heading walk) (walk-names walk))))
+    (setf (walk-used-p walk) t)
+    (when example (push example (walk-examples walk)))))
+
+(defun names-in-bold (tokens)
+  "Return the names in bold code in TOKENS, a paragraph."
+  (loop for rest on tokens
+        for name = (and (tag-called-p "strong" (first rest))
+                        (name-in-bold (element-at rest)))
+        when name collect name))
+
 (defun examples-of-page (page)
   "Return the examples on PAGE, in order. Names that follow each other share what follows them."
-  (loop with rest = (page-tokens page)
-        with names = '() and used-p = nil and heading = (list 1 "" (page-title page))
-        while rest
-        for token = (first rest)
-        append (flet ((take-names (new keep)
-                        (setf names (if (and keep (not used-p)) (append names new) new)
-                              used-p nil)))
+  (let ((walk (make-walk :page page :heading (list 1 "" (page-title page))))
+        (rest (page-tokens page)))
+    (flet ((pass (function)
+             (multiple-value-bind (element left) (element-at rest)
+               (funcall function element)
+               (setf rest left))))
+      (loop while rest
+            do (let ((token (first rest)))
                  (cond ((heading-level token)
-                        (multiple-value-bind (element left) (element-at rest)
-                          (setf heading (list (heading-level token) (attribute-value "id" token)
-                                              (text-of element))
-                                rest left)
-                          (take-names (names-in-heading element) nil))
-                        '())
-                       ((tag-called-p "strong" token)
-                        (multiple-value-bind (element left) (element-at rest)
-                          (setf rest left)
-                          (let ((name (name-in-bold element)))
-                            (when name (take-names (list name) t))))
-                        '())
+                        (pass (lambda (element) (pass-heading walk element))))
+                       ((tag-called-p "p" token)
+                        (pass (lambda (element)
+                                (take-names walk (or (names-alone element)
+                                                     (names-in-bold element))
+                                            :keep t))))
                        ((tag-called-p "pre" token)
-                        (multiple-value-bind (element left) (element-at rest)
-                          (setf rest left
-                                used-p t)
-                          (let ((example (example-in element page heading names)))
-                            (and example (list example)))))
-                       (t (pop rest) '())))))
+                        (pass (lambda (element) (pass-block walk element))))
+                       (t (pop rest))))))
+    (reverse (walk-examples walk))))
 
 (defun read-examples (pages)
   "Return all examples on PAGES."

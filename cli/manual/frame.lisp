@@ -87,9 +87,11 @@
 <p>An abstract robot simulator for people who build reactive planners.</p>
 <h2 id=\"learn\">Learn</h2>~%~A
 <h2 id=\"guide\">Guide</h2>~%~A
+<h2 id=\"examples\">Examples</h2>~%~A
 <h2 id=\"reference\">Reference</h2>~%~A
 <p>~A lists everything that has a name.</p>
 <h2 id=\"inside\">Inside</h2>~%~A"
-                       (page-links :learning book) (page-links :guide book) (chapter-links book)
+                       (page-links :learning book) (page-links :guide book)
+                       (page-links :examples book) (chapter-links book)
                        (link "names.html" "All names")
                        (format nil "~A~A" (page-links :inside book) (page-links :about book)))))

@@ -3,8 +3,8 @@
 (in-package :ars-magna.manual)
 
 (defstruct (page (:copier nil))
-  "A page of the guide. SOURCE is its name in the project, FILE that of the HTML; TOKENS are the HTML
-of its Markdown, its headings with anchors."
+  "A page of the guide. SOURCE is its name in the project, FILE that of the HTML; TOKENS are the
+HTML of its Markdown, its headings with anchors."
   (source "" :type string :read-only t)
   (file "" :type string :read-only t)
   (title "" :type string :read-only t)
@@ -19,6 +19,21 @@ of its Markdown, its headings with anchors."
     ("worlds/tutorial/README.md" "tutorial.html" "Tutorial" :learning)
     ("worlds/README.md" "worlds.html" "The shipped worlds" :guide)
     ("cli/README.md" "prompt.html" "The prompt" :guide)
+    ("cli/lines/README.md" "prompt-examples.html" "The prompt by example" :examples)
+    ("src/command/README.md" "command-examples.html" "Commands by example" :examples)
+    ("src/base/README.md" "parameter-examples.html" "Parameters, chance and mistakes by example"
+     :examples)
+    ("src/world/README.md" "world-examples.html" "Maps, places and things by example" :examples)
+    ("src/robot/README.md" "robot-examples.html" "Robots and their parts by example" :examples)
+    ("src/run/README.md" "run-examples.html" "Runs by example" :examples)
+    ("rpl/robot/README.md" "plan-robot-examples.html" "Plans and their robot by example" :examples)
+    ("rpl/tasks/README.md" "task-examples.html" "Tasks and failures by example" :examples)
+    ("src/experiment/report/README.md" "result-examples.html" "Results of experiments by example"
+     :examples)
+    ("src/statistics/README.md" "statistics-examples.html" "Statistics by example" :examples)
+    ("src/geometry/README.md" "geometry-examples.html" "Points, intervals and angles by example"
+     :examples)
+    ("src/display/README.md" "picture-examples.html" "Pictures by example" :examples)
     ("rpl/README.md" "plans.html" "The plan language" :guide)
     ("src/experiment/README.md" "experiments.html" "Experiments" :guide)
     ("src/ways/README.md" "ways.html" "Ways through a map" :guide)
@@ -52,14 +67,14 @@ of its Markdown, its headings with anchors."
   (rest (assoc source *known-pages* :test #'string=)))
 
 (defun page-part (page)
-  "Return where PAGE is listed: :LEARNING, :GUIDE, :INSIDE, :ABOUT or, with examples, :EXAMPLES."
+  "Return where PAGE is listed: :LEARNING, :GUIDE, :EXAMPLES, :INSIDE or :ABOUT."
   (let ((source (page-source page)))
     (cond ((third (known-page source)))
           ((starts-with-subseq "tests/" source) :inside)
           (t :guide))))
 
 (defun file-for (source)
-  "Return the name of the HTML file for the page SOURCE, such as src-run.html for src/run/README.md."
+  "Return the name of the HTML file for the page SOURCE: src-run.html for src/run/README.md."
   (or (first (known-page source))
       (format nil "~A.html" (substitute #\- #\/ (subseq source 0 (search "/README.md" source))))))
 

@@ -132,7 +132,8 @@ WORD-HTML."
 (defun paragraphs (text)
   "Return the lines of TEXT in lists: those of a paragraph, or those of a list, which are indented."
   (let ((groups '()))
-    (dolist (line (uiop:split-string text :separator '(#\Newline)) (reverse (mapcar #'reverse groups)))
+    (dolist (line (uiop:split-string text :separator '(#\Newline))
+                  (reverse (mapcar #'reverse groups)))
       (cond ((string= "" (string-trim " " line)) (push '() groups))
             ((and groups (first groups)
                   (eq (indented-p line) (indented-p (first (first groups)))))
