@@ -104,7 +104,7 @@
                  (:file "operators")))
    (:module "rpl/tasks" :serial t
     :components ((:file "package") (:file "ring") (:file "timer") (:file "failure")
-                 (:file "task") (:file "trace") (:file "runner") (:file "charging")
+                 (:file "task") (:file "trace") (:file "runner") (:file "words") (:file "charging")
                  (:file "tracing") (:file "machine") (:file "ending") (:file "stepping")
                  (:file "blame") (:file "shape") (:file "procedure") (:file "forking")
                  (:file "report") (:file "courtesy") (:file "repair") (:file "care")
@@ -320,6 +320,7 @@
                  (:file "rpl-seeing-truth") (:file "thinking") (:file "thinking-runs")
                  (:file "skipping")
                  (:file "kinds") (:file "digests") (:file "runs") (:file "rewinding")
+                 (:file "rewinding-words") (:file "rewinding-handles")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")
                  (:file "forking-values") (:file "forking-unforkable") (:file "forking-uses")
                  (:file "forking-plans") (:file "forking-live") (:file "forking-borders")
