@@ -220,22 +220,26 @@
     ((:file "package")
      (:module "terminal" :serial t
       :components ((:file "process") (:file "telling") (:file "input") (:file "console")
+                   (:file "progress") (:file "json")
                    (:file "layout")))
      (:module "prompt" :serial t
-      :components ((:file "user-names") (:file "session") (:file "line") (:file "arguments")
-                   (:file "errands") (:file "reading") (:file "robot-lines") (:file "finding")
+      :components ((:file "user-names") (:file "reporting") (:file "session") (:file "line") (:file "quantities")
+                   (:file "arguments") (:file "errands") (:file "reading") (:file "robot-lines") (:file "finding")
                    (:file "evaluation") (:file "carrying-out") (:file "guarding")
                    (:file "plans") (:file "loading") (:file "worlds")
                    (:file "debugger") (:file "prompt") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
-                   (:file "status-lines") (:file "running-lines") (:file "world-lines")
+                   (:file "status-data") (:file "status-lines")
+                   (:file "running-lines") (:file "world-lines")
                    (:file "plan-lines") (:file "plan-views") (:file "help")
-                   (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")))
+                   (:file "topics") (:file "manipulate-line")
+                   (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")
+                   (:file "fork-line") (:file "import-line")))
      (:module "shell" :serial t
       :components ((:file "options") (:file "texts") (:file "report") (:file "experiments")
                    (:file "executable") (:file "spreading") (:file "experiment-command")
-                   (:file "table-commands") (:file "commands") (:file "main")))))))
+                   (:file "table-commands") (:file "commands") (:file "scripts") (:file "main")))))))
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."
@@ -310,11 +314,11 @@
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
                  (:file "worlds-searching")
                  (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
-                 (:file "clim") (:file "cli")
+                 (:file "clim") (:file "cli") (:file "cli-quantities")
                  (:file "ways-going") (:file "cli-plans") (:file "cli-rewinding")
                  (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "experiment-replay")
-                 (:file "cli-trials") (:file "cli-files") (:file "cli-plan-tree")
+                 (:file "cli-trials") (:file "cli-newcomers") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "experiment-shell") (:file "experiment-shell-code")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
                  (:file "rpl-seeing-truth") (:file "thinking") (:file "thinking-runs")
@@ -362,7 +366,7 @@
                  (:module "newcomer" :serial t
                   :components ((:file "terminal") (:file "screens") (:file "pages")
                                (:file "session") (:file "newcomer")))
-                 (:file "isolation") (:file "budgets")
+                 (:file "cli-scripts") (:file "isolation") (:file "budgets")
                  (:file "children") (:file "children-uses")
                  (:file "main"))))
   :perform (test-op (operation system)

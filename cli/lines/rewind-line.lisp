@@ -25,7 +25,7 @@
   (setf (session-rewound-p session) t)
   (take-up-plans session))
 
-(define-line "REWIND" (session (n count "how many ticks"))
+(define-line "REWIND" (session (n tick-span "how far"))
     (:running)
     "Go back N ticks, plans included, and go on from there; 0 undoes what was done since the last
 tick. What came after has not happened; the journal says that there was something."

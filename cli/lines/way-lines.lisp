@@ -1,4 +1,4 @@
-;;;; way-lines.lisp -- GO-TO: the robot finds its way to a point of the map.
+;;;; way-lines.lisp -- GO and GO-TO: so far ahead, and to a point of the map.
 
 (in-package :ars-magna.cli)
 
@@ -19,7 +19,18 @@ SIMULATION."
                          robot))
     (t (error-set (format nil "go-to: Interrupted on the way to ~A ~A" x y)))))
 
-(define-line "GO-TO" (session (x number "metres from the left") (y number "metres from the top"))
+(define-line "GO" (session (distance metres "how far"))
+    (:moving)
+    "Drive DISTANCE metres straight ahead, no faster than the robot's speed. GO-FORWARD drives for a
+number of ticks."
+  (let ((errand (make-errand)))
+    (robot-go-distance (session-robot) distance
+                       (lambda (err robot)
+                         (declare (ignore err robot))
+                         (setf (errand-done-p errand) t)))
+    (push errand (session-errands session))))
+
+(define-line "GO-TO" (session (x metres "metres from the left") (y metres "metres from the top"))
     (:moving)
     "Let the robot find its way to X, Y, through doorways and round obstacles."
   (let ((errand (make-errand)) (simulation (current-simulation)))

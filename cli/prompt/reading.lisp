@@ -19,6 +19,7 @@ comes of earlier lines if the session waits for that."
               ((null line) (terpri console))
               ((or given (session-echo-p session)) (format console "~A~%" (visible line))))
         (answered console))
+      (note-read (session-account session))
       line)))
 
 (defun comment-p (text)
@@ -28,7 +29,10 @@ comes of earlier lines if the session waits for that."
 
 ;; As reading 205 says.
 (defun lisp-p (text)
-  (char= #\( (char text (position-if-not #'blank-p text))))
+  "True if TEXT is Lisp: it begins with a parenthesis, or with Nisp's mark of a slot."
+  (let ((start (position-if-not #'blank-p text)))
+    (or (find (char text start) "()")
+        (eql start (search "!>" text)))))
 
 (defun split-line (text)
   "Return the first word of TEXT and what follows it."
