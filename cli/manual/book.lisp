@@ -61,6 +61,14 @@ show by themselves is called a text."
   (pushnew name (book-files book) :test #'string=)
   (copied-name name))
 
+(defun file-address (name book)
+  "Return where the project's file NAME is in the manual: a copy; of a directory its page, or the
+first page."
+  (if (uiop:directory-exists-p (project-path (format nil "~A/" name)))
+      (let ((page (page-of-source (format nil "~A/README.md" name) book)))
+        (if page (page-file page) "index.html"))
+      (copy-of-file name book)))
+
 (defun split-address (address)
   "Return ADDRESS up to a #, and what follows, with the #."
   (let ((mark (or (position #\# address) (length address))))
@@ -73,7 +81,7 @@ show by themselves is called a text."
           ((string= "" file) place)
           (t (let* ((name (name-from (page-source page) file))
                     (other (page-of-source name book)))
-               (format nil "~A~A" (if other (page-file other) (copy-of-file name book))
+               (format nil "~A~A" (if other (page-file other) (file-address name book))
                        place))))))
 
 ;;; Links from names.
