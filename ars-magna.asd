@@ -94,9 +94,11 @@
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "gcontext") (:file "canvas")
                  (:file "drawing") (:file "text") (:file "svg") (:file "package")
-                 (:file "text-map") (:file "history") (:file "snapshot") (:file "subjects")
+                 (:file "history") (:file "snapshot") (:file "subjects")
                  (:file "contents") (:file "terrain") (:file "place-marks")
                  (:file "world-display") (:file "details") (:file "displays")
+                 (:file "text-view") (:file "text-glyphs") (:file "text-layers")
+                 (:file "text-sheet") (:file "text-legend") (:file "text-map")
                  (:file "picture") (:file "way-picture") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
     :components ((:file "package") (:file "realm") (:file "home") (:file "fluent") (:file "network")
@@ -219,8 +221,8 @@
     :components
     ((:file "package")
      (:module "terminal" :serial t
-      :components ((:file "process") (:file "telling") (:file "input") (:file "console")
-                   (:file "layout")))
+      :components ((:file "process") (:file "telling") (:file "input") (:file "escapes")
+                   (:file "console") (:file "layout")))
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "session") (:file "line") (:file "arguments")
                    (:file "errands") (:file "reading") (:file "robot-lines") (:file "finding")
@@ -229,7 +231,7 @@
                    (:file "debugger") (:file "prompt") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
-                   (:file "status-lines") (:file "running-lines") (:file "world-lines")
+                   (:file "status-lines") (:file "map-lines") (:file "running-lines") (:file "world-lines")
                    (:file "plan-lines") (:file "plan-views") (:file "help")
                    (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")))
      (:module "shell" :serial t

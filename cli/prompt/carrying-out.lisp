@@ -25,7 +25,7 @@
 
 (defun run-text (session text)
   "Do what TEXT, a line as typed, says; what it asks for, the prompt asks for."
-  (let ((*asker* "the prompt"))
+  (let ((*asker* +asker+))
     (cond ((comment-p text))
           ((lisp-p text) (evaluate-text session text))
           (t (let ((text (expand-alias text)))

@@ -26,6 +26,8 @@
   (patient-p nil :type boolean :read-only t)
   ;; What is read is shown, for transcripts.
   (echo-p nil :type boolean :read-only t)
+  ;; What comes of the commands that plans and programs give is not shown.
+  (quiet-p nil :type boolean)
   (lock (make-lock "session") :read-only t)
   ;; The simulation whose messages are shown as they arrive, and its observer if it is live.
   (simulation nil)
@@ -58,13 +60,16 @@
 error messages, but not those of a plan that goes on.")
 
 (defun make-session (&key (input *standard-input*) (output *standard-output*) batch
-                       (patient batch) echo files lines)
+                       (patient batch) echo files lines (color :auto))
   "Return a session that loads FILES, does the list LINES, then reads others from INPUT, and writes
 to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes before
-the next is read; with ECHO, it shows what it reads."
-  (%make-session :input input :console (make-console output) :batch-p (and batch t)
-                 :patient-p (and patient t) :echo-p (and echo t)
-                 :files files :lines lines))
+the next is read; with ECHO, it shows what it reads. COLOR, which is :AUTO, :ALWAYS or :NEVER, says
+whether it writes in colours: by default on a terminal, unless the environment has NO_COLOR."
+  (let ((console (make-console output)))
+    (setf (console-colored-p console) (color-wanted-p color (console-stream console)))
+    (%make-session :input input :console console :batch-p (and batch t)
+                   :patient-p (and patient t) :echo-p (and echo t)
+                   :files files :lines lines)))
 
 (defun check-run ()
   "Signal BAD-LINE if the run that the prompt is in is over."
@@ -98,17 +103,43 @@ over."
 (defun complain (session text)
   "Show TEXT as an error."
   (incf (session-errors session))
-  (write-fresh (format nil "*ERROR* -> ~A~%" (complaint-text text)) (session-console session)))
+  (let ((console (session-console session)))
+    (write-fresh (painted (format nil "*ERROR* -> ~A~%" (complaint-text text)) (ink-of :error)
+                          console)
+                 console)))
 
 (defun take-all-messages ()
   (append (take-messages)
           (when (and *simulation* (not (eq *message-queue* (simulation-messages *simulation*))))
             (take-messages (simulation-messages *simulation*)))))
 
+;;; What others than the prompt ask of the robot, such as plans, ends with messages like its own.
+
+(define-constant +asker+ "the prompt" :test #'string=
+  :documentation "Who asks for what lines ask for.")
+
+(defun others-p (message)
+  "True if MESSAGE tells how a command ended that a plan or program has given."
+  (let ((asker (message-asker message)))
+    (not (or (null asker) (equal asker +asker+)))))
+
+(defun ink-of (kind)
+  "Return the ink of what is of KIND: :ERROR, :WARNING, :MESSAGE, or :OTHERS, of others' commands."
+  (ecase kind (:error :red) (:warning :yellow) (:message :cyan) (:others :grey)))
+
+(defun message-ink (message)
+  (ink-of (if (others-p message) :others (message-kind message))))
+
+(defun write-painted (message console out)
+  "Write MESSAGE to OUT as CONSOLE is to show it."
+  (write-string (painted (visible (with-output-to-string (text) (write-message message text)))
+                         (message-ink message) console)
+                out))
+
 ;; As reading 197 says.
 (defun write-messages (messages console)
-  (let ((text (visible (with-output-to-string (out)
-                         (dolist (message messages) (write-message message out))))))
+  (let ((text (with-output-to-string (out)
+                (dolist (message messages) (write-painted message console out)))))
     (if (and (unanswered-p console) (eq (message-kind (first messages)) :message))
         (write-string text console)
         (write-fresh text console))))
@@ -135,6 +166,7 @@ over."
             (messages (take-all-messages)))
         (incf (session-errors session)
               (count-if (lambda (message) (counts-p message session)) messages))
+        (when (session-quiet-p session) (setf messages (remove-if #'others-p messages)))
         (when (and messages (not flush-all-errors*)) (write-messages messages console))
         (restore-prompt console)
         (finish-output console)))))

@@ -62,7 +62,8 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
     (make-session :input (if (and batch lines (not piped)) (make-concatenated-stream) input)
                   :output *standard-output* :batch batch
                   :files (option-values :load options) :lines lines
-                  :patient (or batch piped) :echo (and piped (not batch)))))
+                  :patient (or batch piped) :echo (and piped (not batch))
+                  :color (option-value :color options :auto))))
 
 (defun run-prompt (options)
   "Do what OPTIONS say. Return the status to exit with."

@@ -14,10 +14,12 @@
    (column :initform 0 :accessor console-column)
    (question :initform nil :accessor console-prompt)
    (overwritten-p :initform nil :accessor console-overwritten-p)
-   (trouble :initform nil :accessor console-trouble))
+   (trouble :initform nil :accessor console-trouble)
+   (colored-p :initform nil :accessor console-colored-p))
   (:documentation "An output stream on top of another. QUESTION is what stands there for the user to
 answer, or NIL; OVERWRITTEN-P is true if something was written after it. TROUBLE is the condition
-that what was written could not be delivered, or NIL."))
+that what was written could not be delivered, or NIL. COLORED-P is true if its messages and prompts
+have colours."))
 
 (defun make-console (stream)
   (if (typep stream 'console) stream (make-instance 'console :stream stream)))
@@ -42,6 +44,10 @@ now."
 (defmacro with-console ((stream console) &body body)
   "Run BODY with STREAM bound to the stream below CONSOLE, nobody else writing to it."
   `(call-with-console (lambda (,stream) ,@body) ,console))
+
+(defun painted (text ink console)
+  "Return TEXT as CONSOLE shows it: in INK, if it has colours."
+  (if (console-colored-p console) (paint text ink) text))
 
 (defmethod stream-line-column ((console console))
   (console-column console))
@@ -81,7 +87,7 @@ now."
 (defun show-prompt (console prompt)
   "Write PROMPT, a string, at the start of a line."
   (fresh-line console)
-  (write-string prompt console)
+  (write-string (painted prompt :bold console) console)
   (finish-output console)
   (setf (console-overwritten-p console) nil
         (console-prompt console) prompt))

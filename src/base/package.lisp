@@ -116,7 +116,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:error-set #:warning-set #:message-set #:error-display #:flush-all-errors*
            #:*message-queue* #:make-message-queue #:message-queue
            #:copy-message-queue #:message-queue-listener
-           #:message #:message-kind #:message-items #:take-messages #:message-text
+           #:message #:message-kind #:message-items #:message-asker #:*told-of* #:take-messages
+           #:message-text
            #:write-message #:write-items #:out #:*message-limit*)
   ;; askers
   (:export #:*asker* #:asker-note #:asker-forked-p #:*goes-on-in-forks-p* #:goes-on-in-forks-p

@@ -8,7 +8,7 @@
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.command #:under-way-text #:interruption-text)
   ;; text-map
-  (:export #:text-map)
+  (:export #:text-map #:+text-layers+)
   ;; history
   (:export #:history #:history-of #:keep-history)
   ;; snapshot
