@@ -222,7 +222,7 @@
     ((:file "package")
      (:module "terminal" :serial t
       :components ((:file "process") (:file "telling") (:file "input") (:file "escapes")
-                   (:file "console") (:file "layout")))
+                   (:file "keys") (:file "console") (:file "layout")))
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "session") (:file "line") (:file "arguments")
                    (:file "errands") (:file "reading") (:file "robot-lines") (:file "finding")
@@ -231,7 +231,8 @@
                    (:file "debugger") (:file "prompt") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
-                   (:file "status-lines") (:file "map-lines") (:file "running-lines") (:file "world-lines")
+                   (:file "status-lines") (:file "map-lines") (:file "running-lines")
+                   (:file "watch-line") (:file "world-lines")
                    (:file "plan-lines") (:file "plan-views") (:file "help")
                    (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")))
      (:module "shell" :serial t

@@ -7,14 +7,7 @@
 (defun terminal-size (session)
   "Return how many columns the terminal of SESSION has, as far as can be found out, and how many
 lines; NIL if there is none."
-  (let ((size (and (terminal-p session)
-                   (ignore-errors
-                    (mapcar #'parse-integer
-                            (uiop:split-string
-                             (string-trim '(#\Newline)
-                                          (nth-value 1 (run-command "stty" '("size")
-                                                                    :input :interactive
-                                                                    :output :string)))))))))
+  (let ((size (and (terminal-p session) (lines-and-columns))))
     (flet ((size-said (variable)
              (ignore-errors (parse-integer (environment-value variable)))))
       (values (or (size-said "COLUMNS") (second size) 80)
@@ -29,8 +22,8 @@ lines; NIL if there is none."
   (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word))
                        *map-words*)))
     (unless word
-      (reject-line "MAP does not know ~A.~@[ Did you mean ~A?~] It takes a radius, or LEFT TOP RIGHT ~
-                    BOTTOM, and ~{~A~#[~; or ~:;, ~]~}."
+      (reject-line "MAP does not know ~A.~@[ Did you mean ~A?~] It takes a radius, or LEFT TOP ~
+                    RIGHT BOTTOM, and ~{~A~#[~; or ~:;, ~]~}."
                    text (nearest-name text *map-words*) *map-words*))
     (make-keyword word)))
 
@@ -76,7 +69,6 @@ LINES-BELOW lines."
   (let ((robot (session-robot))
         (console (session-console session)))
     (multiple-value-bind (columns lines) (terminal-size session)
-      (when (member :way (getf options :layers)) (keep-history (current-simulation)))
       (with-output-to-string (*standard-output*)
         (still (write-string (apply #'text-map robot
                                     :columns (max 20 (1- columns))
@@ -84,7 +76,7 @@ LINES-BELOW lines."
                                     :paint (and (console-colored-p console) #'paint)
                                     options)))))))
 
-(define-line "MAP" (session (what :rest "a radius, or LEFT TOP RIGHT BOTTOM; CONES, WAY, BELIEF, LEGEND"
+(define-line "MAP" (session (what :rest "a radius or LEFT TOP RIGHT BOTTOM; CONES WAY BELIEF LEGEND"
                                    :optional))
     (:seeing)
     "Show the world as characters: all of it, what is within a radius of the robot, or a region.

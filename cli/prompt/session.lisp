@@ -98,6 +98,11 @@ over."
   (and (terminal-p session)
        (typep (source-of (session-input session)) 'descriptor-stream)))
 
+(defun display-wanted-p (session)
+  "True if a robot that starts for SESSION is to have a window. Where none is to be had, only DISPLAY
+says so."
+  (and (terminal-p session) *display-opener* t))
+
 ;;; Complaints and messages.
 
 (defun complain (session text)
@@ -210,6 +215,7 @@ another, so that nobody waits for the tick to end, which it may never."
   (setf (session-simulation session) simulation
         (message-queue-listener (simulation-messages simulation))
         (lambda () (hear session simulation)))
+  (keep-history simulation)
   (when (live-p simulation)
     (let ((observer (observer-for session)))
       (setf (session-observer session) observer)

@@ -42,7 +42,7 @@
 (defun run-live (session robot-name options)
   "Run the lines of SESSION in the live world of ROBOT-NAME."
   (apply #'simulator robot-name :rate (option-value :rate options *default-rate*)
-                                :display (terminal-p session)
+                                :display (display-wanted-p session)
          (when (option-value :seed options) (list :seed (option-value :seed options))))
   (when (terminal-p session) (greet session))
   (run-session session))

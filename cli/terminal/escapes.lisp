@@ -38,6 +38,14 @@ is no ink."
                 when end do (terpri out)
                 while end)))))
 
+(defun unpainted-text (text)
+  "Return TEXT without what PAINT has put into it."
+  (with-output-to-string (out)
+    (loop for start = 0 then (1+ (or (position #\m text :start escape) (1- (length text))))
+          for escape = (position (code-char 27) text :start start)
+          do (write-string text out :start start :end escape)
+          while escape)))
+
 ;;; Is it wanted?
 
 (define-constant +color-settings+ '("auto" "always" "never") :test #'equal

@@ -6,8 +6,8 @@
 ;;; keeps wherever and whenever one looks at its world, as long as no kinds come or go.
 
 (defstruct (glyph (:constructor make-glyph (kind char text &optional ink)) (:copier nil))
-  "A character, what kind of thing it stands for and what it is called, and in which colour it is
-shown: a name, or NIL for that of text."
+  "A character, what kind of thing it stands for (:ROBOT for where one believes to be, too) and what
+it is called, and in which colour it is shown: a name, or NIL for that of text."
   (kind :thing :type (member :wall :robot :layer :several :place :thing) :read-only t)
   (char #\Space :type character :read-only t)
   (text "" :type string :read-only t)
@@ -22,7 +22,7 @@ shown: a name, or NIL for that of text."
   :documentation "What may stand for kinds of things.")
 
 (defun letters-for (name)
-  "Return strings of the characters that may stand for things called NAME, a string, the best first."
+  "Return strings of the characters that may stand for things called NAME, the best first."
   (list (string-downcase (char name 0))
         (string-upcase (char name 0))
         (concatenate 'string (string-downcase name) (string-upcase name))
@@ -65,7 +65,7 @@ large things are their initials, as far as can be. There may be more kinds than 
                 (and (typep color '(or symbol string)) color))))
 
 (defun things-glyphs (things letters)
-  "Return the glyphs of the kinds of THINGS: in front the one that stands for all, if they are many."
+  "Return the glyphs of the kinds of THINGS: in front the one for all, if they are several."
   (let ((glyphs (remove-duplicates (mapcar (lambda (thing) (thing-glyph thing letters)) things)
                                    :key #'glyph-text :test #'string= :from-end t)))
     (if (rest glyphs)
@@ -87,7 +87,7 @@ large things are their initials, as far as can be. There may be more kinds than 
 (defun wall-glyph (map index colored-p)
   "Return the glyph of the wall in the cell INDEX of MAP; if COLORED-P, by its substance."
   (let ((name (and colored-p (svref (map-substance-types map) (aref (map-substances map) index)))))
-    (make-glyph :wall #\# (format nil "wall~@[ of ~(~A~)~]" name) (and name (substance-ink name)))))
+    (make-glyph :wall #\# (if name (string-downcase name) "wall") (and name (substance-ink name)))))
 
 (defun wall-glyphs (map indices colored-p)
   "Return a list of the glyph of the first wall of MAP in the cells INDICES, if any."

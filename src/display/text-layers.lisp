@@ -1,4 +1,4 @@
-;;;; text-layers.lisp -- what a text map shows on demand: fields of view, ways, what a robot believes.
+;;;; text-layers.lisp -- what a text map shows on demand: fields of view, ways, beliefs.
 
 (in-package :ars-magna.display)
 
@@ -68,8 +68,7 @@ itself and what its designators denote to be.")
   (let* ((odometer (image-of-odometer robot))
          (x (odometer-image-x odometer)) (y (odometer-image-y odometer)))
     (glyph-at view x y
-              (make-glyph :layer #\@
-                          (format nil "~A believes to be at (~,2F,~,2F)" robot x y) :bold))))
+              (make-glyph :robot #\@ (format nil "believed (~,2F,~,2F)" x y) :bold))))
 
 (defun designator-layer (view robot designator)
   "Return where ROBOT believes what DESIGNATOR denotes to be: it knows that from where it is."

@@ -86,13 +86,13 @@ COLUMNS characters, if that can be."
 (addition text-map)
 (defun text-map (robot &key (columns 80) rows radius region layers paint only-legend)
   "Return a string that shows the world of ROBOT in lines of at most COLUMNS characters: walls,
-places, things by letters, robots as arrows, and what it all means. With ROWS, it is made to fit into
-so many lines, as far as possible. With REGION, a list (left top right bottom) in metres, it shows
-only that; with RADIUS, a number of cells, only the surroundings of ROBOT. LAYERS are some of :CONES
-\(what its cameras have in view), :WAY (where it went since KEEP-HISTORY) and :BELIEF (where it
-believes itself and what its designators denote to be). PAINT is a function of a string and of the
-name of a colour, or NIL, that returns the string in that colour. ONLY-LEGEND leaves the map out.
-Call it where the world stands still. Signals WRONG-ARGUMENT."
+places, things by letters, robots as arrows, and what it all means. With ROWS, it is made to fit
+into so many lines, as far as possible. With REGION, a list (left top right bottom) in metres, it
+shows only that; with RADIUS, a number of cells, only the surroundings of ROBOT. LAYERS are some of
+:CONES (what its cameras have in view), :WAY (where it went since KEEP-HISTORY) and :BELIEF (where
+it believes itself and what its designators denote to be). PAINT is a function of a string and of
+the name of a colour, or NIL, that returns the string in that colour. ONLY-LEGEND leaves the map
+out. Call it where the world stands still. Signals WRONG-ARGUMENT."
   (check-argument text-map robot (robot-p robot) "a robot")
   (check-argument text-map columns (whole-p columns 10 100000) "an integer from 10 to 100000")
   (check-argument text-map rows (or (null rows) (whole-p rows 5 100000))
@@ -100,8 +100,8 @@ Call it where the world stands still. Signals WRONG-ARGUMENT."
   (check-argument text-map radius (or (null radius) (whole-p radius))
                   "a whole number of cells, from 0 to 1e9, or NIL")
   (check-argument text-map region (or (null region) (region-p region))
-                  "a list (left top right bottom) of numbers of metres, left less than right and top ~
-                   less than bottom, or NIL")
+                  "a list (left top right bottom) in metres, left less than right and top less ~
+                   than bottom, or NIL")
   (check-argument text-map layers (and (proper-list-p layers) (subsetp layers +text-layers+))
                   (format nil "a list of some of ~{~(~S~)~^, ~}" +text-layers+))
   (let ((sheet (fitting-sheet robot (if radius (region-near robot radius) region)
