@@ -133,7 +133,7 @@ VALUE."
   (let ((simulation (current-simulation)))
     (multiple-value-bind (path tick digest)
         (asking (simulation)
-          (values (save-journal (native-path file) simulation)
+          (values (save-journal (path-called file) simulation)
                   (simulation-tick simulation)
                   (state-digest simulation)))
       (format t "~A: ~A" (native-name path) (moment-text tick digest)))))
@@ -149,5 +149,5 @@ VALUE."
     (:running)
     "Repeat the run in FILE in a world of its own; show the tick and the state that it comes to.
 With ANYWAY also if what is defined here is not what the run was recorded with."
-  (multiple-value-bind (simulation digest) (replay (native-path file) :anyway (anyway-p anyway))
+  (multiple-value-bind (simulation digest) (replay (path-called file) :anyway (anyway-p anyway))
     (format t "~A: ~A" file (moment-text (simulation-tick simulation) digest))))

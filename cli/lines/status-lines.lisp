@@ -50,7 +50,7 @@ were (reading 201)."
   (mapc #'write-designator (live-designators robot)))
 
 (defun write-position (label x y)
-  (format t "~19A(~,2F,~,2F)~%" label x y))
+  (format t "~19A(~,2F,~,2F)~%" label (hundredths x) (hundredths y)))
 
 ;; A line of the manual's session would be in the way while nothing goes on.
 (defun write-ownership (robot)
@@ -69,7 +69,7 @@ were (reading 201)."
   (loop for (label number) in `(("Angle:" ,(robot-angle robot))
                                 ("Speed:" ,(robot-speed robot))
                                 ("Turn Angle:" ,(robot-turn-angle robot)))
-        do (format t "~19A~,2F~%" label number))
+        do (format t "~19A~,2F~%" label (hundredths number)))
   (write-views robot)
   (write-sensors robot)
   (format t "~19A~A~%" "Place:" (robot-last-place robot))

@@ -99,8 +99,8 @@ over."
        (typep (source-of (session-input session)) 'descriptor-stream)))
 
 (defun display-wanted-p (session)
-  "True if a robot that starts for SESSION is to have a window. Where none is to be had, only DISPLAY
-says so."
+  "True if a robot that starts for SESSION is to have a window. Where none is to be had, only
+DISPLAY says so."
   (and (terminal-p session) *display-opener* t))
 
 ;;; Complaints and messages.

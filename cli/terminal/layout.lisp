@@ -40,7 +40,8 @@
 
 (defun bearing-text (designator)
   "Return the distance and the angle of DESIGNATOR."
-  (format nil "~,2F, ~,2F" (designator-distance designator) (designator-angle designator)))
+  (format nil "~,2F, ~,2F" (hundredths (designator-distance designator))
+          (hundredths (designator-angle designator))))
 
 (defun location-text (part)
   "Return where PART is, if inside something (manual E; reading 202)."

@@ -46,11 +46,13 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:copy-nicknames)
   ;; files, processes
   (:export #:native-name #:native-path #:path-called #:existing-path #:replace-file #:plain-file-p
-           #:unusable-file-text
+           #:unusable-file-text #:shown-name
            #:call-replacing-file #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
            #:host-name #:process-number
            #:environment-value #:real-microseconds #:run-command #:run-attached)
+  ;; writing
+  (:export #:write-file-anew)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
            #:local-function-p #:known-function-p #:macro-expander
@@ -83,7 +85,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:debugger-hook #:with-debugger-hook)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:reading-trouble
-           #:text-of-condition)
+           #:text-of-condition #:one-line-text #:hundredths)
   ;; dice, random
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice

@@ -21,6 +21,7 @@
   (:export #:draw-terrain #:draw-movers #:draw-world #:*picture-layers* #:+picture-layers+
            #:draw-display #:display-title #:+displays+)
   ;; picture, animation
+  (:export #:picture-scale)
   (:export #:picture-kind #:save-svg #:save-picture #:save-snapshot #:svg-picture #:save-animation
            #:save-way-picture)
   ;; opening

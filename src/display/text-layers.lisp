@@ -68,7 +68,9 @@ itself and what its designators denote to be.")
   (let* ((odometer (image-of-odometer robot))
          (x (odometer-image-x odometer)) (y (odometer-image-y odometer)))
     (glyph-at view x y
-              (make-glyph :robot #\@ (format nil "believed (~,2F,~,2F)" x y) :bold))))
+              (make-glyph :robot #\@
+                          (format nil "believed (~,2F,~,2F)" (hundredths x) (hundredths y))
+                          :bold))))
 
 (defun designator-layer (view robot designator)
   "Return where ROBOT believes what DESIGNATOR denotes to be: it knows that from where it is."
