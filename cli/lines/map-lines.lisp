@@ -49,9 +49,9 @@ lines; NIL if there is none."
                          MAP 0 0 40 20."
                         numbers)))
      (list :region numbers))
-    (t (reject-line "MAP takes one number, a radius, or four: LEFT TOP RIGHT BOTTOM. ~{~A~^ ~} ~
-                     ~:[are~;is~] ~:*~D."
-                    numbers (length numbers)))))
+    (t (reject-line "MAP takes one number, a radius, or four, LEFT TOP RIGHT BOTTOM; not ~
+                     ~{~A~^ ~}."
+                    numbers))))
 
 (defun map-options (text)
   "Return as options of TEXT-MAP what TEXT, as typed after MAP, asks for."

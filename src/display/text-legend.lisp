@@ -101,14 +101,16 @@ and those of GLYPHS for which there is none of ROOM characters."
 
 ;;; Below it.
 
-(defun with-remark (entries columns rows)
-  "Return lines of ENTRIES, no more than ROWS of COLUMNS characters; what there is no room for is
-counted in the last. ROWS may be NIL."
-  (let ((lines (filled entries columns)))
-    (if (or (null rows) (<= (length lines) rows))
-        lines
-        (loop for kept downfrom (length entries)
+(defun with-remark (head entries columns rows)
+  "Return lines of HEAD and ENTRIES, no more than ROWS of COLUMNS characters; for which of ENTRIES
+there is no room is counted in the last, if there is room for that. ROWS may be NIL."
+  (flet ((kept (count &rest more)
+           (filled (append head (subseq entries 0 count) more) columns))
+         (fits-p (lines) (or (null rows) (<= (length lines) rows))))
+    (if (fits-p (kept (length entries)))
+        (kept (length entries))
+        (loop for count from (1- (length entries)) downto 0
               for remark = (entry-of-text (format nil "and ~D more: MAP LEGEND"
-                                                  (- (length entries) kept)))
-              for shorter = (filled (append (subseq entries 0 kept) (list remark)) columns)
-              when (or (zerop kept) (<= (length shorter) rows)) return shorter))))
+                                                  (- (length entries) count)))
+              when (fits-p (kept count remark)) return (kept count remark)
+              finally (return (kept 0))))))

@@ -60,8 +60,7 @@ NIL, as far as there is room."
     (multiple-value-bind (beside rest)
         (side-legend (tail-glyphs sheet) side (view-rows view) paint)
       (write-rows sheet beside paint stream)
-      (write-entries (with-remark (append (head-entries sheet paint) (entries-of rest paint))
-                       columns left)
+      (write-entries (with-remark (head-entries sheet paint) (entries-of rest paint) columns left)
                      stream))))
 
 (defun fitting-sheet (robot region columns rows layers colored-p)
