@@ -80,21 +80,29 @@ all plans of the robot stand still for TICKS, 0 or more, once the step under way
 go on, and what happens meanwhile is heard after that. Elsewhere do nothing. Returns nothing.
 Signals WRONG-ARGUMENT."
   (check-argument charge-ticks ticks (amount-p ticks) "a number of ticks, from 0 to 1e15")
+  (note-from-outside #'charge-ticks runner ticks)
   (when (and runner (runner-charged-p runner) (plusp ticks))
     (stand-still runner ticks))
   (values))
+
+(defun count-steps (steps runner task)
+  "Let STEPS count as if TASK, or nobody, of RUNNER had taken them, if its steps are counted."
+  (when (and (runner-charged-p runner)
+             (runner-budget runner)
+             (not (and task (task-uncounted-p task))))
+    (let* ((left (max 0 (- (runner-limit runner) (runner-steps runner))))
+           (now (min steps left)))
+      (decf (runner-limit runner) now)
+      (incf (runner-debt runner) (- steps now))
+      (setf (runner-pause runner) (min (runner-pause runner) (runner-limit runner))))))
 
 (addition charge-steps)
 (defun charge-steps (steps &optional (runner *runner*))
   "In Lisp code of a plan that has just found out what it costs: where the steps of plans have a
 budget, let STEPS, a whole number, count as if the plans of the robot had taken them. What is more
-than is left of this tick's budget takes the next ones. Elsewhere do nothing. Returns nothing.
-Signals WRONG-ARGUMENT."
+than is left of this tick's budget takes the next ones. Elsewhere, as in a WITH-CHARGE, whose price
+is all, do nothing. Returns nothing. Signals WRONG-ARGUMENT."
   (check-argument charge-steps steps (whole-p steps) "a whole number of steps, from 0 to 1e9")
-  (when (and runner (runner-charged-p runner) (runner-budget runner))
-    (let* ((left (max 0 (- (runner-limit runner) (runner-steps runner))))
-           (now (min steps left)))
-      (decf (runner-limit runner) now)
-      (incf (runner-debt runner) (- steps now))
-      (setf (runner-pause runner) (min (runner-pause runner) (runner-limit runner)))))
+  (note-from-outside #'charge-steps runner steps)
+  (when runner (count-steps steps runner (running-task runner)))
   (values))
