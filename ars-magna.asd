@@ -16,7 +16,8 @@
                  (:file "processes") (:file "environments") (:file "compiling") (:file "interrupts")
                  (:file "stacks") (:file "debuggers") (:file "abridging") (:file "conditions")
                  (:file "exits")
-                 (:file "telling") (:file "threads") (:file "weak") (:file "dice") (:file "random") (:file "names")
+                 (:file "telling") (:file "writing") (:file "threads") (:file "weak")
+                 (:file "dice") (:file "random") (:file "names")
                  (:file "digest") (:file "sources") (:file "places-in-text")
                  (:file "variables") (:file "definitions") (:file "user-macros")
                  (:file "registry") (:file "own-definitions") (:file "messages")
@@ -97,9 +98,11 @@
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "gcontext") (:file "canvas")
                  (:file "drawing") (:file "text") (:file "svg") (:file "package")
-                 (:file "text-map") (:file "history") (:file "snapshot") (:file "subjects")
+                 (:file "history") (:file "snapshot") (:file "subjects")
                  (:file "contents") (:file "terrain") (:file "place-marks")
                  (:file "world-display") (:file "details") (:file "displays")
+                 (:file "text-view") (:file "text-glyphs") (:file "text-layers")
+                 (:file "text-sheet") (:file "text-legend") (:file "text-map")
                  (:file "picture") (:file "way-picture") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
     :components ((:file "package") (:file "realm") (:file "home") (:file "fluent") (:file "network")
@@ -222,8 +225,8 @@
     :components
     ((:file "package")
      (:module "terminal" :serial t
-      :components ((:file "process") (:file "telling") (:file "input") (:file "console")
-                   (:file "progress") (:file "json")
+      :components ((:file "process") (:file "telling") (:file "input") (:file "escapes")
+                   (:file "keys") (:file "console") (:file "progress") (:file "json")
                    (:file "layout")))
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "reporting") (:file "session") (:file "line") (:file "quantities")
@@ -233,8 +236,8 @@
                    (:file "debugger") (:file "prompt") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
-                   (:file "status-data") (:file "status-lines")
-                   (:file "running-lines") (:file "world-lines")
+                   (:file "status-data") (:file "status-lines") (:file "map-lines")
+                   (:file "running-lines") (:file "watch-line") (:file "world-lines")
                    (:file "plan-lines") (:file "plan-views") (:file "help")
                    (:file "topics") (:file "manipulate-line")
                    (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")
@@ -317,8 +320,9 @@
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
                  (:file "worlds-searching")
                  (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
-                 (:file "clim") (:file "cli") (:file "cli-quantities")
-                 (:file "ways-going") (:file "cli-plans") (:file "cli-rewinding")
+                 (:file "clim") (:file "cli") (:file "text-maps") (:file "cli-quantities")
+                 (:file "ways-going") (:file "cli-plans") (:file "cli-colour")
+                 (:file "cli-rewinding")
                  (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "experiment-replay")
                  (:file "cli-trials") (:file "cli-newcomers") (:file "cli-files") (:file "cli-plan-tree")
