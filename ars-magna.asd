@@ -219,14 +219,17 @@
     :components
     ((:file "package")
      (:module "terminal" :serial t
-      :components ((:file "process") (:file "telling") (:file "input") (:file "console")
-                   (:file "layout")))
+      :components ((:file "keyboard") (:file "process") (:file "telling") (:file "columns")
+                   (:file "input") (:file "drawn-line") (:file "console") (:file "layout")))
+     (:module "editing" :serial t
+      :components ((:file "keys") (:file "changes") (:file "history") (:file "editor")
+                   (:file "search") (:file "tabbing") (:file "standard")))
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "session") (:file "line") (:file "arguments")
                    (:file "errands") (:file "reading") (:file "robot-lines") (:file "finding")
                    (:file "evaluation") (:file "carrying-out") (:file "guarding")
-                   (:file "plans") (:file "loading") (:file "worlds")
-                   (:file "debugger") (:file "prompt") (:file "visits")))
+                   (:file "plans") (:file "loading") (:file "worlds") (:file "choices")
+                   (:file "debugger") (:file "completing") (:file "prompt") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
                    (:file "status-lines") (:file "running-lines") (:file "world-lines")

@@ -53,8 +53,6 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   ;; line, names
   (:export #:line #:line-name #:line-parameters #:line-sentence #:define-line #:all-lines
            #:all-line-names #:find-line #:bad-line)
-  ;; plan-lines
-  (:export #:all-words)
   ;; arguments
   (:export #:read-argument #:argument-words)
   ;; session, prompt

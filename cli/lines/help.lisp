@@ -52,7 +52,7 @@ parentheses is Lisp." 0))
           (plan (write-plan-help plan))
           (t (write-help (find-line name))))))
 
-(define-line "HELP" (session (cmd :token "the name of a command or a plan" :optional))
+(define-line "HELP" (session (cmd :topic "the name of a command or a plan" :optional))
     (:general)
     "List the commands of the prompt and those that move the robot, or tell what CMD does."
   (if cmd (write-help-on cmd) (write-main-menu)))

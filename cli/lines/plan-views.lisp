@@ -40,7 +40,7 @@ set that, and how it was started. Needs a trace: (setf *trace-plans* t) before t
                  (call-with-plans-in-use
                   (lambda (runner) (why n :runner runner :stream out)))))))))
 
-(define-line "PLAN-TIMELINE" (session (file :token "a name that ends in .svg or .png"))
+(define-line "PLAN-TIMELINE" (session (file :file "a name that ends in .svg or .png"))
     (:planning)
     "Save a picture of the plans that have run in FILE, replacing it: each task as a bar over
 ticks, with what it waited for and the commands that it gave. Needs a trace: (setf *trace-plans* t)

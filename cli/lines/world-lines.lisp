@@ -17,7 +17,7 @@
     (simulator robot-name :rate (or rate *default-rate*) :display (terminal-p session)))
   (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))
 
-(define-line "WORLD" (session (name :token "a shipped world, or a Lisp file" :optional))
+(define-line "WORLD" (session (name :world "a shipped world, or a Lisp file" :optional))
     (:seeing)
     "List the worlds, or go to the world NAME, with the first robot that it defines. There it is
 tick 0."
@@ -38,7 +38,7 @@ tick 0."
     (multiple-value-bind (x y) (robot-position robot)
       (put-line "~16A @ (~,2F,~,2F)~:[~; commanded~]" robot x y (eq robot (session-robot))))))
 
-(define-line "ROBOT" (session (name :token "the robot to command" :optional))
+(define-line "ROBOT" (session (name :robot-name "the robot to command" :optional))
     (:seeing)
     "List the robots of this world, or command the robot NAME from now on. If that is in another
 world, go there."

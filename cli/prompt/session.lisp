@@ -98,7 +98,8 @@ over."
 (defun complain (session text)
   "Show TEXT as an error."
   (incf (session-errors session))
-  (write-fresh (format nil "*ERROR* -> ~A~%" (complaint-text text)) (session-console session)))
+  (let ((console (session-console session)))
+    (write-fresh (fitted (format nil "*ERROR* -> ~A~%" (complaint-text text)) console) console)))
 
 (defun take-all-messages ()
   (append (take-messages)
@@ -110,8 +111,8 @@ over."
   (let ((text (visible (with-output-to-string (out)
                          (dolist (message messages) (write-message message out))))))
     (if (and (unanswered-p console) (eq (message-kind (first messages)) :message))
-        (write-string text console)
-        (write-fresh text console))))
+        (write-after-prompt (fitted text console (console-prompt console)) console)
+        (write-fresh (fitted text console) console))))
 
 ;; Programs set it that know what an error belongs to, such as a plan under way.
 (defvar *error-counts-p* (constantly t)

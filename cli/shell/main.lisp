@@ -55,25 +55,29 @@
   "Return a session that does what OPTIONS say and then the lines of the standard input. If nobody
 sits there, it shows what it reads and waits for each command, for a transcript like those of manual
 E. A batch that has plans to carry out does not wait for lines to be typed."
-  (let* ((input (standard-input))
+  (let* ((batch (option-value :batch options))
+         (input (standard-input *standard-output* batch))
          (piped (not (typed-by-hand-p input)))
-         (batch (option-value :batch options))
          (lines (plan-lines options)))
     (make-session :input (if (and batch lines (not piped)) (make-concatenated-stream) input)
                   :output *standard-output* :batch batch
                   :files (option-values :load options) :lines lines
                   :patient (or batch piped) :echo (and piped (not batch)))))
 
+(defun run-in-world (session robot-name options)
+  "Run the lines of SESSION, beginning with ROBOT-NAME."
+  ;; What has been said of the world's definitions; a headless run has messages of its own.
+  (show-messages session)
+  (let ((*forks-to-keep* t))
+    (if (and (session-batch-p session) (null (option-value :rate options)))
+        (run-batch session robot-name (option-value :seed options 0))
+        (run-live session robot-name options))))
+
 (defun run-prompt (options)
   "Do what OPTIONS say. Return the status to exit with."
   (let ((robot-name (first-robot options))
         (session (standard-session options)))
-    ;; What has been said of the world's definitions; a headless run has messages of its own.
-    (show-messages session)
-    (let ((*forks-to-keep* t))
-      (if (and (session-batch-p session) (null (option-value :rate options)))
-          (run-batch session robot-name (option-value :seed options 0))
-          (run-live session robot-name options)))
+    (call-typing (lambda () (run-in-world session robot-name options)) (session-input session))
     (if (and (session-batch-p session) (plusp (session-errors session))) 1 0)))
 
 (defun run-options (options)
@@ -133,7 +137,7 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
 
 (defun run-process ()
   "Do what the arguments of this process say. Return the status to exit with."
-  (let ((console (make-console (text-output 1))))
+  (let ((console (standard-output)))
     (setf *standard-output* console)
     (deliver console (call-for-status (lambda () (run-arguments (process-arguments)))))))
 

@@ -7,20 +7,31 @@
 ;;; over and must be shown again. A terminal moves the cursor when the user presses return; nobody
 ;;; but ANSWERED can know. When what is written cannot be delivered, it is lost, and the program
 ;;; ends.
+;;;
+;;; While the prompt edits a line itself, that stands below all that is written, with the prompt
+;;; before it: it is taken off before something is written, and drawn again when that is shown.
+
+(defconstant +longest-line-kept+ 500 "How many characters of a line that goes on are kept.")
 
 (defclass console (fundamental-character-output-stream)
   ((stream :initarg :stream :reader console-stream)
+   (window :initarg :window :initform nil :reader console-window)
    (lock :initform (make-lock "console") :reader console-lock)
    (column :initform 0 :accessor console-column)
+   (rest :initform "" :accessor console-rest)
+   (line :initform nil :accessor console-line)
    (question :initform nil :accessor console-prompt)
    (overwritten-p :initform nil :accessor console-overwritten-p)
    (trouble :initform nil :accessor console-trouble))
-  (:documentation "An output stream on top of another. QUESTION is what stands there for the user to
-answer, or NIL; OVERWRITTEN-P is true if something was written after it. TROUBLE is the condition
-that what was written could not be delivered, or NIL."))
+  (:documentation "An output stream on top of another. WINDOW is a function that returns columns and
+rows of the terminal's window, or NIL if there is none. REST is what was written last, since a
+newline, as far as it is short. LINE is the drawn-line that is being typed, or NIL. QUESTION is what
+stands there for the user to answer, or NIL; OVERWRITTEN-P is true if something was written after
+it. TROUBLE is the condition that what was written could not be delivered, or NIL."))
 
-(defun make-console (stream)
-  (if (typep stream 'console) stream (make-instance 'console :stream stream)))
+(defun make-console (stream &optional window)
+  "Return a console on STREAM, or STREAM if it is one. WINDOW is as in CONSOLE."
+  (if (typep stream 'console) stream (make-instance 'console :stream stream :window window)))
 
 (defvar *leave-unheard-p* nil
   "True in the thread that ends this process, when there is nobody any more to write for.")
@@ -46,14 +57,117 @@ now."
 (defmethod stream-line-column ((console console))
   (console-column console))
 
+;;; Where the cursor is.
+
+(defun begin-row (console)
+  "Note that the cursor is at the beginning of a line."
+  (setf (console-column console) 0
+        (console-rest console) ""))
+
+(defun note-written (console string start end)
+  "Note that STRING from START to END has been written."
+  (let ((newline (position #\Newline string :start start :end end :from-end t)))
+    (when newline
+      (begin-row console)
+      (setf start (1+ newline)))
+    (incf (console-column console) (- end start))
+    (setf (console-rest console)
+          (if (<= (console-column console) +longest-line-kept+)
+              (concatenate 'string (console-rest console) (subseq string start end))
+              ""))))
+
+(defun columns-written (console)
+  "Return how many columns the line takes that the cursor is in."
+  (max (console-column console) (text-columns (console-rest console))))
+
+;;; The line that is being typed.
+
+(defun call-in-window (function console stream)
+  "Call FUNCTION with the line of CONSOLE, STREAM, and how many columns and rows the window has."
+  (multiple-value-call function (console-line console) stream (funcall (console-window console))))
+
+(defun wipe (console stream)
+  "Take the line that is being typed off the screen, if it is there, so that what is written next
+goes on where the last has ended."
+  (let ((line (console-line console)))
+    (when (and line (drawn-line-shown line))
+      (call-in-window #'wipe-line console stream)
+      (let ((column (mod (columns-written console) (funcall (console-window console)))))
+        (when (plusp column)
+          (move-up 1 stream)
+          (move-right column stream))))))
+
+(defun draw (console stream)
+  "Draw the line that is being typed below what was written, if there is one and it is not there."
+  (let ((line (console-line console)))
+    (when (and line (null (drawn-line-shown line)))
+      (when (plusp (console-column console)) (terpri stream))
+      (call-in-window #'draw-line console stream))))
+
+(defun change-line (console function)
+  "Call FUNCTION with the line that is being typed, if any, and show what it has made of it."
+  (with-console (stream console)
+    (when (console-line console)
+      (wipe console stream)
+      (funcall function (console-line console))
+      (draw console stream)
+      (finish-output stream))))
+
+(defun begin-line (console)
+  "Let a line be typed after the prompt that stands, or what has been written in its place."
+  (with-console (stream console)
+    (when (or (spoilt-p console) (/= (console-column console) (length (console-rest console))))
+      (put-string (string #\Newline) console stream))
+    (let ((prompt (if (spoilt-p console) (console-prompt console) (console-rest console))))
+      (setf (console-line console)
+            (make-drawn-line :prompt prompt :shown (list (console-rest console) "" 0))
+            (console-overwritten-p console) nil))
+    (begin-row console)
+    (wipe console stream)
+    (draw console stream)
+    (finish-output stream)))
+
+(defun hide-line (console)
+  "Take the line that is being typed off the screen, until something is shown."
+  (with-console (stream console)
+    (wipe console stream)
+    (finish-output stream)))
+
+(defun clear-window (console)
+  "Let nothing stand in the window but the line that is being typed."
+  (hide-line console)
+  (with-console (stream console)
+    (format stream "~C[H~:*~C[2J" #\Escape)
+    (begin-row console)
+    (draw console stream)
+    (finish-output stream)))
+
+(defun end-line (console)
+  "Let what was typed stand as it is, and what is written next begin below."
+  (with-console (stream console)
+    (let ((line (console-line console)))
+      (wipe console stream)
+      (setf (drawn-line-point line) (length (drawn-line-text line)))
+      (draw console stream)
+      (when (plusp (drawn-line-column line)) (terpri stream))
+      (finish-output stream))
+    (setf (console-line console) nil)
+    (answered console)))
+
+;;; Writing.
+
 (defun put-string (string console stream &optional (start 0) (end (length string)))
   "Write STRING from START to END to STREAM, which is below CONSOLE, where nobody else writes now."
-  (let ((newline (position #\Newline string :start start :end end :from-end t)))
+  (unless (= start end)
+    (wipe console stream)
     (write-string string stream :start start :end end)
-    (setf (console-overwritten-p console) t
-          (console-column console) (if newline
-                                       (- end newline 1)
-                                       (+ (console-column console) (- end start))))))
+    (note-written console string start end)
+    (unless (console-line console) (setf (console-overwritten-p console) t))))
+
+(defun put-fresh (text console stream)
+  "Do as PUT-STRING does with TEXT, from the beginning of a line on."
+  (when (plusp (console-column console)) (put-string (string #\Newline) console stream))
+  (put-string text console stream))
 
 (defmethod stream-write-string ((console console) string &optional (start 0) end)
   (with-console (stream console)
@@ -62,27 +176,46 @@ now."
 
 (defun write-fresh (text console)
   "Write TEXT from the beginning of a line of CONSOLE on, all of it in one piece."
+  (with-console (stream console) (put-fresh text console stream)))
+
+(defun write-after-prompt (text console)
+  "Write TEXT after the prompt that stands; above it, if something has been typed there."
   (with-console (stream console)
-    (when (plusp (console-column console)) (put-string (string #\Newline) console stream))
-    (put-string text console stream)))
+    (let ((line (console-line console)))
+      (cond ((null line) (put-string text console stream))
+            ((string/= "" (drawn-line-text line)) (put-fresh text console stream))
+            (t (put-fresh (concatenate 'string (drawn-line-prompt line) text) console stream))))))
+
+(defun fitted (text console &optional (prompt ""))
+  "Return TEXT as it is written after PROMPT: on a terminal, with lines that are broken between
+words."
+  (if (console-window console)
+      (broken-text text (1- (funcall (console-window console))) (text-columns prompt))
+      text))
 
 (defmethod stream-write-char ((console console) char)
   (stream-write-string console (string char))
   char)
 
 (defmethod stream-force-output ((console console))
-  (with-console (stream console) (force-output stream)))
+  (with-console (stream console)
+    (draw console stream)
+    (force-output stream)))
 
 (defmethod stream-finish-output ((console console))
-  (with-console (stream console) (finish-output stream)))
+  (with-console (stream console)
+    (draw console stream)
+    (finish-output stream)))
 
 ;;; Prompts.
 
 (defun show-prompt (console prompt)
-  "Write PROMPT, a string, at the start of a line."
-  (fresh-line console)
-  (write-string prompt console)
-  (finish-output console)
+  "Write PROMPT, a string, at the start of a line; before what is being typed, if anything is."
+  (cond ((console-line console)
+         (change-line console (lambda (line) (setf (drawn-line-prompt line) prompt))))
+        (t (fresh-line console)
+           (write-string prompt console)
+           (finish-output console)))
   (setf (console-overwritten-p console) nil
         (console-prompt console) prompt))
 
@@ -101,5 +234,5 @@ now."
 
 (defun answered (console)
   "Note that the user has ended the line of the prompt."
-  (setf (console-prompt console) nil
-        (console-column console) 0))
+  (setf (console-prompt console) nil)
+  (begin-row console))

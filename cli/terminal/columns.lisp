@@ -1,0 +1,54 @@
+;;;; columns.lisp -- how many columns of a terminal text takes, and where it is broken.
+
+(in-package :ars-magna.cli)
+
+;;; Accents take no column of their own, the characters of East Asia two.
+
+(defun beyond-latin-columns (char)
+  "Return how many columns CHAR takes, one that Latin 1 does not have."
+  (cond ((member (sb-unicode:general-category char) '(:mn :me :cf)) 0)
+        ((member (sb-unicode:east-asian-width char) '(:w :f)) 2)
+        (t 1)))
+
+(defun char-columns (char)
+  "Return how many columns CHAR takes on a terminal."
+  (if (< (char-code char) 256) 1 (beyond-latin-columns char)))
+
+(defun text-columns (text)
+  "Return how many columns TEXT, on one line, takes on a terminal."
+  (loop for char across text sum (char-columns char)))
+
+;;; Lines that are too long are broken between words.
+
+(defun breaking-point (line columns)
+  "Return where LINE is to be broken so that what comes before takes no more than COLUMNS: at the
+last blank in time, or else the first; NIL if nowhere."
+  (loop with start = (position #\Space line :test #'char/=)
+        with best = nil
+        for position from (or start (length line)) below (length line)
+        for taken = (+ start (char-columns (char line position)))
+          then (+ taken (char-columns (char line position)))
+        do (when (and best (> taken columns)) (return best))
+           (when (char= #\Space (char line position)) (setf best position))
+        finally (return (and (> taken columns) best))))
+
+(defun broken-line (line first columns)
+  "Return LINE as a list of lines of at most COLUMNS, the first of FIRST, as far as blanks allow.
+What goes on is indented as far as LINE is."
+  (let ((place (breaking-point line first))
+        (indent (or (position #\Space line :test #'char/=) 0)))
+    (if place
+        (cons (string-right-trim " " (subseq line 0 place))
+              (broken-line (format nil "~VA~A" indent ""
+                                   (string-left-trim " " (subseq line place)))
+                           columns columns))
+        (list line))))
+
+(defun broken-text (text columns &optional (used 0))
+  "Return TEXT with its lines broken so that each takes at most COLUMNS, if blanks allow it. Its
+first line begins after USED columns."
+  (loop with lines = (uiop:split-string text :separator '(#\Newline))
+        for line in lines
+        for first = (- columns used) then columns
+        append (broken-line line first columns) into all
+        finally (return (format nil "~{~A~^~%~}" all))))
