@@ -81,14 +81,12 @@ cannot be told. May signal BAD-LINE, as when there is no robot.")
 
 ;;; Names of commands.
 
-(defun names-to-type ()
-  (append (mapcar #'line-name (all-lines)) (mapcar #'first *aliases*)))
-
 (defmethod choices ((type (eql :command)) session typed)
   (declare (ignore session))
-  (if (lines-starting (string-upcase typed) (all-lines) #'line-name)
-      (names-to-type)
-      (append (names-to-type) (all-line-names))))
+  (let ((names (if (lines-starting (string-upcase typed) (all-lines) #'line-name)
+                   (mapcar #'line-name (all-lines))
+                   (all-line-names))))
+    (mapcar #'string-downcase (append names (mapcar #'first *aliases*)))))
 
 (defmethod choices ((type (eql :topic)) session typed)
   (append (choices :command session typed) (choices :plan session typed)))

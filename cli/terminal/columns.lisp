@@ -22,15 +22,16 @@
 
 (defun breaking-point (line columns)
   "Return where LINE is to be broken so that what comes before takes no more than COLUMNS: at the
-last blank in time, or else the first; NIL if nowhere."
+last blank in time, or else the first; NIL if it need not be broken or has no blank."
   (loop with start = (position #\Space line :test #'char/=)
-        with best = nil
-        for position from (or start (length line)) below (length line)
-        for taken = (+ start (char-columns (char line position)))
-          then (+ taken (char-columns (char line position)))
-        do (when (and best (> taken columns)) (return best))
-           (when (char= #\Space (char line position)) (setf best position))
-        finally (return (and (> taken columns) best))))
+        with best = nil and taken = 0
+        for char across line
+        for position from 0
+        do (when (and start (< start position) (char= char #\Space)
+                      (or (null best) (<= taken columns)))
+             (setf best position))
+           (incf taken (char-columns char))
+           (when (and best (> taken columns)) (return best))))
 
 (defun broken-line (line first columns)
   "Return LINE as a list of lines of at most COLUMNS, the first of FIRST, as far as blanks allow.
