@@ -82,5 +82,5 @@ if the newest entry is not in it."
   (let ((newest (first (history-entries history))))
     (when (and newest (starts-with-subseq newest text))
       (pop (history-entries history))
-      (setf (history-unsaved-p history) (string/= text (or (first (history-entries history)) "")))
+      (setf (history-unsaved-p history) (not (equal text (first (history-entries history)))))
       (when (history-unsaved-p history) (push text (history-entries history))))))
