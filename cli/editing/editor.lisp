@@ -21,6 +21,9 @@
   (:documentation "The text that somebody types at this process's terminal, who can edit each line,
 and have again what he has typed before. The line is shown on CONSOLE."))
 
+(defmethod initialize-instance :after ((stream edited-text) &key)
+  (setf (console-edited-p (edited-console stream)) t))
+
 (defvar *while-typing* nil
   "NIL, or a function that is called now and then while a line is typed.")
 
@@ -217,16 +220,10 @@ of the input."
 
 ;;; As a stream.
 
-(defun show-pasted (stream line)
-  "Show LINE, which was pasted together with others, as if it was typed now."
-  (let ((console (edited-console stream)))
-    (format console "~A~%" (visible line))
-    (answered console)))
-
 (defmethod next-typed-line ((stream edited-text))
   (let ((line (pop (edited-lines stream))))
     (if line
-        (show-pasted stream line)
+        (show-answer (edited-console stream) (visible line))
         (let ((text (edit-line stream)))
           (unless (eq text :eof)
             (setf (edited-lines stream) (uiop:split-string text :separator '(#\Newline))

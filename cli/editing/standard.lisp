@@ -35,7 +35,8 @@ is true."
     (funcall function))
   (:method (function (input edited-text))
     (unwind-protect (call-handing-over-keys function)
-      (save-entry (edited-history input)))))
+      (save-entry (edited-history input))
+      (answered (edited-console input)))))
 
 (defgeneric remember-line (input line before)
   (:documentation "Let whoever types into INPUT have LINE again, together with the text BEFORE, if

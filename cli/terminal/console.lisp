@@ -19,13 +19,15 @@
    (lock :initform (make-lock "console") :reader console-lock)
    (column :initform 0 :accessor console-column)
    (rest :initform "" :accessor console-rest)
+   (edited-p :initform nil :accessor console-edited-p)
    (line :initform nil :accessor console-line)
    (question :initform nil :accessor console-prompt)
    (overwritten-p :initform nil :accessor console-overwritten-p)
    (trouble :initform nil :accessor console-trouble))
   (:documentation "An output stream on top of another. WINDOW is a function that returns columns and
 rows of the terminal's window, or NIL if there is none. REST is what was written last, since a
-newline, as far as it is short. LINE is the drawn-line that is being typed, or NIL. QUESTION is what
+newline, as far as it is short. EDITED-P is true if the prompt edits what is typed, LINE the
+drawn-line that is being typed, or NIL. QUESTION is what
 stands there for the user to answer, or NIL; OVERWRITTEN-P is true if something was written after
 it. TROUBLE is the condition that what was written could not be delivered, or NIL."))
 
@@ -114,14 +116,14 @@ goes on where the last has ended."
       (finish-output stream))))
 
 (defun begin-line (console)
-  "Let a line be typed after the prompt that stands, or what has been written in its place."
+  "Let a line be typed after what has been written last, unless one stands already."
   (with-console (stream console)
-    (when (or (spoilt-p console) (/= (console-column console) (length (console-rest console))))
-      (put-string (string #\Newline) console stream))
-    (let ((prompt (if (spoilt-p console) (console-prompt console) (console-rest console))))
-      (setf (console-line console)
-            (make-drawn-line :prompt prompt :shown (list (console-rest console) "" 0))
-            (console-overwritten-p console) nil))
+    (unless (console-line console)
+      (when (/= (console-column console) (length (console-rest console)))
+        (put-string (string #\Newline) console stream))
+      (let ((prompt (console-rest console)))
+        (setf (console-line console)
+              (make-drawn-line :prompt prompt :shown (list prompt "" 0)))))
     (begin-row console)
     (wipe console stream)
     (draw console stream)
@@ -151,8 +153,9 @@ goes on where the last has ended."
       (draw console stream)
       (when (plusp (drawn-line-column line)) (terpri stream))
       (finish-output stream))
-    (setf (console-line console) nil)
-    (answered console)))
+    (setf (console-line console) nil
+          (console-prompt console) nil)
+    (begin-row console)))
 
 ;;; Writing.
 
@@ -209,15 +212,24 @@ words."
 
 ;;; Prompts.
 
+(defun put-prompt (prompt console stream)
+  "Put PROMPT at the start of a line, or before the line that is being typed."
+  (let ((line (console-line console)))
+    (cond (line
+           (wipe console stream)
+           (setf (drawn-line-prompt line) prompt))
+          ((console-edited-p console)
+           (setf (console-line console) (make-drawn-line :prompt prompt)))
+          (t (put-fresh prompt console stream)))))
+
 (defun show-prompt (console prompt)
-  "Write PROMPT, a string, at the start of a line; before what is being typed, if anything is."
-  (cond ((console-line console)
-         (change-line console (lambda (line) (setf (drawn-line-prompt line) prompt))))
-        (t (fresh-line console)
-           (write-string prompt console)
-           (finish-output console)))
-  (setf (console-overwritten-p console) nil
-        (console-prompt console) prompt))
+  "Show PROMPT, a string, at the start of a line."
+  (with-console (stream console)
+    (put-prompt prompt console stream)
+    (draw console stream)
+    (finish-output stream)
+    (setf (console-overwritten-p console) nil
+          (console-prompt console) prompt)))
 
 (defun unanswered-p (console)
   "True if a prompt stands and nothing has been written after it."
@@ -234,5 +246,13 @@ words."
 
 (defun answered (console)
   "Note that the user has ended the line of the prompt."
-  (setf (console-prompt console) nil)
-  (begin-row console))
+  (cond ((console-line console) (end-line console))
+        (t (setf (console-prompt console) nil)
+           (unless (console-edited-p console) (begin-row console)))))
+
+(defun show-answer (console text)
+  "Show TEXT as if the user had typed it, and ended the line."
+  (if (console-line console)
+      (change-line console (lambda (line) (setf (drawn-line-text line) text)))
+      (format console "~A~%" text))
+  (answered console))
