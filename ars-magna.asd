@@ -302,6 +302,7 @@
                  (:file "worlds-searching")
                  (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
                  (:file "clim") (:file "cli")
+                 (:file "editing") (:file "editing-screens") (:file "completing")
                  (:file "ways-going") (:file "cli-plans") (:file "cli-rewinding")
                  (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "experiment-replay")

@@ -2,10 +2,10 @@
 
 (in-package :ars-magna.cli)
 
-;;; Why not rlwrap, or GNU readline? What arrives while a line is typed is to be written above it, by
-;;; whichever thread has it; control C is to end what was typed before it and nothing else; Tab is to
-;;; know what the simulator knows. A program around this one can do none of that, and readline can
-;;; be called by one thread only, and has a licence of another kind.
+;;; Why not rlwrap, or GNU readline? What arrives while a line is typed is to be written above it,
+;;; by whichever thread has it; control C is to end what was typed before it and nothing else; Tab
+;;; is to know what the simulator knows. A program around this one can do none of that, and readline
+;;; can be called by one thread only, and has a licence of another kind.
 
 (defclass edited-text (typed-text)
   ((console :initarg :console :reader edited-console)
@@ -44,6 +44,13 @@ and have again what he has typed before. The line is shown on CONSOLE."))
           (t (await-octets stream)
              (handler-case (read-char (typed-octets stream) nil)
                (stream-error () nil))))))
+
+(defun octet-reader (stream)
+  "Return a function that returns the next octet of STREAM, or is given one to return first."
+  (lambda (&optional octet)
+    (if octet
+        (progn (setf (edited-ahead stream) (uiop:strcat octet (edited-ahead stream))) nil)
+        (next-octet stream))))
 
 (defun octets-at-hand (stream)
   "Return the octets that STREAM has without waiting."
@@ -211,7 +218,7 @@ and have again what he has typed before. The line is shown on CONSOLE."))
   "Let a line be typed. Return it, which has newlines in it if several were pasted; :EOF at the end
 of the input."
   (prog1 (call-editing (lambda ()
-                         (loop for key = (read-key (lambda () (next-octet stream)))
+                         (loop for key = (read-key (octet-reader stream))
                                for end = (press stream key)
                                until end
                                finally (return end)))
@@ -220,14 +227,18 @@ of the input."
 
 ;;; As a stream.
 
+(defun lines-in (text)
+  "Return the lines of TEXT, at least one."
+  (or (uiop:split-string text :separator '(#\Newline)) (list "")))
+
 (defmethod next-typed-line ((stream edited-text))
   (let ((line (pop (edited-lines stream))))
     (if line
         (show-answer (edited-console stream) (visible line))
         (let ((text (edit-line stream)))
           (unless (eq text :eof)
-            (setf (edited-lines stream) (uiop:split-string text :separator '(#\Newline))
-                  line (pop (edited-lines stream))))))
+            (setf (edited-lines stream) (rest (lines-in text))
+                  line (first (lines-in text))))))
     (if line (format nil "~A~%" line) "")))
 
 (defmethod typed-ahead-p ((stream edited-text))

@@ -4,7 +4,8 @@
 
 ;;; A key is the text that it types, a string; a keyword such as :UP or :CONTROL-A, or :META-F for
 ;;; one after escape; or a list (:PASTE text). NEXT, in what follows, is a function that returns the
-;;; next octet that the terminal hands over, as a character, or NIL at the end.
+;;; next octet that the terminal hands over, as a character, or NIL at the end; called with an octet,
+;;; it will return that first.
 
 (defparameter *keys-of-codes*
   '(("A" :up) ("B" :down) ("C" :right) ("D" :left) ("H" :home) ("F" :end)
@@ -30,13 +31,18 @@
           ((< code #xF8) 3)
           (t 0))))
 
+(defun follows-p (octet next)
+  "True if OCTET is one that follows in a character; if not, NEXT is to return it again."
+  (or (<= #x80 (char-code octet) #xBF)
+      (progn (funcall next octet) nil)))
+
 (defun read-text (lead next)
   "Return the character in UTF-8 that begins with the octet LEAD, as a string."
   (decoded (with-output-to-string (out)
              (write-char lead out)
              (loop repeat (octets-that-follow lead)
                    for char = (funcall next)
-                   while char do (write-char char out)))))
+                   while (and char (follows-p char next)) do (write-char char out)))))
 
 (defun with-newlines (text)
   "Return TEXT, as pasted, with newlines between its lines, but none at its end."

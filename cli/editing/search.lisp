@@ -30,7 +30,7 @@ it SOUGHT begins; NIL if there is none."
 (defun search-keys (stream)
   "Let keys say what is looked for. Return the first key that says something else."
   (loop with sought = "" and skipped = 0
-        for key = (read-key (lambda () (next-octet stream)))
+        for key = (read-key (octet-reader stream))
         do (cond ((stringp key) (setf sought (uiop:strcat sought key)
                                       skipped 0))
                  ((eq key :rubout) (setf sought (subseq sought 0 (max 0 (1- (length sought))))

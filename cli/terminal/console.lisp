@@ -19,6 +19,7 @@
    (lock :initform (make-lock "console") :reader console-lock)
    (column :initform 0 :accessor console-column)
    (rest :initform "" :accessor console-rest)
+   (wrapped-p :initform nil :accessor console-wrapped-p)
    (edited-p :initform nil :accessor console-edited-p)
    (line :initform nil :accessor console-line)
    (question :initform nil :accessor console-prompt)
@@ -26,7 +27,8 @@
    (trouble :initform nil :accessor console-trouble))
   (:documentation "An output stream on top of another. WINDOW is a function that returns columns and
 rows of the terminal's window, or NIL if there is none. REST is what was written last, since a
-newline, as far as it is short. EDITED-P is true if the prompt edits what is typed, LINE the
+newline, as far as it is short; WRAPPED-P is true if that fills a row, and the cursor has gone on to
+the next. EDITED-P is true if the prompt edits what is typed, LINE the
 drawn-line that is being typed, or NIL. QUESTION is what
 stands there for the user to answer, or NIL; OVERWRITTEN-P is true if something was written after
 it. TROUBLE is the condition that what was written could not be delivered, or NIL."))
@@ -64,7 +66,8 @@ now."
 (defun begin-row (console)
   "Note that the cursor is at the beginning of a line."
   (setf (console-column console) 0
-        (console-rest console) ""))
+        (console-rest console) ""
+        (console-wrapped-p console) nil))
 
 (defun note-written (console string start end)
   "Note that STRING from START to END has been written."
@@ -78,9 +81,10 @@ now."
               (concatenate 'string (console-rest console) (subseq string start end))
               ""))))
 
-(defun columns-written (console)
-  "Return how many columns the line takes that the cursor is in."
-  (max (console-column console) (text-columns (console-rest console))))
+(defun column-of-row (console)
+  "Return in which column of the window the cursor is; 0 if it is after the last."
+  (mod (max (console-column console) (text-columns (console-rest console)))
+       (values (funcall (console-window console)))))
 
 ;;; The line that is being typed.
 
@@ -94,16 +98,17 @@ goes on where the last has ended."
   (let ((line (console-line console)))
     (when (and line (drawn-line-shown line))
       (call-in-window #'wipe-line console stream)
-      (let ((column (mod (columns-written console) (funcall (console-window console)))))
-        (when (plusp column)
-          (move-up 1 stream)
-          (move-right column stream))))))
+      (unless (or (zerop (console-column console)) (console-wrapped-p console))
+        (move-up 1 stream)
+        (move-right (column-of-row console) stream)))))
 
 (defun draw (console stream)
   "Draw the line that is being typed below what was written, if there is one and it is not there."
   (let ((line (console-line console)))
     (when (and line (null (drawn-line-shown line)))
-      (when (plusp (console-column console)) (terpri stream))
+      (unless (or (zerop (console-column console)) (console-wrapped-p console))
+        (terpri stream)
+        (setf (console-wrapped-p console) (zerop (column-of-row console))))
       (call-in-window #'draw-line console stream))))
 
 (defun change-line (console function)
@@ -163,6 +168,10 @@ goes on where the last has ended."
   "Write STRING from START to END to STREAM, which is below CONSOLE, where nobody else writes now."
   (unless (= start end)
     (wipe console stream)
+    ;; The cursor is there already.
+    (when (and (shiftf (console-wrapped-p console) nil) (char= #\Newline (char string start)))
+      (begin-row console)
+      (incf start))
     (write-string string stream :start start :end end)
     (note-written console string start end)
     (unless (console-line console) (setf (console-overwritten-p console) t))))
