@@ -114,9 +114,9 @@ OPERATOR-P is true, otherwise keywords of OPERATOR too."
                (operator-p (and (plusp start) (char= #\( (char text (1- start))))))
           (values start
                   (and (string/= "" typed)
-                       (matching typed
-                                 (append (symbol-choices typed operator-p (operator-at text start))
-                                         (values-of (last-attribute text start)))))
+                       (or (matching typed (values-of (last-attribute text start)))
+                           (matching typed (symbol-choices typed operator-p
+                                                           (operator-at text start)))))
                   "")))))
 
 (defun specification-completions (text point)
