@@ -352,6 +352,7 @@
                   :components ((:file "terminal") (:file "screens") (:file "pages")
                                (:file "session") (:file "newcomer")))
                  (:file "isolation") (:file "budgets")
+                 (:file "children") (:file "children-uses")
                  (:file "main"))))
   :perform (test-op (operation system)
              (declare (ignore operation system))

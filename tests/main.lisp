@@ -75,31 +75,63 @@ passed, failed and were skipped, a list."
     (format t "~&~%~D passed, ~D failed~[~:;~:*, ~D skipped~]~%" passed failed skipped)
     (zerop failed)))
 
-(defun run-suites (names &optional seed)
-  "Run the suites called NAMES, or all if there are none, and end with a line that counts the
-checks. With the integer SEED, mix all their tests in the order that it decides. True if no check
-has failed."
+;;; All suites.
+
+(defun report-in-turn (suites results-of)
+  "Report SUITES, of whose checks the function RESULTS-OF returns what came. Return their counts."
+  (loop for suite in suites
+        collect (report-suite suite (funcall results-of suite))))
+
+(defun counts-and-seconds (suite)
+  "Run SUITE and report it. Return a list of its counts, and how many seconds it took."
+  (list (report-suite suite (run-suite suite)) (seconds-taken suite)))
+
+(defun report-suite-of-child (suite value)
+  "Note what a child returned that was to run SUITE, its VALUE, or NIL. Return its counts."
+  (destructuring-bind (&optional (counts '(0 1 0)) (seconds 0)) value
+    (unless value (format t "~&FAILED ~(~A~): it ended its process.~%" suite))
+    (setf (gethash suite *seconds*) seconds)
+    counts))
+
+(defun report-by-children (suites)
+  "Run each of SUITES in a process of its own, those that take long first, and report them in their
+order. Return their counts."
+  (call-with-children
+   (lambda (value-of)
+     (loop for suite in suites
+           collect (report-suite-of-child suite (funcall value-of suite))
+           do (finish-output)))
+   #'counts-and-seconds
+   (stable-sort (copy-list suites) #'> :key #'budget-of)
+   (experiment:processors)))
+
+(defun run-suites (names report)
+  "Run the suites called NAMES, or all if there are none. REPORT is called with them, and returns
+their counts. End with a line that counts the checks. True if no check has failed."
   (clrhash *seconds*)
   (let* ((suites (if names (remove-duplicates (mapcar #'find-suite names)) (suite-names)))
-         (results-of (if seed
-                         (run-shuffled suites seed)
-                         #'run-suite)))
-    (let ((counts (loop for suite in suites
-                        collect (report-suite suite (funcall results-of suite)))))
-      (report-slow-suites suites)
-      (report-total counts))))
+         (counts (funcall report suites)))
+    (report-slow-suites suites)
+    (report-total counts)))
+
+(defun report-shuffled (suites seed)
+  "Run all tests of SUITES mixed, in the order that the integer SEED decides. Return counts."
+  (format t "~&The tests are shuffled by the seed ~D.~%" seed)
+  (report-in-turn suites (run-shuffled suites seed)))
 
 (defun run-from-shell (names &optional seed)
-  "Do as RUN-SUITES does, for ./tests/run, and say which SEED it was. NIL if there is no such suite,
-too."
+  "Do as RUN-SUITES does, for ./tests/run: shuffled if there is a SEED, otherwise on all processors.
+NIL if there is no such suite, too."
   (handler-case
-      (progn (when seed (format t "~&The tests are shuffled by the seed ~D.~%" seed))
-             (run-suites names seed))
+      (run-suites names (if seed
+                            (lambda (suites) (report-shuffled suites seed))
+                            #'report-by-children))
     (no-such-suite (condition)
       (format *error-output* "~&~A~%" condition)
       nil)))
 
 (defun run-all ()
-  "Run all suites; signal an error if any check fails."
-  (unless (run-suites '()) (error "Some tests of ARS MAGNA fail."))
+  "Run all suites in this process; signal an error if any check fails."
+  (unless (run-suites '() (lambda (suites) (report-in-turn suites #'run-suite)))
+    (error "Some tests of ARS MAGNA fail."))
   t)
