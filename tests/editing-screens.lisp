@@ -164,6 +164,12 @@ KEYS have been pressed at Robot>."
              (shown-while-typing 20 24 (tell-all :message "aVeryLongWordThatIsNotBroken aa bb")
                                  "x"))))
 
+(test screen.breaks-no-tables
+  (is (equal "one two three  four" (cli::broken-text "one two three  four" 10)))
+  (is (equal (format nil "  one two~%  three") (cli::broken-text "  one two three" 10)))
+  (is (equal (format nil "~%one~%~%two three") (cli::broken-text (format nil "~%one~%~%two three")
+                                                                10))))
+
 (test screen.has-another-prompt-without-losing-what-is-typed
   (is (equal '("Break> tu")
              (shown-while-typing 40 24 (lambda (console) (cli::show-prompt console "Break> "))
@@ -189,9 +195,19 @@ KEYS have been pressed at Robot>."
 (test screen.counts-columns-as-they-are-seen
   (is (= 4 (cli::text-columns "漢字")))
   (is (= 1 (cli::text-columns (format nil "e~C" (code-char #x301)))))
-  (multiple-value-bind (rows row column) (cli::rows-of "a漢字b" 4 4)
+  (multiple-value-bind (rows row column) (cli::rows-of "" "a漢字b" 4 4)
     (is (equal '(("a漢" :newline) ("字b" nil)) rows))
     (is (equal '(1 3) (list row column)))))
+
+(test screen.counts-no-colours
+  "A prompt may have some; what is typed shows that it has."
+  (let ((red (format nil "~C[31mRobot> ~:*~C[0m" #\Escape)))
+    (is (= 7 (cli::text-columns red)))
+    (is (equal '(0 7) (rest (multiple-value-list (cli::rows-of red "" 0 20)))))
+    (is (equal (list (list (format nil "~Ax^[[1m" red) nil))
+               (cli::rows-of red (format nil "x~C[1m" #\Escape) 0 20)))
+    (is (equal (format nil "~Aone~%two" red)
+               (cli::broken-text (format nil "~Aone two" red) 10)))))
 
 (test screen.of-no-terminal-is-as-it-was-written
   "Nothing is broken, or moved, where nobody edits lines."

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.cli)
 
-;;; Accents take no column of their own, the characters of East Asia two.
+;;; Accents take no column of their own, the characters of East Asia two. Codes that terminals obey,
+;;; such as those for colours, take none.
 
 (defun beyond-latin-columns (char)
   "Return how many columns CHAR takes, one that Latin 1 does not have."
@@ -14,9 +15,25 @@
   "Return how many columns CHAR takes on a terminal."
   (if (< (char-code char) 256) 1 (beyond-latin-columns char)))
 
+(defun code-end (text position)
+  "Return where the code ends that begins in TEXT at POSITION, or NIL if none does."
+  (and (char= #\Escape (char text position))
+       (let ((letter (position-if #'alpha-char-p text :start position)))
+         (and letter (1+ letter)))))
+
+(defun columns-of-chars (text)
+  "Return a vector of how many columns each character of TEXT takes."
+  (loop with columns = (map 'vector #'char-columns text)
+        with position = 0
+        while (< position (length text))
+        do (let ((end (code-end text position)))
+             (when end (fill columns 0 :start position :end end))
+             (setf position (or end (1+ position))))
+        finally (return columns)))
+
 (defun text-columns (text)
   "Return how many columns TEXT, on one line, takes on a terminal."
-  (loop for char across text sum (char-columns char)))
+  (reduce #'+ (columns-of-chars text)))
 
 ;;; Lines that are too long are broken between words.
 
@@ -26,19 +43,25 @@ last blank in time, or else the first; NIL if it need not be broken or has no bl
   (loop with start = (position #\Space line :test #'char/=)
         with best = nil and taken = 0
         for char across line
+        for columns-of-char across (columns-of-chars line)
         for position from 0
         do (when (and start (< start position) (char= char #\Space)
                       (or (null best) (<= taken columns)))
              (setf best position))
-           (incf taken (char-columns char))
+           (incf taken columns-of-char)
            (when (and best (> taken columns)) (return best))))
+
+(defun table-line-p (line indent)
+  "True if LINE, indented by INDENT, is not to be read as a sentence: it has gaps, as a table or a map
+has."
+  (search "  " line :start2 indent))
 
 (defun broken-line (line first columns)
   "Return LINE as a list of lines of at most COLUMNS, the first of FIRST, as far as blanks allow.
 What goes on is indented as far as LINE is."
   (let ((place (breaking-point line first))
         (indent (or (position #\Space line :test #'char/=) 0)))
-    (if place
+    (if (and place (not (table-line-p line indent)))
         (cons (string-right-trim " " (subseq line 0 place))
               (broken-line (format nil "~VA~A" indent ""
                                    (string-left-trim " " (subseq line place)))

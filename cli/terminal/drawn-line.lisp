@@ -22,21 +22,26 @@ and point that it was drawn from."
 
 (defun shown-char (char)
   "Return the characters that stand for CHAR on the screen."
-  (cond ((char= char #\Tab) " ")
+  (cond ((char= char #\Newline) (string char))
+        ((char= char #\Tab) " ")
         ((obeyed-p char) (if (< (char-code char) 32)
                              (format nil "^~C" (code-char (+ 64 (char-code char))))
                              "?"))
         (t (string char))))
 
-(defun rows-of (text place columns)
-  "Return TEXT as a list of rows of COLUMNS, each a list of a string and of what ends it: :NEWLINE,
-or NIL if it is full or the last. Also the row and the column of PLACE in TEXT."
+(defun shown-chars (prompt text)
+  "Return a list of what is shown for each character of PROMPT, as it is, and of TEXT, as texts."
+  (append (map 'list #'string prompt) (map 'list #'shown-char text)))
+
+(defun rows-of (prompt text point columns)
+  "Return PROMPT and TEXT as a list of rows of COLUMNS, each a list of a string and of what ends it:
+:NEWLINE, or NIL if it is full or the last. Also the row and the column of POINT in TEXT."
   (let ((rows '()) (out (make-string-output-stream)) (column 0) (place-row 0) (place-column 0))
     (labels ((end-row (how)
                (push (list (get-output-stream-string out) how) rows)
                (setf column 0))
              (note-place (position)
-               (when (= position place)
+               (when (= position point)
                  (setf place-row (length rows)
                        place-column column)))
              (put (shown width)
@@ -45,12 +50,14 @@ or NIL if it is full or the last. Also the row and the column of PLACE in TEXT."
                (write-string shown out)
                (incf column width)
                (when (= column columns) (end-row nil))))
-      (loop for char across text
-            for position from 0
+      (loop with widths = (columns-of-chars prompt)
+            for shown in (shown-chars prompt text)
+            for position from (- (length prompt))
             do (note-place position)
-               (if (char= char #\Newline)
-                   (end-row :newline)
-                   (let ((shown (shown-char char))) (put shown (text-columns shown)))))
+               (cond ((string= shown (string #\Newline)) (end-row :newline))
+                     ((minusp position)
+                      (put shown (aref widths (+ position (length prompt)))))
+                     (t (put shown (reduce #'+ shown :key #'char-columns)))))
       (note-place (length text))
       (end-row nil))
     (values (nreverse rows) place-row place-column)))
@@ -63,8 +70,7 @@ or NIL if it is full or the last. Also the row and the column of PLACE in TEXT."
 (defun rows-to-show (prompt text point columns height)
   "Return the rows of a line in a window of COLUMNS and HEIGHT, and the row and column of the
 cursor."
-  (multiple-value-bind (rows row column)
-      (rows-of (concatenate 'string prompt text) (+ (length prompt) point) columns)
+  (multiple-value-bind (rows row column) (rows-of prompt text point columns)
     (multiple-value-bind (rows start) (window-on rows row height)
       (values rows (- row start) column))))
 
