@@ -69,6 +69,12 @@ and have again what he has typed before. The line is shown on CONSOLE."))
     (setf (edited-ahead stream) (subseq octets (if interrupt (1+ interrupt) 0)))
     (when interrupt (heed-interrupt))))
 
+(defun paste-in-brackets (console on)
+  "Let the terminal tell what is pasted from what is typed, if ON is true."
+  (with-console (stream console)
+    (format stream "~C[?2004~:[l~;h~]" #\Escape on)
+    (finish-output stream)))
+
 ;;; The line.
 
 (defun line-of (stream)
@@ -141,7 +147,9 @@ and have again what he has typed before. The line is shown on CONSOLE."))
 (define-action (:control-z) (stream)
   "Stop this process until its user wants it back."
   (hide-line (edited-console stream))
+  (paste-in-brackets (edited-console stream) nil)
   (stop-for-a-while)
+  (paste-in-brackets (edited-console stream) t)
   (change-line (edited-console stream) (constantly nil))
   nil)
 
@@ -196,22 +204,14 @@ and have again what he has typed before. The line is shown on CONSOLE."))
         ((change-of key) (do-change stream (change-of key)) nil)
         ((action-of key) (funcall (action-of key) stream))))
 
-(defun paste-in-brackets (console on)
-  "Let the terminal tell what is pasted from what is typed, if ON is true."
-  (with-console (stream console)
-    (format stream "~C[?2004~:[l~;h~]" #\Escape on)))
-
 (defun call-editing (function stream)
   "Call FUNCTION, while a line can be edited on the console of STREAM."
   (let ((console (edited-console stream)))
     (unwind-protect (progn (hand-over-keys)
-                           (paste-in-brackets console t)
                            (begin-line console)
                            (enter-history stream)
                            (funcall function))
-      (when (console-line console)
-        (paste-in-brackets console nil)
-        (end-line console))
+      (when (console-line console) (end-line console))
       (hand-over-keys :interrupts t))))
 
 (defun edit-line (stream)

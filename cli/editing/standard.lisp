@@ -34,9 +34,12 @@ is true."
     (declare (ignore input))
     (funcall function))
   (:method (function (input edited-text))
-    (unwind-protect (call-handing-over-keys function)
-      (save-entry (edited-history input))
-      (answered (edited-console input)))))
+    (let ((console (edited-console input)))
+      (unwind-protect (progn (paste-in-brackets console t)
+                             (call-handing-over-keys function))
+        (save-entry (edited-history input))
+        (answered console)
+        (paste-in-brackets console nil)))))
 
 (defgeneric remember-line (input line before)
   (:documentation "Let whoever types into INPUT have LINE again, together with the text BEFORE, if
