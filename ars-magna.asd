@@ -344,10 +344,11 @@
                  (:file "floors-readme")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
                  (:file "experiments-tables") (:file "experiments-fingerprints")
+                 (:file "thinking-experiments")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "experiment-compare-levels")
                  (:file "experiment-compare-versions") (:file "rates") (:file "projecting")
-                 (:file "trying-best")
+                 (:file "projecting-mistakes") (:file "trying-best")
                  (:module "newcomer" :serial t
                   :components ((:file "terminal") (:file "screens") (:file "pages")
                                (:file "session") (:file "newcomer")))

@@ -143,6 +143,14 @@ of lines, and the number of errors."
              (find "TRACK" (type-batch "obj-desig 0 local ((:size 5))" "cam-track 1 0" "status")
                    :test #'search))))
 
+(test status.says-what-thinking-costs-unless-that-is-as-usual
+  (flet ((said (form)
+           (find "Thinking:" (type-batch form "status") :test #'search)))
+    (is (null (said "(set-thinking :free)")))
+    (is (equal "Thinking:          charged" (said "(set-thinking :charged)")))
+    (is (equal "Thinking:          charged, and a tick for 30 steps"
+               (said "(set-thinking '(:charged :budget 30))")))))
+
 (test status.changes-nothing
   (flet ((state (&rest lines)
            (car (last (apply #'type-batch (append lines '("(state-digest)")))))))

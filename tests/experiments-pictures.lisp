@@ -300,8 +300,20 @@
                 "<!-- table of y -->" "old" "<!-- end of table -->")
               'x (format nil "1 2~%")))))
 
+(test figures.of-choosing-are-rates-and-pairs
+  (is (string= "96 % (94 to 97)" (ars-worlds::rate-text 479 500)))
+  (is (equal '("Seed by seed, rollouts were in time 20 times where the short way was not,"
+               "1 time the other way round: p < .001.")
+             (ars-worlds::paired-lines
+              (append (make-list 20 :initial-element "failure") '("success" "success" "limit"))
+              (append (make-list 20 :initial-element "success") '("failure" "success" "failure")))))
+  (is (equal "0 times the other way round: p = 0.250."
+             (second (ars-worlds::paired-lines '("limit" "limit" "limit")
+                                               '("success" "success" "success"))))))
+
 (test figures.on-the-page-exist
   (let ((page (base:file-text (project-file "worlds/README.md"))) (shown 0))
+    (is (search (ars-worlds::comment-line "table of choosing-by-rollouts") page))
     (loop for (experiment . names) in ars-worlds::*pictures-kept*
           do (is (search (ars-worlds::comment-line (format nil "table of ~A" experiment)) page))
              (dolist (name names)

@@ -7,7 +7,8 @@
   (:import-from :ars-magna.tests
                 #:ars-magna #:def-suite* #:in-suite #:test #:is #:is-true #:signals #:live
                 #:fitter #:await)
-  (:import-from :ars-magna.base #:take-messages #:start-thread #:join-thread #:make-lock
+  (:import-from :ars-magna.base #:take-messages #:message-text #:start-thread #:join-thread
+                #:make-lock
                 #:with-lock #:*message-queue* #:make-message-queue))
 
 (in-package :ars-test-projecting)
@@ -263,35 +264,3 @@
       (is (typep (failure (lambda (run seed) (declare (ignore run seed)) 1)) 'misuse))
       (is (typep (failure (lambda (run seed) (declare (ignore run seed)) (robot-x runner)))
                  'unbound-variable)))))
-
-;;; Mistakes.
-
-(test project.says-what-it-does-not-take
-  (on-court ()
-    (signals wrong-argument (project '(toss 1) :trials 0))
-    (signals wrong-argument (project '(toss 1) :horizon -1))
-    (signals wrong-argument (project '(toss 1) :arguments '(1)))
-    (signals wrong-argument (project '(toss 1) :cost 7))
-    (signals wrong-argument (project '(toss 1) :seed "one"))
-    (signals unknown-name (project 'no-such-plan))
-    (signals wrong-argument (save-projection-picture 1 "/tmp/none.svg"))
-    (destructuring-bind (failure state) (told-of (mapcar #'project-plan '(toss)))
-      (is (eq :failed state))
-      (is (typep (lisp-failure-condition failure) 'misuse)))
-    (is (typep (lisp-failure-condition
-                (run-plan-alone (interp-lambda () (project '(toss 1)))))
-               'misuse))))
-
-(test project.of-a-run-that-cannot-be-forked-fails
-  (on-court ()
-    (destructuring-bind (failure state)
-        (told-of (let ((stream (make-string-output-stream)))
-                   (project '(toss 1))
-                   stream))
-      (is (eq :failed state))
-      (is (typep (lisp-failure-condition failure) 'cannot-fork)))
-    (is (equal '(:else :succeeded)
-               (told-of (let ((stream (make-string-output-stream)))
-                          (handle-failure ((cannot-fork () (return :else)))
-                            (try-best () (toss 1) (toss 1))
-                            stream)))))))

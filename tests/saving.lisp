@@ -149,6 +149,17 @@
     (with-rover () (run:save-simulation file))
     (is (null (run:simulation-journal (run:load-simulation file))))))
 
+(test loaded.can-keep-forks
+  (with-temporary-file (file)
+    (with-rover (:seed 5) (run:run-ticks 3) (run:save-simulation file))
+    (run:with-loaded-simulation (file :keep t)
+      (run:run-ticks 4)
+      (run:rewind 4)
+      (is (= 3 (run:simulation-tick))))
+    (run:with-loaded-simulation (file)
+      (run:run-ticks 1)
+      (signals base:misuse (run:rewind 1)))))
+
 (test loaded.is-over-with-its-extent
   (with-temporary-file (file)
     (let (robot)

@@ -175,6 +175,11 @@
         (live-thinking ('(:charged :budget 20))
           (is (= headless (trace-of-turns))))))))
 
+(test live-thinking.is-told-by-status-unless-it-is-real
+  (loop for (mode text) in '((:real nil) (:free "free") (:charged "charged"))
+        do (live-thinking (mode)
+             (is (equal text (ars-magna.cli::thinking-text simulation))))))
+
 (test live-thinking.modes-change-while-plans-run
   (live-thinking (:charged)
     (let* ((threads '())

@@ -30,6 +30,73 @@
     (is (= 1 (end :free) (end :charged)))
     (is (< 1 (end '(:charged :budget 100)) 5 (end '(:charged :budget 20))))))
 
+(defparameter *modes* '(:free :charged (:charged :budget 5) (:charged :budget 100))
+  "Thinking modes that are the same on every machine.")
+
+(defmacro in-each-mode ((&rest options) &body body)
+  "Return a list of what BODY returns in each of *MODES*, on the court."
+  `(loop for mode in *modes*
+         collect (on-court (,@options :thinking mode) ,@body)))
+
+(test try-best.has-the-price-of-the-with-charge-around-it
+  (is (equal '(2 7 7 7)
+             (in-each-mode ()
+               (first (told-of (with-charge (7)
+                                 (try-best (:trials 20 :horizon 50 :until :branch)
+                                   (seq (wait-time 2) :near)
+                                   (n-times 9 (wait-time 1))))
+                               (plan-time)))))))
+
+(def-interp-proc choose-in-choices ()
+  (try-best (:trials 3 :horizon 60)
+    (seq (think 3) (try-best (:trials 3 :horizon 30) (seq (wait-time 2) (toss .7)) (toss .4)))
+    (with-charge (5) (try-best (:trials 3) (seq (think 2 :alone t) (toss .9)) (toss .5)))
+    (fail)))
+
+(test try-best.can-be-nested-whatever-thinking-costs
+  (flet ((courses ()
+           (in-each-mode (:seed 4)
+             (list (told 'choose-in-choices) (simulation-tick) (state-digest)))))
+    (let ((courses (courses)))
+      (is (equal '(:succeeded :succeeded :succeeded :succeeded)
+                 (mapcar (lambda (course) (second (first course))) courses)))
+      (is (apply #'< (mapcar #'second (list (first courses) (second courses) (fourth courses)
+                                            (third courses)))))
+      (is (equal courses (courses))))))
+
+(test try-best.works-in-policies-whatever-thinking-costs
+  (let ((counts (in-each-mode (:seed 2)
+                  (let ((bell (create-fluent 'bell)) (count 0))
+                    (first (told-of (with-policy (whenever bell
+                                                   (set-value bell nil)
+                                                   (try-best (:trials 2 :horizon 9 :until :branch)
+                                                     (wait-time 2)
+                                                     (wait-time 1))
+                                                   (incf count))
+                                      (n-times 3 (set-value bell t) (wait-time 60)))
+                                    count))))))
+    (is (equal '(3 3 3 3) counts))))
+
+(test try-best.evaporates-while-its-rollouts-are-paid-for
+  (is (equal '((:over 3) (:over 3))
+             (loop for mode in '(:charged (:charged :budget 100))
+                   collect (on-court (:thinking mode)
+                             (first (told-of (let ((end (pursue
+                                                         (seq (wait-time 3) :over)
+                                                         (loop (try-best (:trials 9 :horizon 20)
+                                                                 (think 1)
+                                                                 (wait-time 1))))))
+                                               (list end (plan-time)))))))))
+  (on-court (:thinking '(:charged :budget 1))
+    (let ((task (begin-plan (interp-lambda ()
+                              (loop (try-best (:trials 9 :horizon 20)
+                                      (wait-time 1)
+                                      (wait-time 2)))))))
+      (run-ticks 5)
+      (end-plan task)
+      (run-ticks 1)
+      (is (eq :evaporated (task-state task))))))
+
 ;;; Which branch.
 
 (test try-best.takes-what-succeeds-most-often
@@ -244,7 +311,7 @@
   "Return how often a plan chose, beside many fluents that nobody waits for and that change."
   (on-court (:seed seed)
     (let ((fluents (loop repeat 300 collect (create-fluent 'f 0))))
-      (first (told-of (n-times 60
+      (first (told-of (n-times 40
                         (dolist (fluent fluents)
                           (set-value fluent (+ 1 (fluent-value fluent))))
                         (try-best (:trials 3 :until :branch) (wait-time 1) (wait-time 2)))
@@ -263,7 +330,7 @@
                                              (count (busy-choosing seed)))
                                         (with-lock (lock) (push count counts))))
                                     "choosing")))))
-    (is (equal '(60 60 60 60 60 60 60 60 60) counts))))
+    (is (equal '(40 40 40 40 40 40 40 40 40) counts))))
 
 ;;; To be looked at.
 
@@ -296,10 +363,10 @@
 
 (test try-best.is-worth-it
   "On the office, where the better way depends on what stands in it."
-  (let ((seeds (loop for seed from 1 to 12 collect seed)))
-    (is (<= (successes-of :first seeds) 8))
-    (is (<= (successes-of :second seeds) 8))
-    (is (<= 10 (successes-of :best seeds)))))
+  (let ((seeds (loop for seed from 5 to 12 collect seed)))
+    (is (<= (successes-of :first seeds) 5))
+    (is (<= (successes-of :second seeds) 5))
+    (is (<= 7 (successes-of :best seeds)))))
 
 (defun square (number) (* number number))
 

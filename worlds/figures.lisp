@@ -42,14 +42,16 @@ map.")
 (defun comment-line (what)
   (format nil "<!-- ~(~A~) -->" what))
 
-(defun with-table (lines experiment table)
-  "Return LINES of a page with TABLE, a text, where they have that of EXPERIMENT."
+(defun with-table-lines (lines experiment table)
+  "Return LINES of a page with TABLE, a list of lines, where they have that of EXPERIMENT."
   (let* ((start (position (comment-line (format nil "table of ~A" experiment)) lines
                              :test #'string=))
             (end (position (comment-line "end of table") lines :test #'string= :start start)))
-    (append (subseq lines 0 (1+ start))
-            (list "```" (string-right-trim '(#\Newline) table) "```")
-            (nthcdr end lines))))
+    (append (subseq lines 0 (1+ start)) table (nthcdr end lines))))
+
+(defun with-table (lines experiment table)
+  "Return LINES of a page with TABLE, a text, where they have that of EXPERIMENT."
+  (with-table-lines lines experiment (list "```" (string-right-trim '(#\Newline) table) "```")))
 
 (defun save-page (lines page)
   (with-open-file (out page :direction :output :if-exists :supersede :external-format :utf-8)
@@ -67,6 +69,59 @@ map.")
                               (in-worlds "pictures/looking-ahead/ways.svg"))
                              :part '(28 2 100 46))))
 
+;;; Choosing by rollouts: what it is worth, and how good forecasts are.
+
+(defparameter *ways-of-choosing*
+  '("always the short way" "always the long way" "either, by chance" "what rollouts say")
+  "What the page calls the conditions of CHOOSING-BY-ROLLOUTS, in their order.")
+
+(defun in-time-p (outcome)
+  (string= "success" outcome))
+
+(defun rate-text (successes trials)
+  "Return SUCCESSES of TRIALS in percent, with Wilson's interval."
+  (multiple-value-bind (low high) (wilson-interval successes trials)
+    (format nil "~D % (~D to ~D)" (round (* 100 successes) trials) (round (* 100 low))
+            (round (* 100 high)))))
+
+(defun choosing-row (name results sample)
+  "Return the line of the table for SAMPLE of RESULTS, called NAME."
+  (let* ((trials (length (sample-trials sample)))
+         (successes (count-if #'in-time-p (sample-outcomes sample)))
+         (rate (/ successes trials)))
+    (format nil "| ~A | ~A | ~,3F | ~,3F |" name (rate-text successes trials)
+            (/ (reduce #'+ (sample-measure results sample 'miss)) trials)
+            (* rate (- 1 rate)))))
+
+(defun paired-lines (firsts bests)
+  "Return the lines that compare, seed by seed, the outcomes BESTS of rollouts with FIRSTS, those of
+the short way."
+  (let* ((more (count t (map 'list (lambda (first best)
+                                     (and (in-time-p best) (not (in-time-p first))))
+                             firsts bests)))
+         (less (count t (map 'list (lambda (first best)
+                                     (and (in-time-p first) (not (in-time-p best))))
+                             firsts bests)))
+         (p (mcnemar-test more less)))
+    (list (format nil "Seed by seed, rollouts were in time ~D time~:P where the short way was not,"
+                  more)
+          (format nil "~D time~:P the other way round: p ~:[= ~,3F~;< .001~]."
+                  less (< p 1/1000) p))))
+
+(defun choosing-lines (results)
+  "Return the lines of the page with the RESULTS of CHOOSING-BY-ROLLOUTS."
+  (let ((samples (results-samples results)))
+    (append (list (format nil "| of ~D trials, the same seeds for all | in time | forecasts' Brier ~
+                               score | that of the rate |"
+                          (length (sample-trials (first samples))))
+                  "|---|---|---|---|")
+            (loop for name in *ways-of-choosing*
+                  for sample in samples
+                  collect (choosing-row name results sample))
+            (list "")
+            (paired-lines (sample-outcomes (first samples))
+                          (sample-outcomes (first (last samples)))))))
+
 ;;; The whole.
 
 (defun save-figures ()
@@ -74,7 +129,9 @@ map.")
 and save their pictures."
   (draw-ward (in-worlds "floors/"))
   (save-ways-ahead)
-  (let* ((page (in-worlds "README.md")) (lines (page-lines page)))
+  (let* ((page (in-worlds "README.md"))
+         (lines (with-table-lines (page-lines page) 'choosing-by-rollouts
+                            (choosing-lines (run-experiment 'choosing-by-rollouts)))))
     (loop for (experiment . names) in *pictures-kept*
              do (let ((results (run-experiment experiment)))
                   (setf lines (with-table lines experiment

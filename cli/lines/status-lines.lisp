@@ -61,6 +61,13 @@ were (reading 201)."
                                   ("Interrupted:" ,(interruption-text resource)))
             when text do (put-line "~19A~A~A" label name text)))))
 
+(defun thinking-text (simulation)
+  "Return in words what thinking costs in SIMULATION, or NIL if that is as it is by default."
+  (let ((mode (simulation-thinking simulation)))
+    (cond ((consp mode) (format nil "charged, and a tick for ~D steps" (third mode)))
+          ((eq :charged mode) "charged")
+          ((and (eq :free mode) (live-p simulation)) "free"))))
+
 ;; As readings 17 and 199 say.
 (defun write-status (robot)
   (multiple-value-call #'write-position "Position:" (robot-position robot))
@@ -74,13 +81,16 @@ were (reading 201)."
   (write-sensors robot)
   (format t "~19A~A~%" "Place:" (robot-last-place robot))
   (write-ownership robot)
+  (let ((thinking (thinking-text (robot-simulation robot))))
+    (when thinking (format t "~19A~A~%" "Thinking:" thinking)))
   (write-designators robot))
 
 (define-line "STATUS" (session)
     (:seeing)
     "Show the robot: position, last change of position, real and estimated, heading, speed, turning
 speed, the views of its cameras, the place it sensed last, whose commands it and its parts carry
-out, whose was interrupted last by whose, its designators."
+out, whose was interrupted last by whose, what thinking costs unless that is as usual, its
+designators."
   (let ((robot (session-robot)))
     (still (write-status robot))))
 

@@ -86,11 +86,17 @@ right."
                   (first form))))
 
 (defun slip-in-construct (form lambda-list)
-  "Return in words the keyword in FORM, a construct's, that is none of LAMBDA-LIST's, or NIL."
+  "Return in words the keyword in FORM, a construct's, or in a list of options there, that is none
+of LAMBDA-LIST's, or NIL."
   (let ((shape (shape-of lambda-list)))
-    (and (consp (shape-keys shape))
-         (proper-list-p form)
-         (keyword-slip shape (nthcdr (shape-fixed shape) (rest form))))))
+    (and (proper-list-p form)
+         (or (and (consp (shape-keys shape))
+                  (keyword-slip shape (nthcdr (shape-fixed shape) (rest form))))
+             (loop for part in (rest form)
+                   for expected in lambda-list
+                   until (member expected lambda-list-keywords)
+                   thereis (and (consp expected)
+                                (slip-in-construct (cons (first form) part) expected)))))))
 
 ;;; Variables.
 

@@ -62,11 +62,15 @@ make its task wait, bind it before FORM, and so those to the left of it."
 
 (defun stub-form (name lambda-list documentation in-lisp)
   "Return the definition of the macro that Lisp knows as NAME; IN-LISP returns its expansion there."
-  `(defmacro ,name (&whole form ,@lambda-list)
-     ,documentation
-     (declare (,(if in-lisp 'ignorable 'ignore) ,@(element-names lambda-list))
-              (ignorable form))
-     ,(or in-lisp '(list 'in-plans-only form))))
+  (if in-lisp
+      (user-macro-form name `(&whole form ,@lambda-list) (cons name lambda-list)
+                       `(,documentation
+                         (declare (ignorable ,@(element-names lambda-list)))
+                         ,in-lisp))
+      `(defmacro ,name (&whole form ,@lambda-list)
+         ,documentation
+         (declare (ignore ,@(element-names lambda-list)))
+         (list 'in-plans-only form))))
 
 (defun construct-code-form (node clauses)
   "Return the form that makes the code for a construct that is a NODE, by CLAUSES."

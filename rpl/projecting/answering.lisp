@@ -2,9 +2,11 @@
 
 (in-package :ars-magna.rpl-projecting)
 
-(defun charge-for-rollouts (projections interface)
-  "Let the plans of INTERFACE, where their steps have a budget, pay for those of PROJECTIONS."
-  (charge-steps (min (steps-of projections) 1000000000) (interface-runner interface)))
+(defun charge-for-rollouts (projections question)
+  "Let the plans that ask QUESTION, where their steps have a budget, pay for those of PROJECTIONS."
+  (count-steps (steps-of projections)
+               (interface-runner (wish-interface question))
+               (wish-task question)))
 
 (defun project-branch (question moment branch)
   "Return the projection of BRANCH of QUESTION by rollouts from MOMENT, see SCENE."
@@ -15,10 +17,24 @@
                      (loop for trial from 1 to (option question :trials)
                            collect (roll-out scene trial (seed-of-trial question trial))))))
 
+(defun tell-of-errors (question projections)
+  "Say once, if functions that QUESTION gives have broken off rollouts of PROJECTIONS, in how many
+they did, and why the first time."
+  (let* ((rollouts (mapcan (lambda (projection) (copy-list (projection-rollouts projection)))
+                           projections))
+         (broken (remove-if-not #'rollout-broken rollouts)))
+    (when broken
+      (report-user-error (error-of (first broken))
+                         (format nil "the function ~S of ~A, in ~D of ~D rollouts; the first time"
+                                 (rollout-broken (first broken)) (operator-of question)
+                                 (length broken) (length rollouts))))))
+
 (defun project-branches (question moment)
   "Return a list of projections, one for each branch of QUESTION, or of the one that there is."
-  (loop for branch below (max 1 (length (question-branches question)))
-        collect (project-branch question moment branch)))
+  (let ((projections (loop for branch below (max 1 (length (question-branches question)))
+                           collect (project-branch question moment branch))))
+    (tell-of-errors question projections)
+    projections))
 
 (defun steps-of (projections)
   "Return how many steps of plans PROJECTIONS took."
@@ -43,11 +59,13 @@
 (defun answer-by-rollouts (question)
   "Answer QUESTION, of a plan, by what rollouts tell. Return :LATER if nobody wants that any more."
   (let* ((interface (wish-interface question))
-         (moment (and (null (option question :world)) (lighten (fork-at-rest interface))))
+         (moment (and (null (option question :world))
+                      (let ((*fork-asker* (operator-of question)))
+                        (lighten (fork-at-rest interface)))))
          (projections (catch 'abandoned
                         (let ((*asked* question)) (project-branches question moment)))))
     (cond ((null projections) :later)
-          (t (charge-for-rollouts projections interface)
+          (t (charge-for-rollouts projections question)
              (if (question-branches question)
                  (let ((best (best-of projections)))
                    (tell-choice question projections best)

@@ -59,8 +59,8 @@ MISUSE if there is none."
 (defun no-rollout (scene trial seed condition)
   "Return the rollout number TRIAL, with SEED, of SCENE, which has not even begun because of
 CONDITION."
-  (make-rollout scene trial seed :failed (make-condition 'lisp-failure :condition condition)
-                0 nil 0 '()))
+  (multiple-value-bind (how result cost broken) (broken-off condition :world)
+    (make-rollout scene trial seed how result 0 cost 0 '() broken)))
 
 (defun roll-out-in-belief (scene trial seed then)
   "Return the values of THEN, a function that is called with the rollout number TRIAL, with SEED, of

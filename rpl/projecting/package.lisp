@@ -11,13 +11,14 @@ that a robot believes in, and choosing by that.")
   (:import-from :ars-magna.run
                 #:*simulation-variables* #:simulation-tick #:simulation-seed #:simulation-robots
                 #:simulation-participants #:simulation-journal #:simulation-world
-                #:fork-simulation #:call-in-fork #:release-fork)
+                #:fork-simulation #:call-in-fork #:release-fork #:*fork-asker*)
   (:import-from :ars-magna.rpl
                 #:*break-on-plan-failures* #:*step-plans* #:+parked+ #:enter #:environment
-                #:awaited-text #:charge-steps #:check-arguments #:failure-class #:failure-of
+                #:awaited-text #:count-steps #:check-arguments #:failure-class #:failure-of
                 #:failure-text
                 #:find-procedure
-                #:fluent-value #:form-text #:frame #:frame-up #:lisp-failure #:node #:park
+                #:fluent-value #:form-text #:frame #:frame-up #:lisp-failure
+                #:lisp-failure-condition #:node #:park
                 #:plan-failure #:plan-runner-steps #:procedure #:procedure-name #:procedure-p
                 #:runner-client #:runner-dice #:stop-trace #:task #:task-label #:task-p
                 #:task-result #:task-runner #:task-top #:value #:escape-p #:entity)

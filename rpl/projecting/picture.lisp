@@ -9,9 +9,9 @@
     (if (scene-moment scene)
         (take-snapshot (simulation-world (scene-moment scene)))
         (roll-out scene (rollout-trial rollout) (rollout-seed rollout)
-                  (lambda (again)
-                    (declare (ignore again))
-                    (take-snapshot *world*))))))
+                  :then (lambda (again)
+                          (declare (ignore again))
+                          (take-snapshot *world*))))))
 
 (defun subtitle-of (projection)
   (multiple-value-bind (low high) (projection-interval projection)

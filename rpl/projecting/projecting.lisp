@@ -2,26 +2,33 @@
 
 (in-package :ars-magna.rpl-projecting)
 
+(defun plan-of (plan arguments)
+  "Return PLAN, a plan with the list ARGUMENTS or a list of both, as a list of both. Signals
+UNKNOWN-NAME and WRONG-ARGUMENT."
+  (flet ((reject (name value expected) (reject-argument 'project name value expected)))
+    (unless (proper-list-p arguments) (reject :arguments arguments "a list"))
+    (when (and (consp plan) arguments)
+      (reject :arguments arguments "none, since the plan is a list with arguments"))
+    (let ((call (if (consp plan) plan (cons plan arguments))))
+      (unless (and (proper-list-p call)
+                   (first call)
+                   (typep (first call) '(or procedure symbol string)))
+        (reject 'plan plan "the name of a plan, a list (name argument...), a plan, or a task"))
+      (check-arguments (if (procedure-p (first call)) (first call) (find-procedure (first call)))
+                       (rest call))
+      call)))
+
 (defun make-question (task interface plan arguments options)
   "Return the question of TASK, or of nobody in a plan, what may become of PLAN: a task, a plan with
 the list ARGUMENTS, or a list of both. INTERFACE is whose plans they are. Signals UNKNOWN-NAME and
 WRONG-ARGUMENT."
   (let ((options (checked-options 'project options)))
-    (unless (proper-list-p arguments)
-      (reject-argument 'project :arguments arguments "a list"))
-    (cond ((task-p plan)
-           (%make-question :task task :interface interface :subject (checked-subject plan interface)
-                           :options options))
-          (t (let ((call (if (consp plan) plan (cons plan arguments))))
-               (when (and (consp plan) arguments)
-                 (reject-argument 'project :arguments arguments
-                                  "none, since the plan is a list with arguments"))
-               (check-arguments (if (procedure-p (first call))
-                                    (first call)
-                                    (find-procedure (first call)))
-                                (rest call))
-               (%make-question :task task :interface interface :plan (first call)
-                               :arguments (rest call) :options options))))))
+    (if (task-p plan)
+        (%make-question :task task :interface interface :subject (checked-subject plan interface)
+                        :options options)
+        (destructuring-bind (plan . arguments) (plan-of plan arguments)
+          (%make-question :task task :interface interface :plan plan :arguments arguments
+                          :options options)))))
 
 (defun checked-subject (task interface)
   "Return TASK. Signals WRONG-ARGUMENT unless it is of the plans of INTERFACE."
@@ -53,7 +60,7 @@ the plist OPTIONS. All may be fluents."
     (when (option question :world) (check-believable question))
     question))
 
-(define-construct project (plan &key arguments trials horizon seed cost world)
+(define-construct project (plan &key arguments trials horizon seed cost world print)
   "Return a projection: what may become of PLAN, found out by TRIALS rollouts, 20 if not given. Each
 is a fork of the run, with a seed of its own, in which PLAN goes on until it has ended, or HORIZON
 ticks have passed, 600 if not given. PLAN is a plan procedure or the name of one, which is given the
@@ -65,19 +72,20 @@ PROJECTION-PROBABILITY and others.
 the robot believes in. It is called with a function and a seed, and is to call that function inside
 of (with-simulation (robot :seed seed) ...). The true run cannot be seen there; PLAN has a name
 then, and ARGUMENTS are no objects of a run.
+  PRINT, if true, lets plans write in rollouts as ever; otherwise that is lost.
 In a plan, it waits until all plans rest, and goes on in the same tick; PLAN begins as if called
 there. Elsewhere, as in a continuation, in a test or at the prompt, PLAN begins on top, as by
 BEGIN-PLAN. The run itself takes no notice: its dice are not rolled, and messages and traces of
 rollouts are dropped. In rollouts, PROJECT returns a projection without rollouts. Errors in rollouts
-are failures of these. Fails with a CANNOT-FORK if the run cannot be forked (ours; McDermott's
-projection of reactive plans, 1992)."
-  (:arguments plan arguments trials horizon seed cost world)
+are failures of these; of those in COST or WORLD one message tells. Fails with a CANNOT-FORK if the
+run cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
+  (:arguments plan arguments trials horizon seed cost world print)
   (:parts (request function
                    (value-lambda `(list ,plan ,arguments :trials ,trials :horizon ,horizon
-                                        :seed ,seed :cost ,cost :world ,world)
+                                        :seed ,seed :cost ,cost :world ,world :print ,print)
                                  scope)))
   (:in-lisp `(project-plan ,plan :arguments ,arguments :trials ,trials :horizon ,horizon
-                                 :seed ,seed :cost ,cost :world ,world))
+                                 :seed ,seed :cost ,cost :world ,world :print ,print))
   (:steps
    (begin
     (next answered)
@@ -119,17 +127,18 @@ projection of reactive plans, 1992)."
   "Return a fork of the run that QUESTION, asked from outside, is about, with it in it."
   (let ((interface (wish-interface question)))
     (call-with-plans (lambda () (add-wish question)) interface)
-    (unwind-protect (lighten (fork-simulation (interface-simulation interface)))
+    (unwind-protect (let ((*fork-asker* (operator-of question)))
+                      (lighten (fork-simulation (interface-simulation interface))))
       (call-with-plans (lambda () (forget-wish question)) interface))))
 
 (addition project-plan)
-(defun project-plan (plan &key arguments trials horizon seed cost world)
+(defun project-plan (plan &key arguments trials horizon seed cost world print)
   "Return what may become of PLAN: what PROJECT is, for Lisp code outside of plans. Signals
 UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE at a plan's own step."
   (let* ((interface (if world nil (interface-to-ask plan)))
          (question (make-question nil interface plan arguments
                                   (list :trials trials :horizon horizon :seed seed :cost cost
-                                        :world world))))
+                                        :world world :print print))))
     (when world (check-believable question))
     (cond (*rolling-out* (nothing-known question))
           (t (first (project-branches question (if world nil (moment-with question))))))))

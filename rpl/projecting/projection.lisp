@@ -64,12 +64,18 @@ if none did."
   (average (mapcar #'rollout-ticks
                    (remove-if-not #'rollout-succeeded-p (projection-rollouts projection)))))
 
+(defun first-error-text (projection)
+  "Return in a line the first Lisp error in rollouts of PROJECTION, or NIL if there was none."
+  (let ((condition (some #'error-of (projection-rollouts projection))))
+    (and condition (cut (brief-text condition) 120))))
+
 (defmethod print-object ((projection projection) stream)
   (print-unreadable-object (projection stream :type t)
     (multiple-value-bind (low high) (projection-interval projection)
-      (format stream "~A: ~D of ~D, ~,2F to ~,2F~@[, ~,1F ticks~]" (projection-text projection)
+      (format stream "~A: ~D of ~D, ~,2F to ~,2F~@[, ~,1F ticks~]~@[, first error: ~A~]"
+              (projection-text projection)
               (projection-successes projection) (trials-of projection) low high
-              (projection-mean-ticks projection)))))
+              (projection-mean-ticks projection) (first-error-text projection)))))
 
 ;;; Which of several is the best.
 

@@ -21,6 +21,10 @@ the task SUBJECT. ENDED and RESULT say in a rollout how that has ended which the
 (defun option (question key)
   (getf (question-options question) key))
 
+(defun operator-of (question)
+  "Return what the plan or user has called who asks QUESTION."
+  (if (question-branches question) 'try-best 'project))
+
 (defmethod awaited-text ((question question))
   (format nil "what ~:[may become of ~A~;is the best of ~A branches~]"
           (question-branches question)
@@ -68,7 +72,8 @@ the task SUBJECT. ENDED and RESULT say in a rollout how that has ended which the
       (:horizon (check (whole-p value 1) "how many ticks, from 1 to 1e9"))
       (:seed (check (integerp value) "an integer"))
       (:until (check (member value '(:plan :branch)) ":plan or :branch"))
-      ((:cost :tell :world) (check (callable-p value) "a function")))))
+      ((:cost :tell :world) (check (callable-p value) "a function"))
+      (:print))))
 
 (defun checked-options (operator options)
   "Return the plist OPTIONS of OPERATOR, without those that are NIL, and with :trials and :horizon.

@@ -9,9 +9,12 @@
 (defvar *rolling-out* nil
   "True where a rollout runs: there TRY-BEST chooses by chance, and PROJECT knows nothing.")
 
-(defun call-in-peace (function)
-  "Call FUNCTION, which runs a rollout: no plan is at work around it, and nobody is to answer."
+(defun call-in-peace (function print)
+  "Call FUNCTION, which runs a rollout: no plan is at work around it, and nobody is to answer. What
+it writes is lost unless PRINT is true."
   (let ((*rolling-out* t)
+        (*standard-output* (if print *standard-output* (make-broadcast-stream)))
+        (*error-output* (if print *error-output* (make-broadcast-stream)))
         (*break-on-user-error* nil)
         (*break-on-plan-failures* nil)
         (*step-plans* nil)
@@ -82,7 +85,7 @@ counts; NIL if it has not."
     (when function
       (let ((cost (funcall function)))
         (unless (typep cost 'real)
-          (reject-argument 'project :cost cost "a function that returns a number"))
+          (reject-argument (operator-of question) :cost cost "a function that returns a number"))
         cost))))
 
 (defvar *asked* nil
@@ -93,10 +96,20 @@ counts; NIL if it has not."
   (when (and *asked* (unwanted-wish-p *asked*))
     (throw 'abandoned nil)))
 
+(defun broken-off (condition &optional option)
+  "Return what a rollout is that CONDITION broke off, an error of the function OPTION or of others:
+how it has ended, with which result, at no cost, and OPTION."
+  (values :failed (make-condition 'lisp-failure :condition condition) nil option))
+
+(defun with-cost (question how result)
+  "Return HOW a rollout for QUESTION has ended, with which RESULT, and at what cost."
+  (handler-case (values how result (cost-of question))
+    (error (condition) (broken-off condition :cost))))
+
 (defun go-to-end (question interface begin over)
   "Call BEGIN, which returns the task whose end counts or NIL, and let ticks of the current
 simulation pass until what QUESTION is about has ended; OVER is called after each. Return how it has
-ended, with which result, and at what cost."
+ended, with which result, at what cost, and the option whose function broke it off, if any."
   (handler-case
       (let* ((last (+ (simulation-tick) (option question :horizon)))
              (task (funcall begin))
@@ -106,11 +119,8 @@ ended, with which result, and at what cost."
                                 (funcall over)
                                 (end-of task question interface))
                               last)))
-        (values how
-                (if task (task-result task) (question-result question))
-                (cost-of question)))
-    (error (condition)
-      (values :failed (make-condition 'lisp-failure :condition condition) nil))))
+        (with-cost question how (if task (task-result task) (question-result question))))
+    (error (condition) (broken-off condition))))
 
 (defun run-rollout (scene trial seed question interface begin)
   "Return the rollout number TRIAL, with SEED, of SCENE, having run it in the current simulation:
@@ -119,12 +129,13 @@ see GO-TO-END."
          (runner (interface-runner interface))
          (steps (plan-runner-steps runner))
          (trails '()))
-    (multiple-value-bind (how result cost)
+    (multiple-value-bind (how result cost broken)
         (go-to-end question interface begin
                    (lambda () (setf trails (note-places (current-simulation) trails))))
       (make-rollout scene trial seed how result (- (simulation-tick) start) cost
                     (- (plan-runner-steps runner) steps)
-                    (ways-along trails trial (outcome-word how))))))
+                    (ways-along trails trial (outcome-word how))
+                    broken))))
 
 (defun roll-out-in-fork (scene trial seed then)
   "Return the values of THEN, a function that is called with the rollout number TRIAL, with SEED, of
@@ -142,10 +153,18 @@ SCENE, where that has ended in a fork of the scene's moment."
                                            (begin-rollout question (scene-branch scene))))))))
       (release-fork fork))))
 
-(defun roll-out (scene trial seed &optional (then #'identity))
+(defun roll-out (scene trial seed &key (then #'identity) print)
   "Return the rollout number TRIAL, with SEED, of SCENE; or what THEN returns, which is called with
-it where it has ended. Nothing happens in any other run."
-  (call-in-peace (lambda ()
-                   (if (scene-moment scene)
-                       (roll-out-in-fork scene trial seed then)
-                       (roll-out-in-belief scene trial seed then)))))
+it where it has ended. Nothing happens in any other run. What plans write there is lost unless PRINT
+is true, or the option :PRINT of the question."
+  (let* ((question (scene-question scene))
+         (output *standard-output*) (errors *error-output*)
+         (then (lambda (rollout)
+                 (let ((*standard-output* output) (*error-output* errors))
+                   (funcall then rollout)))))
+    (call-in-peace (lambda ()
+                     (let ((*fork-asker* (operator-of question)))
+                       (if (scene-moment scene)
+                           (roll-out-in-fork scene trial seed then)
+                           (roll-out-in-belief scene trial seed then))))
+                   (or print (option question :print)))))

@@ -11,10 +11,11 @@ its answer, by taking its BRANCH, a number; or, without a MOMENT, in a world bel
 
 (addition rollout-p rollout-seed rollout-state rollout-ticks rollout-cost)
 (defstruct (rollout (:constructor make-rollout
-                        (scene trial seed state result ticks cost steps ways))
+                        (scene trial seed state result ticks cost steps ways &optional broken))
                     (:copier nil))
   "One trial, number TRIAL, of what a projection is about. RESULT is a value or a failure, STEPS how
-many steps plans took, WAYS where robots went."
+many steps plans took, WAYS where robots went. BROKEN is the option, :COST or :WORLD, of whose
+function the failure is an error."
   (scene nil :type scene :read-only t)
   (trial 0 :type fixnum :read-only t)
   (seed 0 :type integer :read-only t)
@@ -23,7 +24,8 @@ many steps plans took, WAYS where robots went."
   (ticks 0 :type real :read-only t)
   (cost nil :type (or null real) :read-only t)
   (steps 0 :type integer :read-only t)
-  (ways '() :type list :read-only t))
+  (ways '() :type list :read-only t)
+  (broken nil :type (or null keyword) :read-only t))
 
 (document-functions
   rollout-p "True of rollouts: trials of a plan that a projection has made."
@@ -51,6 +53,11 @@ over."
   "Return the failure of ROLLOUT if it failed, or NIL."
   (and (eq :failed (rollout-state rollout))
        (rollout-result rollout)))
+
+(defun error-of (rollout)
+  "Return the Lisp error that is the failure of ROLLOUT, or NIL."
+  (let ((failure (rollout-failure rollout)))
+    (and (typep failure 'lisp-failure) (lisp-failure-condition failure))))
 
 (defun reason-of (rollout)
   "Return in a word why ROLLOUT did not succeed: the class of its failure, or its state."

@@ -26,8 +26,8 @@
 ;; What this thread is at cannot be gone on with elsewhere.
 (defmethod check-forkable ((interface interface))
   (when (and (holding-p interface) (not (interface-resting-p interface)))
-    (reject-use "fork-simulation: a plan is at work here. PROJECT and TRY-BEST fork the run when ~
-                 the plans have come to rest.")))
+    (refuse-fork "a plan is at work here. In the text of a plan PROJECT and TRY-BEST fork the run ~
+                  when the plans have come to rest.")))
 
 (defun call-holding-at-rest (interface function)
   "Call FUNCTION, holding the plans of INTERFACE. Return its value; :BUSY if somebody else has

@@ -18,7 +18,7 @@
                 #:participant-reseed #:participant-digest #:participant-end
                 #:participant-copy #:participant-at-rest #:check-forkable
                 #:call-as-participant-makes-way #:participant-unsavable
-                #:fork-simulation
+                #:fork-simulation #:refuse-fork
                 #:participant-place #:simulation-participants #:fork-p #:note-environment
                 #:counterpart-here #:note-doing #:simulation-past)
   (:import-from :ars-magna.rpl

@@ -84,17 +84,23 @@ Signals WRONG-ARGUMENT."
     (stand-still runner ticks))
   (values))
 
-(addition charge-steps)
-(defun charge-steps (steps &optional (runner *runner*))
-  "In Lisp code of a plan that has just found out what it costs: where the steps of plans have a
-budget, let STEPS, a whole number, count as if the plans of the robot had taken them. What is more
-than is left of this tick's budget takes the next ones. Elsewhere do nothing. Returns nothing.
-Signals WRONG-ARGUMENT."
-  (check-argument charge-steps steps (whole-p steps) "a whole number of steps, from 0 to 1e9")
-  (when (and runner (runner-charged-p runner) (runner-budget runner))
+(defun count-steps (steps runner task)
+  "Let STEPS count as if TASK, or nobody, of RUNNER had taken them, if its steps are counted."
+  (when (and (runner-charged-p runner)
+             (runner-budget runner)
+             (not (and task (task-uncounted-p task))))
     (let* ((left (max 0 (- (runner-limit runner) (runner-steps runner))))
            (now (min steps left)))
       (decf (runner-limit runner) now)
       (incf (runner-debt runner) (- steps now))
-      (setf (runner-pause runner) (min (runner-pause runner) (runner-limit runner)))))
+      (setf (runner-pause runner) (min (runner-pause runner) (runner-limit runner))))))
+
+(addition charge-steps)
+(defun charge-steps (steps &optional (runner *runner*))
+  "In Lisp code of a plan that has just found out what it costs: where the steps of plans have a
+budget, let STEPS, a whole number, count as if the plans of the robot had taken them. What is more
+than is left of this tick's budget takes the next ones. Elsewhere, as in a WITH-CHARGE, whose price
+is all, do nothing. Returns nothing. Signals WRONG-ARGUMENT."
+  (check-argument charge-steps steps (whole-p steps) "a whole number of steps, from 0 to 1e9")
+  (when runner (count-steps steps runner (running-task runner)))
   (values))

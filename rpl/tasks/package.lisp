@@ -37,7 +37,8 @@ plans nor a simulator.")
            #:runner-ticks-per-second #:runner-timers #:runner-current #:runner-stepper
            #:runner-note #:client-forked-p #:runner-trace #:runner-client #:*plan-task-limit*)
   ;; charging
-  (:export #:charge-steps #:charge-ticks #:runner-charged-p #:set-charges #:stand-no-longer
+  (:export #:charge-steps #:charge-ticks #:count-steps
+           #:runner-charged-p #:set-charges #:stand-no-longer
            #:stand-still #:standing-still-p)
   ;; machine
   (:export #:+nothing+ #:+parked+ #:awaited-text #:bundle-p #:bundle-values #:call-leaf

@@ -27,6 +27,13 @@
   "Return the truename of the file PATH, or NIL if there is none, or it is a directory."
   (uiop:file-exists-p path))
 
+(defun missing-directory (path)
+  "Return the name of the directory that PATH, a pathname or string, is in if there is none such, or
+NIL."
+  (let ((directory (uiop:pathname-directory-pathname (merge-pathnames path))))
+    (unless (or (wild-pathname-p directory) (uiop:directory-exists-p directory))
+      (native-name directory))))
+
 (defun replace-file (file by)
   "Let the file BY have the name FILE, in place of what is there, at one stroke. Both are pathnames
 as they are, with nothing to be filled in. Signals an error if the system refuses."

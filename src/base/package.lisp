@@ -45,7 +45,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
   ;; files, processes
-  (:export #:native-name #:native-path #:path-called #:existing-path #:replace-file #:plain-file-p
+  (:export #:native-name #:native-path #:path-called #:existing-path #:missing-directory
+           #:replace-file #:plain-file-p
            #:unusable-file-text
            #:call-replacing-file #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
@@ -127,7 +128,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:note-waiting #:report-break #:continue-inside
            #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*
            #:user-calls-waiting-p
-           #:as-users-code #:abort-user-code #:brief-text #:text-of-origin)
+           #:as-users-code #:abort-user-code #:brief-text #:text-of-origin
+           #:report-user-error)
   ;; parameters
   (:export #:parameter #:parameter-p #:parameter-name #:parameter-symbol #:parameter-default
            #:parameter-clean #:parameter-type #:parameter-unit #:parameter-kind #:parameter-group

@@ -94,6 +94,8 @@ names its origin, and the run goes on.")
   "A function that is called with the text of each error in users' code that is reported, or NIL.")
 
 (defun report-user-error (condition origin)
+  "Queue an error message, and tell whoever listens, that CONDITION came up in ORIGIN, an item or
+list of items."
   (when *user-error-listener*
     (funcall *user-error-listener*
              (format nil "in ~A: ~A" (text-of-origin origin) (brief-text condition))))

@@ -50,12 +50,15 @@ are to a cell. IN-COLOR is false for a picture in black and white. Signals WRONG
     (truename file)))
 
 (defun picture-kind (operator file)
-  "Return :SVG or :PNG, as the name of FILE ends."
-  (check-argument picture file (typep file '(or string pathname)) "the name of a file")
-  (let ((type (pathname-type file)))
-    (or (find type '(:svg :png) :test #'string-equal)
-        (error 'wrong-argument :operator operator :name "file" :value file
-                               :expected "a name that ends in .svg or .png"))))
+  "Return :SVG or :PNG, as the name of FILE ends. Signals WRONG-ARGUMENT if OPERATOR cannot save a
+picture there."
+  (flet ((reject (expected) (reject-argument operator 'file file expected)))
+    (unless (typep file '(or string pathname)) (reject "the name of a file"))
+    (let ((missing (missing-directory file)))
+      (when missing (reject (format nil "a name in a directory that there is; make ~A first"
+                                    missing))))
+    (or (find (pathname-type file) '(:svg :png) :test #'string-equal)
+        (reject "a name that ends in .svg or .png"))))
 
 (defun save-svg (svg file kind)
   "Write the SVG document SVG to FILE, as SVG or PNG by KIND. Return the truename."

@@ -13,7 +13,7 @@ on with, on as many cores and machines as there are. Names lparallel.")
                 #:open-display #:*display-opener*)
   (:import-from :ars-magna.world #:map-width #:map-height)
   (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
-                #:seconds-now #:check-rate)
+                #:seconds-now #:check-rate #:thinking-mode-p #:thinking-modes-text)
   (:import-from :ars-magna.robot
                 #:robot-x #:robot-y #:find-blueprint #:all-blueprints #:blueprint-name
                 #:blueprint-map)

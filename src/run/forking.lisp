@@ -6,6 +6,13 @@
 ;;; those who work in it (its robots, the fluents of plans) belongs to it too: a fork keeps that as
 ;;; its environment, which is bound while somebody works in the fork.
 
+(defvar *fork-asker* 'fork-simulation
+  "What a user has called that wants a fork: refusals are headed by it.")
+
+(defun refuse-fork (reason &rest arguments)
+  "Signal MISUSE: there is no fork, for REASON, a format control for ARGUMENTS."
+  (reject-use "~(~A~): ~?" *fork-asker* reason arguments))
+
 (defmethod copy-plan-value ((simulation simulation) fork)
   (if (eq simulation (copier-option fork :simulation))
       (copy-slots simulation fork)
@@ -70,8 +77,7 @@ a live run's there are no dice: each of its threads has its own."
   "Return a fork of SIMULATION, which stands still here; see FORK-OPTIONS. Signals MISUSE inside a
 tick, and CANNOT-FORK."
   (when (simulation-ticking-p simulation)
-    (reject-use "fork-simulation: a tick is under way. Fork the run between ticks, as in a ~
-                 continuation."))
+    (refuse-fork "a tick is under way. Fork the run between ticks, as in a continuation."))
   (when (eq simulation *simulation*) (follow-settings simulation))
   (let ((copy (with-copier (copier :environment (environment-of-fork simulation)
                                    :options (fork-options simulation continuations decisions))
@@ -115,9 +121,9 @@ once in some milliseconds.")
         do (let ((fork (try-to-fork simulation continuations decisions)))
              (unless (eq :busy fork) (return fork)))
            (wait-a-while moment 0.002)
-        finally (reject-use "fork-simulation: plans of ~A do not come to rest. Let them ~
-                             wait between long calls of Lisp functions, or (end-plan :all)."
-                            (simulation-name simulation))))
+        finally (refuse-fork "plans of ~A do not come to rest. Let them wait between long calls of ~
+                              Lisp functions, or (end-plan :all)."
+                             (simulation-name simulation))))
 
 (defun await-fork (simulation continuations decisions)
   "Return a fork of SIMULATION as soon as it, and all that takes part in it, stands still. See
@@ -155,7 +161,7 @@ and false if there is to be no fork."
   "Return what ARGUMENTS of FORK-SIMULATION say: the simulation, and a plist."
   (if (keywordp (first arguments))
       (values (current-simulation) arguments)
-      (values (if arguments (simulation-meant (first arguments)) (current-simulation))
+      (values (if arguments (simulation-meant (first arguments) *fork-asker*) (current-simulation))
               (rest arguments))))
 
 (defun check-fork-options (options)
@@ -165,7 +171,8 @@ and false if there is to be no fork."
                              always (member key '(:seed :continuations))))
                   "(fork-simulation [simulation] [:seed integer] [:continuations boolean])")
   (let ((seed (getf options :seed)))
-    (check-argument fork-simulation seed (typep seed '(or null integer)) "an integer, or NIL")))
+    (unless (typep seed '(or null integer))
+      (reject-argument *fork-asker* 'seed seed "an integer, or NIL"))))
 
 (addition fork-simulation)
 (defun fork-simulation (&rest arguments)
@@ -185,7 +192,7 @@ plan's own step, and CANNOT-FORK for what is part of the world outside, with res
 returns NIL."
   (multiple-value-bind (simulation options) (fork-arguments arguments)
     (check-fork-options options)
-    (check-not-over simulation 'fork-simulation)
+    (check-not-over simulation *fork-asker*)
     (mapc #'check-forkable (simulation-participants simulation))
     (let ((fork (fork-deciding simulation (getf options :continuations)))
           (seed (getf options :seed)))
@@ -204,7 +211,7 @@ told of anything. Return nothing. Signals WRONG-ARGUMENT for what is no fork."
 
 (defun call-with-fork (function &rest options)
   "Call FUNCTION in a fork of the current simulation, made with OPTIONS; see WITH-FORK."
-  (let ((fork (apply #'fork-simulation options)))
+  (let ((fork (let ((*fork-asker* 'with-fork)) (apply #'fork-simulation options))))
     (when fork
       (unwind-protect (call-inside fork function)
         (release-fork (latest fork))))))

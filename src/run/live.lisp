@@ -43,7 +43,7 @@ things have kickers, something is always left to do. Of one that is not live, re
 nothing is left. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9."
   (check-argument await-idle seconds (and (within-reason-p seconds) (<= 0 seconds))
                   "a number of seconds, from 0 to 1e9")
-  (let ((simulation (simulation-meant simulation)))
+  (let ((simulation (simulation-meant simulation 'await-idle)))
     (cond ((not (live-p simulation)) (idle-p simulation))
           ((eq (current-thread) (simulation-thread simulation))
            (reject-use "await-idle: the simulator would wait for itself. Go on in a continuation."))
@@ -230,5 +230,5 @@ MISUSE if the robot no longer fits into its map. See reading 238."
 (defun stop-simulator (&optional (simulation (current-simulation)))
   "Stop the live SIMULATION, which may be given as one of its robots, after its current tick. What
 is under way stays pending. Return nothing. See reading 89."
-  (stop-clock (simulation-meant simulation))
+  (stop-clock (simulation-meant simulation 'stop-simulator))
   (values))

@@ -237,18 +237,19 @@ LOAD-ANYWAY, if that is defined differently from what it was, unless ANYWAY is t
 WRONG-ARGUMENT unless FILE is a name."
   (values (load-saved file anyway)))
 
-(defun call-with-loaded-simulation (function file &key anyway)
+(defun call-with-loaded-simulation (function file &key anyway keep)
   "Call FUNCTION in the simulation that is saved in FILE; see WITH-LOADED-SIMULATION."
   (multiple-value-bind (simulation noise) (load-saved file anyway)
     (call-with-parameters
      (settings-of simulation)
      (lambda ()
        (setf *noise-before-cleaning* noise)
-       (call-as-headless function simulation)))))
+       (call-as-headless function simulation :keep keep)))))
 
 (addition with-loaded-simulation)
-(define-user-macro with-loaded-simulation ((file &key anyway) &body body)
+(define-user-macro with-loaded-simulation ((file &key anyway keep) &body body)
   "Run BODY in the simulation that LOAD-SIMULATION returns for FILE and ANYWAY, headless, with its
-robots and parameters bound as in WITH-SIMULATION. When BODY has ended, the run is over. Return the
-values of BODY. Signals what LOAD-SIMULATION does."
-  `(call-with-loaded-simulation (lambda () ,@body) ,file :anyway ,anyway))
+robots and parameters bound as in WITH-SIMULATION. With KEEP it keeps forks from there on, so that
+it can be rewound, see KEEP-FORKS. When BODY has ended, the run is over. Return the values of BODY.
+Signals what LOAD-SIMULATION does."
+  `(call-with-loaded-simulation (lambda () ,@body) ,file :anyway ,anyway :keep ,keep))

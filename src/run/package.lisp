@@ -21,7 +21,8 @@ takes part in it. Manual 2.3 and appendix A.")
            #:set-seed #:end-simulation)
   ;; environments, forking
   (:export #:environment-of #:note-environment #:fork-p #:fork-simulation #:release-fork
-           #:with-fork #:call-with-fork #:call-in-fork #:participant-at-rest #:check-forkable
+           #:with-fork #:call-with-fork #:call-in-fork #:*fork-asker* #:refuse-fork
+           #:participant-at-rest #:check-forkable
            #:call-as-participant-makes-way #:participant-place #:counterpart-here #:counterpart)
   ;; thinking
   (:export #:set-thinking)

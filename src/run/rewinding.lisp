@@ -186,7 +186,7 @@ Variables that programs set themselves stay as they are.
 SIMULATION must keep forks, see KEEP-FORKS. TICKS is a number from 0, for what was done since the
 last tick, to how many have passed since it began to. Signals WRONG-ARGUMENT that says how far one
 can go back; MISUSE inside of ticks and plans, and where SIMULATION is over."
-  (let ((simulation (simulation-meant simulation)))
+  (let ((simulation (simulation-meant simulation 'rewind)))
     (check-argument rewind ticks (whole-p ticks 0) "a whole number of ticks, 0 or more")
     (check-not-over simulation 'rewind)
     (check-place-to-rewind simulation)

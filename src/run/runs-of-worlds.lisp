@@ -21,12 +21,12 @@ the first to need one."
                                        (setf (simulation-messages simulation) (residents-queue))
                                        (begin-journal simulation))))))))
 
-(defun simulation-meant (designator)
-  "Return the simulation DESIGNATOR, or that of the robot DESIGNATOR. Signals WRONG-ARGUMENT."
+(defun simulation-meant (designator operator)
+  "Return the simulation DESIGNATOR, or that of the robot DESIGNATOR, for OPERATOR. Signals
+WRONG-ARGUMENT."
   (cond ((simulation-p designator) designator)
         ((robot-p designator) (robot-simulation designator))
-        (t (error 'wrong-argument :operator "simulator" :name "simulation" :value designator
-                                  :expected "a simulation, or a robot in one"))))
+        (t (reject-argument operator 'simulation designator "a simulation, or a robot in one"))))
 
 (addition robot-simulation)
 (defun robot-simulation (robot)

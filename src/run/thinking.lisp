@@ -20,8 +20,9 @@
 Free and charged runs are the same on every machine. Without a clock :REAL is as :FREE. The journal
 notes it. Signals WRONG-ARGUMENT."
   (check-thinking 'set-thinking mode)
-  (changing ((simulation-world simulation) set-thinking mode)
-    (set-timeline-thinking (simulation-timeline simulation) mode))
+  (let ((simulation (simulation-meant simulation 'set-thinking)))
+    (changing ((simulation-world simulation) set-thinking mode)
+      (set-timeline-thinking (simulation-timeline simulation) mode)))
   mode)
 
 (define-operator 'set-thinking '(datum) #'set-thinking)

@@ -28,7 +28,8 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
            #:wake-owner #:post #:post-again #:take-requests #:owner-p
            #:notify-later #:deliver-notifications)
   ;; thinking
-  (:export #:check-thinking #:thinking-mode-p #:timeline-thinking #:set-timeline-thinking
+  (:export #:check-thinking #:thinking-modes-text #:thinking-mode-p
+           #:timeline-thinking #:set-timeline-thinking
            #:give-threads #:thinking-charged-p #:thinking-budget #:timeline-real-p)
   ;; custody, asking
   (:export #:custody-questions #:custody-starter #:answer-questions #:call-with-custody #:mine-p

@@ -21,12 +21,15 @@
   "True if MODE says how much time thinking costs."
   (nth-value 1 (thinking-charge mode)))
 
+(defun thinking-modes-text ()
+  "Return in words which thinking modes there are."
+  (format nil ":FREE, :REAL, :CHARGED, or (:CHARGED :BUDGET steps) with the steps of plans in a ~
+               tick, a whole number from 1 to 1e9"))
+
 (defun check-thinking (operator mode)
   "Signal WRONG-ARGUMENT by OPERATOR unless MODE is a thinking mode."
   (unless (thinking-mode-p mode)
-    (reject-argument operator 'thinking mode
-                     (format nil ":FREE, :REAL, :CHARGED, or (:CHARGED :BUDGET steps) with the ~
-                                  steps of plans in a tick, a whole number from 1 to 1e9"))))
+    (reject-argument operator 'thinking mode (thinking-modes-text))))
 
 (defun timeline-thinking (timeline)
   "Return the thinking mode of TIMELINE."

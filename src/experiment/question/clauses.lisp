@@ -6,6 +6,7 @@
   '((:robots "(:robots name...), robots of one map")
     (:parameters "(:parameters (parameter form)...)")
     (:clean "(:clean) or (:clean t)")
+    (:thinking "(:thinking mode), as WITH-SIMULATION takes it")
     (:vary "(:vary (what form...)...), or (what :in form) for the values in a list")
     (:conditions "(:conditions (name (what form)...)...)")
     (:trials "(:trials n), an integer from 1 to 1e9")
@@ -62,7 +63,11 @@ true of; or about CLAUSE if there is none at all."
           do (reject-clause definition clause
                             (format nil "each name once, not ~(~A~) twice" name))))
 
-;;; Names. What varies is a parameter, :ROBOTS, or a variable.
+;;; Names. What varies is a parameter, :ROBOTS, :THINKING, or a variable.
+
+(defun surrounding-p (name)
+  "True if NAME is a keyword for what varies around trials besides parameters."
+  (member name '(:robots :thinking)))
 
 (defun special-p (name)
   (special-variable-p name nil))
@@ -75,10 +80,11 @@ true of; or about CLAUSE if there is none at all."
            (and (special-p name) (not (package-locked-p (symbol-package name)))))))
 
 (defun check-factor-name (definition part)
-  (unless (or (eq :robots (first part)) (can-vary-p (first part)))
+  (unless (or (surrounding-p (first part)) (can-vary-p (first part)))
     (reject-clause definition part
-                   (format nil "something to vary that is a parameter, :robots, or a variable of ~
-                                your own; ~(~A~) is ~:[no name~;Lisp's or the simulator's~]"
+                   (format nil "something to vary that is a parameter, :robots, :thinking, or a ~
+                                variable of your own; ~(~A~) is ~:[no name~;Lisp's or the ~
+                                simulator's~]"
                            (safe-text (first part)) (and (first part) (symbolp (first part)))))))
 
 (defun check-factor (definition part)
@@ -117,8 +123,8 @@ true of; or about CLAUSE if there is none at all."
                      :from-end t))
 
 (defun varied-variables (clauses)
-  "Return what CLAUSES vary and is neither a parameter nor the robots."
-  (remove-if (lambda (name) (or (eq :robots name) (parameter-called name)))
+  "Return what CLAUSES vary and is a variable of the forms."
+  (remove-if (lambda (name) (or (surrounding-p name) (parameter-called name)))
              (varied-names clauses)))
 
 (defun mentioned-p (name tree)
@@ -179,7 +185,7 @@ true of; or about CLAUSE if there is none at all."
                            (lambda (n) (and (integerp n) (<= 1 n +largest+)))))
     (:seed (check-integer-clause definition clause #'integerp))
     (:run (unless (rest clause) (reject definition clause)))
-    ((:until :success) (unless (= 2 (length clause)) (reject definition clause)))
+    ((:thinking :until :success) (unless (= 2 (length clause)) (reject definition clause)))
     (:measure
      (check-each definition clause
                  (lambda (part) (and (proper-list-p part) (= 2 (length part))
@@ -193,6 +199,9 @@ true of; or about CLAUSE if there is none at all."
     (unless (or (given-p :robots) (member :robots (varied-names clauses)))
       (reject-clause definition (list name +more+) "a clause (:robots name...)"))
     (unless (given-p :run) (reject-clause definition (list name +more+) "a clause (:run form...)")))
+  (when (and (clause-called :thinking clauses) (member :thinking (varied-names clauses)))
+    (reject-clause definition (find :thinking clauses :key #'first)
+                   "no such clause where :thinking varies"))
   (dolist (part (vary-parts clauses))
     (when (find (first part) (case-parts clauses)
                 :test (lambda (name case) (assoc name (rest case))))

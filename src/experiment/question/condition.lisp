@@ -2,9 +2,10 @@
 
 (in-package :ars-magna.experiment)
 
-;;; What varies is a factor: a parameter, a variable of the experiment's forms, or the robots, and
-;;; with them the world. A condition gives each factor a value. Conditions are all combinations of
-;;; the factors' values, or a list of named cases, or each case with each combination.
+;;; What varies is a factor: a parameter, a variable of the experiment's forms, the thinking mode,
+;;; or the robots, and with them the world. A condition gives each factor a value. Conditions are
+;;; all combinations of the factors' values, or a list of named cases, or each case with each
+;;; combination.
 
 (defstruct (factor (:constructor make-factor (name values)) (:copier nil))
   "What varies: NAME, a symbol, and its VALUES."
@@ -24,6 +25,7 @@
   ;; Lists (factor-name value).
   (settings '() :type list)
   (robots '() :type list)
+  (thinking :free)
   ;; The values of all parameters, and those of the variables of the experiment's forms, in order.
   (parameters #() :type simple-vector)
   (arguments '() :type list)

@@ -4,20 +4,25 @@
 
 ;;; Expanding.
 
+(defun value-form (name form)
+  "Return the form of the value that FORM gives to what is called NAME: a thinking mode that is a
+list needs no quote."
+  (if (and (eq :thinking name) (thinking-mode-p form)) `',form form))
+
 (defun values-form (part)
   "Return the form of the list of values in PART of :vary."
   (if (eq :in (second part))
       (third part)
-      `(list ,@(rest part))))
+      `(list ,@(loop for form in (rest part) collect (value-form (first part) form)))))
 
 (defun factors-form (clauses)
   `(list ,@(loop for part in (vary-parts clauses)
                  collect `(list ',part ,(values-form part)))))
 
 (defun cases-form (clauses)
-  `(list ,@(loop for (name . parts) in (case-parts clauses)
-                 collect `(list ',name (list ,@(loop for part in parts
-                                                     collect `(list ',part ,(second part))))))))
+  (flet ((setting-form (part) `(list ',part ,(value-form (first part) (second part)))))
+    `(list ,@(loop for (name . parts) in (case-parts clauses)
+                   collect `(list ',name (list ,@(mapcar #'setting-form parts)))))))
 
 (defun settings-form (clauses)
   `(list ,@(loop for part in (clause-called :parameters clauses)
@@ -45,9 +50,15 @@ none."
   (multiple-value-bind (rest given) (clause-called :clean clauses)
     (and given (or (null rest) (first rest)))))
 
+(defun thinking-form (clauses)
+  "Return the form of the thinking mode that CLAUSES give once for all conditions."
+  (multiple-value-bind (rest given) (clause-called :thinking clauses)
+    (if given (value-form :thinking (first rest)) :free)))
+
 (defun deciding-text (clauses)
   "Return those of CLAUSES that decide a trial, whatever varies."
-  (loop for key in '(:robots :parameters :clean :seed :limit :run :until :success :measure)
+  (loop for key in '(:robots :parameters :clean :thinking :seed :limit :run :until :success
+                     :measure)
         for clause = (find key clauses :key #'first)
         when clause collect clause))
 
@@ -57,6 +68,7 @@ none."
      :robots ',(robot-names clauses)
      :parameters ,(settings-form clauses)
      :clean ,(clean-p clauses)
+     :thinking ,(thinking-form clauses)
      :factors ,(factors-form clauses)
      :cases ,(cases-form clauses)
      ,@(loop for key in '(:trials :seed :limit)
@@ -77,10 +89,10 @@ The CLAUSES are:
   (:robots name...)          the robots in each trial's world, of one map
   (:run form...)             what a trial does, in a fresh headless simulation
   (:vary (what form...)...)  what varies, and its values: all combinations are tried. WHAT is a
-                             parameter, :ROBOTS (values are names or lists of names), or a
-                             variable of the other forms; a special variable is bound. (what :in
-                             form) takes the values from a list. Values are numbers, symbols,
-                             strings, or lists of such
+                             parameter, :ROBOTS (values are names or lists of names), :THINKING
+                             (values are thinking modes), or a variable of the other forms; a
+                             special variable is bound. (what :in form) takes the values from a
+                             list. Values are numbers, symbols, strings, or lists of such
   (:conditions (name (what form)...)...)  named conditions instead, or combined with :vary
   (:trials n)                how many of each condition, 100 unless given here or there
   (:seed n)                  0 unless given; trial T has the seed N + T, under all conditions
@@ -88,6 +100,7 @@ The CLAUSES are:
   (:parameters (p form)...)  parameters other than the manual's; what is set outside is not seen
   (:clean)                   no noise, but where :parameters and what varies say so. (With noise in
                              perception give NO-SENSOR-ERROR* the value NIL.)
+  (:thinking mode)           how much time thinking costs, see SET-THINKING; :FREE unless given
   (:until form)              ticks pass after :run until FORM is true, for what continuations do
   (:success form)            whether the trial succeeded, asked at its end; see TRIAL-VALUES. If
                              only :run says so, it is a failure with the reason only-believed
@@ -113,8 +126,13 @@ not. See RUN-EXPERIMENT for what is kept. Signals MALFORMED-DEFINITION. Return N
 
 (defun check-value (definition part value)
   "Signal MALFORMED-DEFINITION unless VALUE, of PART, can be had by what varies there."
-  (let* ((name (first part)) (parameter (and (not (eq :robots name)) (parameter-called name))))
+  (let* ((name (first part)) (parameter (and (not (surrounding-p name)) (parameter-called name))))
     (cond ((eq :robots name) (check-robots definition part (ensure-list value)))
+          ((eq :thinking name)
+           (unless (thinking-mode-p value)
+             (reject-clause definition part
+                            (format nil "thinking modes: ~A; not ~A" (thinking-modes-text)
+                                    (safe-text value)))))
           (parameter
            (unless (ignore-errors (check-parameter-value parameter value) t)
              (reject-clause definition part
@@ -157,14 +175,16 @@ not. See RUN-EXPERIMENT for what is kept. Signals MALFORMED-DEFINITION. Return N
         collect (list (first part) value)))
 
 (defun experiment-from (name definition
-                        &key documentation robots parameters clean factors cases
+                        &key documentation robots parameters clean (thinking :free) factors cases
                           (trials 100) (seed 0) (limit 100000) variables run until success
                           measures form deciding)
   "Return an experiment called NAME; DEFINITION is what errors in it are said to be in."
   (let ((experiment (%make-experiment name)))
     (check-robots definition (list* :robots robots) robots)
+    (check-value definition (list :thinking thinking) thinking)
     (setf (experiment-documentation experiment) documentation
           (experiment-robots experiment) robots
+          (experiment-thinking experiment) thinking
           (experiment-factors experiment)
           (loop for (part values) in factors collect (factor-from definition part values))
           (experiment-cases experiment)

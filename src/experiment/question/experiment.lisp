@@ -8,6 +8,7 @@
   (documentation nil :type (or null string))
   (package *package* :type package)
   (robots '() :type list)
+  (thinking :free)
   (factors '() :type list)
   (cases '() :type list)
   (conditions '() :type list)
@@ -56,6 +57,8 @@ PARAMETERS, lists (name value), that all have."
                           collect (value-text (second (assoc name settings)))))
      :settings settings
      :robots (if robots (ensure-list robots) (experiment-robots experiment))
+     :thinking (second (or (assoc :thinking settings)
+                           (list :thinking (experiment-thinking experiment))))
      :parameters (parameters-with (append parameters settings) clean)
      :arguments (loop for name in (experiment-variables experiment)
                       collect (second (assoc name settings))))))

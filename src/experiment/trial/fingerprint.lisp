@@ -52,6 +52,7 @@ it has been changed since."
               (form-digest (experiment-deciding experiment)))
         (list :condition (condition-name condition)
               (data-number (list (condition-robots condition)
+                                 (condition-thinking condition)
                                  (coerce (condition-parameters condition) 'list)
                                  (condition-arguments condition))))))
 

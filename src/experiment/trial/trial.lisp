@@ -76,7 +76,7 @@ gate to be asked besides that of the limit. With JOURNAL the simulation keeps on
                (setf (simulation-gate (current-simulation)) (limit-gate limit gate))
                (call-with-variables-of condition function))
              (condition-robots condition)
-             :seed seed :journal journal
+             :seed seed :journal journal :thinking (condition-thinking condition)
              :variables (remove-if-not #'variable-name-p (condition-robots condition)))))))
      (experiment-package experiment))))
 
