@@ -52,8 +52,8 @@ last blank in time, or else the first; NIL if it need not be broken or has no bl
            (when (and best (> taken columns)) (return best))))
 
 (defun table-line-p (line indent)
-  "True if LINE, indented by INDENT, is not to be read as a sentence: it has gaps, as a table or a map
-has."
+  "True if LINE, indented by INDENT, is not to be read as a sentence: it has gaps, as a table or a
+map has."
   (search "  " line :start2 indent))
 
 (defun broken-line (line first columns)
