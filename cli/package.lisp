@@ -27,7 +27,12 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:plan-ending-p #:begin-plan #:end-plan #:plans #:print-plans
                 #:call-with-plans-in-use)
   (:import-from :ars-magna.rpl-robot #:*trace-plans*)
-  (:import-from :ars-worlds #:robot-go-to)
+  (:import-from :ars-magna.rpl.language #:all-constructs)
+  (:import-from :ars-magna.nisp #:readtable-name)
+  (:import-from :ars-magna.geometry #:pt-x #:pt-y)
+  (:import-from :ars-magna.floors #:import-map)
+  (:import-from :ars-magna.ways #:nearest-free-point)
+  (:import-from :ars-worlds #:robot-go-to #:robot-go-distance)
   (:import-from :ars-magna.rpl-pictures #:save-plan-timeline)
   (:import-from :ars-magna.experiment
                 #:find-experiment #:all-experiments #:experiment-name #:experiment-documentation

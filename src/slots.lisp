@@ -15,6 +15,7 @@
 ;;; The manual's programs reach these, although it says that robots have no accessible slots.
 ;; As reading 216 says.
 (define-nisp-slot ars-magna.robot:robot cameras ars-magna.robot:robot-cameras)
+(define-nisp-slot ars-magna.robot:robot designators ars-magna.robot:live-designators)
 (define-nisp-slot ars-magna.robot:camera field-of-view ars-magna.robot:camera-field-of-view)
 (define-nisp-slot ars-magna.robot:camera resolution ars-magna.robot:camera-resolution)
 (define-nisp-slot ars-magna.robot:camera angle ars-magna.robot:camera-angle)

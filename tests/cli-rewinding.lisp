@@ -28,3 +28,11 @@
              "~A" text)
     (is (null (search "was stopped" text))))
   (awaiting (null cli::*plan-errands*)))
+
+(test rewind.by-lisp-lets-plans-be-watched-again
+  (let ((text (let ((run:*forks-to-keep* t))
+                (joined (type-live '("pause" "plan dawdle 1000000" "step 20" "(rewind 10)" "plans"
+                                     "quit"))))))
+    (is-true (has-words-p text "1 waiting: dawdle") "~A" text)
+    (is (null (search "was stopped" text))))
+  (awaiting (null cli::*plan-errands*)))

@@ -194,7 +194,7 @@ of lines, and the number of errors."
       (is (string= "GO-FORWARD" (cli:line-name (cli:find-line name))) "~A" name)))
   (is (string= "STOP" (cli:line-name (cli:find-line "stop"))))
   (is (string= "OBJ-DESIG" (cli:line-name (cli:find-line "obj"))))
-  (is-true (has-words-p (complaint "go") "GO-FORWARD" "GOTO-WALL"))
+  (is-true (has-words-p (complaint "goto") "GOTO-DESIG" "GOTO-WALL"))
   (is-true (has-words-p (complaint "sttus") "STATUS"))
   (is-true (has-words-p (complaint "xyzzyplugh") "HELP")))
 

@@ -52,6 +52,19 @@
              ("robot but" "robot butler")
              ("alias x cam-v" "alias x cam-view") ("cam-view ((")))
 
+(test completing.knows-units-after-numbers
+  (completes ("go 250 c" "go 250 cell" "go 250 cells" "go 250 cm") ("go ") ("go 2 ") ("go 2.5 cm ")
+             ("turn 90 deg" "turn 90 deg" "turn 90 deg/tick" "turn 90 degree" "turn 90 degrees")
+             ("turn 90 m") ("turn 90 deg d") ("pos 3 m c") ("pos 3 me" "pos 3 meter" "pos 3 meters"
+                                                            "pos 3 metre" "pos 3 metres")
+             ("set-speed 0.5 cm" "set-speed 0.5 cm/tick")
+             ("set-speed 0.5 m/t" "set-speed 0.5 m/tick")
+             ("turn 1/4 t" "turn 1/4 turn" "turn 1/4 turns")))
+
+(test completing.knows-what-has-help
+  (completes ("help doorw" "help doorway") ("help camera-angle-m" "help camera-angle-max-error*")
+             ("help turn-and-t" "help turn-and-tell")))
+
 (test completing.knows-designators-by-number
   (in-parlour
     (is (null (completions "cam-track 0 ")))

@@ -135,6 +135,20 @@
       (is (mentions-p (said results "kick=0" "noise=1") "kick=0 is ambiguous"))
       (is (string= "nothing" (said results "kick=0" "kick=1"))))))
 
+;; Whole numbers are conditions by number, or values; never one of the one and one of the other.
+(test compare.asks-whether-a-number-is-a-value
+  (flet ((grown (&rest sizes)
+           (loop for size in sizes
+                 collect `((,(princ-to-string size)) ,@(times 9 '("success")))))
+         (said (results first second)
+           (handler-case (contests (experiment:compare-conditions results first second :stream nil))
+             (base:misuse (condition) (princ-to-string condition)))))
+    (with-report (results '("metres") '() (grown 2 4 8))
+      (is (equal '((nil "metres=4" "metres=2")) (said results 4 2)) "there is no fourth condition"))
+    (with-report (results '("metres") '() (grown 3 2 1))
+      (is (mentions-p (said results 1 2) "1 against 2 is ambiguous"))
+      (is (mentions-p (said results 1 2) "metres=1 against metres=2. Give more")))))
+
 ;;; What stands above.
 
 (test comparison.asks-what-the-experiment-asks-and-names-both

@@ -88,14 +88,14 @@ what went wrong after it."
     (:camera (robot:robot-camera counter 0))
     (:hand (robot:robot-hand counter 0))
     (:storage-bin (robot:robot-storage-bin counter 0))
-    ((:number :angle :ticks :tick-span) 1)
+    ((:number :angle :speed :ticks :tick-span) 1)
     (:designator-type :non-local)
     (:specification '((:color world:red)))
     (:place-type 'world::corner)
     ((:designator :destination) (robot:robot-storage-bin counter 0))))
 
 (defun numeric-p (spec)
-  (member (command:spec-type spec) '(number angle ticks base::number base::angle base::ticks)
+  (member (command:spec-type spec) '(number angle speed ticks)
           :test #'base:same-name-p))
 
 (defun manuals-commands ()

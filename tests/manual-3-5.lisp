@@ -67,7 +67,7 @@ resource first, what its continuation gets besides code and resource, and its er
   "3.5, readings 104, 106, 107: each command has the arguments, results and error codes that its
 heading lists, and :NO-PLACE-TYPE besides."
   (loop for (name . heading)
-          in '((ars:robot-set-speed ("robot" "number") ("speed")
+          in '((ars:robot-set-speed ("robot" "speed") ("speed")
                 (:negative-speed :too-high-speed))
                (ars:robot-set-turn-angle ("robot" "angle") ("turn-angle")
                 (:too-high-turn-angle :too-low-turn-angle))

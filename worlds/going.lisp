@@ -91,18 +91,40 @@ ended with one, but not if somebody has interrupted it."
               (lambda ()
                 (drive-straight journey (distance-left (journey-me journey) point) next))))
 
+(defun drive-metres (robot metres top continuation)
+  "Let ROBOT drive METRES straight ahead, in whole ticks, at TOP metres per tick at most.
+CONTINUATION gets an error code or NIL, and ROBOT."
+  (let ((ticks (if (plusp top) (max 1 (ceiling metres top)) 1)))
+    (robot-set-speed robot (/ metres ticks)
+      (continuation (err robot speed)
+        (if (eq err :interrupt)
+            (funcall continuation err robot)
+            (robot-go-forward robot ticks continuation))))))
+
 (defun drive-straight (journey distance next)
   "Let the robot of JOURNEY drive DISTANCE metres; take the step NEXT, a function of JOURNEY."
-  (let ((ticks (max 1 (ceiling distance driving-speed*))))
-    (if (< distance .05)
-        (funcall next journey)
-        (robot-set-speed (journey-robot journey) (/ distance ticks)
-          (continuation (err robot speed)
-            (robot-go-forward robot ticks
-              (continuation (err robot)
-                (after-command journey err
-                               (lambda () (funcall next journey))
-                               (lambda () (note-obstacle journey))))))))))
+  (if (< distance .05)
+      (funcall next journey)
+      (drive-metres (journey-robot journey) distance driving-speed*
+        (continuation (err robot)
+          (after-command journey err
+                         (lambda () (funcall next journey))
+                         (lambda () (note-obstacle journey)))))))
+
+(defun robot-go-distance (robot metres continuation)
+  "Let ROBOT drive METRES straight ahead, no faster than it would, and have its speed again
+afterwards. Returns at once. CONTINUATION gets, in the end, an error code of ROBOT-GO-FORWARD or
+NIL, and ROBOT. Signals WRONG-ARGUMENT unless METRES is more than 0 and at most a million."
+  (unless (and (realp metres) (< 0 metres 1000001))
+    (ars-magna.base:reject-argument 'robot-go-distance "the distance" metres
+                                    "a number of metres, more than 0, at most a million"))
+  (let ((speed (robot-speed robot)))
+    (drive-metres robot metres (if (plusp speed) (min speed max-speed*) max-speed*)
+      (continuation (err robot)
+        (if (eq err :interrupt)
+            (funcall continuation err robot)
+            (robot-set-speed robot speed
+              (continuation (no-err robot set) (funcall continuation err robot))))))))
 
 ;;; Trouble.
 

@@ -26,8 +26,8 @@
       (write-menu lines)))
   (terpri)
   (write-filled "MENU-CAMERA, MENU-HAND and MENU-BIN list the commands of those parts, PLAN lists
-the plans, HELP name tells more of a command or plan. The beginning of a name will do. A line in
-parentheses is Lisp." 0))
+the plans, HELP name tells more of a command, a plan, or whatever has a name; APROPOS word searches.
+The beginning of a command's name will do. A line in parentheses is Lisp." 0))
 
 (defun slot-help (slot)
   "Return what HELP says of SLOT."
@@ -43,19 +43,30 @@ parentheses is Lisp." 0))
   (dolist (detail (line-details line)) (write-filled detail 2)))
 
 (defun write-help-on (name)
-  "Tell what the command, alias or plan NAME does."
+  "Tell what the command, alias, plan or whatever else is called NAME does or is."
   (let ((line (find name (all-lines) :key #'line-name :test #'string-equal))
         (alias (assoc name *aliases* :test #'string-equal))
         (plan (plan-called name)))
     (cond (line (write-help line))
           (alias (format t "~{~A is an alias of ~A~}~%" alias))
           (plan (write-plan-help plan))
-          (t (write-help (find-line name))))))
+          (t (let ((topics (topics-called name)))
+               (if topics
+                   (mapc #'write-topic topics)
+                   (write-help (line-to-help-with name))))))))
 
-(define-line "HELP" (session (cmd :topic "the name of a command or a plan" :optional))
+(defun line-to-help-with (name)
+  "Return the line whose name begins with NAME. Signals BAD-LINE."
+  (handler-bind ((bad-line (lambda (condition)
+                             (reject-line "~A APROPOS ~(~A~) searches all that has a name."
+                                          (bad-line-text condition) name))))
+    (find-line name)))
+
+(define-line "HELP" (session (name :topic "a command, a plan, or whatever has a name" :optional))
     (:general)
-    "List the commands of the prompt and those that move the robot, or tell what CMD does."
-  (if cmd (write-help-on cmd) (write-main-menu)))
+    "List the commands of the prompt and those that move the robot, or tell what NAME does or is: a
+command, plan, parameter, place type, attribute, value, error code, name of Lisp ..."
+  (if name (write-help-on name) (write-main-menu)))
 
 (define-line "MENU-BIN" (session) (:general)
     "List the commands of storage bins."

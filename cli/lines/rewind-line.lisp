@@ -3,37 +3,29 @@
 (in-package :ars-magna.cli)
 
 ;;; The plans that go on after that are others than those that the prompt waited for: it lets these
-;;; go without a word, and takes up those.
+;;; go without a word, and takes up those, also when somebody rewinds by Lisp.
 
 (defun errands-in (simulation)
   "Return the plan errands of SIMULATION whose end has not been told."
   (with-lock (*plan-errands-lock*)
     (remove simulation *plan-errands* :key #'plan-errand-simulation :test-not #'eq)))
 
-(defun call-letting-go (errands function)
-  "Call FUNCTION, and say nothing of how the plans of ERRANDS end, unless FUNCTION is left."
-  (flet ((let-go (value)
-           (dolist (errand errands) (setf (plan-errand-let-go-p errand) value))))
-    (let ((done-p nil))
-      (unwind-protect (progn (let-go t)
-                             (multiple-value-prog1 (funcall function)
-                               (setf done-p t)))
-        (unless done-p (let-go nil))))))
+(defun let-errands-go (old new)
+  "Say nothing of how the plans of OLD end that prompts wait for, as NEW goes on in its place."
+  (declare (ignore new))
+  (dolist (errand (errands-in old))
+    (setf (plan-errand-let-go-p errand) t
+          (session-rewound-p (plan-errand-session errand)) t)))
 
-(defun take-up-plan (session task)
-  "Let SESSION wait for TASK, a plan under way, as if its PLAN had just started that."
-  (let ((errand (make-plan-errand (task-name task) session *simulation*)))
-    (setf (plan-errand-task errand) task)
-    (with-lock (*plan-errands-lock*) (push errand *plan-errands*))
-    (push errand (session-errands session))
-    (when (live-p *simulation*) (start-watching-plan errand))))
+(pushnew 'let-errands-go *rewind-hooks*)
 
 (defun rewind-here (session ticks)
   "Let SESSION go on in a run that is TICKS ticks back."
-  (call-letting-go (errands-in *simulation*) (lambda () (rewind ticks)))
-  (dolist (task (plans)) (take-up-plan session task)))
+  (rewind ticks)
+  (setf (session-rewound-p session) t)
+  (take-up-plans session))
 
-(define-line "REWIND" (session (n count "how many ticks"))
+(define-line "REWIND" (session (n tick-span "how far"))
     (:running)
     "Go back N ticks, plans included, and go on from there; 0 undoes what was done since the last
 tick. What came after has not happened; the journal says that there was something."

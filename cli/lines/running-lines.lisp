@@ -41,7 +41,7 @@
     (await (lambda () (>= (simulation-tick simulation) goal)))
     (format t "Tick ~D.~%" (simulation-tick simulation))))
 
-(define-line "STEP" (session (n integer "how many ticks; 1 if left out" :optional))
+(define-line "STEP" (session (n tick-span "how many; 1 if left out" :optional))
     (:running)
     "Let N ticks pass; a live simulator is paused after them."
   (if (session-visit session)
@@ -88,13 +88,15 @@
             (value-equal value default) (setting-text default))))
 
 (defun parameters-like (name)
-  "Return the parameters called NAME, with or without the star, or else those that begin so."
+  "Return the parameters called NAME, with or without the star, or else those that begin so, or else
+those that have it in their names."
   (flet ((called (test)
            (loop for parameter in (all-parameters)
                  when (funcall test (string-downcase name) (parameter-name parameter))
                    collect parameter)))
     (or (called (lambda (name own) (string= own (format nil "~A*" (string-right-trim "*" name)))))
-        (called #'starts-with-subseq))))
+        (called #'starts-with-subseq)
+        (called #'search))))
 
 (defun list-parameters (parameters)
   (loop with group = nil
@@ -104,6 +106,10 @@
              (format t "~A~%" group))
            (put-line "  ~A" (parameter-text parameter))))
 
+(defun write-parameter (parameter)
+  (put-line "~A" (parameter-text parameter))
+  (format t "~A~%" (parameter-sentence parameter)))
+
 (defun read-setting (text)
   (handler-case (values (read-data-from-string text 0))
     (error () (reject-line "~A cannot be read; give a number, T or NIL." text))))
@@ -111,16 +117,15 @@
 (define-line "PARAMS" (session (name :parameter "the name of a parameter" :optional)
                                (value :rest "its new value" :optional))
     (:running)
-    "List the parameters of the simulation, or those whose names begin with NAME; give one a new
-VALUE."
+    "List the parameters of the simulation, or those whose names begin with NAME or have it in them;
+give one a new VALUE."
   (let ((parameters (parameters-like (or name ""))))
     (cond ((rest parameters)
-           (when value (reject-line "~A is the beginning of several names." name))
+           (when value (reject-line "~A is a part of several names. Type more of it." name))
            (list-parameters parameters))
           (t (let ((parameter (or (first parameters) (find-parameter name))))
                (when value (setf (parameter-value parameter) (read-setting value)))
-               (put-line "~A" (parameter-text parameter))
-               (format t "~A~%" (parameter-sentence parameter)))))))
+               (write-parameter parameter))))))
 
 ;;; Journals.
 
@@ -144,10 +149,25 @@ VALUE."
         ((string-equal word "anyway") t)
         (t (reject-line "REPLAY does not know ~A. After the file you may say ANYWAY." word))))
 
+(defun replay-showing (session journal anyway)
+  "Repeat JOURNAL, and say at the terminal of SESSION how far that has come. Return the tick and the
+digest that it comes to."
+  (call-with-progress
+   (lambda (progress)
+     (call-with-replay (lambda () (values (simulation-tick *simulation*) (state-digest)))
+                       journal
+                       :anyway anyway
+                       :observer (lambda (simulation)
+                                   (note-progress progress "Tick ~D of ~D. Control-C stops it."
+                                                  (simulation-tick simulation)
+                                                  (journal-end journal)))))
+   (session-console session) (terminal-p session)))
+
 (define-line "REPLAY" (session (file :file "the name of a file that SAVE-JOURNAL wrote")
                                (anyway :token "the word ANYWAY" :optional))
     (:running)
     "Repeat the run in FILE in a world of its own; show the tick and the state that it comes to.
 With ANYWAY also if what is defined here is not what the run was recorded with."
-  (multiple-value-bind (simulation digest) (replay (native-path file) :anyway (anyway-p anyway))
-    (format t "~A: ~A" file (moment-text (simulation-tick simulation) digest))))
+  (multiple-value-bind (tick digest)
+      (replay-showing session (load-journal (native-path file)) (anyway-p anyway))
+    (format t "~A: ~A" file (moment-text tick digest))))

@@ -92,7 +92,7 @@ speed, the views of its cameras, the place it sensed last, whose commands it and
 out, whose was interrupted last by whose, what thinking costs unless that is as usual, its
 designators."
   (let ((robot (session-robot)))
-    (still (write-status robot))))
+    (still (or (report-status session robot) (write-status robot)))))
 
 (defun where-text (thing)
   (let ((location (thing-location thing)))
@@ -131,7 +131,7 @@ designators."
 
 ;;; Putting the robot somewhere.
 
-(define-line "POS" (session (x number "metres from the left") (y number "metres from the top"))
+(define-line "POS" (session (x metres "metres from the left") (y metres "metres from the top"))
     (:seeing)
     "Put the robot at X, Y at once, without error and ignoring obstacles."
   (let ((robot (session-robot)))

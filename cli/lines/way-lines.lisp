@@ -1,6 +1,13 @@
-;;;; way-lines.lisp -- GO-TO: the robot finds its way to a point of the map.
+;;;; way-lines.lisp -- GO and GO-TO: so far ahead, and to a point of the map.
 
 (in-package :ars-magna.cli)
+
+(defun tell-rewound (x y simulation)
+  "Queue a message that the way to (X,Y) is given up, as another run goes on in the place of
+SIMULATION."
+  (let ((*message-queue* (simulation-messages (latest simulation))))
+    (warning-set (format nil "go-to: The run was rewound on the way to ~A ~A, and the robot goes ~
+                              there no more. Say it again if it is to." x y))))
 
 (defun tell-arrival (err robot x y)
   "Queue a message about ROBOT, which was to go to (X,Y): ERR is an error code, or NIL."
@@ -12,12 +19,25 @@
                          robot))
     (t (error-set (format nil "go-to: Interrupted on the way to ~A ~A" x y)))))
 
-(define-line "GO-TO" (session (x number "metres from the left") (y number "metres from the top"))
+(define-line "GO" (session (distance metres "how far"))
+    (:moving)
+    "Drive DISTANCE metres straight ahead, no faster than the robot's speed. GO-FORWARD drives for a
+number of ticks."
+  (let ((errand (make-errand)))
+    (robot-go-distance (session-robot) distance
+                       (lambda (err robot)
+                         (declare (ignore err robot))
+                         (setf (errand-done-p errand) t)))
+    (push errand (session-errands session))))
+
+(define-line "GO-TO" (session (x metres "metres from the left") (y metres "metres from the top"))
     (:moving)
     "Let the robot find its way to X, Y, through doorways and round obstacles."
-  (let ((errand (make-errand)))
+  (let ((errand (make-errand)) (simulation (current-simulation)))
     (robot-go-to (session-robot) x y
                  (lambda (err robot)
-                   (tell-arrival err robot x y)
+                   (if (eq simulation (latest simulation))
+                       (tell-arrival err robot x y)
+                       (tell-rewound x y simulation))
                    (setf (errand-done-p errand) t)))
     (push errand (session-errands session))))

@@ -8,6 +8,8 @@
          (call-outside session (lambda () (start-robot session robot-name))))
         ((not (and *simulation* (headless-p *simulation*))) (start-live session robot-name))
         ((session-batch-p session) (setf (session-next-robot session) robot-name))
+        ((plusp (session-forks session))
+         (reject-line "A fork has one world. FORK OFF leads out of it."))
         (t (reject-line "This prompt is in a headless simulation, which has one world."))))
 
 (defun start-live (session robot-name)
@@ -17,12 +19,20 @@
     (simulator robot-name :rate (or rate *default-rate*) :display (terminal-p session)))
   (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))
 
-(define-line "WORLD" (session (name :world "a shipped world, or a Lisp file" :optional))
-    (:seeing)
-    "List the worlds, or go to the world NAME, with the first robot that it defines. There it is
-tick 0."
+(defun robot-among (names name)
+  "Return which of NAMES, of robots of one world, is NAME, or the first if that is NIL."
   (if name
-      (start-robot session (first (world-robots-called name)))
+      (or (find name names :test #'same-name-p)
+          (reject-line "There is no robot ~A there, but ~{~A~^, ~}." (string-upcase name) names))
+      (first names)))
+
+(define-line "WORLD" (session (name :world "a shipped world, or a Lisp file" :optional)
+                              (robot :robot-name "a robot there; the first if left out" :optional))
+    (:seeing)
+    "List the worlds, or go to the world NAME, and command ROBOT there. There it is tick 0; what
+goes on here is over."
+  (if name
+      (start-robot session (robot-among (world-robots-called name) robot))
       (write-worlds)))
 
 (defun robot-called (name)
@@ -38,13 +48,19 @@ tick 0."
     (multiple-value-bind (x y) (robot-position robot)
       (put-line "~16A @ (~,2F,~,2F)~:[~; commanded~]" robot x y (eq robot (session-robot))))))
 
+(defun reject-elsewhere (name)
+  "Signal BAD-LINE that says how to get to the robot NAME, which is in another world."
+  (reject-line "~A is in another world, ~(~A~). WORLD ~:*~(~A~) ~2:*~(~A~) goes there, where it is ~
+                tick 0; what goes on here is over then."
+               name (map-name (world-of name))))
+
 (define-line "ROBOT" (session (name :robot-name "the robot to command" :optional))
     (:seeing)
-    "List the robots of this world, or command the robot NAME from now on. If that is in another
-world, go there."
+    "List the robots of this world, or command the robot NAME of it from now on. WORLD leads to
+those of others."
   (let ((name (and name (robot-called name))))
     (cond ((null name) (list-robots))
           ((member name (robots-here))
            (call-by-name (robots-here))
            (setf *prompt-robot* name))
-          (t (start-robot session name)))))
+          (t (reject-elsewhere name)))))

@@ -65,7 +65,7 @@ method, DATUM is the argument.")
 (defmethod argument-words ((type symbol))
   (if (by-number-p (type-key type))
       (number-words (type-key type))
-      (argument-type-text type)))
+      (format nil "~A~@[, such as ~A~]" (argument-type-text type) (quantity-examples type))))
 
 (defmethod argument-words ((type (eql 'designator-type)))
   "local or non-local")
@@ -152,10 +152,17 @@ line."
     (keyword (let ((end (token-end text start)))
                (values (token-value (slot-type slot) (without-quotes (subseq text start end)))
                        end)))
-    (t (multiple-value-bind (datum end) (read-datum text start line)
+    (t (multiple-value-bind (datum end) (read-number-or-datum slot text start line)
          (let ((value (read-argument (type-key (slot-type slot)) datum (reading-robot line))))
            (check-read value slot line)
            (values value end))))))
+
+(defun read-number-or-datum (slot text start line)
+  "Return what is typed in TEXT at START for SLOT of LINE, a number in the simulator's own units or
+another datum, and where that ends."
+  (multiple-value-bind (datum end) (read-datum text start line)
+    (read-quantity datum text start end (slot-type slot)
+                   (lambda (trouble) (reject-line "~A ~A" trouble (takes line))))))
 
 (defun reading-robot (line)
   "Return the robot whose parts the arguments of LINE name; NIL if they name none."

@@ -13,7 +13,7 @@
 (defun unhurried-p (line)
   "True if what LINE prints is to be seen as it comes."
   (or (line-full-name line)
-      (member (line-name line) '("EVAL" "REPEAT" "TRIAL") :test #'string=)))
+      (member (line-name line) '("EVAL" "REPEAT" "TRIAL" "FORK") :test #'string=)))
 
 (defun run-line (session line text)
   "Do what LINE does with the arguments in TEXT. What it prints comes out in one piece."

@@ -87,6 +87,3 @@ cannot be told. May signal BAD-LINE, as when there is no robot.")
                    (mapcar #'line-name (all-lines))
                    (all-line-names))))
     (mapcar #'string-downcase (append names (mapcar #'first *aliases*)))))
-
-(defmethod choices ((type (eql :topic)) session typed)
-  (append (choices :command session typed) (choices :plan session typed)))

@@ -138,35 +138,53 @@ OPERATOR-P is true, otherwise keywords of OPERATOR too."
     (handler-case (nth-value 1 (read-data-from-string text start))
       (error () nil))))
 
+(defun unit-end (text position)
+  "Return where the unit ends that stands in TEXT from POSITION on, or POSITION if there is none, or
+it is being typed."
+  (let ((end (nth-value 1 (unit-after text position))))
+    (if (and end (< end (length text))) end position)))
+
 (defun slot-end (slot text start)
   "Return where what TEXT has for SLOT from START on ends, or NIL if that goes on at its end."
   (let ((end (typecase (slot-type slot)
                (rest-type nil)
                (keyword (token-end text start))
                (t (datum-end text start)))))
-    (and end (< end (length text)) end)))
+    (cond ((or (null end) (= end (length text))) nil)
+          ((dimension-of (slot-type slot)) (unit-end text end))
+          (t end))))
 
 (defun slot-at-end (line text start)
-  "Return which argument of LINE is being typed at the end of TEXT, and where it begins; START is
-where the first one does."
-  (loop for slot in (line-parameters line)
+  "Return which argument of LINE is being typed at the end of TEXT, or NIL if it has no more, where
+that begins, and which is before it; START is where the first one does."
+  (loop for before = nil then slot
+        for slot in (append (line-parameters line) '(nil))
         for position = (or (position-if-not #'blank-p text :start start) (length text))
-        for end = (and (< position (length text)) (slot-end slot text position))
+        for end = (and slot (< position (length text)) (slot-end slot text position))
         unless end
-          return (values slot position)
+          return (values slot position before)
         do (setf start end)))
+
+(defun unit-choices (slot text start)
+  "Return the units that can go on from START in TEXT, after what is typed for SLOT, a number."
+  (let ((dimension (and slot (< start (length text)) (dimension-of (slot-type slot)))))
+    (and dimension
+         (digit-char-p (char text (position-if-not #'blank-p text :end start :from-end t)))
+         (unit-names dimension))))
 
 (defun argument-completions (session line text start)
   "Complete the argument of LINE at the end of TEXT; START is where the first one begins."
-  (multiple-value-bind (slot start) (slot-at-end line text start)
+  (multiple-value-bind (slot start before) (slot-at-end line text start)
     (let ((type (and slot (type-key (slot-type slot)))))
       (case type
-        ((nil) nil)
         (:line (line-completions session text start))
         (:form (lisp-completions session text (length text)))
         (:specification (specification-completions text (length text)))
         (t (let ((typed (subseq text start)))
-             (values start (matching typed (choices type session typed)) " ")))))))
+             (values start
+                     (matching typed (append (unit-choices before text start)
+                                             (and type (choices type session typed))))
+                     " ")))))))
 
 (defun line-meant (name)
   "Return the line command that NAME or the alias NAME means. Signals BAD-LINE."

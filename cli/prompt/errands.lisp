@@ -104,6 +104,7 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
 
 (defun catch-up (session)
   "Wait for what SESSION has issued, itself or by Lisp, if it is one that waits."
+  (take-up-plans session)
   (if (waits-p session)
       (progn (await-errands session)
              (when (shiftf (session-lisp-p session) nil) (settle)))

@@ -52,7 +52,7 @@ together, are messages."
 
 (defun write-value (value)
   (let ((*print-circle* (or *print-circle* (not (tree-p value)))))
-    (format t "~S~%" value)))
+    (format t "~S~%" (if (readtablep value) (readtable-name value) value))))
 
 (defun evaluate (session form)
   "Evaluate FORM and print its values, each on a line."
@@ -70,10 +70,18 @@ and TEXT with what was read."
       (end-of-file () (setf text (read-more session text)))
       (:no-error (form end) (return (values form end text))))))
 
+(defun check-parenthesis (text position)
+  "Signal BAD-LINE if a form is to begin in TEXT at POSITION where a parenthesis is too many."
+  (let ((start (skip-blanks text position)))
+    (when (char= #\) (char text start))
+      (reject-line "There is a parenthesis too many: ~A~:[~;  What is before it has been done.~]"
+                   (one-line (subseq text start)) (plusp position)))))
+
 (defun evaluate-text (session text)
   "Evaluate the forms in TEXT, reading on in SESSION while the last of them is incomplete."
   (loop with position = 0
         with form
         until (blank-from-p text position)
-        do (setf (values form position text) (read-form session text position))
+        do (check-parenthesis text position)
+           (setf (values form position text) (read-form session text position))
            (evaluate session form)))

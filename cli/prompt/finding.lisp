@@ -28,9 +28,44 @@
   (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it." name
                (mapcar #'line-name lines)))
 
+(defparameter *other-names*
+  '(("?" "HELP") ("EXIT" "QUIT") ("BYE" "QUIT") ("LOGOUT" "QUIT"))
+  "Lists (name line): words that other programs have for lines of ours.")
+
+(defparameter *hints*
+  '((("LEFT")  "TURN-LEFT turns by a quarter, TURN -30 deg by an angle.")
+    (("RIGHT") "TURN-RIGHT turns by a quarter, TURN 30 deg by an angle.")
+    (("FORWARD" "FORWARDS" "FD" "FWD" "AHEAD" "MOVE" "DRIVE" "WALK" "STRAIGHT")
+     "GO 5 m drives so far ahead, GO-FORWARD 5 for so many ticks, GOTO-WALL up to a wall.")
+    (("BACK" "BACKWARD" "BACKWARDS" "REVERSE" "BK")
+     "A robot drives forwards only. ABOUT-FACE turns it round.")
+    (("ROTATE" "SPIN") "TURN 90 deg turns the robot, to the left if the angle is below 0.")
+    (("LOOK" "SEE" "SCAN" "FIND" "SEARCH")
+     "CAM-VIEW 0 looks, OBJ-DESIG 1 non-local ((:color red)) searches, MAP draws the world.")
+    (("GRAB" "TAKE" "PICK" "PICKUP" "GRASP")
+     "HAND-GRASP 0 0 grasps what camera 0 tracks: OBJ-DESIG and CAM-TRACK come first.")
+    (("DROP" "RELEASE" "PUT") "HAND-UNGRASP 0 lets go of what hand 0 holds.")
+    (("WHERE" "POSITION" "WHEREAMI" "LS" "DIR" "LIST" "INVENTORY")
+     "STATUS tells of the robot, THINGS of what there is, MAP draws it all.")
+    (("UNDO") "REWIND 10 goes 10 ticks back.")
+    (("RESET" "RESTART") "WORLD name starts a world anew, REWIND 10 goes 10 ticks back.")
+    (("WAIT" "SLEEP" "TICK") "STEP 10 lets 10 ticks pass, PAUSE and RESUME stop and start time.")
+    (("HALT" "KILL" "ABORT") "STOP stops the robot, STOP-PLAN ends plans, PAUSE stops time.")
+    (("LOAD" "SOURCE" "RUN")
+     "(load \"FILE\") loads a Lisp file, PLAN name carries out a plan, WORLD name goes elsewhere.")
+    (("PRINT" "ECHO" "SET" "LET") "A line in parentheses is Lisp: (print (robot-names))."))
+  "Lists (words hint): what newcomers type that is no line, and what they may mean.")
+
+(defun hint-for (name)
+  "Return what who types NAME, which is no line, may want, or NIL."
+  (second (find-if (lambda (hint) (member name (first hint) :test #'string=)) *hints*)))
+
 (defun reject-unknown (name)
-  (reject-line "There is no command ~A.~@[ Did you mean ~A?~] HELP lists all commands." name
-               (nearest-name name (append (mapcar #'first *aliases*) (all-line-names)))))
+  (let ((hint (hint-for name)))
+    (reject-line "There is no command ~A.~@[ ~A~]~@[ Did you mean ~A?~] HELP lists all commands."
+                 name hint
+                 (and (null hint)
+                      (nearest-name name (append (mapcar #'first *aliases*) (all-line-names)))))))
 
 (defun beginning-of-all (lines)
   "Return the one of LINES with whose name those of all others begin, or NIL: STOP, not STOP-PLAN."
@@ -50,8 +85,9 @@ that all others go on from."
 (defun find-line (name)
   "Return the line command called NAME, a string of any case: its name, the full name of a command's
 function, or the beginning of a name; if several begin so, of the one that the others go on from.
-Signals BAD-LINE."
-  (let ((name (string-upcase name)))
+What other programs call it will do, too. Signals BAD-LINE."
+  (let* ((typed (string-upcase name))
+         (name (or (second (assoc typed *other-names* :test #'string=)) typed)))
     (or (find name (all-lines) :key #'line-name :test #'string=)
         (find name (robot-lines) :key #'line-full-name :test #'equal)
         (complete-line name))))

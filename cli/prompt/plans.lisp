@@ -215,3 +215,23 @@ answer to the last such question."
          (wait-on-semaphore (plan-errand-told errand))
          (show-messages (plan-errand-session errand)))
         (t (await-plan-headless errand))))
+
+;;; A run that was rewound has other plans under way.
+
+(defun take-up-plan (session task)
+  "Let SESSION wait for TASK, a plan under way, as if its PLAN had just started that."
+  (let ((errand (make-plan-errand (task-name task) session *simulation*)))
+    (setf (plan-errand-task errand) task)
+    (with-lock (*plan-errands-lock*) (push errand *plan-errands*))
+    (push errand (session-errands session))
+    (when (live-p *simulation*) (start-watching-plan errand))))
+
+(defun take-up-plans (session)
+  "Let SESSION, if plans that it waited for are of a run that was rewound, wait for those that go on
+in the place of them."
+  (when (shiftf (session-rewound-p session) nil)
+    (flet ((let-go-p (errand) (and (plan-errand-p errand) (plan-errand-let-go-p errand))))
+      (mapc #'close-errand (remove-if-not #'let-go-p (session-errands session)))
+      (setf (session-errands session) (remove-if #'let-go-p (session-errands session))))
+    (dolist (task (plans))
+      (unless (find task *plan-errands* :key #'plan-errand-task) (take-up-plan session task)))))

@@ -12,10 +12,27 @@
 (defun next-line (session)
   "Read a line of SESSION and do what it says; at the end of input, let the session be over."
   (follow-simulation session)
-  (let ((text (read-input session (if (session-breaks session) "Break> " "Robot> "))))
-    (if text
-        (do-next session text)
-        (setf (session-over-p session) t))))
+  (when (session-account session) (account-for-last session))
+  (let ((text (unless (stopped-p session)
+                (read-input session (if (session-breaks session) "Break> " "Robot> ")))))
+    (cond (text
+           (note-line-begun (session-account session) (if (comment-p text) nil text)
+                            (session-errors session))
+           (do-next session text))
+          (t (setf (session-over-p session) t)))))
+
+(defun stopped-p (session)
+  "True if SESSION stops at an error, and there was one when all was done that it has asked for."
+  (when (session-stop-p session)
+    (catch-up session)
+    (show-messages session)
+    (plusp (session-errors session))))
+
+(defun account-for-last (session)
+  "Wait until all is done that the last line of SESSION has asked for, and report that it is."
+  (catch-up session)
+  (show-messages session)
+  (note-line-ended (session-account session) (session-errors session)))
 
 (defun load-first (session)
   "Load the files that SESSION begins with."
@@ -35,6 +52,7 @@
   "Call FUNCTION, which writes to SESSION and asks its user."
   (let* ((*standard-output* (session-console session))
          (*standard-input* (session-input session))
+         (*robot-meant* #'session-robot)
          (*query-io* (make-two-way-stream *standard-input* *standard-output*)))
     (funcall function)))
 

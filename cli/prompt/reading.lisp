@@ -32,6 +32,7 @@ that."
                (show-answer console (visible line)))
               (t (unless (or line (session-batch-p session)) (fresh-line console))
                  (answered console))))
+      (note-read (session-account session))
       line)))
 
 (defun comment-p (text)
@@ -41,7 +42,10 @@ that."
 
 ;; As reading 205 says.
 (defun lisp-p (text)
-  (char= #\( (char text (position-if-not #'blank-p text))))
+  "True if TEXT is Lisp: it begins with a parenthesis, or with Nisp's mark of a slot."
+  (let ((start (position-if-not #'blank-p text)))
+    (or (find (char text start) "()")
+        (eql start (search "!>" text)))))
 
 (defun split-line (text)
   "Return the first word of TEXT and what follows it."

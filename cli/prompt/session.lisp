@@ -44,9 +44,17 @@
   ;; What has been issued and may not have ended, and whether Lisp may have issued more.
   (errands '() :type list)
   (lisp-p nil)
+  ;; The run of plans that it waits for was rewound.
+  (rewound-p nil)
   (over-p nil)
   ;; The trial that the prompt is in, or NIL.
   (visit nil)
+  ;; The first line that is an error is the last.
+  (stop-p nil :type boolean :read-only t)
+  ;; Where it is in what it reads, if somebody wants to know; see reporting.lisp.
+  (account nil :type (or null account) :read-only t)
+  ;; In how many forks it is, one in another.
+  (forks 0 :type fixnum)
   ;; The robot to go on with, in batch mode, when this one's lines are over.
   (next-robot nil))
 
@@ -58,13 +66,14 @@
 error messages, but not those of a plan that goes on.")
 
 (defun make-session (&key (input *standard-input*) (output *standard-output*) batch
-                       (patient batch) echo files lines)
+                       (patient batch) echo files lines account stop)
   "Return a session that loads FILES, does the list LINES, then reads others from INPUT, and writes
 to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes before
-the next is read; with ECHO, it shows what it reads."
+the next is read; with ECHO, it shows what it reads. ACCOUNT, if any, is an account of its lines.
+With STOP, it is over when one of them is an error."
   (%make-session :input input :console (make-console output) :batch-p (and batch t)
                  :patient-p (and patient t) :echo-p (and echo t)
-                 :files files :lines lines))
+                 :files files :lines lines :account account :stop-p (and stop t)))
 
 (defun check-run ()
   "Signal BAD-LINE if the run that the prompt is in is over."
@@ -98,8 +107,13 @@ over."
 (defun complain (session text)
   "Show TEXT as an error."
   (incf (session-errors session))
-  (let ((console (session-console session)))
-    (write-fresh (fitted (format nil "*ERROR* -> ~A~%" (complaint-text text)) console) console)))
+  (let ((account (session-account session))
+        (console (session-console session)))
+    (unless (report-trouble account text)
+      (write-fresh (fitted (format nil "*ERROR* -> ~A~%"
+                                   (complaint-text (placed-text account text)))
+                           console)
+                   console))))
 
 (defun take-all-messages ()
   (append (take-messages)
@@ -136,7 +150,9 @@ over."
             (messages (take-all-messages)))
         (incf (session-errors session)
               (count-if (lambda (message) (counts-p message session)) messages))
-        (when (and messages (not flush-all-errors*)) (write-messages messages console))
+        (when (and messages (not flush-all-errors*))
+          (or (report-messages (session-account session) messages)
+              (write-messages messages console)))
         (restore-prompt console)
         (finish-output console)))))
 

@@ -20,6 +20,8 @@
   ;; How many ticks are to pass before the next line, and whether to say so when they have.
   (steps 0 :type (integer 0))
   (stepped-p nil :type boolean)
+  ;; What says at a terminal how many have passed, or NIL.
+  (progress nil)
   ;; Ticks pass by themselves, at RATE, the next when it is DUE.
   (running-p nil :type boolean)
   (rate *default-rate*)
@@ -147,6 +149,7 @@ to say of that."
     (answered (session-console session))
     (setf (visit-stepped-p visit) t))
   (when (and (zerop (visit-steps visit)) (shiftf (visit-stepped-p visit) nil))
+    (when (visit-progress visit) (end-progress (shiftf (visit-progress visit) nil)))
     (format (session-console session) "~&Tick ~D.~%" (simulation-tick *simulation*))))
 
 (defun next-due (visit)
@@ -167,9 +170,20 @@ to say of that."
                (setf (visit-due visit) (next-due visit))
                t))))
 
+(defun note-steps (session visit)
+  "Say at the terminal of SESSION how many ticks are still to pass in VISIT."
+  (when (terminal-p session)
+    (unless (visit-progress visit)
+      (setf (visit-progress visit) (make-progress-line (session-console session))))
+    (note-progress (visit-progress visit) "Tick ~D, ~D to go. Control-C pauses."
+                   (simulation-tick *simulation*) (visit-steps visit))))
+
 (defun tick-passes-p (session visit)
   "True if a tick is to pass in VISIT now."
-  (cond ((plusp (visit-steps visit)) (decf (visit-steps visit)) t)
+  (cond ((plusp (visit-steps visit))
+         (note-steps session visit)
+         (decf (visit-steps visit))
+         t)
         ((visit-running-p visit) (wait-for-tick session visit))))
 
 (defun visit-gate (session visit)

@@ -11,7 +11,9 @@ returns the status to exit with. What it does is said in usage-NAME.txt.")
 
 (defun find-command-called (name)
   (or (find name *shell-commands* :key #'first :test #'string=)
-      (reject-usage "There is no command ~A.~@[ Did you mean ~A?~] Known: ~{~A~^, ~}." name
+      (reject-usage "There is no command ~A, nor a file of that name.~@[ Did you mean ~A?~] Known: ~
+                     ~{~A~^, ~}."
+                    name
                     (nearest-name name (mapcar #'first *shell-commands*))
                     (mapcar #'first *shell-commands*))))
 

@@ -55,12 +55,16 @@
   "Return a session that does what OPTIONS say and then the lines of the standard input. If nobody
 sits there, it shows what it reads and waits for each command, for a transcript like those of manual
 E. A batch that has plans to carry out does not wait for lines to be typed."
-  (let* ((batch (option-value :batch options))
-         (input (standard-input *standard-output* batch))
+  (let* ((script (option-value :script options))
+         (objects (and (option-value :json options) (object-console)))
+         (batch (or script objects (option-value :batch options)))
+         (input (if script (open-script script) (standard-input *standard-output* batch)))
          (piped (not (typed-by-hand-p input)))
          (lines (plan-lines options)))
     (make-session :input (if (and batch lines (not piped)) (make-concatenated-stream) input)
-                  :output *standard-output* :batch batch
+                  :output (or objects *standard-output*) :batch batch
+                  :account (when (or script objects) (make-account script objects))
+                  :stop (option-value :stop options)
                   :files (option-values :load options) :lines lines
                   :patient (or batch piped) :echo (and piped (not batch)))))
 
@@ -77,8 +81,10 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
   "Do what OPTIONS say. Return the status to exit with."
   (let ((robot-name (first-robot options))
         (session (standard-session options)))
+    (report-beginning session robot-name options)
     (call-typing (lambda () (run-in-world session robot-name options)) (session-input session))
-    (if (and (session-batch-p session) (plusp (session-errors session))) 1 0)))
+    (report-end session
+                (if (and (session-batch-p session) (plusp (session-errors session))) 1 0))))
 
 (defun run-options (options)
   "Do what OPTIONS say. Return the status to exit with."
@@ -87,6 +93,13 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
          (write-worlds)
          0)
         (t (run-prompt options))))
+
+(defun script-p (argument)
+  "True if ARGUMENT, the first of this process, or NIL, is a script: a file, and no command."
+  (and argument
+       (not (find argument *shell-commands* :key #'first :test #'string=))
+       (or (string= argument "-")
+           (and (not (option-p argument)) (script-path argument)))))
 
 (defun usage-wanted-p (arguments)
   (intersection arguments '("--help" "-h") :test #'string=))
@@ -101,6 +114,8 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
         ((equal arguments '("--version"))
          (format t "ARS MAGNA ~A~%" *version*)
          0)
+        ((script-p (first arguments))
+         (run-options (list* (list :script (first arguments)) (parse-options (rest arguments)))))
         ((and arguments (not (option-p (first arguments))))
          (run-command-called (first arguments) (rest arguments)))
         (t (run-options (parse-options arguments)))))

@@ -27,7 +27,7 @@
 (defparameter *options*
   '(("--world" :world identity) ("--robot" :robot identity) ("--seed" :seed parse-seed)
     ("--rate" :rate parse-pace) ("--load" :load identity) ("--plan" :plan identity)
-    ("--batch" :batch nil) ("--list" :list nil))
+    ("--batch" :batch nil) ("--json" :json nil) ("--stop" :stop nil) ("--list" :list nil))
   "Lists (option key parser [:optional]); PARSER is NIL for an option without a value. If the value
 is optional, an empty one stands for none.")
 

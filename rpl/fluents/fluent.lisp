@@ -88,12 +88,18 @@ counts."
   (:documentation "True if HOME is of the run that COPIER copies.")
   (:method (home copier) (declare (ignore home copier)) nil))
 
+(declaim (inline home-of))
+(defun home-of (fluent)
+  "Return where FLUENT is heard, or NIL: it has no home, or one whose plans have all gone for good."
+  (let ((home (fluent-home fluent)))
+    (if (and home (home-closed-p home)) nil home)))
+
 (defmethod foreign-p ((fluent fluent) copier)
-  (and (fluent-home fluent)
-       (not (home-forked-p (fluent-home fluent) copier))))
+  (let ((home (home-of fluent)))
+    (and home (not (home-forked-p home copier)))))
 
 (defmethod concerns-p ((fluent fluent) realm)
-  (let ((home (fluent-home fluent)))
+  (let ((home (home-of fluent)))
     (or (null home)
         (and (realm-source realm) (eq home (weak-value (realm-source realm)))))))
 

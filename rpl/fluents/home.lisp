@@ -16,7 +16,8 @@
   "Where changes are heard. HOLDER is the thread that has it, ON-POST is called after each post.
 ATTENDED-P says whether a thread is there that will hear what is posted. LEFT-P is true while a
 thread has it, and afterwards if that has left it in the middle of something: then REPAIRER is
-called with it before anything else is done. For whoever keeps a trace, ON-CHANGE is called with
+called with it before anything else is done. CLOSED-P says that it hears nothing any more.
+For whoever keeps a trace, ON-CHANGE is called with
 :SET or :PULSE, a base fluent and its value, before anybody hears of that, and WRAPPER with each
 entry: it returns what is posted instead."
   (holder nil :type t)
@@ -26,6 +27,7 @@ entry: it returns what is posted instead."
   (on-post #'list :type function)
   (attended-p (constantly nil) :type function)
   (left-p nil :type boolean)
+  (closed-p nil :type boolean)
   (repairer #'identity :type function)
   (on-change nil :type (or null function))
   (wrapper nil :type (or null function)))
@@ -120,6 +122,7 @@ interrupt may come at any point."
   home-on-post "Return the function that is called after each post, in the posting thread."
   make-backlog "Return an empty backlog, which grows as needed."
   home-attended-p "Return the function that says whether a thread will hear what is posted."
+  home-closed-p "True if the home hears nothing any more. Can be set."
   home-on-change "Return the function that is told of changes, or NIL. Can be set."
   home-wrapper "Return the function that is given what is posted, or NIL. Can be set."
   home-backlog "Return the derived fluents that are still to be computed.")

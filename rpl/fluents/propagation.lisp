@@ -145,7 +145,7 @@ views that are true for the instant at which that change happened.")
 
 (defun elsewhere (fluent)
   "Return where changes of FLUENT are to be heard, if that is not where this thread is; else NIL."
-  (let ((home (fluent-home fluent)))
+  (let ((home (home-of fluent)))
     (cond ((null home) (and (null *runner*) (funcall (the function *home-in-use*))))
           ((eq home *runner*) nil)
           (t home))))

@@ -14,15 +14,17 @@
   "What belongs to one fork, number NUMBER of those of PARENT; or, without one, to all runs that are
 no forks. TWINS has entities by token, FORKS is a list (number . weak realm), the newest first, of
 COUNT there have been; there is ROOM for so many more before those that are gone are left out.
-SOURCE leads to the home of which this is a fork."
-  (parent nil :type (or null realm) :read-only t)
-  (number 0 :type fixnum :read-only t)
+SOURCE leads to the home of which this is a fork. LEFT-P says that another fork goes on in the place
+of this one, which is over."
+  (parent nil :type (or null realm))
+  (number 0 :type fixnum)
   (twins (make-hash-table :test 'eq :size 100) :type hash-table :read-only t)
   (lock (make-lock "realm") :read-only t)
   (forks '() :type list)
   (room 16 :type fixnum)
   (count 0 :type fixnum)
   (source nil)
+  (left-p nil :type boolean)
   (tokens 0 :type atomic-count))
 
 (define-global +root+ (make-realm nil 0)
@@ -50,12 +52,14 @@ SOURCE leads to the home of which this is a fork."
         while each thereis (eq each ancestor)))
 
 (defun entity-in (entity realm)
-  "Return ENTITY, or its twin in REALM if that is a fork of what ENTITY belongs to."
-  (if (or (eq realm (entity-realm entity))
-          (not (descends-p realm (entity-realm entity))))
-      entity
-      (or (known-twin entity realm)
-          (add-twin entity realm (fresh-twin (entity-in entity (realm-parent realm)) realm)))))
+  "Return ENTITY, or its twin in REALM if that is a fork of what ENTITY belongs to, or goes on in
+the place of that."
+  (cond ((eq realm (entity-realm entity)) entity)
+        ((descends-p realm (entity-realm entity))
+         (or (known-twin entity realm)
+             (add-twin entity realm (fresh-twin (entity-in entity (realm-parent realm)) realm))))
+        ((realm-left-p (entity-realm entity)) (or (known-twin entity realm) entity))
+        (t entity)))
 
 (defun known-twin (entity realm)
   "Return the twin of ENTITY in REALM if it is there, or NIL."
@@ -140,6 +144,42 @@ set.")
     (when (>= (entity-seen entity) (1- (realm-number realm)))
       (setf (entity-seen entity) (realm-number realm)))
     copy))
+
+;;; A run that is rewound goes on in a fork of a fork, and again. So that nothing leads back to what
+;;; is over, that fork takes with it what it could ask for there, and is then one of what is above.
+
+(defun twins-in (realm)
+  "Return a list of the entities that REALM has twins of, as these."
+  (with-lock ((realm-lock realm))
+    (loop for twin being the hash-values of (realm-twins realm) collect twin)))
+
+(defun note-fork (fork realm)
+  "Let REALM know that it has FORK, with a number that it has given before."
+  (with-lock ((realm-lock realm))
+    (setf (realm-forks realm)
+          (merge 'list (list (cons (realm-number fork) (make-weak fork))) (realm-forks realm)
+                 #'> :key #'car))))
+
+(defun lift-realm (realm)
+  "Let REALM be a fork of what its parent is one of, if that is one, as if made when that was."
+  (let* ((parent (realm-parent realm))
+         (above (realm-parent parent)))
+    (when above
+      (dolist (twin (twins-in parent)) (entity-in twin realm))
+      (setf (realm-number realm) (realm-number parent)
+            (realm-source realm) (realm-source parent)
+            (realm-parent realm) above)
+      (note-fork realm above))))
+
+(defun leave-realm (realm successor)
+  "Let nothing in SUCCESSOR, a fork of a fork of REALM that goes on in the place of that, lead back
+to what REALM has, nor the other forks of REALM, unless that is no fork itself."
+  (lift-realm successor)
+  (when (realm-parent realm)
+    (loop for (nil . weak) in (shiftf (realm-forks realm) '())
+          for fork = (weak-value weak)
+          do (when (and fork (eq realm (realm-parent fork))) (lift-realm fork)))
+    (setf (realm-left-p realm) t)))
 
 ;;; Changes.
 

@@ -31,19 +31,26 @@ TYPE (reading 181)."
       (values (rpl-robot) arguments)
       (values (convert-argument (first arguments) type operator) (rest arguments))))
 
-(defun command-in-plan (operator command outcome arguments)
-  "Issue COMMAND as the plan function OPERATOR. OUTCOME, a function of the resource, the error code
-and the results, makes settings of its end."
-  (let ((interface (the-interface))
-        (issue (note-command operator arguments)))
+(defun issue-in-plan (interface operator command outcome arguments)
+  "Let INTERFACE issue COMMAND with ARGUMENTS, those of the plan function OPERATOR; see
+COMMAND-IN-PLAN."
+  (let ((issue (note-command operator arguments)))
     (multiple-value-bind (resource arguments)
         (convert-resource arguments (spec-type (command-resource command)) operator)
       (let ((arguments (loop for spec in (command-parameters command)
                              for argument in arguments
                              collect (convert-argument argument (spec-type spec) operator))))
         (check-in-plan operator command arguments)
-        (issue-deed interface command resource arguments outcome issue)
-        (values)))))
+        (issue-deed interface command resource arguments outcome issue)))))
+
+(defun command-in-plan (operator command outcome arguments)
+  "Issue COMMAND as the plan function OPERATOR. OUTCOME, a function of the resource, the error code
+and the results, makes settings of its end. Return nothing."
+  (let ((interface (the-interface)))
+    (call-noting-command interface operator arguments
+                         (lambda ()
+                           (issue-in-plan interface operator command outcome arguments))))
+  (values))
 
 (defun check-in-plan (operator command arguments)
   "Signal WRONG-ARGUMENT in the name of OPERATOR if COMMAND does not take ARGUMENTS."

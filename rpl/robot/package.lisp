@@ -8,7 +8,8 @@
   (:import-from :ars-magna.time
                 #:*simulation* #:seconds-now #:current-simulation #:asking #:live-p
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
-                #:wake-owner #:timeline-inbox #:agenda-pending #:*hog-seconds* #:hog-seconds)
+                #:wake-owner #:begin-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
+                #:hog-seconds)
   (:import-from :ars-magna.run
                 #:simulation-tick #:add-observer #:remove-observer #:run-ticks #:call-as-owner
                 #:simulation-over #:simulation-seed #:simulation-agenda #:simulation-thread
@@ -20,7 +21,9 @@
                 #:call-as-participant-makes-way #:participant-unsavable
                 #:fork-simulation #:refuse-fork
                 #:participant-place #:simulation-participants #:fork-p #:note-environment
-                #:counterpart-here #:note-doing #:simulation-past)
+                #:environment-of #:*rewind-hooks*
+                #:counterpart-here #:counterpart #:latest #:let-fork-be-kept #:note-doing
+                #:simulation-past)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:fluent-value
                 #:apply-settings #:*home-in-use* #:*runner* #:post-call #:react-to-all
@@ -35,10 +38,10 @@
                 #:plan-trace #:write-trace #:valve #:make-valve #:note-command #:with-answer
                 #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks* #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p #:*realm*
-                #:realm-source #:source-realm #:at-home #:entity #:here
+                #:realm-source #:leave-realm #:source-realm #:at-home #:entity #:here
                 #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
                 #:decide #:withdraw #:task-frame #:entity-realm #:entity-like
-                #:*on-outside-change* #:task-children)
+                #:*on-outside-change* #:note-word #:task-now)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*
            #:robot-place-input* #:robot-place* #:camera-input* #:camera-views*

@@ -60,11 +60,12 @@ nothing happens."
 
 ;; If plans have a thread only that lets them react: one may be waiting for the owner to answer it.
 (defmethod participant-after-tick ((interface interface) simulation)
-  (declare (ignore simulation))
   (cond ((thread-of interface)
          (when (or (time-to-wake-p interface) (not (thread-wanted-p interface)))
            (wake interface)))
-        ((not (thread-wanted-p interface)) (with-plans (interface) (react-fully interface)))
+        ((not (thread-wanted-p interface))
+         (begin-moment (simulation-timeline simulation))
+         (with-plans (interface) (react-fully interface)))
         ((tasks-of interface) (ensure-thread interface))
         ((interface-answers interface) (apply-posts interface))))
 

@@ -2,15 +2,9 @@
 
 (in-package :ars-magna.rpl-robot)
 
-;;; Plans do by themselves what they did. That they were begun and ended, and that somebody else set
-;;; their fluents, is in no journal; the run remembers it, if it is one that can be rewound.
-
-(defun find-task-below (serial tasks)
-  "Return the task with the number SERIAL among TASKS and their parts, or NIL."
-  (loop for task in tasks
-          thereis (if (eql serial (task-serial task))
-                      task
-                      (find-task-below serial (task-children task)))))
+;;; Plans do by themselves what they did. That they were begun and ended, that somebody else set
+;;; their fluents, gave commands by plan functions, or said a word to a task, such as SUSPEND, is in
+;;; no journal; the run remembers it, if it is one that can be rewound.
 
 (defun react-again ()
   "Let plans react between two ticks, as they did then."
@@ -21,13 +15,38 @@
 (defun end-again (serial)
   "End the task with the number SERIAL, or all plans if that is NIL, as somebody did then."
   (let* ((interface (usable-interface))
-         (task (and interface serial (find-task-below serial (tasks-of interface)))))
+         (task (and interface serial (task-numbered serial (interface-runner interface)))))
     (when (and interface (or task (null serial)))
       (end-in interface task))))
 
 (defun note-of-plans (interface function &rest arguments)
   "Let the run of INTERFACE remember that FUNCTION of ARGUMENTS does again what is done here."
   (apply #'note-doing (interface-simulation interface) function arguments))
+
+(defun say-again (word arguments serial)
+  "Call the function WORD with ARGUMENTS and the task with the number SERIAL, or the runner of plans
+if that is NIL, as somebody did then."
+  (let* ((interface (usable-interface))
+         (runner (and interface (interface-runner interface)))
+         (subject (if (and runner serial) (task-numbered serial runner) runner)))
+    (when subject (apply word (append arguments (list subject))))))
+
+(defmethod note-word ((interface interface) word arguments subject)
+  (when (interface-valid-p interface)
+    (note-of-plans interface #'say-again word arguments
+                   (and (task-p subject) (task-serial subject)))))
+
+(defun command-again (operator arguments)
+  "Call the plan function OPERATOR with ARGUMENTS, as somebody did then from outside of plans."
+  (apply operator arguments))
+
+(defun call-noting-command (interface operator arguments function)
+  "Call FUNCTION, which does what the plan function OPERATOR does with ARGUMENTS. If that is called
+from outside of the plans of INTERFACE, remember that. What it asks for is heard by what goes on in
+forks too."
+  (note-of-plans interface #'command-again operator (mapcar #'fluent-value arguments))
+  (let ((*goes-on-in-forks-p* t))
+    (funcall function)))
 
 (defun name-of-fluent (fluent)
   "Return how a fluent variable leads to FLUENT: a list of that and, if it holds a vector, the
@@ -57,3 +76,21 @@ VALUE."
     (note-doing *simulation* #'change-again function (name-of-fluent fluent) value)))
 
 (setf *on-outside-change* #'note-outside-change)
+
+;;; What the run was that is over is forgotten.
+
+(defun realm-of (simulation)
+  "Return what the fluents of SIMULATION belong to."
+  (cdr (assoc '*realm* (environment-of simulation))))
+
+(defun shared-realm-p (realm simulation)
+  "True if REALM, that of SIMULATION, is also that of the live run around it."
+  (and (eq realm (global-value '*realm*))
+       (not (eq simulation (global-value '*simulation*)))))
+
+(defun leave-fluents (old new)
+  "Let no fluent of NEW, which is to go on in the place of OLD, lead back to that."
+  (unless (shared-realm-p (realm-of old) old)
+    (leave-realm (realm-of old) (realm-of new))))
+
+(pushnew 'leave-fluents *rewind-hooks*)

@@ -182,15 +182,25 @@ MISUSE."
           ((eq interface (interface-here)) (end-in interface task))
           (t (want-end interface task)))))
 
-(defun task-here (task)
-  "Return TASK or, in a fork of the run that it is in, what it is there."
-  (let ((client (and (task-runner task) (runner-client (task-runner task)))))
-    (or (and client
-             *simulation*
-             (fork-p *simulation*)
-             (not (eq *simulation* (interface-simulation client)))
-             (counterpart-here task))
+(defun elsewhere-p (interface)
+  "True if this thread works in another run than that of INTERFACE, where that may have come to: in
+a fork of it, or in the one that goes on since it was rewound."
+  (and *simulation*
+       (not (eq *simulation* (interface-simulation interface)))
+       (or (fork-p *simulation*)
+           (eq *simulation* (latest (interface-simulation interface))))))
+
+(defmethod task-now ((interface interface) task)
+  (let ((latest (latest (interface-simulation interface))))
+    (or (cond ((elsewhere-p interface) (counterpart-here task))
+              ((not (eq latest (interface-simulation interface))) (counterpart task latest)))
         task)))
+
+(defun task-here (task)
+  "Return TASK or, if it is in a run that this thread works in a fork of, or that has been rewound
+since, what it is there."
+  (let ((client (and (task-runner task) (runner-client (task-runner task)))))
+    (if client (task-now client task) task)))
 
 (addition end-plan)
 (defun end-plan (task)

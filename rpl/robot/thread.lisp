@@ -61,6 +61,7 @@ NIL if that was aborted."
   "Let the plans react to what is posted for as long as there are any."
   (loop
     (let-others-hold interface)
+    (let-fork-be-kept (interface-simulation interface))
     (ecase (react-in-thread interface)
       (:over (return))
       (:idle (rest-plans interface))

@@ -63,13 +63,15 @@ they do not run; but not those that did not run before."
 
 ;;; By a word, instead of as long as something lasts.
 
-(defun call-in-plans (task function)
-  "Call FUNCTION when the plan that TASK is part of can hear of it: now, if a plan of the same
-runner asks, or TASK is in none; else, posted to its runner, before that reacts again."
+(defun say-in-plans (word task function)
+  "Call FUNCTION, which does what the function WORD says of TASK, when the plan of that can hear of
+it: now, if a plan of the same runner asks, or TASK is in none; else, posted to its runner, before
+that reacts again. Return TASK."
   (let ((runner (task-runner task)))
-    (if (or (null runner) (eq runner *runner*))
-        (funcall function)
-        (post-call runner function))))
+    (cond ((inside-plans-p runner) (funcall function))
+          (t (note-from-outside word task)
+             (post-call runner function))))
+  task)
 
 (addition suspend)
 (defun suspend (task)
@@ -79,18 +81,20 @@ stops after the step that it is at. One that has not started will wait when it i
 evaporates is not kept, and a suspended part does not keep the whole from ending. From a REPL or
 another thread it is heard before the plans react again (CRAM's)."
   (check-argument suspend task (task-p task) "a task, such as the name of a :tag")
-  (call-in-plans task (lambda ()
-                        (unless (or (task-suspended task) (task-over-p task))
-                          (setf (task-suspended task) t)
-                          (block-task task t))))
-  task)
+  (let ((task (task-meant task)))
+    (say-in-plans #'suspend task
+                  (lambda ()
+                    (unless (or (task-suspended task) (task-over-p task))
+                      (setf (task-suspended task) t)
+                      (block-task task t))))))
 
 (addition wake-up)
 (defun wake-up (task)
   "Let TASK, if SUSPEND keeps it, run again, and return it; WITH-TASK-BLOCKED and the like are not
 undone. From anywhere, as SUSPEND (CRAM's)."
   (check-argument wake-up task (task-p task) "a task, such as the name of a :tag")
-  (call-in-plans task (lambda ()
-                        (when (shiftf (task-suspended task) nil)
-                          (unblock-task task t))))
-  task)
+  (let ((task (task-meant task)))
+    (say-in-plans #'wake-up task
+                  (lambda ()
+                    (when (shiftf (task-suspended task) nil)
+                      (unblock-task task t))))))

@@ -80,6 +80,7 @@ all plans of the robot stand still for TICKS, 0 or more, once the step under way
 go on, and what happens meanwhile is heard after that. Elsewhere do nothing. Returns nothing.
 Signals WRONG-ARGUMENT."
   (check-argument charge-ticks ticks (amount-p ticks) "a number of ticks, from 0 to 1e15")
+  (note-from-outside #'charge-ticks runner ticks)
   (when (and runner (runner-charged-p runner) (plusp ticks))
     (stand-still runner ticks))
   (values))
@@ -102,5 +103,6 @@ budget, let STEPS, a whole number, count as if the plans of the robot had taken 
 than is left of this tick's budget takes the next ones. Elsewhere, as in a WITH-CHARGE, whose price
 is all, do nothing. Returns nothing. Signals WRONG-ARGUMENT."
   (check-argument charge-steps steps (whole-p steps) "a whole number of steps, from 0 to 1e9")
+  (note-from-outside #'charge-steps runner steps)
   (when runner (count-steps steps runner (running-task runner)))
   (values))

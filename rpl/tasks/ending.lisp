@@ -158,19 +158,26 @@ has protected by EVAP-PROTECT is done first and may take time. A task that has n
 or evaporates already is left alone. From outside of its plan it is heard before that goes on.
 Signals WRONG-ARGUMENT."
   (check-argument evaporate task (task-p task) "a task, as begin-plan returns")
-  (cond ((or (task-over-p task) (task-doomed task) (eq (task-state task) :created)))
-        ((not (eq *runner* (task-runner task))) (doom task))
-        (t (setf (task-doomed task) t)
-           (cond ((task-cleaning task)
-                  (setf (frame-data (first (last (task-cleaning task)))) :evaporate))
-                 ((eq (task-state task) :running)
-                  (setf (task-signal task) :evaporate)
-                  (setf (runner-mask (task-runner task))
-                        (logior +interrupt+ (runner-mask (task-runner task)))))
-                 (t (stop-waiting task)
-                    (end-parts task)))
-           ;; What was kept from running, and cleans up, is so no longer.
-           (when (runner-held (task-runner task)) (release-held (task-runner task))))))
+  (let ((task (task-meant task)))
+    (cond ((or (task-over-p task) (task-doomed task) (eq (task-state task) :created)))
+          ((not (inside-plans-p (task-runner task)))
+           (note-from-outside #'evaporate task)
+           (doom task))
+          (t (evaporate-here task)))))
+
+(defun evaporate-here (task)
+  "Let TASK, of the plans at work here, evaporate."
+  (setf (task-doomed task) t)
+  (cond ((task-cleaning task)
+         (setf (frame-data (first (last (task-cleaning task)))) :evaporate))
+        ((eq (task-state task) :running)
+         (setf (task-signal task) :evaporate)
+         (setf (runner-mask (task-runner task))
+               (logior +interrupt+ (runner-mask (task-runner task)))))
+        (t (stop-waiting task)
+           (end-parts task)))
+  ;; What was kept from running, and cleans up, is so no longer.
+  (when (runner-held (task-runner task)) (release-held (task-runner task))))
 
 (defun end-parts (task)
   "Let TASK, which does not run, evaporate when its children have."

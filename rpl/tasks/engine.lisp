@@ -160,14 +160,16 @@ step. For any thread."
 
 (defun close-runner (runner)
   "Let all tasks of RUNNER evaporate. What they do to clean up goes on as far as it can without any
-time; the rest is given up, with a warning for each. None is left. Nothing is charged for any more."
+time; the rest is given up, with a warning for each. None is left. Nothing is charged for any more,
+and nothing heard."
   (set-charges runner nil nil)
   (stop-plan runner)
   (react-to-all runner)
   (loop for part = (some #'cleaning-part (plan-runner-tasks runner))
         while part
         do (at-home (runner) (give-up-cleanup part))
-           (react-to-all runner)))
+           (react-to-all runner))
+  (setf (home-closed-p runner) t))
 
 ;;; Time.
 

@@ -36,6 +36,8 @@ plans nor a simulator.")
            #:plan-time #:plan-trace #:runner-blocks #:runner-dice #:runner-tick
            #:runner-ticks-per-second #:runner-timers #:runner-current #:runner-stepper
            #:runner-note #:client-forked-p #:runner-trace #:runner-client #:*plan-task-limit*)
+  ;; words
+  (:export #:note-word #:task-now)
   ;; charging
   (:export #:charge-steps #:charge-ticks #:count-steps
            #:runner-charged-p #:set-charges #:stand-no-longer

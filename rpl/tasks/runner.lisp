@@ -204,6 +204,7 @@ have used their slice."
 (addition exhaust-reaction)
 (defun exhaust-reaction (&optional (runner *runner*))
   "Let the reaction of RUNNER under way end after this step: what is ready waits for the tick."
+  (note-from-outside #'exhaust-reaction runner)
   (setf (runner-exhausted runner) t
         (runner-limit runner) 0
         (runner-pause runner) 0))

@@ -41,6 +41,8 @@ wrong with VALUE."
 
 (define-argument-type 'number #'within-reason-p "a number from -1e9 to 1e9")
 (define-argument-type 'angle #'within-reason-p "an angle in radians, from -1e9 to 1e9")
+(define-argument-type 'metres #'within-reason-p "a number of metres, from -1e9 to 1e9")
+(define-argument-type 'speed #'within-reason-p "a speed in metres per tick, from -1e9 to 1e9")
 (define-argument-type 'ticks #'within-reason-p "a number of ticks, from -1e9 to 1e9")
 (define-argument-type 'tick-span #'tick-span-p "a whole number of ticks, from 0 to 1e9")
 (define-argument-type 'quantity #'quantity-p "a number from -1e15 to 1e15")

@@ -30,6 +30,10 @@ numbers."
        (append (mapcar #'constant-meant (code-constants function))
                (when (closure-p function) (closure-values function))))))
 
+(defun lambda-list-of (name)
+  "Return the lambda list of the function or macro called NAME, a symbol."
+  (sb-introspect:function-lambda-list name))
+
 ;;; From which file functions are. Where the forms of one are evaluated one by one, that must be
 ;;; said.
 

@@ -40,7 +40,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:define-function-class #:generic-name #:class-ancestors #:class-slot-names
            #:class-slot-types
            #:code-references #:method-code #:methods-on-class
-           #:function-file #:files-besides-functions
+           #:lambda-list-of #:function-file #:files-besides-functions
            #:call-as-from-file #:date-of-file
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
@@ -88,8 +88,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; dice, random
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice
-           #:*lisps-dice* #:seeded-lisps-dice #:call-with-own-lisps-dice #:unheard-of-number
-           #:tick-dice #:make-tick-dice #:begin-tick-dice #:*tick-dice*)
+           #:*lisps-dice* #:seeded-lisps-dice #:reseed-lisps-dice #:call-with-own-lisps-dice
+           #:unheard-of-number #:tick-dice #:make-tick-dice #:begin-tick-dice #:*tick-dice*)
   ;; names
   (:export #:same-name-p #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables

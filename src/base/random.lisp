@@ -67,12 +67,22 @@ seeded by the integers SEED and TICK."
 (defparameter *fill-words* (symbol-function (find-symbol "INIT-RANDOM-STATE" "SB-KERNEL"))
   "The function of a seed and the words of a random state that seeds these.")
 
+(defun reseed (state seed)
+  "Let the random state STATE be what SEEDED-LISPS-DICE returns for SEED, an integer."
+  (funcall *fill-words* (short-seed (ldb (byte 64 0) seed)) (funcall *words-of-state* state)))
+
+;; The state itself is changed: while users' code is called it is bound once more.
+(defun reseed-lisps-dice (seed)
+  "Let what CL:RANDOM says to programs here depend on the integer SEED from now on. Code that
+changes a world rolls other dice."
+  (unless *tick-dice* (reseed *random-state* seed)))
+
 (defun seed-tick-dice (dice)
   "Seed DICE, without a new random state if they have one."
-  (let ((seed (short-seed (word-of-tick dice))) (state (tick-dice-state dice)))
+  (let ((seed (word-of-tick dice)) (state (tick-dice-state dice)))
     (if state
-        (funcall *fill-words* seed (funcall *words-of-state* state))
-        (setf (tick-dice-state dice) (sb-ext:seed-random-state seed)))
+        (reseed state seed)
+        (setf (tick-dice-state dice) (seeded-lisps-dice seed)))
     (setf (tick-dice-seeded-p dice) t)))
 
 (declaim (inline users-dice))

@@ -102,6 +102,14 @@ others, each a list (variable type), with NIL for no type."
           (list (first (parameter-list-by parameters)))
           (mapcar #'first (parameter-list-others parameters))))
 
+(defun method-shape (method)
+  "Return what METHOD takes, as three values: the variables of its objects, a list (variable type)
+for its resource, and such lists for all that follows. The type is NIL where none is given."
+  (let ((parameters (method-parameters method)))
+    (values (parameter-list-objects parameters)
+            (parameter-list-by parameters)
+            (parameter-list-others parameters))))
+
 ;;; Defining.
 
 (defun check-option (definition option value type)

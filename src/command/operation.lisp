@@ -114,7 +114,10 @@ command that it cut short, or NIL"))
   "Call the continuation of OPERATION with CODE and RESULTS at the end of this tick."
   (when (operation-continuation operation)
     (notify-later (operation-timeline operation)
-                  (lambda () (call-continuation operation code results)))))
+                  (lambda ()
+                    (when (operation-forked-p operation)
+                      (begin-moment (operation-timeline operation)))
+                    (call-continuation operation code results)))))
 
 (defun finish (operation code &rest results)
   "End OPERATION: with the error CODE, or successfully if that is NIL. Its continuation gets CODE,

@@ -46,7 +46,8 @@
   ;; manipulations
   (:export #:defmanipulation #:define-manipulation #:manipulate #:run-manipulation
            #:find-manipulation #:all-manipulations #:manipulation-name
-           #:manipulation-methods #:method-source #:method-digest #:manipulation-method
+           #:manipulation-methods #:method-shape #:method-source #:method-digest
+           #:manipulation-method
            #:manipulation-command-p #:command-for)
   ;; soundness
   (:export #:check-commands #:step-p #:withdrawal #:withdrawal-continuation))

@@ -14,7 +14,7 @@ them (reading 91)."
 
 ;; As reading 94 says.
 (define-command robot-set-speed (operation (robot robot)
-                                 (speed number "the new speed, metres per tick"))
+                                 (speed speed "the new speed"))
     ((speed "the speed set"))
     ((:family :moving) (:section "3.5")
      (:errors (:negative-speed "Speed cannot be negative. Set to 0")

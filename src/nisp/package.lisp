@@ -10,7 +10,8 @@ of types and slots that other layers fill. Shadows LET, LOOP and IF by forms tha
 everything the Common Lisp ones do; its own code is written with them.")
   (:use :cl :ars-magna.base)
   (:shadow #:let #:loop #:if)
-  (:import-from :named-readtables #:in-readtable #:find-readtable #:make-readtable)
+  (:import-from :named-readtables #:in-readtable #:find-readtable #:make-readtable
+                #:readtable-name)
   (:import-from :ars-magna.geometry
                 #:pt #:make-pt #:pt-x #:pt-y
                 #:interval #:make-interval #:interval-min #:interval-max
@@ -30,6 +31,6 @@ everything the Common Lisp ones do; its own code is written with them.")
   ;; matching
   (:export #:matchvar #:matchvar-p #:matchvar-name #:make-matchvar #:matchq)
   ;; readtable
-  (:export #:in-readtable)
+  (:export #:in-readtable #:readtable-name)
   ;; loading
   (:export #:dsklap))

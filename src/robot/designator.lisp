@@ -62,6 +62,20 @@ robot."
          (< -1 number (length designators))
          (aref designators number))))
 
+;; The prompt sets it: it commands one robot of those that there are.
+(defvar *robot-meant* (lambda () (and *world* (first (world-robots *world*))))
+  "A function that returns the robot that is meant where nobody says which.")
+
+(defun designator (number &optional (robot (funcall *robot-meant*)))
+  "Return the designator of ROBOT with NUMBER; ROBOT is by default the one that the prompt commands,
+or else the first of the world. An addition to manual 3.4.1, for what is typed. Signals
+WRONG-ARGUMENT if there is none."
+  (or (find-designator robot number)
+      (reject-argument 'designator "number" number
+                       (format nil "~:[the number of a designator; ~A has none~;one of ~
+                                    ~:*~{~D~^, ~}, the designators of ~A~]"
+                               (mapcar #'designator-number (live-designators robot)) robot))))
+
 (addition live-designators)
 (defun live-designators (robot)
   "Return a list of the valid designators of ROBOT, by number."

@@ -46,7 +46,8 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
   (:export #:designator #:designator-p #:designator-type #:designator-angle #:designator-data
            #:designator-robot #:designator-serial #:designator-number #:designator-denotation
            #:designator-distance #:designator-valid-p #:designator-x #:designator-y
-           #:designator-location #:find-designator #:live-designators #:designators-on
+           #:designator-location #:find-designator #:*robot-meant*
+           #:live-designators #:designators-on
            #:*designator-limit* #:thing-space #:designator-position
            #:designator-local-p*)
   ;; sight, tracks

@@ -30,11 +30,12 @@ run; or NIL. Signals WRONG-ARGUMENT for what has no counterpart.")
   (find-thing (thing-serial thing) *world*))
 
 (addition counterpart)
-(defun counterpart (object fork)
-  "Return what OBJECT, of a run, is in FORK, a fork of that or a fork of its fork. OBJECT may be a
-robot, a part of one, a thing, a designator, an odometer, a task, a fluent or a valve. NIL if FORK
-does not have it: a thing that is destroyed there, a designator that is invalid, a task that is
-over. Signals WRONG-ARGUMENT."
-  (check-argument counterpart fork (and (simulation-p fork) (fork-p fork))
-                  "a fork, as FORK-SIMULATION returns")
-  (call-inside fork (lambda () (counterpart-here object))))
+(defun counterpart (object &optional (fork (current-simulation)))
+  "Return what OBJECT, of a run, is in FORK, a fork of that or a fork of its fork; or the run that
+goes on since it was rewound, by default the current one. OBJECT may be a robot, a part of one, a
+thing, a designator, an odometer, a task, a fluent or a valve. NIL if FORK does not have it: a thing
+that is destroyed there, a designator that is invalid, a task that is over. Signals WRONG-ARGUMENT."
+  (check-argument counterpart fork
+                  (and (simulation-p fork) (or (fork-p fork) (simulation-line fork)))
+                  "a fork, as FORK-SIMULATION returns, or a run that was rewound")
+  (call-inside (latest fork) (lambda () (counterpart-here object))))

@@ -205,8 +205,9 @@ returns NIL."
 told of anything. Return nothing. Signals WRONG-ARGUMENT for what is no fork."
   (check-argument release-fork fork (and (simulation-p fork) (fork-p fork))
                   "a fork, as FORK-SIMULATION returns")
-  (unless (simulation-over fork)
-    (setf (timeline-over (simulation-timeline fork)) "the fork has been released"))
+  (let ((fork (latest fork)))
+    (unless (simulation-over fork)
+      (setf (timeline-over (simulation-timeline fork)) "the fork has been released")))
   (values))
 
 (defun call-with-fork (function &rest options)
@@ -214,7 +215,7 @@ told of anything. Return nothing. Signals WRONG-ARGUMENT for what is no fork."
   (let ((fork (let ((*fork-asker* 'with-fork)) (apply #'fork-simulation options))))
     (when fork
       (unwind-protect (call-inside fork function)
-        (release-fork (latest fork))))))
+        (release-fork fork)))))
 
 (addition with-fork)
 (define-user-macro with-fork ((&key seed continuations) &body body)
@@ -226,8 +227,9 @@ values of BODY; NIL if the fork was given up."
 (addition call-in-fork)
 (defun call-in-fork (fork function)
   "Call FUNCTION, with no arguments, where FORK is the current simulation, with robots bound as in
-WITH-FORK. Return its values. To be done as often as one likes."
+WITH-FORK. Return its values. To be done as often as one likes. A fork that was rewound stands for
+the one that goes on in its place."
   (check-argument call-in-fork fork (and (simulation-p fork) (fork-p fork))
                   "a fork, as FORK-SIMULATION returns")
   (check-argument call-in-fork function (functionp function) "a function of no arguments")
-  (call-inside fork function))
+  (call-inside (latest fork) function))

@@ -86,18 +86,33 @@ first and the last are needed."
                               began))))
 
 (defun keep-fork (simulation past)
-  "Let SIMULATION, which stands still, keep a fork in PAST, if that can be now."
+  "Let SIMULATION, which stands still, keep a fork in PAST, if that can be now. If somebody is at
+work in it, that is to be at the end of the next tick."
   (forget-if-full simulation past)
-  (let* ((began (seconds-now))
+  (let* ((began (or (past-wanted past) (seconds-now)))
          (tick (simulation-tick simulation))
          (fork (fork-to-keep simulation past)))
     (when (simulation-p fork)
       (push (make-kept fork tick (past-acts past)) (past-forks past))
       (thin-out past (room-for-forks simulation past)))
     (setf (past-pace past) 1
-          (past-next past) (1+ tick))
+          (past-next past) (1+ tick)
+          (past-wanted past) (if (eq :busy fork) began nil))
     (unless (eq :busy fork)
       (note-cost past began))))
+
+(defconstant +looks-for-fork+ 100
+  "How often who makes way for a fork looks whether it has been made, before it gives that up.")
+
+(defun let-fork-be-kept (simulation)
+  "If SIMULATION could not keep a fork because this thread, which is at rest now, was at work, wait
+until the tick has ended and there is one; not for long, as no tick may pass."
+  (let ((past (simulation-past simulation)) (moment (make-semaphore "kept fork")))
+    (when (and past (past-wanted past))
+      (loop repeat +looks-for-fork+
+            while (past-wanted past)
+            do (wait-a-while moment 0.002))
+      (setf (past-wanted past) nil))))
 
 (defun keep-fork-in-time (simulation past)
   "Let SIMULATION keep a fork in PAST unless it has spent too much time on that."
@@ -114,6 +129,9 @@ first and the last are needed."
 (defun begin-keeping (simulation limit)
   "Let SIMULATION, which this thread has in custody, keep forks, at most LIMIT, from now on."
   (let ((past (setf (simulation-past simulation) (make-past limit #'keep-fork-in-time))))
+    ;; One can go back as far as here: what has been asked for stays so.
+    (dolist (request (timeline-inbox (simulation-timeline simulation)))
+      (when (zerop (request-phase request)) (setf (request-phase request) 5)))
     (when (zerop (timeline-phase (simulation-timeline simulation)))
       (keep-fork simulation past))))
 

@@ -15,7 +15,7 @@ takes part in it. Manual 2.3 and appendix A.")
            #:simulation-tick #:simulation-seed #:simulation-robots #:simulation-journal
            #:simulation-gate #:simulation-observers #:simulation-participants
            #:simulation-messages #:simulation-over #:simulation-agenda #:simulation-ticking-p
-           #:simulation-rate #:simulation-thinking #:simulation-thread
+           #:simulation-rate #:simulation-thinking #:simulation-thread #:latest
            #:add-observer #:remove-observer #:add-participant #:remove-participant
            #:idle-p #:robot-simulation #:fresh-simulation #:headless-p
            #:set-seed #:end-simulation)
@@ -27,7 +27,8 @@ takes part in it. Manual 2.3 and appendix A.")
   ;; thinking
   (:export #:set-thinking)
   ;; past, keeping, rewinding
-  (:export #:simulation-past #:note-doing #:keep-forks #:*forks-to-keep* #:rewind #:*rewind-hooks*)
+  (:export #:simulation-past #:note-doing #:let-fork-be-kept #:keep-forks #:*forks-to-keep*
+           #:rewind #:*rewind-hooks*)
   ;; journal
   (:export #:journal #:make-journal #:journal-p #:journal-header #:journal-entries
            #:journal-end #:journal-length #:*journal-limit* #:note #:begin-journal

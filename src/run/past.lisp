@@ -7,15 +7,17 @@
 ;;; asked of plans from outside. A fork of the past goes on as the run did if the acts that it does
 ;;; not repeat by itself are done to it again (redoing.lisp).
 
-(defstruct (act (:constructor make-act (kind tick phase own-p operator arguments asker))
+(defstruct (act (:constructor make-act (kind tick phase moment own-p operator arguments asker))
                 (:copier nil))
   "That something was done. KIND is :REQUEST, for what a tick has begun with, or else :CHANGE. TICK
-had passed, or was under way in its PHASE, a number, 0 between ticks. OWN-P is true of what a fork
-does by itself. OPERATOR is the name of an operator, or a function; ARGUMENTS are externalized.
-ASKER is a note of who asked for it, or NIL."
+had passed, or was under way in its PHASE, a number, 0 between ticks; of a request PHASE says when
+it was asked for. MOMENT is how often by then in the tick what goes on in forks too had acted. OWN-P
+is true of what a fork does by itself. OPERATOR is the name of an operator, or a function; ARGUMENTS
+are externalized. ASKER is a note of who asked for it, or NIL."
   (kind :change :type (member :request :change) :read-only t)
   (tick 0 :type fixnum :read-only t)
   (phase 0 :type fixnum :read-only t)
+  (moment 0 :type fixnum :read-only t)
   (own-p nil :read-only t)
   (operator nil :type (or symbol function) :read-only t)
   (arguments '() :type list :read-only t)
@@ -32,7 +34,8 @@ ASKER is a note of who asked for it, or NIL."
   "What is kept of a run's past: at most LIMIT FORKS, and COUNT ACTS, the newest of both first. The
 next fork is to be made at the tick NEXT, not before DUE, a time in seconds; KEEPER, a function of
 the run and its past, is then called. PACE is in how many ticks that is looked at again. COST is how
-many seconds a fork takes, on the average."
+many seconds a fork takes, on the average. WANTED is since when, in seconds, a fork is due that
+could not be made, as somebody was at work in the run; or NIL."
   (limit 0 :type fixnum)
   (keeper nil :type function :read-only t)
   (forks '() :type list)
@@ -42,42 +45,54 @@ many seconds a fork takes, on the average."
   (due 0d0 :type double-float)
   (cost 2d-4 :type double-float)
   (pace 1 :type fixnum)
+  (wanted nil :type (or null double-float))
   (warned-p nil :type boolean))
 
 (defun noting-p (simulation)
   "True if somebody wants to know what is done to SIMULATION."
   (or (simulation-journal simulation) (simulation-past simulation)))
 
+(defun of-itself-p (request)
+  "True if a fork comes to REQUEST by itself, as what goes on there too has asked for it."
+  (or (request-forked-p request) (<= 1 (request-phase request) 4)))
+
+(defun request-act (request simulation operator arguments)
+  "Return the act that SIMULATION begins a tick with REQUEST: for OPERATOR, with ARGUMENTS, which
+are externalized."
+  (make-act :request (simulation-tick simulation) (request-phase request) 0
+            (of-itself-p request) operator arguments (request-asker request)))
+
+(defun change-act (simulation operator arguments)
+  "Return the act that OPERATOR is done here and now with ARGUMENTS, which are externalized."
+  (let ((timeline (simulation-timeline simulation)))
+    (make-act :change (simulation-tick simulation) (phase-here timeline)
+              (timeline-moments timeline)
+              (goes-on-in-forks-p) operator arguments nil)))
+
 ;; Whoever acts may be in any thread.
 (defun add-act (past act)
   (atomic-push act (past-acts past))
   (incf (past-count past)))
-
-(defun phase-here (simulation)
-  "Return the number of the phase of the tick of SIMULATION that this thread is in, 0 if in none."
-  (if (owner-p simulation)
-      (timeline-phase (simulation-timeline simulation))
-      0))
 
 (defun remember (simulation operator arguments &optional request)
   "Let SIMULATION, if it has a past, remember that OPERATOR was asked for with ARGUMENTS, which are
 externalized; by REQUEST, if that is given."
   (let ((past (simulation-past simulation)))
     (when past
-      (add-act past (make-act (if request :request :change)
-                              (simulation-tick simulation)
-                              (phase-here simulation)
-                              (if request
-                                  (or (request-forked-p request) (request-inside-p request))
-                                  (goes-on-in-forks-p))
-                              operator
-                              arguments
-                              (and request (request-asker request)))))))
+      (add-act past (if request
+                        (request-act request simulation operator arguments)
+                        (change-act simulation operator arguments))))))
+
+(defun pending-acts (simulation)
+  "Return what is asked of SIMULATION and waits for the next tick, as acts, the newest first."
+  (loop for request in (timeline-inbox (simulation-timeline simulation))
+        for (operator . arguments) = (request-entry request)
+        collect (request-act request simulation operator (externalize arguments))))
 
 ;; In these phases only what a fork has too can act.
 (defun changing-inside-p (simulation)
   "True in the phases of a tick of SIMULATION in which the world changes."
-  (<= 1 (phase-here simulation) 4))
+  (<= 1 (phase-here (simulation-timeline simulation)) 4))
 
 (defun note-doing (simulation function &rest arguments)
   "Let SIMULATION, if it has a past, remember that from outside something was done that no journal
@@ -91,14 +106,25 @@ nothing."
 
 ;;; Which part of the past is before a moment.
 
-(defun before-end-p (act tick)
-  "True if ACT was done before the end of TICK, not afterwards."
+(defun asked-in-tick-p (act tick)
+  "True if ACT is a request that was made inside of TICK, and is carried out after that."
+  (and (eq :request (act-kind act))
+       (= (act-tick act) tick)
+       (plusp (act-phase act))))
+
+(defun settled-by-p (act tick)
+  "True if ACT, and all before it, was done before the end of TICK."
   (or (< (act-tick act) tick)
-      (and (= (act-tick act) tick) (<= 5 (act-phase act)))))
+      (and (= (act-tick act) tick)
+           (eq :change (act-kind act))
+           (<= 5 (act-phase act)))))
 
 (defun acts-until (tick acts)
-  "Return those of ACTS, the newest first, that were done before the end of TICK: the tail of it."
-  (member-if (lambda (act) (before-end-p act tick)) acts))
+  "Return those of ACTS, the newest first, that were done before the end of TICK, a tail of it; and
+in a list, the newest first, what had been asked for by then and not yet been done."
+  (let ((tail (member-if (lambda (act) (settled-by-p act tick)) acts)))
+    (values tail
+            (remove-if-not (lambda (act) (asked-in-tick-p act tick)) (ldiff acts tail)))))
 
 (defun acts-since (kept acts)
   "Return those of ACTS, the newest first, that were done after KEPT had been made, the oldest

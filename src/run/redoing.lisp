@@ -29,17 +29,22 @@ tick at which it did not come to what it had come to, or NIL."
       (perform-operator (act-operator act) (act-arguments act) simulation
                         (or (act-asker act) "the past"))))
 
+;; What was asked for in the midst of a tick is not to be forgotten when the run is rewound to it.
+(defun date-requests (simulation before phase)
+  "Let the requests to SIMULATION that are not in the inbox BEFORE count as made in PHASE."
+  (dolist (request (ldiff (timeline-inbox (simulation-timeline simulation)) before))
+    (setf (request-phase request) phase)))
+
 ;; What failed then fails again.
 (defun do-again (act redoing)
   "Do again what ACT says."
-  (handler-case (perform-act act (redoing-simulation redoing))
-    (error () (unless (functionp (act-operator act)) (note-straying redoing)))))
+  (let* ((simulation (redoing-simulation redoing))
+         (before (timeline-inbox (simulation-timeline simulation))))
+    (handler-case (perform-act act simulation)
+      (error () (unless (functionp (act-operator act)) (note-straying redoing))))
+    (date-requests simulation before (act-phase act))))
 
 ;;; Requests.
-
-(defun of-itself-p (request)
-  "True if a fork comes to REQUEST by itself."
-  (or (request-forked-p request) (request-inside-p request)))
 
 (defun take-own-requests (simulation)
   "Empty the inbox of SIMULATION. Return the requests that it has come to by itself, oldest first."
@@ -75,8 +80,13 @@ when that is performed."
       (pop (redoing-acts redoing)))))
 
 (defun redo-in-tick (redoing)
-  "Do again what was done in this tick before plans and other participants acted."
-  (loop for act = (next-act redoing (lambda (act) (<= 5 (act-phase act) 6)))
+  "Do again what was done in this tick, after the world had changed, before what goes on in forks
+acted as often as it has by now."
+  (loop with moments = (timeline-moments (simulation-timeline (redoing-simulation redoing)))
+        for act = (next-act redoing (lambda (act)
+                                      (and (eq :change (act-kind act))
+                                           (<= 5 (act-phase act))
+                                           (<= (act-moment act) moments))))
         while act
         unless (act-own-p act) do (do-again act redoing)))
 
@@ -100,15 +110,19 @@ when that is performed."
           (act (- (min goal (act-tick act)) (simulation-tick simulation)))
           (t (- goal (simulation-tick simulation))))))
 
+;; Who takes part is known before the first of them acts: so what came before that is done by then.
 (defun go-on-to (goal redoing)
   "Pass ticks up to GOAL, and do all again on the way."
-  (let ((simulation (redoing-simulation redoing))
-        (observer (lambda (simulation) (declare (ignore simulation)) (redo-in-tick redoing))))
+  (let* ((simulation (redoing-simulation redoing))
+         (timeline (simulation-timeline simulation))
+         (observer (lambda (simulation) (declare (ignore simulation)) (redo-in-tick redoing))))
+    (setf (timeline-on-moment timeline) (lambda () (redo-in-tick redoing)))
     (add-observer observer simulation)
     (loop (redo-between-ticks redoing)
           (when (>= (simulation-tick simulation) goal) (return))
           (run-ticks (ticks-to-go redoing goal) simulation))
-    (remove-observer observer simulation)))
+    (remove-observer observer simulation)
+    (setf (timeline-on-moment timeline) nil)))
 
 (defun redo (simulation acts goal)
   "Let SIMULATION, a fork of the past that is the current one, go on to the tick GOAL, given ACTS

@@ -17,12 +17,14 @@
   (cond ((goes-on-in-forks-p)
          (reject-use "rewind: a plan is at work here, and would undo itself. PROJECT and TRY-BEST ~
                       look ahead instead."))
-        ((or (eq (current-thread) (simulation-thread simulation))
-             (and (owner-p simulation)
-                  (or (timeline-passing-p (simulation-timeline simulation))
-                      (plusp (timeline-phase (simulation-timeline simulation))))))
-         (reject-use "rewind: ticks are passing here. Rewind the run when RUN-TICKS has returned, ~
-                      or from another thread."))
+        ((eq (current-thread) (simulation-thread simulation))
+         (reject-use "rewind: ticks of ~A are passing here, in the thread of its clock. Rewind it ~
+                      at the prompt or the REPL, or from a thread of your own."
+                     (simulation-name simulation)))
+        ((and (owner-p simulation)
+              (or (timeline-passing-p (simulation-timeline simulation))
+                  (plusp (timeline-phase (simulation-timeline simulation)))))
+         (reject-use "rewind: ticks are passing here. Rewind the run when RUN-TICKS has returned."))
         ((and (headless-p simulation) (not (eq simulation *simulation*)))
          (reject-use "rewind: ~A is headless, and not the current simulation here. Rewind it where ~
                       it is: in the body of WITH-SIMULATION, or in CALL-IN-FORK."
@@ -48,12 +50,20 @@
 
 ;;; The run that goes on.
 
-(defun past-until (tick past)
-  "Return what PAST was at the end of TICK."
-  (make-past (past-limit past) (past-keeper past)
-             :forks (remove-if (lambda (kept) (> (kept-tick kept) tick)) (past-forks past))
-             :acts (acts-until tick (past-acts past))
-             :cost (past-cost past)))
+(defun past-until (tick simulation)
+  "Return what the past of SIMULATION was at the end of TICK; and in a list, the newest first, what
+had been asked of it by then and not yet been done."
+  (let* ((past (simulation-past simulation))
+         (acts (past-acts past)))
+    (when (= tick (simulation-tick simulation))
+      (setf acts (append (pending-acts simulation) acts)))
+    (multiple-value-bind (done asked) (acts-until tick acts)
+      (values (make-past (past-limit past) (past-keeper past)
+                         :forks (remove-if (lambda (kept) (> (kept-tick kept) tick))
+                                           (past-forks past))
+                         :acts done
+                         :cost (past-cost past))
+              asked))))
 
 (defun warn-of-straying (run tick)
   (let ((*message-queue* (simulation-messages run)))
@@ -61,15 +71,15 @@
                               ~D on, as it may if it depends on what is outside of its run."
                          tick))))
 
-(defun repeat-past (past tick)
-  "Return a run that is what the one of PAST was at the end of TICK, and the tick at which plans
-strayed on the way, or NIL."
+(defun repeat-past (past asked tick)
+  "Return a run that is what the one of PAST was at the end of TICK, when ASKED had been asked of
+it, and the tick at which plans strayed on the way, or NIL."
   (let* ((kept (first (past-forks past)))
          (run (await-fork (kept-fork kept) nil '()))
+         (acts (acts-since kept (append asked (past-acts past))))
          (done-p nil))
     (unwind-protect
-         (let ((strayed (call-inside run (lambda ()
-                                           (redo run (acts-since kept (past-acts past)) tick)))))
+         (let ((strayed (call-inside run (lambda () (redo run acts tick)))))
            (setf (simulation-past run) past
                  done-p t)
            (values run strayed))
@@ -118,7 +128,7 @@ strayed on the way, or NIL."
   "Let OLD be over, as NEW goes on in its place."
   (let ((reason (format nil "it was rewound to tick ~D, and *SIMULATION* goes on from there"
                         (simulation-tick new))))
-    (setf (simulation-successor old) new)
+    (succeed-in-line new old)
     (retire-robots (simulation-robots old) reason)
     (end-simulation old reason)
     (setf (simulation-past old) nil)))
@@ -163,13 +173,13 @@ strayed on the way, or NIL."
 
 (defun rewind-now (ticks simulation)
   "Do what REWIND says, while nobody else rewinds anything."
-  (multiple-value-bind (past tick)
+  (multiple-value-bind (tick past asked)
       (asking (simulation)
         (check-past simulation)
         (check-how-far ticks simulation)
         (let ((tick (- (simulation-tick simulation) ticks)))
-          (values (past-until tick (simulation-past simulation)) tick)))
-    (multiple-value-bind (run strayed) (repeat-past past tick)
+          (multiple-value-call #'values tick (past-until tick simulation))))
+    (multiple-value-bind (run strayed) (repeat-past past asked tick)
       (replace-run run simulation)
       (when strayed (warn-of-straying run strayed))
       run)))
@@ -187,7 +197,8 @@ SIMULATION must keep forks, see KEEP-FORKS. TICKS is a number from 0, for what w
 last tick, to how many have passed since it began to. Signals WRONG-ARGUMENT that says how far one
 can go back; MISUSE inside of ticks and plans, and where SIMULATION is over."
   (let ((simulation (simulation-meant simulation 'rewind)))
-    (check-argument rewind ticks (whole-p ticks 0) "a whole number of ticks, 0 or more")
+    (check-argument rewind ticks (typep ticks 'unsigned-byte)
+                    "a whole number of ticks, 0 or more")
     (check-not-over simulation 'rewind)
     (check-place-to-rewind simulation)
     (with-lock (*rewinding-lock*)

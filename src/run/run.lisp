@@ -19,7 +19,8 @@
    (environment '() list "what they are, a list (symbol . value), in a fork")
    (left '() list "what they were when a thread at work in the simulation last said so")
    (past nil t "what is kept of the past, or NIL")
-   (successor nil t "the simulation that goes on since this one was rewound, or NIL")
+   (line nil list "the simulation that goes on, in a list that all share of which one was rewound
+to the next, or NIL if there was no rewinding")
    (messages *message-queue* message-queue "the message queue that the simulation reports to")
    (gate nil (or null function)
          "a function of the simulation that says how many ticks may pass before it is asked again")
@@ -106,9 +107,16 @@ other thread can find it before PREPARE, a function, has been called with it."
 
 (defun latest (simulation)
   "Return SIMULATION or, if it was rewound, the one that goes on instead."
-  (loop while (simulation-successor simulation)
-        do (setf simulation (simulation-successor simulation))
-        finally (return simulation)))
+  (let ((line (simulation-line simulation)))
+    (if line (first line) simulation)))
+
+(defun succeed-in-line (new old)
+  "Let NEW be what goes on in the place of OLD, and of what that went on in the place of. None of
+these leads to the next, so that all but the last can be forgotten."
+  (let ((line (or (simulation-line old) (list old))))
+    (setf (first line) new
+          (simulation-line old) line
+          (simulation-line new) line)))
 
 ;;; Who looks on, and who takes part.
 
@@ -168,7 +176,7 @@ SEED. See reading 218."
     (dolist (participant (simulation-participants simulation))
       (participant-reseed participant seed))
     (when (member *lisps-dice* (simulation-variables simulation))
-      (setf (symbol-value *lisps-dice*) (seeded-lisps-dice seed))))
+      (reseed-lisps-dice seed)))
   seed)
 
 (define-operator 'set-seed '(integer) #'set-seed)

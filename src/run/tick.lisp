@@ -23,6 +23,7 @@ have been begun."
 (defun begin-changing (timeline world)
   "Let this thread change WORLD in a tick of TIMELINE."
   (setf (timeline-ticking-p timeline) t
+        (timeline-moments timeline) 0
         (world-writer world) (current-thread))
   (begin-tick-dice (timeline-tick-dice timeline) (world-seed world) (timeline-tick timeline)))
 

@@ -13,14 +13,15 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
            #:pending-events)
   ;; request
   (:export #:request #:make-request #:request-operator #:request-arguments #:request-entry
-           #:request-asker #:request-forked-p #:request-inside-p #:perform)
+           #:request-asker #:request-forked-p #:request-phase #:perform)
   ;; interruptions
   (:export #:request-name #:note-interruption #:interruption #:interruption-tick #:interruption-what
            #:interruption-asker #:interruption-by #:interruption-by-asker)
   ;; timeline
   (:export #:timeline #:make-timeline #:timeline-p #:timeline-of #:timeline-name #:timeline-tick
            #:timeline-agenda #:timeline-run #:timeline-over #:timeline-custody
-           #:timeline-phase #:timeline-ticking-p #:timeline-passing-p #:timeline-notifications
+           #:timeline-phase #:phase-here #:timeline-moments #:timeline-on-moment #:begin-moment
+           #:timeline-ticking-p #:timeline-passing-p #:timeline-notifications
            #:timeline-tick-dice
            #:timeline-inbox #:timeline-pacing #:timeline-fork-p #:check-not-over
            #:check-own-run

@@ -12,7 +12,7 @@
    (operator nil t "what is asked for: an operator's name, or what has one")
    (arguments '() list "what it is asked for with")
    (forked-p (goes-on-in-forks-p) boolean "who asked for it goes on in forks of the run too")
-   (inside-p nil boolean "it was asked for inside of a tick, as by a kicker"))
+   (phase 0 fixnum "the phase of the tick in which it was asked for, 0 between ticks"))
   (:memory
    (asker nil t "a note of who asked for it")))
 

@@ -21,6 +21,8 @@
    (notifications '() list "functions to call at the end of the tick, newest first"))
   (:link
    (phase 0 fixnum "how many phases of the tick that is under way have begun; 0 between ticks")
+   (moments 0 fixnum "how often in the tick what goes on in forks too was told something or acted")
+   (on-moment nil (or null function) "what is to be called before that, or NIL")
    (ticking-p nil boolean "a tick is under way, and the world changes")
    (passing-p nil boolean "somebody passes ticks without a clock")
    (fork-p nil boolean "the timeline is that of a fork")
@@ -81,6 +83,19 @@ given to SIMULATOR.")
   "True if the calling thread may touch what the timeline of OBJECT owns."
   (mine-p (timeline-custody (timeline-of object))))
 
+(defun phase-here (timeline)
+  "Return the number of the phase of the tick of TIMELINE that this thread is in, 0 if in none."
+  (if (owner-p timeline) (timeline-phase timeline) 0))
+
+;;; What goes on in forks acts there by itself, and others do not. Who repeats what these did must
+;;; know between which acts of the former that was.
+
+(defun begin-moment (timeline)
+  "Note that what goes on in forks too is about to be told something, or to act, in a tick of
+TIMELINE after its world has changed."
+  (when (timeline-on-moment timeline) (funcall (timeline-on-moment timeline)))
+  (incf (timeline-moments timeline)))
+
 ;;; Forks look very much like the runs that they are of.
 
 (defun check-own-run (timeline)
@@ -105,7 +120,7 @@ See reading 219."
     (check-own-run timeline)
     (check-not-over timeline)
     (setf (request-asker request) (note-of-asker)
-          (request-inside-p request) (and (timeline-ticking-p timeline) (owner-p timeline)))
+          (request-phase request) (phase-here timeline))
     (atomic-push request (timeline-inbox timeline))
     ;; It may have ended just now, and its inbox may have been emptied for the last time.
     (when (and (timeline-over timeline) (withdraw request timeline))

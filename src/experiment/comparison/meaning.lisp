@@ -64,8 +64,8 @@ else has it in its name."
                           (mapcar #'sample-condition samples))))))
 
 (defun reject-ambiguous (word meanings)
-  (reject-use "~A is ambiguous: it could be ~{~A~#[~; or ~:;, ~]~}. Give more of what you mean, a ~
-               value as FACTOR=VALUE, or a condition's number."
+  (reject-use "~A is ambiguous: it could be ~{~A~#[~; or ~:;, ~]~}. Give more of what you mean: a ~
+               value as FACTOR=VALUE, or a condition by its number or name."
               word
               (if (nthcdr 6 meanings)
                   (append (subseq meanings 0 6)
@@ -126,9 +126,36 @@ and its place; NIL if these are none. Signals MISUSE if they could be those of s
     (unless others (reject-use "There is only one condition, ~A." (sample-condition sample)))
     (loop for other in others collect (list sample other))))
 
+;; Whoever says 4 and 8 may mean what he has varied, or the fourth and the eighth condition.
+(defun contest-of-values (results first second)
+  "Return the contest, see LEVEL-CONTESTS, of FIRST and SECOND if these are integers and both values
+of one factor; NIL if not."
+  (when (and (integerp first) (integerp second) (/= first second))
+    (let ((level (word-of first)) (base (word-of second)))
+      (loop for place in (free-factors results)
+            for levels = (levels results place)
+            when (and (member level levels :test #'string=) (member base levels :test #'string=))
+              return (list place level base)))))
+
+(defun as-meant (results first second)
+  "Return FIRST and SECOND, as words if they are values of one factor and no numbers of conditions.
+Signals MISUSE if they are both."
+  (let ((contest (contest-of-values results first second)))
+    (cond ((null contest) (values first second))
+          ((and (numbered-sample results first) (numbered-sample results second))
+           (reject-ambiguous (format nil "~D against ~D" first second)
+                             (list (format nil "the conditions number ~D and ~D" first second)
+                                   (contest-title results contest))))
+          (t (values (word-of first) (word-of second))))))
+
 (defun pairs-meant (results first second)
   "Return the pairs of samples of RESULTS that are meant by FIRST and SECOND, which may be :ALL, and
 the place of the factor if these are levels of one that several conditions have."
+  (multiple-value-bind (first second) (as-meant results first second)
+    (pairs-of-meant results first second)))
+
+(defun pairs-of-meant (results first second)
+  "Do as PAIRS-MEANT does, with FIRST and SECOND that are as they are meant."
   (let ((several-p (or (rest (samples-meant-by results first))
                        (and (not (eq :all second)) (rest (samples-meant-by results second))))))
     (multiple-value-bind (pairs place)

@@ -1,0 +1,23 @@
+;;;; import-line.lisp -- IMPORT: a map from elsewhere, as robots make them that drive about.
+
+(in-package :ars-magna.cli)
+
+(defun free-middle (map)
+  "Return the point of MAP nearest its middle that a robot can stand at, a list, or NIL."
+  (let ((point (nearest-free-point map (list (/ (map-width map) 2) (/ (map-height map) 2)))))
+    (and point (list (pt-x point) (pt-y point)))))
+
+(defun tell-imported (map report)
+  "Say what MAP is like, of which REPORT is what IMPORT-MAP reports, and what can be done with it."
+  (destructuring-bind (&key width height cell free occupied unknown walls) report
+    (format t "~(~A~): ~D by ~D cells of ~A m, ~D free, ~D occupied, ~D unknown, in ~D walls.~%"
+            (map-name map) width height (amount-text cell) free occupied unknown walls)
+    (format t "For a robot there: (defrobot NAME (~(~A~) (~:[X Y~;~:*~{~,1F~^ ~}~])) 0), and then ~
+               WORLD ~2:*~(~A~).~%"
+            (map-name map) (free-middle map))))
+
+(define-line "IMPORT" (session (file :file "a YAML file, as ROS's map_server keeps them"))
+    (:seeing)
+    "Make a map of the occupancy grid in FILE, and of the image that it names. The map is called
+like FILE."
+  (multiple-value-call #'tell-imported (import-map (native-path file))))

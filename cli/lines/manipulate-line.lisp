@@ -1,0 +1,82 @@
+;;;; manipulate-line.lisp -- MANIPULATE: what robots do to things, by numbers (manual 5.5).
+
+(in-package :ars-magna.cli)
+
+;;; The methods of a manipulation say what is typed: a number of a designator for each object, the
+;;; number of the part that does it, 0 if left out, or nothing if that is the robot; then the rest.
+
+(defun by-part-p (by)
+  "True if BY, a list (variable type), is for a part of the robot."
+  (and (second by) (part-type-p (type-key (second by)))))
+
+(defun method-usage (name method)
+  "Return how METHOD of the manipulation NAME is typed after the word MANIPULATE."
+  (multiple-value-bind (objects by others) (method-shape method)
+    (format nil "~(~A~{ ~A~}~@[ [~A]~]~{ ~A~}~)" name objects
+            (and (by-part-p by) (first by))
+            (mapcar #'first others))))
+
+(defun manipulation-usages (manipulation)
+  "Return how MANIPULATION may be typed after the word MANIPULATE, a list of different texts."
+  (remove-duplicates (loop for method in (manipulation-methods manipulation)
+                           collect (method-usage (manipulation-name manipulation) method))
+                     :test #'string=))
+
+(defun write-manipulations ()
+  (if (all-manipulations)
+      (dolist (manipulation (all-manipulations))
+        (format t "~{  ~A~%~}" (manipulation-usages manipulation)))
+      (format t "No manipulation is defined. DEFMANIPULATION defines one.~%")))
+
+(defun manipulation-called (name)
+  (or (find-manipulation name nil)
+      (reject-line "There is no manipulation ~A.~@[ Did you mean ~A?~] MANIPULATE lists all."
+                   (string-upcase name)
+                   (nearest-name name (mapcar #'manipulation-name (all-manipulations))))))
+
+(defun doer (by data robot)
+  "Return what carries out a method whose resource is BY, if DATA, a list of its number, or (), says
+which part of ROBOT."
+  (if (by-part-p by)
+      (read-argument (type-key (second by)) (if data (first data) 0) robot)
+      robot))
+
+(defun arguments-for (method data robot)
+  "Return the arguments of METHOD for DATA, as typed, with ROBOT; or NIL if they are too many or too
+few."
+  (multiple-value-bind (objects by others) (method-shape method)
+    (let* ((count (length objects))
+           (extra (- (length data) count (length others))))
+      (when (or (zerop extra) (and (= 1 extra) (by-part-p by)))
+        (append (loop for number in (subseq data 0 count)
+                      collect (designator-numbered number robot))
+                (list (doer by (subseq data count (+ count extra)) robot))
+                (nthcdr (+ count extra) data))))))
+
+(defun send-manipulation (session manipulation data)
+  "Let the robot of SESSION carry out MANIPULATION with DATA, as typed."
+  (let ((robot (session-robot)) (errand (make-errand)))
+    (apply #'run-manipulation (manipulation-name manipulation)
+           (append (or (some (lambda (method) (arguments-for method data robot))
+                             (manipulation-methods manipulation))
+                       (reject-line "It is: ~{MANIPULATE ~A~^ or ~}. Objects and parts go by their ~
+                                     numbers." (manipulation-usages manipulation)))
+                   (list (lambda (code value)
+                           (declare (ignore code value))
+                           (setf (errand-done-p errand) t)))))
+    (push errand (session-errands session))))
+
+(defmethod choices ((type (eql :manipulation)) session typed)
+  (declare (ignore session typed))
+  (mapcar #'manipulation-name (all-manipulations)))
+
+(define-line "MANIPULATE" (session (name :manipulation "a manipulation" :optional)
+                                   (args :rest "numbers of designators, then of the hand or so"
+                                          :optional))
+    (:manipulating)
+    "List the manipulations, or carry out the manipulation NAME on the things that the designators
+with the numbers in ARGS denote."
+  (if name
+      (send-manipulation session (manipulation-called name)
+                         (read-data (or args "") (find-line "MANIPULATE")))
+      (write-manipulations)))

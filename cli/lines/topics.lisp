@@ -1,0 +1,235 @@
+;;;; topics.lisp -- all that HELP and APROPOS can tell of besides lines and plans.
+
+(in-package :ars-magna.cli)
+
+;;; Whatever is defined by name is a topic: its kind is listed here once, with the functions that
+;;; tell what there is of it, what each is called, and what is to be said of it.
+
+;;; What is said of each kind.
+
+(defun number-text (number)
+  (if (integerp number) (format nil "~D" number) (amount-text number)))
+
+(defun place-type-words (type)
+  (format nil "PLACE senses whether the robot is in one~:[; PLACE-DESIG 0 ~(~A~) searches for one, ~
+               and takes something else for one with a probability of ~A~;, but no camera finds ~
+               it~]."
+          (place-type-invisible-p type) (place-type-name type)
+          (amount-text (place-type-confusion type))))
+
+(defun attribute-words (attribute)
+  (format nil "~:[A number~;One of ~:*~{~(~A~)~^, ~}~]. ~@[A reading is right with a probability ~
+               of ~A. ~]Seen without being looked for with ~A.~@[ Learnt better together with ~
+               ~{~(~S~)~^, ~}.~]"
+          (attribute-domain attribute)
+          (and (eq :discrete (attribute-kind attribute))
+               (amount-text (attribute-success attribute)))
+          (amount-text (attribute-noticed attribute))
+          (attribute-supporters attribute)))
+
+(defun attribute-values ()
+  "Return lists (value attribute) for the values of all attributes that have names, such as RED."
+  (loop for attribute in (all-attributes)
+        append (loop for value in (attribute-domain attribute)
+                     unless (member value '(t nil)) collect (list value attribute))))
+
+(defun value-title (value)
+  (format nil "~(~S~)" (attribute-name (second value))))
+
+(defun value-words (value)
+  (destructuring-bind (value attribute) value
+    (format nil "OBJ-DESIG 1 non-local ((~(~S ~A~))) searches for things that are so."
+            (attribute-name attribute) value)))
+
+(defun substance-words (substance)
+  (format nil "A camera sees ~A where a wall or thing is of it, unless that says otherwise."
+          (number-text (substance-parameter (substance-name substance)))))
+
+(defun kicker-words (kicker)
+  (format nil "Runs with a probability of ~A in each tick on the things that have it.~@[ ~A~]"
+          (amount-text (kicker-prob kicker))
+          (documentation (kicker-name kicker) 'function)))
+
+(defun manipulation-words (manipulation)
+  (format nil "~{MANIPULATE ~A~^ or ~} carries it out."
+          (manipulation-usages manipulation)))
+
+(defun map-words (map)
+  (format nil "~D by ~D cells.~@[ WORLD ~(~A~) goes there.~]" (map-width map) (map-height map)
+          (and (robots-of map) (map-name map))))
+
+(defun robot-words (blueprint)
+  (format nil "Lives in ~(~A~)." (blueprint-map blueprint)))
+
+(defun experiment-text (experiment)
+  (or (experiment-documentation experiment) "Not documented."))
+
+(defun codes-and-commands ()
+  "Return lists (code command...) for all error codes."
+  (let ((table '()))
+    (dolist (command (all-commands) (nreverse table))
+      (dolist (code (command-errors command))
+        (let ((known (assoc (error-code-keyword code) table :key #'error-code-keyword)))
+          (if known
+              (setf (rest known) (append (rest known) (list command)))
+              (push (list code command) table)))))))
+
+(defun code-name (entry) (error-code-keyword (first entry)))
+
+(defun code-words (entry)
+  (destructuring-bind (code . commands) entry
+    (format nil "~@[~A. ~]Told to the continuations of ~{~(~A~)~^, ~}."
+            (and (stringp (error-code-text code)) (error-code-text code))
+            (mapcar #'command-name commands))))
+
+;;; Names of Lisp.
+
+(defun documented-p (symbol)
+  (some (lambda (kind) (documentation symbol kind)) '(function variable type)))
+
+(defun lisp-names ()
+  "Return a list of the names that users have of the simulator and the worlds, and of their own, as
+far as they are documented; but for parameters."
+  (let ((names '()))
+    (dolist (package '(:ars :nisp :ars-worlds))
+      (do-external-symbols (symbol package) (pushnew symbol names :test #'string=)))
+    (do-symbols (symbol (user-package))
+      (when (eq (user-package) (symbol-package symbol)) (pushnew symbol names :test #'string=)))
+    (sort (remove-if #'find-parameter-called (remove-if-not #'documented-p names)) #'string<)))
+
+(defun find-parameter-called (symbol) (find-parameter symbol nil))
+
+(defun lisp-title (symbol)
+  "Return as what SYMBOL is defined."
+  (cond ((member symbol (all-constructs) :test #'string=) "construct")
+        ((macro-function symbol) "macro")
+        ((fboundp symbol) "function")
+        ((boundp symbol) "variable")
+        (t "type")))
+
+(defun lisp-words (symbol)
+  (format nil "~{~A~^~%~}"
+          (remove-duplicates (loop for kind in '(function variable type)
+                                   for text = (documentation symbol kind)
+                                   when text collect text)
+                             :test #'string=)))
+
+(defun call-text (symbol)
+  "Return how the function or macro SYMBOL is called."
+  (let ((*package* (or (symbol-package symbol) *package*)) (*print-pretty* nil))
+    (format nil "(~(~A~{ ~S~}~))" symbol
+            (ldiff (lambda-list-of symbol) (member '&aux (lambda-list-of symbol))))))
+
+(defun write-lisp-topic (symbol)
+  (format t "~A, ~A~%" symbol (lisp-title symbol))
+  (when (fboundp symbol) (write-filled (call-text symbol) 2))
+  (write-paragraphs (lisp-words symbol) 2))
+
+(defun write-paragraphs (text indent)
+  "Write TEXT from column INDENT on: lines that begin with a blank as they are, others filled."
+  (let ((paragraph '()))
+    (flet ((end-paragraph ()
+             (when paragraph
+               (write-filled (format nil "~{~A~^ ~}" (reverse (shiftf paragraph '()))) indent))))
+      (with-input-from-string (in text)
+        (loop for line = (read-line in nil)
+              while line
+              do (cond ((or (string= line "") (blank-p (char line 0)))
+                        (end-paragraph)
+                        (put-line "~VA~A" indent "" line))
+                       (t (push line paragraph)))))
+      (end-paragraph))))
+
+;;; The kinds.
+
+(defparameter *topic-kinds*
+  '(("line" all-lines line-name line-sentence write-help)
+    ("plan" all-procedures procedure-name plan-documentation write-plan-help)
+    ("parameter" all-parameters parameter-name parameter-sentence write-parameter)
+    ("place type" all-place-types place-type-name place-type-words)
+    ("attribute" all-attributes attribute-name attribute-words)
+    (value-title attribute-values first value-words)
+    ("substance" all-substances substance-name substance-words)
+    ("kicker" all-kickers kicker-name kicker-words)
+    ("manipulation" all-manipulations manipulation-name manipulation-words)
+    ("map" all-maps map-name map-words)
+    ("robot" all-blueprints blueprint-name robot-words)
+    ("experiment" all-experiments experiment-name experiment-text)
+    ("error code" codes-and-commands code-name code-words)
+    (lisp-title lisp-names identity lisp-words write-lisp-topic))
+  "Lists (title lister name words [writer]): what there is of each kind, what one is called, what is
+said of it, and how HELP writes that. The title may be a function.")
+
+(defstruct (topic (:constructor make-topic (kind object name)) (:copier nil))
+  "Something that can be told of: an OBJECT of KIND, an element of *TOPIC-KINDS*."
+  (kind '() :type list :read-only t)
+  (object nil :read-only t)
+  (name "" :type string :read-only t))
+
+(defun all-topics ()
+  (loop for kind in *topic-kinds*
+        append (loop for object in (funcall (second kind))
+                     collect (make-topic kind object
+                                         (string-upcase (string (funcall (third kind) object)))))))
+
+(defun topic-title (topic)
+  (let ((title (first (topic-kind topic))))
+    (if (stringp title) title (funcall title (topic-object topic)))))
+
+(defun topic-words (topic)
+  (funcall (fourth (topic-kind topic)) (topic-object topic)))
+
+(defun bare-name (name)
+  "Return NAME in upper case, without the marks that Lisp has around it: red of :red, max-speed of
+max-speed*."
+  (string-trim ":*'()" (string-upcase name)))
+
+(defun topics-called (name)
+  (let ((name (bare-name name)))
+    (remove-duplicates (remove name (all-topics)
+                               :key (lambda (topic) (bare-name (topic-name topic)))
+                               :test-not #'string=)
+                       :key #'topic-words :test #'equal :from-end t)))
+
+(defun write-topic (topic)
+  (let ((writer (fifth (topic-kind topic))))
+    (cond (writer (funcall writer (topic-object topic)))
+          (t (format t "~A, ~A~%" (topic-name topic) (topic-title topic))
+             (write-filled (topic-words topic) 2)))))
+
+(defmethod choices ((type (eql :topic)) session typed)
+  (append (choices :command session typed)
+          (mapcar (lambda (topic) (string-downcase (topic-name topic))) (all-topics))))
+
+;;; Searching.
+
+(defparameter *most-topics* 40
+  "How many topics APROPOS lists that have a word in their texts only.")
+
+(defun topics-with (word)
+  "Return the topics that have WORD in their names, and those that have it in their texts only."
+  (flet ((in-p (text) (search word text :test #'char-equal)))
+    (let ((topics (all-topics)))
+      (values (remove-if-not (lambda (topic) (in-p (topic-name topic))) topics)
+              (remove-if-not (lambda (topic)
+                               (and (not (in-p (topic-name topic))) (in-p (topic-words topic))))
+                             topics)))))
+
+(defun write-topics (topics)
+  (dolist (topic topics)
+    (put-line "~A" (cut (format nil "  ~24A ~13A ~A" (topic-name topic) (topic-title topic)
+                                (one-line (topic-words topic)))
+                        79))))
+
+(define-line "APROPOS" (session (word :rest "a word, or a part of one"))
+    (:general)
+    "List all that has WORD in its name, or else in what is said of it: lines, plans, parameters,
+place types, attributes, error codes, names of Lisp. HELP tells more of each."
+  (multiple-value-bind (named others) (topics-with word)
+    (let ((more (- (length others) *most-topics*)))
+      (unless (or named others) (reject-line "Nothing has ~A in it." word))
+      (write-topics named)
+      (when others
+        (format t "~:[Said of it~;Also said of it~]:~%" named)
+        (write-topics (subseq others 0 (min *most-topics* (length others)))))
+      (when (plusp more) (format t "  and ~D more.~%" more)))))

@@ -1,0 +1,136 @@
+;;;; quantities.lisp -- numbers as people say them: 90 deg, pi/2, 5 m.
+
+(in-package :ars-magna.cli)
+
+;;; What a command takes as an angle, a length, a speed or a time may be typed with a unit, joined
+;;; to the number or as the next word, and with pi in it. A number alone is in the simulator's own
+;;; units: radians, metres (a cell is one wide), ticks.
+
+(defparameter *quantities*
+  '((angle     :angle  "0.5, pi/2 or 90 deg")
+    (metres    :length "2.5, or 2.5 m")
+    (speed     :speed  "0.5, or 0.5 m/tick")
+    (ticks     :time   "20, or 20 ticks")
+    (tick-span :time   "20, or 20 ticks"))
+  "Lists (argument-type dimension examples).")
+
+(defparameter *units*
+  `((:angle  "an angle"             (1 "rad" "radian" "radians" "rad/tick")
+                                    (,(/ pi 180) "deg" "degree" "degrees" "°" "deg/tick" "°/tick")
+                                    (,(* 2 pi) "turn" "turns"))
+    (:length "a length"             (1 "m" "metre" "metres" "meter" "meters" "cell" "cells")
+                                    (1/100 "cm"))
+    (:speed  "a speed"              (1 "m/tick" "cell/tick" "cells/tick") (1/100 "cm/tick"))
+    (:time   "a time"               (1 "tick" "ticks"))
+    (:clock  "a time of the clock"  (nil "s" "sec" "second" "seconds" "min" "minute" "minutes"))
+    (:pace   "a speed by the clock" (nil "m/s" "km/h" "cells/s" "rad/s" "deg/s")))
+  "Lists (dimension words (factor name...)...): what one of each unit is in the simulator's.")
+
+(defparameter *other-ways*
+  '((:time   :length "GO 5 m drives so far.")
+    (:time   :clock  "Time is counted in ticks; RATE says how many pass in a second.")
+    (:speed  :pace   "Time is counted in ticks; RATE says how many pass in a second.")
+    (:length :time   "GO-FORWARD 5 drives for so many ticks.")
+    (:angle  :length "GO 5 m drives so far."))
+  "Lists (wanted said sentence): what to do instead with a quantity of another dimension.")
+
+(defun dimension-of (type)
+  "Return the dimension of what is of the argument TYPE, or NIL."
+  (second (find type *quantities* :key #'first :test #'same-name-p)))
+
+(defun quantity-examples (type)
+  "Return how an argument of TYPE may be typed, such as \"pi/2 or 90 deg\"; NIL if it is no
+quantity."
+  (third (find type *quantities* :key #'first :test #'same-name-p)))
+
+(defun find-unit (name)
+  "Return a list (dimension factor) for the unit called NAME, or NIL."
+  (loop for (dimension nil . units) in *units*
+        do (loop for (factor . names) in units
+                 when (find name names :test #'string-equal)
+                   do (return-from find-unit (list dimension factor)))))
+
+;;; Joined to the number, it is read by Lisp as a symbol: 90DEG, PI/2, -3PI/4, 5M.
+
+(defun plain-number-in (text)
+  "Return the number that TEXT, of digits, signs, points and slashes, is; NIL if it is none."
+  (let ((*read-eval* nil))
+    (let ((value (ignore-errors (read-from-string text))))
+      (and (realp value) value))))
+
+(defun leading-number (text)
+  "Return the number that TEXT begins with, 1 with no more than a sign, and where it ends."
+  (let ((end (or (position-if-not (lambda (char) (find char "0123456789.+-/")) text)
+                 (length text))))
+    (values (cond ((zerop end) 1)
+                  ((find (subseq text 0 end) '("+" "-") :test #'string=)
+                   (if (char= #\- (char text 0)) -1 1))
+                  (t (plain-number-in (subseq text 0 end))))
+            end)))
+
+(defun pi-and-rest (text)
+  "If TEXT begins with PI, or PI/ and a number, return what that is, and what follows."
+  (if (starts-with-subseq "PI" text)
+      (let* ((over-p (starts-with-subseq "PI/" text))
+             (start (if over-p 3 2))
+             (end (or (and over-p (position-if-not #'digit-char-p text :start start))
+                      (if over-p (length text) start)))
+             (divisor (if over-p (plain-number-in (subseq text start end)) 1)))
+        (and divisor (/= 0 divisor) (values (/ pi divisor) (subseq text end))))
+      (values 1 text)))
+
+(defun joined-quantity (name)
+  "Return the number and the unit, a list or NIL, that NAME, a symbol's, says; or NIL."
+  (multiple-value-bind (number end) (leading-number name)
+    (when (and number (< end (length name)))
+      (multiple-value-bind (factor rest)
+          (pi-and-rest (string-left-trim "*" (string-upcase (subseq name end))))
+        (let ((unit (and rest (string/= rest "") (find-unit rest))))
+          (when (and factor (or unit (equal rest "")) (or (plusp end) (string= rest "")))
+            (values (* number factor) unit)))))))
+
+;;; As the next word.
+
+(defun unit-after (text position)
+  "Return the unit, a list, that stands in TEXT from POSITION on, after blanks, and where it ends;
+NIL if there is none."
+  (let* ((start (or (position-if-not #'blank-p text :start position) (length text)))
+         (end (or (position-if #'blank-p text :start start) (length text)))
+         (unit (find-unit (subseq text start end))))
+    (and unit (values unit end))))
+
+(defun unit-names (dimension)
+  "Return the names of the units of DIMENSION."
+  (loop for (nil . names) in (cddr (assoc dimension *units*))
+        append names))
+
+(defun in-own-units (number unit dimension said reject)
+  "Return NUMBER UNITs in the simulator's units of DIMENSION. If they are of another, call REJECT, a
+function, with what is wrong with what was SAID, in words."
+  (destructuring-bind (&optional (other dimension) (factor 1)) unit
+    (flet ((words (dimension) (second (assoc dimension *units*))))
+      (unless (eq dimension other)
+        (funcall reject (format nil "~A is ~A, and what is wanted is ~A.~@[ ~A~]"
+                                said (words other) (words dimension)
+                                (third (find-if (lambda (way)
+                                                  (and (eq dimension (first way))
+                                                       (eq other (second way))))
+                                                *other-ways*)))))
+      (* number factor))))
+
+(defun read-quantity (datum text start end type reject)
+  "Return the number that DATUM, read in TEXT from START to END, and a unit that may follow it mean
+as an argument of TYPE, and where that ends. What is no quantity, or of no such type, stays as it
+is. REJECT is called with a text that says what is wrong with the unit."
+  (let ((dimension (dimension-of type)))
+    (multiple-value-bind (number unit)
+        (cond ((null dimension) nil)
+              ((realp datum) datum)
+              ((and datum (symbolp datum)) (joined-quantity (symbol-name datum))))
+      (if (null number)
+          (values datum end)
+          (multiple-value-bind (next-unit next-end) (if unit nil (unit-after text end))
+            (let ((end (or next-end end)))
+              (values (in-own-units number (or unit next-unit) dimension
+                                    (subseq text start end) reject)
+                      end)))))))

@@ -1,0 +1,44 @@
+;;;; scripts.lisp -- ./cli/ars-magna SCRIPT: a file of lines as they are typed at the prompt.
+
+(in-package :ars-magna.cli)
+
+;;; A script is a batch: each line has completed before the next is read, and the same lines and
+;;; seed give the same run.
+
+(defun script-path (name)
+  "Return the path of the script NAME, or NIL if there is no such file."
+  (let ((path (native-path name)))
+    (and (pathname-name path) (existing-path path))))
+
+(defun open-script (name)
+  "Return a stream of the lines of the script NAME; - is what is typed."
+  (if (string= name "-")
+      (standard-input *standard-output* t)
+      (make-instance 'typed-text
+                     :octets (open (or (script-path name)
+                                       (reject-usage "There is no script ~A." name))
+                                   :external-format :latin-1))))
+
+(defun object-console ()
+  "Return a console that turns what is written to it into objects on the standard output."
+  (make-console (make-instance 'object-stream :stream (console-stream *standard-output*))))
+
+(defun world-of (robot-name)
+  "Return the map that the robot ROBOT-NAME is defined in."
+  (find-map (blueprint-map (find-blueprint robot-name))))
+
+(defun report-beginning (session robot-name options)
+  "Report what SESSION begins with, if it reports by objects."
+  (report-object (session-account session) "begin"
+                 :program (format nil "ARS MAGNA ~A" *version*)
+                 :robot (string-downcase robot-name)
+                 :world (string-downcase (map-name (world-of robot-name)))
+                 :seed (option-value :seed options 0)
+                 :rate (option-value :rate options)))
+
+(defun report-end (session status)
+  "Report that SESSION is over, and the process will exit with STATUS. Return the status."
+  (let ((status (if (console-trouble (session-console session)) (max 1 status) status)))
+    (report-object (session-account session) "end" :status status
+                                                   :errors (session-errors session))
+    status))

@@ -1,0 +1,88 @@
+;;;; json.lisp -- output for other programs: objects of JSON, one on each line.
+
+(in-package :ars-magna.cli)
+
+;;; Nothing of JSON is ever read here, and what is written is simple, so that a library would be one
+;;; more to install for forty lines. A property list becomes an object, whose keys have underscores
+;;; for hyphens; a vector an array; T, :FALSE and NIL become true, false and null; other symbols are
+;;; strings in lower case.
+
+(defun write-json-string (text stream)
+  (write-char #\" stream)
+  (loop for char across text
+        do (cond ((find char "\"\\") (format stream "\\~C" char))
+                 ((or (< (char-code char) 32) (<= #xD800 (char-code char) #xDFFF))
+                  (format stream "\\u~4,'0X" (char-code char)))
+                 (t (write-char char stream))))
+  (write-char #\" stream))
+
+(defun write-json-number (number stream)
+  (let ((*read-default-float-format* 'double-float))
+    (prin1 (if (integerp number) number (double number)) stream)))
+
+(defun write-json-elements (elements open close stream writer)
+  (write-char open stream)
+  (loop for (element . more) on elements
+        do (funcall writer element)
+           (when more (write-char #\, stream)))
+  (write-char close stream))
+
+(defun write-json (value stream)
+  "Write VALUE to STREAM as JSON, on one line."
+  (flet ((write-pair (pair)
+           (destructuring-bind (key value) pair
+             (write-json-string (substitute #\_ #\- (string-downcase key)) stream)
+             (write-char #\: stream)
+             (write-json value stream))))
+    (typecase value
+      (null (write-string "null" stream))
+      ((eql t) (write-string "true" stream))
+      ((eql :false) (write-string "false" stream))
+      (real (write-json-number value stream))
+      (string (write-json-string value stream))
+      (symbol (write-json-string (string-downcase value) stream))
+      (vector (write-json-elements (coerce value 'list) #\[ #\] stream
+                                   (lambda (element) (write-json element stream))))
+      (cons (write-json-elements (loop for (key value) on value by #'cddr
+                                       collect (list key value))
+                                 #\{ #\} stream #'write-pair))
+      (t (write-json-string (princ-to-string value) stream)))))
+
+;;; Text that is written meanwhile becomes objects too, one for each line.
+
+(defclass object-stream (fundamental-character-output-stream)
+  ((stream :initarg :stream :reader object-stream-target)
+   (line :initform (make-string-output-stream) :reader object-stream-line)
+   (column :initform 0 :accessor object-stream-column))
+  (:documentation "A stream that writes objects of JSON to STREAM; LINE is what has been written of
+a line of text, COLUMN how long that is."))
+
+(defun write-object (object stream)
+  "Write OBJECT, a property list, to STREAM, an object-stream, on a line of its own."
+  (end-text-line stream)
+  (write-json object (object-stream-target stream))
+  (terpri (object-stream-target stream))
+  (finish-output (object-stream-target stream)))
+
+(defun end-text-line (stream &optional (always nil))
+  "Write the text that has been written to STREAM as an object, if there is any, or ALWAYS."
+  (when (or always (plusp (object-stream-column stream)))
+    (setf (object-stream-column stream) 0)
+    (write-object (list :type "output"
+                        :text (get-output-stream-string (object-stream-line stream)))
+                  stream)))
+
+(defmethod stream-write-char ((stream object-stream) char)
+  (cond ((char= char #\Newline) (end-text-line stream t))
+        (t (write-char char (object-stream-line stream))
+           (incf (object-stream-column stream))))
+  char)
+
+(defmethod stream-line-column ((stream object-stream))
+  (object-stream-column stream))
+
+(defmethod stream-force-output ((stream object-stream))
+  (force-output (object-stream-target stream)))
+
+(defmethod stream-finish-output ((stream object-stream))
+  (finish-output (object-stream-target stream)))

@@ -1,0 +1,152 @@
+;;;; cli-newcomers.lisp -- what one types who has read nothing: hints, help on all that has a name.
+
+(in-package :ars-magna.tests)
+
+(def-suite* cli-newcomers :in ars-magna)
+
+;;; Words of other programs.
+
+(test hints.lead-from-what-newcomers-type
+  (loop for (line . words) in '(("left" "TURN-LEFT" "deg") ("forward 5" "GO 5 m" "GO-FORWARD")
+                                ("backwards" "ABOUT-FACE") ("grab" "HAND-GRASP") ("undo" "REWIND")
+                                ("wait 5" "STEP") ("ls" "THINGS"))
+        do (is-true (apply #'has-words-p (complaint line) words) "~A" line)))
+
+(test hints.name-lines-that-there-are
+  (loop for (nil hint) in cli::*hints*
+        do (loop for word in (uiop:split-string hint :separator " ,.:()\"")
+                 when (and (< 2 (length word)) (string= word (string-upcase word))
+                           (every #'alpha-char-p word) (string/= word "FILE"))
+                   do (is (member word (mapcar #'cli:line-name (cli:all-lines))
+                                  :test (lambda (word name) (eql 0 (search word name))))
+                          "~A in ~A" word hint))))
+
+(test words.of-other-programs-will-do
+  (is-true (answers-p '("3") '("(+ 1 2)" "exit" "(+ 3 4)")))
+  (is (equal (type-batch "help") (type-batch "?")))
+  (is (equal (type-batch "help turn") (type-batch "? turn"))))
+
+;;; Whatever has a name.
+
+(test help.knows-all-that-has-a-name
+  (loop for (name . words) in '(("max-speed" "max-speed*" "cells per tick")
+                                ("max-speed*" "The fastest")
+                                ("doorway" "place type" "PLACE-DESIG")
+                                ("red" ":color" "OBJ-DESIG")
+                                (":size" "attribute" "A number")
+                                ("wait-for" "construct" "(wait-for fluent" "Wait in a plan")
+                                ("robot-turn" "function" "(robot-turn robot angle")
+                                ("robot-blocked" "error code" "robot-go-forward")
+                                ("wood" "substance" "120")
+                                ("switch-on" "manipulation" "switch-on lamp [hand]")
+                                ("parlour" "map" "20 by 20")
+                                ("butler" "robot" "parlour")
+                                ("robot-stopped*" "variable" "Pulsed"))
+        do (is-true (apply #'has-words-p (joined (type-batch (format nil "help ~A" name))) words)
+                    "~A" name))
+  (is-true (has-words-p (complaint "help frobnicate") "APROPOS frobnicate")))
+
+(test apropos.searches-names-and-texts
+  (let ((text (joined (type-batch "apropos blocked"))))
+    (is-true (has-words-p text "ROBOT-BLOCKED" "Also said" "ROBOT-GO-FORWARD"))
+    (is (< (search "ROBOT-BLOCKED" text) (search "Also said" text))))
+  (is-true (every (lambda (line) (<= (length line) 79)) (type-batch "apropos robot")))
+  (is-true (has-words-p (complaint "apropos xyzzyplugh") "xyzzyplugh")))
+
+(test params.are-found-by-a-part
+  (is-true (has-words-p (joined (type-batch "params noise")) "motion-noise*"
+                        "discrete-noise-factor*"))
+  (is-true (has-words-p (complaint "params noise 1") "several")))
+
+;;; Slips.
+
+(test parentheses.too-many-are-told-in-a-sentence
+  (is-true (has-words-p (complaint ")") "parenthesis too many"))
+  (let ((lines (type-batch "(list 1 2))" "(list 3)) (list 4)")))
+    (is (equal '("(1 2)" "(3)") (list (first lines) (third lines))))
+    (is-true (has-words-p (second lines) "too many: )" "has been done"))
+    (is-true (has-words-p (fourth lines) "too many: ) (list 4)"))))
+
+(test readtables.print-as-their-names
+  (is-true (answers-p '(":NISP") '("(in-readtable :nisp)"))))
+
+;;; Without Lisp.
+
+(test manipulate.goes-by-numbers
+  (let ((lines (type-batch "(null (set-attribute (find-thing 'lamp) :type :lamp))"
+                           "obj-desig 0 local ((:size 2))" "manipulate switch-on 0"
+                           "(get-attribute (find-thing 'lamp) :lit)"
+                           "manipulate switch-off 0 1" "(get-attribute (find-thing 'lamp) :lit)")))
+    (is (equal '("T" "NIL") (list (nth 3 lines) (nth 5 lines))) "~A" lines))
+  (is-true (member "  switch-on lamp [hand]" (type-batch "manipulate") :test #'string=))
+  (is-true (has-words-p (complaint "manipulate switch-on 0") "no designator 0"))
+  (is-true (has-words-p (complaint "manipulate switch-on") "MANIPULATE switch-on lamp [hand]"))
+  (is-true (has-words-p (complaint "manipulate swich-on 0") "SWITCH-ON")))
+
+(test designators.go-by-numbers-in-lisp
+  (is (equal '("#<Designator 0>" "(#<Designator 0>)" "T")
+             (rest (type-batch "obj-desig 0 local ((:size 2))" "(designator 0)"
+                               "!>butler.designators"
+                               "(eq (designator 0) (first !>butler.designators))"))))
+  (is-true (has-words-p (complaint "(designator 0)") "has none")))
+
+;;; Forks.
+
+(test fork.leaves-the-run-as-it-was
+  (let ((lines (type-batch "go 2.4" "(state-digest)" "fork" "go 3.2" "(robot-x butler)" "step 9"
+                           "fork off" "(state-digest)" "(robot-x butler)")))
+    (flet ((after (line) (second (member line lines :test #'string=))))
+      (is (= 2 (count (nth 3 lines) lines :test #'string=)) "the digest is the same: ~A" lines)
+      (is (string= "Tick 9, headless." (subseq (find "Back" lines :test #'search) 20)))
+      (is (string/= (after "robot-set-speed: Speed set to 0.80") (car (last lines)))))
+    (is-true (has-words-p (joined lines) "In a fork" "FORK OFF" "Back from the fork. Tick"))))
+
+(test fork.goes-into-another-and-as-chance-will-have-it
+  (flet ((states (&rest forks)
+           (remove-if-not (lambda (line) (every #'digit-char-p line))
+                          (apply #'type-batch
+                                 (append '("(dirty-simulation)" "go 2")
+                                         (loop for fork in forks
+                                               append (list fork "go 3" "(state-digest)"
+                                                            "fork off")))))))
+    (destructuring-bind (one two three four) (states "fork 7" "fork 7" "fork" "fork 8")
+      (is (string= one two))
+      (is (string/= one three))
+      (is (string/= one four))))
+  (is (equal '("Tick 1." "Tick 3.")
+             (remove-if-not (lambda (line) (eql 0 (search "Tick" line)))
+                            (type-batch "fork" "step 1" "fork" "step 2" "fork off" "fork off")))))
+
+(test fork.takes-the-plans-along
+  "They go on as time passes there, and in the run itself only afterwards."
+  (let ((text (joined (type-live '("pause" "plan dawdle 1000000" "step 5" "fork" "plans" "stop-plan"
+                                   "step 9" "plans" "world tiny" "fork off" "plans" "quit")))))
+    (is-true (has-words-p text "In a fork, at tick 5." "Plans under way: dawdle." "Tick 14."
+                          "No plan is under way" "A fork has one world"
+                          "Back from the fork. Tick 5"))
+    (is (search "dawdle" text :start2 (search "Back from the fork" text))))
+  (awaiting (null cli::*plan-errands*)))
+
+(test fork.can-be-left-with-the-prompt
+  (is-true (answers-p '("In a fork, at tick 0. STEP lets time pass, FORK OFF leads back." "3")
+                      '("fork" "(+ 1 2)" "quit" "(+ 2 2)"))))
+
+(test fork.says-what-it-takes
+  (is-true (has-words-p (complaint "fork off") "in no fork"))
+  (is-true (has-words-p (complaint "fork soon") "integer")))
+
+;;; Worlds.
+
+(test import.makes-a-map-and-says-what-next
+  (base:with-own-definitions ()
+    (let ((lines (type-batch (format nil "import ~S"
+                                     (uiop:native-namestring
+                                      (project-file "worlds/floors/ward.yaml"))))))
+      (is-true (has-words-p (first lines) "ward: 130 by 100 cells" "166 walls"))
+      (is-true (has-words-p (second lines) "(defrobot NAME (ward (" "WORLD ward"))))
+  (is-true (has-words-p (complaint "import nowhere.yaml") "nowhere.yaml" "no such file")))
+
+(test robot.never-leaves-the-world
+  (is-true (has-words-p (complaint "robot dot") "another world" "WORLD tiny dot" "over"))
+  (let ((text (joined (type-live '("pause" "step 3" "robot dot" "status" "rate" "quit")))))
+    (is-true (has-words-p text "another world" "Tick 3"))))

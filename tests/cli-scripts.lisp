@@ -1,0 +1,172 @@
+;;;; cli-scripts.lisp -- files of prompt lines, and programs that talk to the prompt.
+
+(in-package :ars-magna.tests)
+
+(def-suite* cli-scripts :in ars-magna)
+
+;;; In this Lisp.
+
+(defun with-script-named (name line)
+  "Return LINE with SCRIPT for NAME, if that is in it."
+  (let ((start (search name line)))
+    (if start
+        (uiop:strcat (subseq line 0 start) "SCRIPT" (subseq line (+ start (length name))))
+        line)))
+
+(defun call-as-process (arguments)
+  "Do what ./cli/ars-magna does with ARGUMENTS. Return the lines that it writes to the standard
+output, its status, and what it writes to the error output."
+  (let* ((output (make-string-output-stream))
+         (errors (make-string-output-stream))
+         (base:*message-queue* (base:make-message-queue))
+         (cli::*prompt-robot* nil)
+         (status (let ((*standard-output* (cli::make-console output)) (*error-output* errors))
+                   (handler-case (cli::run-arguments arguments)
+                     (cli::usage-error (condition)
+                       (format errors "~A" condition)
+                       2)))))
+    (values (lines-of (get-output-stream-string output)) status
+            (get-output-stream-string errors))))
+
+(defun run-script (text &rest options)
+  "Return what CALL-AS-PROCESS does for a script of TEXT with OPTIONS; its name is SCRIPT in what is
+written."
+  (uiop:with-temporary-file (:pathname path :stream stream :type "ars")
+    (write-string text stream)
+    :close-stream
+    (let ((name (uiop:native-namestring path)))
+      (multiple-value-bind (lines status errors)
+          (call-as-process (list* name "--world" "tiny" options))
+        (values (mapcar (lambda (line) (with-script-named name line)) lines) status errors)))))
+
+(defparameter *small-script*
+  (joined '("#!/usr/bin/env ars-magna" "# a comment" "turn 90 deg" "(+ 1" "  2)" "frobnicate"
+            "turn 1")))
+
+(test scripts.are-done-line-by-line-and-tell-where-they-err
+  (multiple-value-bind (lines status) (run-script *small-script*)
+    (is (= 1 status))
+    (is (= 4 (length lines)) "~A" lines)
+    (is-true (has-words-p (first lines) "robot-turn: Robot turned"))
+    (is (string= "3" (second lines)))
+    (is-true (has-words-p (third lines) "*ERROR* -> SCRIPT, line 6: There is no command"))
+    (is-true (has-words-p (fourth lines) "robot-turn: Robot turned"))))
+
+(test scripts.end-with-a-status
+  (flet ((status (text &rest options) (nth-value 1 (apply #'run-script text options))))
+    (is (= 0 (status "turn 1")))
+    (is (= 0 (status "")))
+    (is (= 1 (status "(car 1)")))
+    (is (= 1 (status "bin-open 7")))
+    (is (= 0 (status (format nil "quit~%frobnicate")))))
+  (multiple-value-bind (lines status errors) (call-as-process '("no-such-script" "--json"))
+    (is (null lines))
+    (is (= 2 status))
+    (is-true (has-words-p errors "no-such-script" "nor a file" "experiment"))))
+
+(test scripts.stop-at-an-error-if-told-to
+  (multiple-value-bind (lines status) (run-script *small-script* "--stop")
+    (is (= 1 status))
+    (is (= 3 (length lines)) "~A" lines))
+  (is (= 1 (length (run-script (format nil "bin-open 0~%bin-open 0~%turn 1") "--stop"
+                               "--world" "watson")))
+      "what the robot cannot do is an error too"))
+
+(test scripts.are-the-same-run-each-time
+  (flet ((digest (&rest options)
+           (first (last (apply #'run-script (format nil "go 2~%turn 1~%(state-digest)") options)))))
+    (is (string= (digest "--seed" "3") (digest "--seed" "3")))
+    (is (string/= (digest "--seed" "3") (digest "--seed" "4")))))
+
+;;; JSON.
+
+(defun json-text (value)
+  (with-output-to-string (out) (cli::write-json value out)))
+
+(test json.is-written-as-it-should-be
+  (is (string= "{\"a_b\":1,\"c\":[1.5,null,true,false,\"red\"],\"d\":{\"e\":\"x\"}}"
+               (json-text '(:a-b 1 :c #(1.5d0 nil t :false red) :d (:e "x")))))
+  (is (string= "\"q\\\" b\\\\ \\u000A \\u0007 é\""
+               (json-text (format nil "q\" b\\ ~C ~C é" #\Newline (code-char 7)))))
+  (is (string= "[0.3333333333333333,-2,1.0e20]" (json-text #(1/3 -2 1d20))))
+  (is (string= "[]" (json-text #()))))
+
+(defun objects-of-script (text &rest options)
+  "Return the lines that a script of TEXT makes with --json and OPTIONS, but the first."
+  (rest (apply #'run-script text "--json" options)))
+
+(test json.tells-each-message-and-each-end-of-a-line
+  (let ((objects (run-script *small-script* "--json")))
+    (is-true (has-words-p (first objects) "\"type\":\"begin\"" "\"world\":\"tiny\""
+                          "\"rate\":null"))
+    (loop for object in (rest objects)
+          for words in '(("\"message\"" "\"kind\":\"message\"" "Robot turned" "\"line\":3")
+                         ("\"done\"" "\"line\":3" "\"text\":\"turn 90 deg\"" "\"ok\":true")
+                         ("\"output\"" "\"text\":\"3\"")
+                         ("\"done\"" "\"line\":4" "\"ok\":true")
+                         ("\"message\"" "\"kind\":\"error\"" "\"text\":\"There is no" "\"line\":6")
+                         ("\"done\"" "\"line\":6" "\"ok\":false")
+                         ("\"message\"" "\"line\":7")
+                         ("\"done\"" "\"line\":7")
+                         ("\"end\"" "\"status\":1" "\"errors\":1"))
+          do (is-true (apply #'has-words-p object words) "~A" object))
+    (is (= 10 (length objects)))))
+
+(test json.has-the-status-as-data
+  (let ((object (first (objects-of-script "status"))))
+    (is-true (has-words-p object "\"type\":\"status\"" "\"tick\":0" "\"robot\":\"dot\""
+                          "\"position\":[" "\"views\":[[" "\"designators\":[]"))))
+
+(test json.keeps-text-without-a-newline-apart
+  (is-true (has-words-p (joined (objects-of-script "(progn (princ \"half\") (error \"no\"))"))
+                        "{\"type\":\"output\",\"text\":\"half\"}" "\"kind\":\"error\"")))
+
+;;; What cli/README.md shows.
+
+(defun blocks-of-kind (kind)
+  (remove kind (page-blocks "cli/README.md") :key #'page-block-kind :test-not #'equal))
+
+(test cli-readme.its-script-goes-there-and-back
+  (let* ((block (find "Scripts" (blocks-of-kind "text") :key #'page-block-heading
+                                                        :test #'string=)))
+    (multiple-value-bind (lines status)
+        (run-script (joined (page-block-lines block)) "--world" "hall" "--seed" "7")
+      (is (= 0 status))
+      (is-true (has-words-p (car (last lines)) "at ") "~A" lines))))
+
+(test cli-readme.its-numbers-are-read
+  (let ((lines (loop for line in (page-block-lines (first (blocks-of-kind "text")))
+                     append (remove "" (mapcar (lambda (start)
+                                                 (string-trim " " (subseq line start
+                                                                          (search "  " line
+                                                                                  :start2 start))))
+                                               (column-starts line))
+                                    :test #'string=))))
+    (is (< 6 (length lines)))
+    (is (= 0 (nth-value 1 (run-script (joined (cons "pos 48 15" lines)) "--world" "hall")))
+        "~A" lines)))
+
+(defun column-starts (line)
+  "Return where the columns of LINE begin, which are two blanks or more apart."
+  (cons 0 (loop for i from 2 below (length line)
+                when (and (char/= #\Space (char line i)) (string= "  " (subseq line (- i 2) i)))
+                  collect i)))
+
+(test cli-readme.its-line-can-be-typed
+  (let ((cli::*lines* cli::*lines*)
+        (*package* (find-package :ars-magna.cli)))
+    (dolist (block (blocks-of-kind "lisp"))
+      (eval (read-from-string (joined (page-block-lines block)))))
+    (is (equal '("5.00") (type-batch "pos 3 4" "how-far 6 8")))
+    (is-true (has-words-p (joined (type-batch "help how-far")) "HOW-FAR x y" "how far the robot"))))
+
+(test cli-readme.its-python-talks-to-the-prompt
+  (let ((python (first (blocks-of-kind "python"))))
+    (if (eql 0 (base:run-command "python3" '("--version")))
+        (multiple-value-bind (status text)
+            (base:run-command "env" (list "-C" (uiop:native-namestring (project-file ""))
+                                          "python3" "-c" (joined (page-block-lines python)))
+                              :output :string)
+          (is (eql 0 status))
+          (is (equal (page-block-lines (car (last (blocks-of-kind "text")))) (lines-of text))))
+        (skip "There is no python3: nobody talks to the prompt."))))

@@ -1,0 +1,129 @@
+;;;; rewinding-handles.lisp -- what users hold of a run that was rewound leads on, nothing back.
+
+(in-package :ars-magna.tests)
+(in-suite rewinding)
+
+(rpl:def-interp-proc count-for-ever (fluent)
+  (loop (rpl:wait-time 1)
+        (rpl:set-value fluent (1+ (rpl:fluent-value fluent)))))
+
+(defmacro counting-run ((fluent task &rest options) &body body)
+  "Run BODY after 20 ticks in which TASK has counted in FLUENT."
+  `(with-rover (:seed 1 :keep t ,@options)
+     (let* ((,fluent (rpl:create-fluent 'count 0))
+            (,task (driver:begin-plan 'count-for-ever ,fluent)))
+       (declare (ignorable ,task))
+       (run:run-ticks 20)
+       ,@body)))
+
+(test rewind.tasks-have-counterparts
+  (counting-run (count task)
+    (run:rewind 10)
+    (is (eq :evaporated (rpl:task-state task)))
+    (is (eq (run:counterpart task) (first (driver:plans))))
+    (is (eq rover (run:counterpart rover)))
+    (run:rewind 5)
+    (is (eq (run:counterpart task) (first (driver:plans))))
+    (run:run-ticks 5)
+    (is (= 9 (rpl:fluent-value (run:counterpart count))))
+    (run:rewind (tick-of-run))
+    (is (null (run:counterpart task))))
+  (with-rover ()
+    (is-trouble ("a run that was rewound") (run:counterpart rover))))
+
+(test rewind.tasks-can-be-spoken-to
+  "SUSPEND, WAKE-UP, EVAPORATE and END-PLAN mean what a task has become."
+  (counting-run (count task)
+    (run:rewind 10)
+    (flet ((count-after (ticks)
+             (run:run-ticks ticks)
+             (rpl:fluent-value (run:counterpart count))))
+      (is (= 9 (count-after 0)))
+      (is (eq (run:counterpart task) (rpl:suspend task)))
+      (is (= 10 (count-after 5)))
+      (rpl:wake-up task)
+      (is (< 10 (count-after 5))))
+    (run:rewind 3)
+    (driver:end-plan task)
+    (is (null (driver:plans)))
+    (run:rewind 5)
+    (is (= 1 (length (driver:plans))))
+    (rpl:evaporate task)
+    (run:run-ticks 1)
+    (is (null (driver:plans)))))
+
+(test rewind.forks-stand-for-what-they-became
+  (with-rover (:seed 1)
+    (run:run-ticks 3)
+    (let ((fork (run:fork-simulation)))
+      (run:call-in-fork fork (lambda ()
+                               (run:keep-forks)
+                               (run:run-ticks 10)
+                               (run:rewind 6)))
+      (is (= 7 (run:call-in-fork fork #'tick-of-run)))
+      (is (= 9 (run:call-in-fork fork (lambda () (run:run-ticks 2)))))
+      (is (not (eq rover (run:counterpart rover fork))))
+      (run:release-fork fork)
+      (is-trouble ("released") (run:call-in-fork fork (lambda () (run:run-ticks 1)))))))
+
+(test rewind.words-in-a-fork-are-for-its-own-tasks
+  (counting-run (count task)
+    (run:with-fork ()
+      (rpl:suspend task)
+      (run:run-ticks 10)
+      (is (= 20 (rpl:fluent-value count))))
+    (run:run-ticks 10)
+    (is (= 29 (rpl:fluent-value count)))))
+
+(test rewind.commands-of-plans-from-outside-are-heard-again
+  (counting-run (count task)
+    (driver:rpl-robot-turn 1)
+    (run:run-ticks 3)
+    (run:rewind 1)
+    (run:run-ticks 20)
+    (is (< 0.9 (rpl:fluent-value driver:robot-angle-diff*) 1.1))))
+
+(test rewind.nothing-leads-back
+  "Of many runs that were rewound none can be reached but the first and the last; garbage collectors
+that look at the stack may leave some."
+  (counting-run (count task)
+    (keeping-often
+      (let ((runs '()))
+        (loop repeat 20
+              do (push (sb-ext:make-weak-pointer time:*simulation*) runs)
+                 (run:run-ticks 3)
+                 (run:rewind 3))
+        (sb-ext:gc :full t)
+        (is (> 5 (count-if #'sb-ext:weak-pointer-value runs)))))))
+
+;;; Texts.
+
+(test rewind.says-what-to-do-instead
+  (with-rover (:keep t)
+    (run:run-ticks 3)
+    (is-trouble ("at most 3") (run:rewind (expt 10 30))))
+  (keeping-often
+    (live-rover (:rate 500)
+      (let ((text nil))
+        (command:robot-turn rover 0.1 (lambda (&rest ignored)
+                                        (declare (ignore ignored))
+                                        (setf text (trouble-of (lambda () (run:rewind 1))))))
+        (awaiting text)
+        (is-true (has-words-p text "thread of its clock" "REPL") "~A" text)))))
+
+;;; Kept forks of runs whose plans never rest.
+
+(rpl:def-interp-proc never-rest ()
+  (let ((sum 0))
+    (loop (setf sum (mod (1+ sum) 7)))))
+
+(test keep-forks.get-theirs-from-plans-that-never-rest
+  (keeping-often
+    (live-rover (:rate 100 :thinking :real)
+      (driver:rpl-init-robot rover)
+      (command:robot-turn rover 900)
+      (driver:begin-plan 'never-rest)
+      (awaiting (< 1 (length (kept-ticks))))
+      (is (< 1 (length (kept-ticks))))
+      (driver:end-plan :all)
+      (awaiting (null (driver:plans))))))
