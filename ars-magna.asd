@@ -22,7 +22,7 @@
                  (:file "registry") (:file "own-definitions") (:file "messages")
                  (:file "askers") (:file "user-code") (:file "parameters") (:file "physics")
                  (:file "parameters-of-runs")
-                 (:file "kinds") (:file "digesting") (:file "copiers")
+                 (:file "kinds") (:file "facts") (:file "csv") (:file "digesting") (:file "copiers")
                  (:file "manners") (:file "copying") (:file "holding") (:file "fields")
                  (:file "contradictions")
                  (:file "given")
@@ -49,7 +49,8 @@
                  (:file "kickers") (:file "kicker-groups") (:file "attaching")
                  (:file "placing") (:file "setting-attributes") (:file "recipes")
                  (:file "undeclared") (:file "forking") (:file "residents") (:file "new-thing")
-                 (:file "kicking") (:file "defmap") (:file "check") (:file "soundness")))
+                 (:file "kicking") (:file "defmap") (:file "check") (:file "soundness")
+                 (:file "facts")))
    (:module "src/ways" :serial t
     :components ((:file "package") (:file "terrain") (:file "queue") (:file "crossing")
                  (:file "field") (:file "chart") (:file "lines") (:file "descent")
@@ -72,13 +73,15 @@
                  (:file "matching") (:file "sightings") (:file "scanning") (:file "views")
                  (:file "tending") (:file "soundness")))
    (:module "src/command" :serial t
-    :components ((:file "package") (:file "command") (:file "steps") (:file "operation") (:file "ownership")
+    :components ((:file "package") (:file "command") (:file "steps") (:file "operation")
+                 (:file "ownership") (:file "failures")
                  (:file "define-command") (:file "turning") (:file "places") (:file "driving")
                  (:file "following") (:file "handling") (:file "hands") (:file "inserting")
                  (:file "bins") (:file "patterns") (:file "manipulations")
                  (:file "manipulating") (:file "looking") (:file "searching")
                  (:file "tracking") (:file "withdrawing") (:file "turning-cameras")
-                 (:file "approaching") (:file "thinking") (:file "soundness")))
+                 (:file "approaching") (:file "thinking") (:file "soundness")
+                 (:file "facts")))
    (:module "src/run" :serial t
     :components ((:file "package") (:file "participant") (:file "journal") (:file "run")
                  (:file "plain-data") (:file "references") (:file "fingerprint")
@@ -90,7 +93,7 @@
                  (:file "replaced-maps") (:file "sealed-lines")
                  (:file "journal-text") (:file "replay") (:file "redoing") (:file "rewinding")
                  (:file "outer-names") (:file "inventory") (:file "saved-values") (:file "saving")
-                 (:file "restoring") (:file "loading")))
+                 (:file "restoring") (:file "loading") (:file "status")))
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "gcontext") (:file "canvas")
                  (:file "drawing") (:file "text") (:file "svg") (:file "package")
@@ -150,7 +153,7 @@
                  (:file "survival-chart") (:file "rows") (:file "difference-chart")
                  (:file "measure-chart") (:file "drawing-chart") (:file "saving")))
    (:module "src/trails" :serial t
-    :components ((:file "package") (:file "trails") (:file "picture")))
+    :components ((:file "package") (:file "trails") (:file "trajectory") (:file "picture")))
    (:module "rpl/projecting" :serial t
     :components ((:file "package") (:file "rollout") (:file "projection") (:file "question")
                  (:file "rolling-out") (:file "believing") (:file "answering")
@@ -159,12 +162,12 @@
     :components ((:file "package")))
    (:module "src/experiment/question" :serial t
     :components ((:file "values") (:file "condition") (:file "experiment") (:file "clauses")
-                 (:file "defexperiment") (:file "question")))
+                 (:file "defexperiment") (:file "question") (:file "facts")))
    (:module "src/experiment/trial" :serial t
     :components ((:file "outcome") (:file "data") (:file "trial") (:file "version") (:file "reaching")
                  (:file "fingerprint")))
    (:module "src/experiment/table" :serial t
-    :components ((:file "csv") (:file "row") (:file "checking") (:file "lines") (:file "directory")
+    :components ((:file "row") (:file "checking") (:file "lines") (:file "directory")
                  (:file "description") (:file "results") (:file "merging") (:file "shards")))
    (:module "src/experiment/running" :serial t
     :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "rounds")
@@ -183,7 +186,7 @@
    (:module "src/experiment/replay" :serial t
     :components ((:file "aside") (:file "replaying") (:file "failures")))
    (:module "src" :serial t
-    :components ((:file "slots") (:file "faces") (:file "user-package") (:file "ars"))))
+    :components ((:file "slots") (:file "faces") (:file "user-package") (:file "editors") (:file "ars"))))
   ;; The packages are locked once they are loaded.
   :perform (prepare-op (operation system)
              (declare (ignore operation system))
@@ -344,8 +347,9 @@
                  (:file "manual-5-3") (:file "manual-5-3-1") (:file "manual-5-4")
                  (:file "manual-5-5") (:file "manual-b") (:file "manual-b-1")
                  (:file "manual-c") (:file "manual-c-plans") (:file "manual-d")
-                 (:file "manual-e") (:file "hostile-numbers") (:file "ownership")
-                 (:file "users-hands") (:file "src-readme") (:file "rpl-readme")
+                 (:file "manual-e") (:file "hostile-numbers") (:file "ownership") (:file "status")
+                 (:file "users-hands") (:file "at-the-repl") (:file "src-readme")
+                 (:file "readme") (:file "rpl-readme")
                  (:file "experiments-readme") (:file "tutorial") (:file "ways-readme")
                  (:file "floors-readme")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")

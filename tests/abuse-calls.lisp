@@ -78,11 +78,17 @@
   "True if SYMBOL names a reader of a structure's slot, which Lisp itself checks the argument of."
   (equal '(sb-kernel:instance) (sb-kernel:%fun-lambda-list (fdefinition symbol))))
 
+(defun shown-lambda-list (symbol)
+  "Return the lambda list of the function SYMBOL. Of a generic one, its code has none of its own."
+  (if (typep (fdefinition symbol) 'generic-function)
+      (uiop:symbol-call :sb-introspect '#:function-lambda-list symbol)
+      (sb-kernel:%fun-lambda-list (fdefinition symbol))))
+
 (defun parameters-of (symbol)
   "Return lists (name kind) of the parameters of the function SYMBOL; the kinds are NIL, &OPTIONAL,
 &KEY and &REST."
   (loop with kind = nil
-        for parameter in (sb-kernel:%fun-lambda-list (fdefinition symbol))
+        for parameter in (shown-lambda-list symbol)
         for name = (if (consp parameter) (first parameter) parameter)
         if (member name lambda-list-keywords)
           do (setf kind name)

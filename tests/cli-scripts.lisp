@@ -115,7 +115,8 @@ written."
 (test json.has-the-status-as-data
   (let ((object (first (objects-of-script "status"))))
     (is-true (has-words-p object "\"type\":\"status\"" "\"tick\":0" "\"robot\":\"dot\""
-                          "\"position\":[" "\"views\":[[" "\"designators\":[]"))))
+                          "\"position\":[" "\"cameras\":[{" "\"view\":["
+                          "\"live\":" "\"failed\":null" "\"designators\":[]"))))
 
 (test json.keeps-text-without-a-newline-apart
   (is-true (has-words-p (joined (objects-of-script "(progn (princ \"half\") (error \"no\"))"))

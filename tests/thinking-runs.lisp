@@ -178,7 +178,8 @@
 (test live-thinking.is-told-by-status-unless-it-is-real
   (loop for (mode text) in '((:real nil) (:free "free") (:charged "charged"))
         do (live-thinking (mode)
-             (is (equal text (ars-magna.cli::thinking-text simulation))))))
+             (is (equal text (cli::thinking-text
+                              (run:status (first (run:simulation-robots simulation)))))))))
 
 (test live-thinking.modes-change-while-plans-run
   (live-thinking (:charged)

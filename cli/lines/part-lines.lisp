@@ -23,8 +23,8 @@
 
 (defun tracked-text (camera)
   "Return what CAMERA tracks, in words, or NIL."
-  (let ((designator (camera-tracks camera)))
-    (when designator
+  (when (camera-tracks camera)
+    (let ((designator (designator-status (camera-tracks camera))))
       (format nil "~A designator @ ~A" (kind-text designator) (bearing-text designator)))))
 
 (defun write-camera (camera)

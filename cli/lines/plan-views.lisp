@@ -1,4 +1,4 @@
-;;;; plan-views.lisp -- PLAN-TREE, WHY and PLAN-TIMELINE: what plans do, and how they came to it.
+;;;; plan-views.lisp -- PLAN-TREE, WHY and PLAN-TIMELINE: what goes on, and how it came to that.
 
 (in-package :ars-magna.cli)
 
@@ -29,16 +29,23 @@ it is in the middle of, its variables, what it waits for and since when; and who
           ((null (plans)) (reject-line "No plan is under way."))
           (t (reject-line "No task ~D is under way. PLANS shows which are." n)))))
 
-(define-line "WHY" (session (n count "the number of a task")) (:planning)
-    "Tell what brought the task N where it is, also one that is over: which fluent woke it, who had
-set that, and how it was started. Needs a trace: (setf *trace-plans* t) before the plan starts."
-  (write-string
-   (visible (call-reading-plan
-             (let ((plan (first (plans)))) (and plan (task-name plan)))
-             (lambda ()
-               (with-output-to-string (out)
-                 (call-with-plans-in-use
-                  (lambda (runner) (why n :runner runner :stream out)))))))))
+(defun task-why-text (n)
+  "Return what WHY tells of the task number N."
+  (call-reading-plan
+   (let ((plan (first (plans)))) (and plan (task-name plan)))
+   (lambda ()
+     (with-output-to-string (out)
+       (call-with-plans-in-use (lambda (runner) (why n :runner runner :stream out)))))))
+
+(define-line "WHY" (session (n count "the number of a task" :optional)) (:planning)
+    "Tell why the command that failed last did so: what was asked for and when, what its error code
+means and what to try. With N, tell what brought the task N where it is, also one that is over:
+which fluent woke it, who had set that, and how it was started. That needs a trace:
+(setf *trace-plans* t) before the plan starts."
+  (if n
+      (write-string (visible (task-why-text n)))
+      (let ((robot (session-robot)))
+        (still (dolist (sentence (failure-sentences robot)) (write-filled sentence 0))))))
 
 (define-line "PLAN-TIMELINE" (session (file :file "a name that ends in .svg or .png"))
     (:planning)

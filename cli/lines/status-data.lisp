@@ -1,36 +1,40 @@
-;;;; status-data.lisp -- what STATUS tells other programs.
+;;;; status-data.lisp -- what STATUS tells other programs: what (status) returns, as JSON has it.
 
 (in-package :ars-magna.cli)
 
-(defun point-data (x y) (vector x y))
+;;; In Lisp NIL is nothing, false and the empty list, and a list may be a property list or not. So
+;;; here is said by their keys what the values are, where a program could not tell.
 
-(defun designator-data-of (designator)
-  (list :number (designator-number designator)
-        :type (designator-type designator)
-        :distance (designator-distance designator)
-        :angle (designator-angle designator)))
+(defparameter *keys-of-objects* '(:cameras :hands :bins :sensors :under-way :interrupted :designators)
+  "The keys whose values are lists of property lists.")
 
-(defun robot-data (robot)
-  "Return what STATUS tells of ROBOT, as data."
-  (list :tick (now)
-        :robot (string-downcase (robot-name robot))
-        :world (string-downcase (simulation-name *simulation*))
-        :position (multiple-value-call #'point-data (robot-position robot))
-        :last-move (multiple-value-call #'point-data (robot-last-move robot))
-        :last-move-estimate (multiple-value-call #'point-data (robot-last-move-estimate robot))
-        :angle (robot-angle robot)
-        :speed (robot-speed robot)
-        :turn-angle (robot-turn-angle robot)
-        :place (robot-last-place robot)
-        :views (map 'vector (lambda (camera) (coerce (glance camera) 'vector))
-                    (robot-cameras robot))
-        :hands (map 'vector (lambda (hand)
-                              (and (hand-holding hand) (princ-to-string (hand-holding hand))))
-                    (robot-hands robot))
-        :designators (map 'vector #'designator-data-of (live-designators robot))))
+(defparameter *keys-of-lists* '(:view :contents :slots :data)
+  "The keys whose values are lists, which may be empty.")
+
+(defparameter *keys-of-truths* '(:live :closed)
+  "The keys whose values are true or false.")
+
+(defun arrays-for-lists (value)
+  "Return VALUE with vectors in place of lists."
+  (if (and (consp value) (null (cdr (last value))))
+      (map 'vector #'arrays-for-lists value)
+      value))
+
+(defun value-for-json (key value)
+  (cond ((member key *keys-of-objects*) (map 'vector #'object-for-json value))
+        ((member key *keys-of-truths*) (if value t :false))
+        ((and (eq key :failed) value) (object-for-json value))
+        ((and (member key *keys-of-lists*) (null value)) #())
+        (t (arrays-for-lists value))))
+
+(defun object-for-json (plist)
+  "Return PLIST with values that WRITE-JSON takes for what they are."
+  (loop for (key value) on plist by #'cddr
+        collect key
+        collect (value-for-json key value)))
 
 (defun report-status (session robot)
   "Report how ROBOT is, whose world stands still, if SESSION reports by objects. True if it does."
   (let ((account (session-account session)))
     (when (reports-p account)
-      (apply #'report-object account "status" (robot-data robot)))))
+      (apply #'report-object account "status" (object-for-json (status robot))))))

@@ -3,96 +3,75 @@
 (in-package :ars-magna.cli)
 
 ;;; The layout of STATUS is that of the session in manual E, with a line for the estimated change
-;;; of position, which the manual lists and its session leaves out.
+;;; of position, which the manual lists and its session leaves out. What it shows is what (status)
+;;; returns.
 
-(defun glance (camera)
-  "Return what CAMERA sees now. The run does not notice: dice and last view stay as they
-were (reading 201)."
-  (let* ((dice (world-dice (robot-world (part-robot camera)) :looking))
-         (state (dice-state dice))
-         (last-view (camera-last-view camera)))
-    (unwind-protect (take-view camera)
-      (setf (dice-state dice) state
-            (camera-last-view camera) last-view))))
-
-(defun view-text (camera)
-  (format nil "~:[~;TRACK ~]~{~,2F~^ ~}" (camera-tracks camera) (glance camera)))
-
-(defun write-views (robot)
-  (loop for camera across (robot-cameras robot)
+(defun write-views (cameras)
+  (loop for camera in cameras
         for start = "View:  " then "          "
-        do (put-line "~ACamera ~D: ~A" start (camera-index camera) (view-text camera))))
+        do (put-line "~ACamera ~D: ~:[~;TRACK ~]~{~,2F~^ ~}" start
+                     (getf camera :number) (getf camera :tracks) (getf camera :view))))
 
-(defun own-slots (part)
-  "Return what is known of the slots that the kind of PART has besides those that all parts have."
-  (set-difference (kind-slots (kind-of part))
-                  (kind-slots (find 'part (all-kinds) :key #'kind-name))))
-
-(defun write-sensors (robot)
-  "Show the parts of ROBOT that are of kinds of the user's own: their state and memory."
-  (loop for part across (robot-sensors robot)
-        do (put-line "~A:~{ ~A~^,~}" part
-                     (loop for slot in (reverse (own-slots part))
-                           when (member (kind-slot-role slot) '(:state :memory))
-                             collect (format nil "~(~A~) ~A" (kind-slot-name slot)
-                                             (funcall (kind-slot-reader slot) part))))))
+(defun write-sensor (sensor)
+  "Show SENSOR, a part of a kind of the user's own: its state and memory."
+  (put-line "~A:~:{ ~(~A~) ~A~:^,~}" (getf sensor :name) (getf sensor :slots)))
 
 (defun write-designator (designator)
-  (put-line "~D ~A @ ~A" (designator-number designator)
-            (kind-text designator) (bearing-text designator))
-  (let ((data (designator-data designator)))
+  (put-line "~D ~A @ ~A" (getf designator :number) (kind-text designator)
+            (bearing-text designator))
+  (let ((data (getf designator :data)))
     (if (consp (first data))
         (write-descriptor data)
         (put-line "  ~{~:(~A~)~^ ~}" data))))
 
-(defun write-designators (robot)
-  (format t "Designators:~%")
-  (mapc #'write-designator (live-designators robot)))
+(defun write-position (label position)
+  (format t "~19A(~{~,2F~^,~})~%" label position))
 
-(defun write-position (label x y)
-  (format t "~19A(~,2F,~,2F)~%" label x y))
+(defun entry-text (entry control)
+  "Return what ENTRY, of :UNDER-WAY or :INTERRUPTED, says, formatted by CONTROL, behind its part."
+  (destructuring-bind (&key part command for by by-for tick) entry
+    (format nil "~@[~A: ~]~?" part control (list command for by by-for tick))))
 
 ;; A line of the manual's session would be in the way while nothing goes on.
-(defun write-ownership (robot)
-  "Show whose commands ROBOT and its parts carry out, and whose were interrupted last by whose."
-  (dolist (resource (cons robot (robot-parts robot)))
-    (let ((name (if (robot-p resource) "" (format nil "~A: " resource))))
-      (loop for (label text) in `(("Under way:" ,(under-way-text resource))
-                                  ("Interrupted:" ,(interruption-text resource)))
-            when text do (put-line "~19A~A~A" label name text)))))
+(defun write-ownership (status)
+  "Show whose commands are carried out, and whose were interrupted last by whose."
+  (loop for entry in (getf status :under-way)
+        do (put-line "~19A~A" "Under way:" (entry-text entry "~(~A~), for ~A")))
+  (loop for entry in (getf status :interrupted)
+        do (put-line "~19A~A" "Interrupted:"
+                     (entry-text entry "~(~A~), for ~A, by ~(~A~), for ~A, at tick ~D"))))
 
-(defun thinking-text (simulation)
-  "Return in words what thinking costs in SIMULATION, or NIL if that is as it is by default."
-  (let ((mode (simulation-thinking simulation)))
+(defun thinking-text (status)
+  "Return in words what thinking costs, by STATUS, or NIL if that is as it is by default."
+  (let ((mode (getf status :thinking)))
     (cond ((consp mode) (format nil "charged, and a tick for ~D steps" (third mode)))
           ((eq :charged mode) "charged")
-          ((and (eq :free mode) (live-p simulation)) "free"))))
+          ((and (eq :free mode) (getf status :live)) "free"))))
 
 ;; As readings 17 and 199 say.
-(defun write-status (robot)
-  (multiple-value-call #'write-position "Position:" (robot-position robot))
-  (multiple-value-call #'write-position "D Position:" (robot-last-move robot))
-  (multiple-value-call #'write-position "Est D Position:" (robot-last-move-estimate robot))
-  (loop for (label number) in `(("Angle:" ,(robot-angle robot))
-                                ("Speed:" ,(robot-speed robot))
-                                ("Turn Angle:" ,(robot-turn-angle robot)))
-        do (format t "~19A~,2F~%" label number))
-  (write-views robot)
-  (write-sensors robot)
-  (format t "~19A~A~%" "Place:" (robot-last-place robot))
-  (write-ownership robot)
-  (let ((thinking (thinking-text (robot-simulation robot))))
+(defun write-status (status)
+  (loop for (label key) in '(("Position:" :position) ("D Position:" :last-move)
+                             ("Est D Position:" :estimated-last-move))
+        do (write-position label (getf status key)))
+  (loop for (label key) in '(("Angle:" :angle) ("Speed:" :speed) ("Turn Angle:" :turn-angle))
+        do (format t "~19A~,2F~%" label (getf status key)))
+  (write-views (getf status :cameras))
+  (mapc #'write-sensor (getf status :sensors))
+  (format t "~19A~A~%" "Place:" (getf status :place))
+  (write-ownership status)
+  (let ((thinking (thinking-text status)))
     (when thinking (format t "~19A~A~%" "Thinking:" thinking)))
-  (write-designators robot))
+  (format t "Designators:~%")
+  (mapc #'write-designator (getf status :designators)))
 
 (define-line "STATUS" (session)
     (:seeing)
     "Show the robot: position, last change of position, real and estimated, heading, speed, turning
 speed, the views of its cameras, the place it sensed last, whose commands it and its parts carry
 out, whose was interrupted last by whose, what thinking costs unless that is as usual, its
-designators."
+designators. In Lisp: (status)."
   (let ((robot (session-robot)))
-    (still (or (report-status session robot) (write-status robot)))))
+    (still (or (report-status session robot) (write-status (status robot))))))
 
 (defun where-text (thing)
   (let ((location (thing-location thing)))

@@ -34,13 +34,12 @@
                          collect (list key (value-text value number-text))))))
 
 (defun kind-text (designator)
-  "Return what DESIGNATOR is for, such as Local Object."
-  (format nil "~:(~A~) ~:[Place~;Object~]" (designator-type designator)
-          (listp (first (designator-data designator)))))
+  "Return what DESIGNATOR, as STATUS tells of it, is for, such as Local Object."
+  (format nil "~:(~A ~A~)" (getf designator :type) (getf designator :of)))
 
 (defun bearing-text (designator)
-  "Return the distance and the angle of DESIGNATOR."
-  (format nil "~,2F, ~,2F" (designator-distance designator) (designator-angle designator)))
+  "Return the distance and the angle of DESIGNATOR, as STATUS tells of it."
+  (format nil "~,2F, ~,2F" (getf designator :distance) (getf designator :angle)))
 
 (defun location-text (part)
   "Return where PART is, if inside something (manual E; reading 202)."

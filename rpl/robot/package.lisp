@@ -12,7 +12,8 @@
                 #:hog-seconds)
   (:import-from :ars-magna.run
                 #:simulation-tick #:add-observer #:remove-observer #:run-ticks #:call-as-owner
-                #:simulation-over #:simulation-seed #:simulation-agenda #:simulation-thread
+                #:robot-meant #:simulation-over
+                #:simulation-seed #:simulation-agenda #:simulation-thread
                 #:simulation-timeline #:simulation-robots #:robot-simulation
                 #:*simulation-variables* #:*simulator-hooks* #:add-participant
                 #:remove-participant #:participant-after-tick #:participant-busy-p
@@ -40,7 +41,7 @@
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p #:*realm*
                 #:realm-source #:leave-realm #:source-realm #:at-home #:entity #:here
                 #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
-                #:decide #:withdraw #:task-frame #:entity-realm #:entity-like
+                #:reasons #:decide #:withdraw #:task-frame #:entity-realm #:entity-like
                 #:*on-outside-change* #:note-word #:task-now)
   ;; fluents
   (:export #:robot-stopped* #:robot-movement-error* #:robot-angle-diff* #:robot-arrived-at*

@@ -37,3 +37,26 @@ ALL is true, also the whole stack of each, its variables, and the valves: see PR
   "Do as RUN-PLAN, but stop before each expression of PLAN: see STEP-TASK."
   (let ((*step-plans* t))
     (apply #'run-plan plan arguments)))
+
+;;; Why commands failed.
+
+(defmethod reasons ((robot robot) runner)
+  (declare (ignore runner))
+  (asking (robot) (failure-sentences robot)))
+
+(defmethod reasons ((part part) runner)
+  (declare (ignore runner))
+  (asking (part) (failure-sentences part)))
+
+(defun robot-that-failed-last (simulation)
+  "Return the robot of SIMULATION of which a command failed last, or else its first one."
+  (flet ((tick-of-failure (robot) (or (getf (last-failure robot) :tick) -1)))
+    (loop with last = (robot-meant nil 'why)
+          for robot in (simulation-robots simulation)
+          when (> (tick-of-failure robot) (tick-of-failure last)) do (setf last robot)
+          finally (return last))))
+
+(defmethod reasons ((subject null) runner)
+  (if runner
+      (call-next-method)
+      (reasons (robot-that-failed-last (current-simulation)) nil)))

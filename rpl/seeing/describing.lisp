@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.seeing)
 
-(defun write-facts (stream &rest items)
+(defun write-lines (stream &rest items)
   "Write to STREAM each of ITEMS, alternating a name and a text, on a line; none whose text is NIL."
   (loop for (name text) on items by #'cddr
         when text do (format stream "  ~A: ~A~%" name text)))
@@ -17,7 +17,7 @@
 
 (defmethod describe-object ((task task) stream)
   (head task stream)
-  (write-facts stream
+  (write-lines stream
                "State" (task-state-text task)
                "Part of" (and (task-parent task) (form-text (task-parent task) 70))
                "Path" (format nil "~{~A~^ > ~}" (task-path task))
@@ -43,7 +43,7 @@
   (head fluent stream)
   (let ((sources (remove fluent (base-fluents fluent)))
         (clients (remove nil (mapcar #'client-text (fluent-watchers fluent)))))
-    (write-facts stream
+    (write-lines stream
                  "Name" (form-text (fluent-name fluent))
                  "Value" (handler-case (form-text (fluent-value fluent) 70)
                            (error (condition) (format nil "error: ~A" (own-text condition))))
@@ -53,7 +53,7 @@
 
 (defmethod describe-object ((valve valve) stream)
   (head valve stream)
-  (write-facts stream
+  (write-lines stream
                "Owner" (if (valve-owner valve) (form-text (valve-owner valve) 70) "nobody")
                "Queue" (and (valve-requests valve)
                             (format nil "~{~A~^, ~}"
@@ -63,7 +63,7 @@
 (defmethod describe-object ((procedure procedure) stream)
   (head procedure stream)
   (let ((name (procedure-name procedure)))
-    (write-facts stream
+    (write-lines stream
                  "Called as" (format nil "(~A~{ ~A~})" (if name (form-text name) "call-plan ...")
                                      (mapcar #'form-text (procedure-lambda-list procedure)))
                  "Defined" (if (procedure-body procedure) nil "not yet, or no longer")

@@ -14,7 +14,7 @@ the debugger's side of plans. Changes nothing.")
   ;; history
   (:export #:task-ancestry #:task-commands #:task-failures #:task-history #:trace-of)
   ;; why
-  (:export #:why)
+  (:export #:why #:reasons)
   ;; spans
   (:export #:bar #:bar-call-p #:bar-commands #:bar-depth #:bar-end #:bar-failure #:bar-form
            #:bar-label #:bar-name #:bar-outcome #:bar-parent #:bar-parts #:bar-serial

@@ -1,4 +1,4 @@
-;;;; why.lisp -- in sentences, what brought a task where it is.
+;;;; why.lisp -- in sentences, what brought something where it is: of tasks, from the trace.
 
 (in-package :ars-magna.rpl.seeing)
 
@@ -209,19 +209,43 @@ number END, if by no wake-up; or NIL."
                               more)))
         sentences)))
 
-(defun why-sentences (which runner)
-  (check-argument why which (typep which '(or task (integer 1)))
-                  "a task, as begin-plan returns, or the number of one")
+(defgeneric reasons (subject runner)
+  (:documentation "Return a list of sentences that say what brought SUBJECT where it is; RUNNER, if
+not NIL, has the tasks that are meant.")
+  (:method (subject runner)
+    (declare (ignore runner))
+    (reject-argument 'why 'subject subject
+                     "a robot or a part of one, for the command that failed last; a task, or its
+number; or nothing")))
+
+(defun task-reasons (which runner)
   (multiple-value-bind (trace number) (trace-to-read which runner)
     (start-of number trace)             ; or there is none
     (append (shortened (own-sentences number trace))
             (start-sentences number trace))))
 
+(defmethod reasons ((task task) runner)
+  (task-reasons task runner))
+
+(defmethod reasons ((number integer) runner)
+  (if (plusp number) (task-reasons number runner) (call-next-method)))
+
+;; Who may leave the first argument out, and give the others by name, needs a list to take apart.
 (addition why)
-(defun why (task &key runner (stream *standard-output*))
-  "Write to STREAM, from the trace, what brought TASK, over or not, or the task of that number,
-where it is: what happened to it, the last first, which fluent woke it and who had set that, and
-how it and those that it is part of were started. Signals MISUSE if no trace was kept: see
-*TRACE-PLANS*."
-  (format stream "~{~A~%~}" (why-sentences task runner))
-  (values))
+(defun why (&rest arguments)
+  "Write in sentences, to :STREAM (*STANDARD-OUTPUT*), why something is as it is. Return nothing.
+\(why) and (why ROBOT), or a part of one, tell of the command that failed or was interrupted last:
+what was asked for, when and by whom, which error code came of it, what that means and what to try.
+\(why TASK), or the number of one, tells from the trace what brought a task of a plan, over or not,
+where it is: what happened to it, the last first, which fluent woke it and who had set that, and how
+it and those that it is part of were started; :RUNNER says whose, of several. Signals MISUSE if no
+trace was kept: see *TRACE-PLANS*; and WRONG-ARGUMENT."
+  (multiple-value-bind (subject options)
+      (if (keywordp (first arguments))
+          (values nil arguments)
+          (values (first arguments) (rest arguments)))
+    (destructuring-bind (&key runner (stream *standard-output*)) options
+      (format stream "~{~A~%~}" (reasons subject runner))
+      (values))))
+
+(show-lambda-list 'why '(&optional subject &key runner (stream *standard-output*)) #'why)

@@ -81,3 +81,22 @@ but a function."
                                     (sb-introspect:find-definition-sources-by-name symbol kind))
                      for file = (multiple-value-list (file-of-source source))
                      when (first file) collect file)))
+
+;;; Editors ask Lisp where a name is defined, as a function, a variable and so on. What only we know
+;;; the place of is told with the declarations of that name, as nothing else is free for it.
+
+(defun source-at (file position operator)
+  "Return, as SBCL has it, that something is defined by OPERATOR in FILE at POSITION."
+  (uiop:symbol-call :sb-introspect '#:make-definition-source
+                    :pathname (uiop:parse-native-namestring file)
+                    :character-offset position :description (list operator)))
+
+(defun tell-sources (function)
+  "Let whoever asks where a symbol is defined be told also what FUNCTION of that returns, lists
+\(file position operator)."
+  (wrap-function 'sb-introspect:find-definition-sources-by-name
+                 (lambda (original name type)
+                   (append (funcall original name type)
+                           (and (eq type :declaration) (symbolp name)
+                                (loop for place in (funcall function name)
+                                      collect (apply #'source-at place)))))))

@@ -77,12 +77,21 @@ where in the text that stands.")
   "Return where FORM stands in the text that is being compiled or loaded: a list of the position
 after which the form at top level around it begins, and of numbers from 0, which element of that it
 is in, which element of this, and so on. Return NIL if that is not known."
-  (if (and *kept-place* (eq form (first *kept-place*)))
-      (rest *kept-place*)
-      (destructuring-bind (&optional top . numbers) (reverse (nthcdr 2 (place-of form)))
-        (let ((positions (positions-of-forms)))
-          (and top positions (< top (length positions))
-               (cons (aref positions top) numbers))))))
+  (cond
+    ((and *kept-place* (eq form (first *kept-place*))) (rest *kept-place*))
+    ((edited-file) nil)
+    (t (destructuring-bind (&optional top . numbers) (reverse (nthcdr 2 (place-of form)))
+         (let ((positions (positions-of-forms)))
+           (and top positions (< top (length positions))
+                (cons (aref positions top) numbers)))))))
+
+;;; An editor may have a piece of a file compiled: it copies that to a file of its own, and tells
+;;; the compiler where it is from.
+
+(defun edited-file ()
+  "Return the name of the file of which an editor has a piece compiled, a string, or NIL."
+  (let ((file (getf (value-if-bound (compiler-variable '#:*source-plist*)) :emacs-filename)))
+    (and *compile-file-truename* (stringp file) file)))
 
 ;;; What can be said only when all of a file has been read, or of all files of a system.
 ;;;

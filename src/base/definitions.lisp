@@ -34,6 +34,17 @@ loaded; NIL if it was typed."
   "Return a number for the form of the definition that is being carried out, or NIL."
   (and *definition* (form-digest (defining-form *definition*))))
 
+(defun current-head ()
+  "Return operator and name of the definition that is being carried out, in a list."
+  (and *definition* (head (defining-form *definition*))))
+
+(defun current-docstring ()
+  "Return what the author of the definition that is being carried out says there of what it defines:
+the value of :documentation, or the first string behind the name; NIL if there is neither."
+  (let* ((parts (and *definition* (cddr (defining-form *definition*))))
+         (text (or (second (member :documentation parts)) (find-if #'stringp parts))))
+    (and (stringp text) text)))
+
 (defun title (operator name)
   "Return what the definition of NAME by OPERATOR is called in messages, such as \"defmap yard\"."
   (let ((name (abridged name)))

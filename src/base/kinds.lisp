@@ -232,14 +232,25 @@ without ROLES, for each."
         when (or (null roles) (member (kind-slot-role slot) roles))
           collect (list (kind-slot-name slot) (slot-content slot object) (kind-slot-text slot))))
 
+(defun slots-to-show (object)
+  "Return lists (title (name value text)...) of the slots of OBJECT, a structure: by role if it is
+of a kind, else all under one title, without texts."
+  (if (kind-of object)
+      (loop for (role title) in '((:fixed "as it was made") (:state "state") (:memory "memory")
+                                  (:scratch "scratch") (:link "links"))
+            for slots = (object-slots object role)
+            when slots collect (cons title slots))
+      (list (cons "slots" (loop for name in (class-slot-names (class-of object))
+                                collect (list name (slot-value object name) nil))))))
+
 (defun describe-by-kind (object stream)
-  "Write to STREAM what OBJECT is and what is in it, by role."
-  (format stream "~&~S~%" object)
-  (loop for (role text) in '((:fixed "as it was made") (:state "state") (:memory "memory")
-                             (:scratch "scratch") (:link "links"))
-        for slots = (object-slots object role)
-        do (when slots
-             (format stream "~& ~A:~%~:{  ~(~22A~) ~S  (~A)~%~}" text slots))))
+  "Write to STREAM what OBJECT is, what people want to know of it, and what is in it, by role."
+  (write-facts object stream)
+  (loop for (title . slots) in (slots-to-show object)
+        do (format stream "~& ~A:~%" title)
+           (loop for (name value text) in slots
+                 do (format stream "  ~(~22A~) ~A  (~A)~%" name (cut (fact-text value) 200)
+                            text))))
 
 ;;; Reset.
 

@@ -84,7 +84,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:debugger-hook #:with-debugger-hook)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:reading-trouble
-           #:text-of-condition)
+           #:text-of-condition #:editors-output)
   ;; dice, random
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice
@@ -101,6 +101,10 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:call-as-definition
            #:check-function-name #:other-definition-p #:in-file-p #:missing-name #:read-value
            #:clause-place #:skip-definition #:skip-clause #:read-again)
+  ;; facts
+  (:export #:facts #:known-facts #:define-facts #:slots-to-show #:listed #:fact-text)
+  ;; csv
+  (:export #:csv-line #:csv-texts #:broken-line #:broken-line-text)
   ;; user-macros
   (:export #:define-user-macro #:user-macro-form #:call-blaming-form)
   ;; registry

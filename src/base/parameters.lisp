@@ -37,6 +37,10 @@
   "Return what PARAMETER is called, a lower-case string such as \"max-speed*\"."
   (string-downcase (parameter-symbol parameter)))
 
+(defmethod print-object ((parameter parameter) stream)
+  (print-unreadable-object (parameter stream :type t)
+    (write-string (parameter-name parameter) stream)))
+
 (defun parameter-aliases (parameter)
   "Return what PARAMETER is called without its final star, in a list."
   (list (string-right-trim "*" (symbol-name (parameter-symbol parameter)))))

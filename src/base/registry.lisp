@@ -10,15 +10,20 @@
 ;;; writing is done under one lock.
 
 (defstruct (entry (:constructor make-entry (name object source variable
-                                            &optional (digest (current-form-digest))))
+                                            &optional (digest (current-form-digest))
+                                              (head (current-head))
+                                              (documentation (current-docstring))))
                   (:copier nil))
   "That NAME means OBJECT, by a definition in SOURCE; VARIABLE, if any, holds what it stands for.
-DIGEST is a number for the form of the definition, or NIL if there was none."
+DIGEST is a number for the form of the definition, or NIL if there was none, HEAD its operator and
+name, DOCUMENTATION what its author says there of what is defined."
   (name nil :type symbol :read-only t)
   (object nil :read-only t)
   (source nil :type list :read-only t)
   (variable nil :type symbol :read-only t)
-  (digest nil :type (or null integer) :read-only t))
+  (digest nil :type (or null integer) :read-only t)
+  (head '() :type list :read-only t)
+  (documentation nil :type (or null string) :read-only t))
 
 (defstruct (registry (:constructor %make-registry (kind text)) (:copier nil))
   "All definitions of one KIND, called TEXT in messages: entries in order, and their objects."
@@ -40,6 +45,7 @@ DIGEST is a number for the form of the definition, or NIL if there was none."
   entry-name "Return the symbol that is defined."
   entry-object "Return what the name of the entry means."
   entry-source "Return the source of the entry's definition; see sources.lisp."
+  entry-documentation "Return what the author of the definition says of what it defines, or NIL."
   entry-digest "Return a number for the form of the entry's definition, or NIL."
   registry-entries "Return what is known of the definitions in REGISTRY, in order."
   registry-objects "Return what REGISTRY has, in order of definition; do not alter it.")
@@ -143,7 +149,8 @@ UNKNOWN-NAME if ERRORP is true."
                  (loop for entry in (registry-entries registry)
                        collect (make-entry (entry-name entry) (entry-object entry)
                                            *own-source* (entry-variable entry)
-                                       (entry-digest entry))))))
+                                           (entry-digest entry) (entry-head entry)
+                                           (entry-documentation entry))))))
 
 (defun users-p (entry)
   "True if ENTRY is a definition of a user's, not of the simulator's own."

@@ -17,7 +17,7 @@
 
 (defun source-here ()
   "Return the source of the form that is being compiled or loaded, or NIL."
-  (let ((file (text-file (or *compile-file-truename* *load-truename*))))
+  (let ((file (text-file (or (edited-file) *compile-file-truename* *load-truename*))))
     (when file
       (ignore-errors (list (namestring file) (file-digest file))))))
 

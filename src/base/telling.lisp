@@ -83,3 +83,22 @@ streams that no user knows."
                      (sentence (format nil "This cannot be read: ~A" (reading-trouble condition))))
                     (t (own-text condition)))))
     (if (string= text "") (string-downcase (type-of condition)) text)))
+
+;;; Where users look.
+
+(defun followed (stream)
+  "Return the stream that STREAM, perhaps a synonym, stands for here."
+  (if (typep stream 'synonym-stream)
+      (followed (symbol-value (synonym-stream-symbol stream)))
+      stream))
+
+(defun editors-output ()
+  "Return the stream that this thread's standard output goes to if an editor, SLIME or SLY, has set
+it, or NIL. It stays open, and other threads may write to it; what they write to standard output
+otherwise does not come to where the user types."
+  (let* ((stream (followed *standard-output*))
+         (package (symbol-package (type-of stream))))
+    (and package
+         (some (lambda (server) (starts-with-subseq server (package-name package)))
+               '("SWANK" "SLYNK"))
+         stream)))

@@ -13,7 +13,8 @@
                         :constructor (make-operation
                                       (operator resource arguments continuation timeline
                                        &aux (function #'run-operation)
-                                         (interrupt #'interrupt-operation))))
+                                         (interrupt #'interrupt-operation)
+                                         (asked (timeline-tick timeline)))))
     "A command under way. It is the event that is pending on its resource."
   (:fixed
    (timeline nil (or null timeline) "the timeline that the operation takes place in"))
@@ -25,6 +26,8 @@
    (reading 0d0 double-float "what the odometry has read so far, in radians")
    (subject nil t "what it is about: what is held, was found, is done; at first, the name of the
 command that it cut short, or NIL"))
+  (:memory
+   (asked 0 fixnum "the tick after which it was asked for"))
   (:link
    (continuation nil t "what to call when it ends, or NIL")))
 
@@ -47,6 +50,11 @@ command that it cut short, or NIL"))
 (defun operation-command (operation)
   "Return the command that OPERATION carries out."
   (the command (operation-operator operation)))
+
+(defmethod print-object ((operation operation) stream)
+  (print-unreadable-object (operation stream)
+    (format stream "~A of ~A" (command-name (operation-command operation))
+            (operation-resource operation))))
 
 (declaim (inline operation-agenda))
 (defun operation-agenda (operation)
@@ -79,7 +87,7 @@ command that it cut short, or NIL"))
 (defun interrupted-text (operation)
   (format nil "~A was interrupted" (command-prefix (operation-command operation))))
 
-(defun failure-text (operation code)
+(defun error-text (operation code)
   (let* ((command (operation-command operation))
          (error-code (find code (command-errors command) :key #'error-code-keyword))
          (text (and error-code (error-code-text error-code))))
@@ -92,8 +100,12 @@ command that it cut short, or NIL"))
   "Queue the message that OPERATION ends with (reading 229)."
   (let* ((command (operation-command operation))
          (report (command-report command)))
-    (cond ((eq code :interrupt) (warning-set (interrupted-text operation)))
-          (code (error-set (failure-text operation code)))
+    (cond ((eq code :interrupt)
+           (warning-set (interrupted-text operation))
+           (note-failure operation code (interrupted-text operation)))
+          (code (let ((text (error-text operation code)))
+                  (error-set text)
+                  (note-failure operation code text)))
           (report (let ((text (apply report operation results)))
                     (when text
                       (message-set (command-prefix command) ": " text)))))))

@@ -22,6 +22,9 @@
            #:fail-with #:notify #:report #:once-more #:go-on #:go-on-now)
   ;; ownership
   (:export #:under-way #:last-interruption #:under-way-text #:interruption-text)
+  ;; failures
+  (:export #:last-failure #:failure-sentences #:error-code-meaning #:error-code-remedy
+           #:command-failure)
   ;; define-command
   (:export #:define-command)
   ;; withdrawing

@@ -24,7 +24,9 @@ robot (reading 140)."
 ;; Warnings have said why, unless it was interrupted.
 (defmethod track-ended ((operation operation) code designator)
   (setf (operation-finished-p operation) t)
-  (when (eq code :interrupt) (report operation code '()))
+  (if (eq code :interrupt)
+      (report operation code '())
+      (note-failure operation code (error-text operation code)))
   (notify operation code (list designator)))
 
 (defun interrupt-track (operation camera)

@@ -23,7 +23,15 @@
   blueprint-name "Return the name of the robot."
   blueprint-map "Return the name of the map that the robot starts in."
   blueprint-x "Return the x coordinate where the robot starts, in metres."
-  blueprint-y "Return the y coordinate where the robot starts, in metres.")
+  blueprint-y "Return the y coordinate where the robot starts, in metres."
+  blueprint-angle "Return the heading with which the robot starts, in radians."
+  blueprint-cameras "Return a list (field-of-view resolution) for each of its cameras."
+  blueprint-hands "Return the strength of each of its hands, in a list."
+  blueprint-bins "Return the capacity of each of its bins, in a list."
+  blueprint-parts "Return a list (kind initarg value ...) for each part of a kind of one's own.")
+
+(defmethod print-object ((blueprint blueprint) stream)
+  (print-unreadable-object (blueprint stream :type t) (princ (blueprint-name blueprint) stream)))
 
 (defmethod reference ((blueprint blueprint))
   (list :blueprint (name-string (blueprint-name blueprint))))

@@ -138,9 +138,12 @@ robot."
     (unless (and (proper-list-p start) (= (length start) 3)
                  (proper-list-p (second start)) (= (length (second start)) 2))
       (reject start "(environment (x y) angle)"))
-    (check-options definition options '(:cameras :hands :bins :parts))
+    (check-options definition options '(:cameras :hands :bins :parts :documentation))
+    (unless (typep (getf options :documentation "") 'string)
+      (reject (getf options :documentation) "a string as the documentation"))
     (loop for (key value) on options by #'cddr
-          do (unless (proper-list-p value) (reject (list key value) "a list after the keyword")))))
+          do (unless (or (eq key :documentation) (proper-list-p value))
+               (reject (list key value) "a list after the keyword")))))
 
 (defun value-form (definition form clause expected)
   "Return a form for the value of FORM, which stands in CLAUSE; that it has none is DEFINITION's."
@@ -151,7 +154,7 @@ robot."
 (defun robot-forms (definition name start options lisp-environment)
   "Return the forms that DEFROBOT expands to."
   (destructuring-bind (environment (x y) angle) start
-    (destructuring-bind (&key cameras hands bins parts) options
+    (destructuring-bind (&key cameras hands bins parts &allow-other-keys) options
       (flet ((number-of (form clause)
                (value-form definition form clause "a form that has a value")))
         `((define-robot ',name
@@ -179,15 +182,15 @@ stands in, returns a form for its value."
       `',specification))
 
 (public defrobot)
-(define-user-macro defrobot (&whole form name &optional start &rest options
+(define-user-macro defrobot (&whole form name &optional start &body options
                              &environment environment)
   "Define a robot: (defrobot NAME (ENVIRONMENT (X Y) ANGLE) [:cameras ((FOV RESOLUTION) ...)]
-[:hands (STRENGTH ...)] [:bins (CAPACITY ...)] [:parts ((KIND INITARG VALUE ...) ...)]). NAME
-becomes a special variable bound to the robot, which stands in the resident world of the map
-ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in radians. Numbers are
-evaluated. Parts of kinds of one's own, which the manual does not have, are made as their KIND says
-\(see DEFINE-KIND). A robot that was called NAME before takes no more commands. Signals
-MALFORMED-DEFINITION (manual 5.2). See reading 9."
+[:hands (STRENGTH ...)] [:bins (CAPACITY ...)] [:parts ((KIND INITARG VALUE ...) ...)]
+[:documentation TEXT]). NAME becomes a special variable bound to the robot, which stands in the
+resident world of the map ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in
+radians. Numbers are evaluated. Parts of kinds of one's own, which the manual does not have, are
+made as their KIND says (see DEFINE-KIND). A robot that was called NAME before takes no more
+commands. Signals MALFORMED-DEFINITION (manual 5.2). See reading 9."
   (let ((definition (title "defrobot" name)))
     (expand-definition form environment
                        (lambda ()

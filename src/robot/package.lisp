@@ -16,7 +16,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:robot-of-blueprint #:start-trouble
            #:robot-x #:robot-y #:robot-angle #:robot-cos #:robot-sin #:robot-position
            #:robot-speed #:robot-turn-angle #:robot-cameras #:robot-hands #:robot-bins
-           #:robot-last-place #:robot-drove-tick #:robot-designators
+           #:robot-last-place #:robot-drove-tick #:robot-failure #:robot-designators
            #:robot-camera #:robot-hand #:robot-storage-bin #:robot-part #:robot-parts
            #:robot-resources #:robot-mind #:mind-p #:mind-robot
            #:parts-of-kind #:robot-sensors #:robot-ended-tracks
@@ -70,7 +70,8 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
   (:export #:robot-place-here #:sense-place-type #:canonical-directions #:nearest-direction)
   ;; blueprint, making
   (:export #:defrobot #:define-robot #:find-robot #:all-robots
-           #:blueprint #:blueprint-name #:blueprint-map)
+           #:blueprint #:blueprint-name #:blueprint-map #:blueprint-angle #:blueprint-cameras
+           #:blueprint-hands #:blueprint-bins #:blueprint-parts)
   ;; own-changes
   (:export #:place-robot)
   ;; soundness

@@ -48,7 +48,8 @@
    (start-x 0d0 double-float "where the last movement began, the x coordinate in metres")
    (start-y 0d0 double-float "where the last movement began, the y coordinate in metres")
    (estimate-x 0d0 double-float "how far the robot believes it has moved since, in x, in metres")
-   (estimate-y 0d0 double-float "how far the robot believes it has moved since, in y, in metres"))
+   (estimate-y 0d0 double-float "how far the robot believes it has moved since, in y, in metres")
+   (failure nil t "what is known of the command that failed last on the robot or a part, or NIL"))
   (:scratch
    (moved 0d0 double-float "the metres that the last step of driving really took the robot")
    (turned-low 0d0 double-float "the lower bound read for the last step of turning, in radians")

@@ -76,7 +76,7 @@ if it is to have one."
 (defun savable-type-p (type)
   "True if structures called TYPE, a symbol, can be saved by what is in their slots."
   (or (kind-called type)
-      (member type '(place cell interruption pt interval pt-interval))
+      (member type '(place cell interruption command-failure pt interval pt-interval))
       (not (or (lisps-own-p type) (our-own-p type)))))
 
 (defun structure-shape (object inventory)

@@ -9,7 +9,8 @@
   "Call FUNCTION with the bindings under which the thread of SIMULATION runs."
   (let ((*simulation* simulation)
         (*world* (simulation-world simulation))
-        (*message-queue* (simulation-messages simulation)))
+        (*message-queue* (simulation-messages simulation))
+        (*standard-output* (or (simulation-output simulation) *standard-output*)))
     (call-with-parameters '() (lambda ()
                                 (call-with-lisps-dice function (simulation-seed simulation))))))
 
@@ -20,6 +21,7 @@ SIMULATION. Signals MISUSE if it runs live already, WRONG-ARGUMENT for a rate th
 positive number nor :FREE."
   (check-not-over simulation 'start-clock)
   (check-parameters)
+  (setf (simulation-output simulation) (editors-output))
   (asking (simulation)
     (give-threads (simulation-timeline simulation) real)
     (start-pacing (simulation-timeline simulation)

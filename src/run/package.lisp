@@ -52,4 +52,6 @@ takes part in it. Manual 2.3 and appendix A.")
   ;; saving, loading
   (:export #:save-simulation #:load-simulation #:with-loaded-simulation
            #:call-with-loaded-simulation #:damaged-simulation #:unsavable #:unsavable-parts
-           #:save-without #:load-anyway))
+           #:save-without #:load-anyway)
+  ;; status
+  (:export #:status #:designator-status #:robot-meant))

@@ -21,6 +21,7 @@
    (past nil t "what is kept of the past, or NIL")
    (line nil list "the simulation that goes on, in a list that all share of which one was rewound
 to the next, or NIL if there was no rewinding")
+   (output nil (or null stream) "where its threads write, if an editor wants that, or NIL")
    (messages *message-queue* message-queue "the message queue that the simulation reports to")
    (gate nil (or null function)
          "a function of the simulation that says how many ticks may pass before it is asked again")

@@ -18,6 +18,9 @@
 (define-condition damaged-file (ars-magna-error)
   ((file   :initarg :file   :reader damaged-file-name)
    (reason :initarg :reason :reader damaged-file-reason))
+  (:report (lambda (condition stream)
+             (format stream "~A cannot be used: ~A." (shown-name (damaged-file-name condition))
+                     (damaged-file-reason condition))))
   (:documentation "A file that should hold what the simulator has saved cannot be used."))
 
 ;;; Writing.

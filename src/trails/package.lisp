@@ -3,13 +3,21 @@
 (defpackage :ars-magna.trails
   (:documentation "The ways of robots over their map. Knows neither experiments nor plans.")
   (:use :cl :ars-magna.base :ars-magna.canvas)
-  (:import-from :ars-magna.run #:simulation-robots)
-  (:import-from :ars-magna.robot #:robot-x #:robot-y)
+  (:import-from :ars-magna.time #:current-simulation #:asking)
+  (:import-from :ars-magna.run
+                #:simulation-robots #:simulation-tick #:call-with-replay #:journal-p
+                #:journal-header #:load-journal #:end-of-journal)
+  (:import-from :ars-magna.robot
+                #:robot-x #:robot-y #:robot-angle #:robot-name #:robot-hands #:robot-last-place
+                #:robot-main-odometer #:odometer-estimate #:find-blueprint #:blueprint-name
+                #:hand-holding)
   (:import-from :ars-magna.world #:map-width #:map-height)
   (:import-from :ars-magna.display #:snapshot-map #:draw-terrain #:draw-movers)
   (:import-from :ars-magna.plots #:drawing-chart #:look-color #:draw-marker)
   ;; trails
   (:export #:way-trial #:way-outcome #:way-points #:note-places #:ways-along
            #:straightened)
+  ;; trajectory
+  (:export #:save-trajectory)
   ;; picture
   (:export #:ways-chart #:part-of-map))

@@ -125,15 +125,15 @@ See reading 120."
       (reject-clause definition name "a symbol as the name of the attribute"))
     (check-domain definition domain)
     (check-options definition options
-                   '(:success :base :max-mult :noticed :support :supported-by))
+                   '(:success :base :max-mult :noticed :support :supported-by :documentation))
     (destructuring-bind (&key (success 1) (base 0) (max-mult 1) (support 0) (noticed support)
-                           supported-by)
+                           supported-by &allow-other-keys)
         options
       `((define-attribute ',name ',domain :success ,success :base ,base :max-mult ,max-mult
                                           :noticed ,noticed :supported-by ',supported-by)))))
 
 (public defattribute numeric)
-(define-user-macro defattribute (&whole form name &optional domain &rest options
+(define-user-macro defattribute (&whole form name &optional domain &body options
                                  &environment environment)
   "Define the attribute NAME, a keyword by convention (manual 5.4). DOMAIN is NUMERIC or a list
 of the possible values, unevaluated. Options, in any order:
@@ -142,5 +142,6 @@ of the possible values, unevaluated. Options, in any order:
   :max-mult factor -- the largest multiplier of that deviation, far away; default 1
   :noticed p (or :support p) -- base probability of being sensed unasked; default 0
   :supported-by (name...) -- attributes that raise that chance when asked for; unevaluated
+  :documentation text -- ours: what the attribute is
 Signals MALFORMED-DEFINITION. Return the name."
   (expand-definition form environment (lambda () (attribute-forms name domain options))))

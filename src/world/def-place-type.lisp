@@ -12,7 +12,8 @@
                (first lambda-list) (symbolp (first lambda-list)))
     (reject-clause definition lambda-list "a list of one variable, to be bound to the cell"))
   (check-options definition options
-                 '(:confusion :check-matchers :checker :directions :invisible :graphics :before))
+                 '(:confusion :check-matchers :checker :directions :invisible :graphics :before
+                   :documentation))
   (when (eq (null (getf options :check-matchers)) (null (getf options :checker)))
     (reject-clause definition options "either :check-matchers or :checker, one of them")))
 
@@ -44,7 +45,8 @@
   "Return the forms that DEF-PLACE-TYPE expands to."
   (let ((definition (title "def-place-type" name)))
     (check-place-type-options definition name lambda-list options)
-    (destructuring-bind (&key confusion check-matchers checker directions invisible graphics before)
+    (destructuring-bind (&key confusion check-matchers checker directions invisible graphics before
+                           &allow-other-keys)
         options
       (flet ((cell-function (form)
                (and form `(lambda ,lambda-list (declare (ignorable ,@lambda-list)) ,form))))
@@ -61,7 +63,7 @@
             :key ,(digest-value (digest-add (make-digest) (cons name options)))))))))
 
 (public def-place-type)
-(define-user-macro def-place-type (&whole form name (&rest lambda-list) &rest options
+(define-user-macro def-place-type (&whole form name (&rest lambda-list) &body options
                           &environment environment)
   "Define the place type NAME (manual 5.1.1). LAMBDA-LIST is (CELL); options, in any order:
   :confusion p -- probability of a false designator in a search for the type; default 0
@@ -72,7 +74,8 @@
   :invisible true -- no designator can be acquired for it
   :graphics ((window x y) body...) -- draws it (manual B.1)
   :before name -- ours: where a cell could be of both, this type wins over the one called NAME,
-    or over all others if NAME is T; without it, a type that was defined earlier wins.
+    or over all others if NAME is T; without it, a type that was defined earlier wins
+  :documentation text -- ours: what the place type is
 A matcher may go on with integers dx dy, as a checker's values do: ours too. Checker and
 directions are tried once on a small map of their own. Maps built earlier learn of the type from
 REBUILD-MAP. Signals MALFORMED-DEFINITION. Return the name."

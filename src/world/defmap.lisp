@@ -238,7 +238,8 @@ recipe, of anything else the clause itself. NIL if it is to be left out."
     (multiple-value-bind (width height options) (check-size definition name size)
       (loop for clause in clauses
             for position from 3
-            for (kind form) = (parse-clause definition clause (list position) width height)
+            for (kind form) = (unless (and (stringp clause) (= position 3))
+                                (parse-clause definition clause (list position) width height))
             if (eq kind :obj) collect form into things
             else if kind collect form into walls
             finally (return
@@ -250,7 +251,8 @@ recipe, of anything else the clause itself. NIL if it is to be left out."
 (define-user-macro defmap (&whole form name &optional size &body clauses &environment environment)
   "Define the map NAME (manual 5.1), a special variable bound to it. SIZE is (width height), in
 cells of a metre, and perhaps :cache with the name of a file to keep the built grid in, unless a
-place type has a :checker. Ours is :frame with a list (size x y yaw), as MAP-FRAME says. Clauses:
+place type has a :checker. Ours is :frame with a list (size x y yaw), as MAP-FRAME says, and a
+string before the clauses, the map's documentation. Clauses:
   (wall (x0 y0) (x1 y1) substance parameter [parameter1]) -- a line of walls
   (rect (x0 y0) (x1 y1) substance parameter [parameter1 parameter2 parameter3]) -- an outline
   (circle (x y) radius substance parameter) -- likewise

@@ -31,14 +31,19 @@ NAME."
   name)
 
 (addition defsubstance)
-(define-user-macro defsubstance (&whole form name &optional parameter &environment environment)
+(define-user-macro defsubstance (&whole form name &optional parameter documentation
+                                 &environment environment)
   "Define the type of substance NAME, a symbol: things whose :substance is NAME are viewed as
-PARAMETER, a number. Our addition to manual 2.1 and 3.3. Return the name."
+PARAMETER, a number; the string DOCUMENTATION says what it is. Our addition to manual 2.1 and 3.3.
+Return the name."
   (expand-definition form environment
                      (lambda ()
                        (unless (and name (symbolp name) (not (keywordp name)))
                          (reject-clause "defsubstance" name
                                         "a symbol as the name of the substance"))
+                       (unless (typep documentation '(or null string))
+                         (reject-clause (title "defsubstance" name) documentation
+                                        "a string as the documentation"))
                        `((define-substance ',name ,parameter)))))
 
 (addition substance-parameter)

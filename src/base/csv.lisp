@@ -1,6 +1,6 @@
 ;;;; csv.lisp -- a line of a table, with commas, as RFC 4180 has it but for a plain newline.
 
-(in-package :ars-magna.experiment)
+(in-package :ars-magna.base)
 
 ;;; A row is one line: texts have no line ends in them (see PLAIN-TEXT). The library for this would
 ;;; take ten times as long, and loads half of Unicode to do so.
@@ -10,6 +10,8 @@
   (:report (lambda (condition stream)
              (format stream "No row of a table: ~A" (cut (broken-line-text condition) 200))))
   (:documentation "A line of a table cannot be taken apart."))
+
+(document-functions broken-line-text "Return the line that cannot be taken apart.")
 
 ;;; Writing.
 

@@ -1,0 +1,54 @@
+;;;; editors.lisp -- what SLIME's and SLY's inspectors show of our objects; neither is needed.
+
+(in-package :ars-magna.faces)
+
+;;; Their servers, SWANK and SLYNK, ask a generic function of the same name for the contents of an
+;;; object's window: a list of strings, (:value object) for what can be looked into, and (:newline).
+
+(defparameter *servers* '("SWANK/BACKEND" "SWANK-BACKEND" "SLYNK-BACKEND")
+  "The packages in which the function may be.")
+
+(defun inspectors ()
+  "Return the symbols of the generic functions that the inspectors of the servers that are loaded
+ask. Two of the names may be those of one package."
+  (remove-duplicates
+   (loop for server in *servers*
+         for symbol = (and (find-package server) (find-symbol "EMACS-INSPECT" server))
+         when (and symbol (fboundp symbol)) collect symbol)))
+
+(defun joined-p (inspector)
+  "True if the generic function INSPECTOR asks us already."
+  (find-method (fdefinition inspector) '(:around) (list (find-class 'structure-object)) nil))
+
+(defun fact-line (label text)
+  (list (format nil "~A: ~A" label text) '(:newline)))
+
+(defun slot-line (name value text)
+  (list (format nil "  ~(~22A~) " name) (list :value value) (format nil "~@[  ~A~]" text)
+        '(:newline)))
+
+(defun window-of (object)
+  "Return what an inspector is to show of OBJECT: what people want to know of it, then its slots."
+  (append (list (prin1-to-string object) '(:newline))
+          (loop for (label text) in (facts object) append (fact-line label text))
+          (loop for (title . slots) in (slots-to-show object)
+                append (list* (format nil "~A:" title) '(:newline)
+                              (loop for slot in slots append (apply #'slot-line slot))))))
+
+(defun known-object-p (object)
+  "True if there is more to say of OBJECT than what its slots are called."
+  (and (or (kind-of object) (facts object)) t))
+
+(addition join-editors)
+(defun join-editors ()
+  "Let the inspectors of SLIME and SLY, as far as their servers SWANK and SLYNK are loaded, show
+robots, things, maps and the like as DESCRIBE does, with what their slots mean. That is done when
+the simulator is loaded; say it again where a server was loaded later. Return the packages of those
+that were found."
+  (loop for inspector in (inspectors)
+        collect (package-name (symbol-package inspector))
+        unless (joined-p inspector)
+          do (eval `(defmethod ,inspector :around ((object structure-object))
+                      (if (known-object-p object) (window-of object) (call-next-method))))))
+
+(join-editors)

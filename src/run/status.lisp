@@ -1,0 +1,154 @@
+;;;; status.lisp -- how a robot is, as data: what the prompt's STATUS shows.
+
+(in-package :ars-magna.run)
+
+;;; All is plain data: numbers, symbols, strings and lists of such. Things and places are called as
+;;; they print. A property list says what is what, so that there may be more in it one day.
+
+(defun glance (camera)
+  "Return what CAMERA sees now. The run does not notice: dice and last view stay as they
+were (reading 201)."
+  (let* ((dice (world-dice (robot-world (part-robot camera)) :looking))
+         (state (dice-state dice))
+         (last-view (camera-last-view camera)))
+    (unwind-protect (take-view camera)
+      (setf (dice-state dice) state
+            (camera-last-view camera) last-view))))
+
+(defun inside-name (part)
+  "Return what PART is inside of, a string, or NIL."
+  (and (part-location part) (location-name (part-location part))))
+
+(defun camera-status (camera)
+  (let ((designator (camera-tracks camera)))
+    (list :number (camera-index camera)
+          :view (glance camera)
+          :tracks (and designator (designator-number designator))
+          :angle (camera-angle camera)
+          :field-of-view (camera-field-of-view camera)
+          :resolution (camera-resolution camera)
+          :inside (inside-name camera))))
+
+(defun hand-status (hand)
+  (list :number (hand-index hand)
+        :strength (hand-strength hand)
+        :holds (and (hand-holding hand) (princ-to-string (hand-holding hand)))
+        :inside (inside-name hand)))
+
+(defun bin-status (bin)
+  (list :number (storage-bin-index bin)
+        :closed (storage-bin-closed-p bin)
+        :capacity (storage-bin-capacity bin)
+        :room (remaining-capacity bin)
+        :contents (mapcar #'princ-to-string (storage-bin-contents bin))))
+
+(defun own-slots (part)
+  "Return what is known of the slots that the kind of PART has besides those that all parts have."
+  (set-difference (kind-slots (kind-of part))
+                  (kind-slots (find 'part (all-kinds) :key #'kind-name))))
+
+(defun sensor-status (part)
+  "Return what is known of PART, of a kind of the user's own: its state and memory."
+  (list :name (princ-to-string part)
+        :slots (loop for slot in (reverse (own-slots part))
+                     when (member (kind-slot-role slot) '(:state :memory))
+                       collect (list (kind-slot-name slot)
+                                     (funcall (kind-slot-reader slot) part)))))
+
+(defun designator-status (designator)
+  "Return what STATUS tells of DESIGNATOR."
+  (let ((data (designator-data designator)))
+    (list :number (designator-number designator)
+          :type (designator-type designator)
+          :of (if (listp (first data)) :object :place)
+          :distance (designator-distance designator)
+          :angle (designator-angle designator)
+          :data data)))
+
+;;; Whose commands are carried out.
+
+(defun part-name (resource)
+  "Return what RESOURCE is called, a string; NIL if it is the robot itself."
+  (if (robot-p resource) nil (princ-to-string resource)))
+
+(defun under-way-status (resource)
+  "Return in a list what RESOURCE carries out, and for whom."
+  (multiple-value-bind (name asker) (under-way resource)
+    (when name (list (list :part (part-name resource) :command name :for asker)))))
+
+(defun interrupted-status (resource)
+  "Return in a list what was interrupted last on RESOURCE, and by whose command."
+  (let ((interruption (last-interruption resource)))
+    (when interruption
+      (destructuring-bind (what asker by by-asker tick) interruption
+        (list (list :part (part-name resource) :command what :for asker
+                    :by by :by-for by-asker :tick tick))))))
+
+;;; All of it.
+
+(defun robot-status (robot)
+  "Return what STATUS does of ROBOT, whose world stands still."
+  (let ((resources (cons robot (robot-parts robot))))
+    (list :robot (robot-name robot)
+          :map (map-name (world-map (robot-world robot)))
+          :tick (world-tick (robot-world robot))
+          :position (multiple-value-list (robot-position robot))
+          :last-move (multiple-value-list (robot-last-move robot))
+          :estimated-last-move (multiple-value-list (robot-last-move-estimate robot))
+          :angle (robot-angle robot)
+          :speed (robot-speed robot)
+          :turn-angle (robot-turn-angle robot)
+          :cameras (map 'list #'camera-status (robot-cameras robot))
+          :hands (map 'list #'hand-status (robot-hands robot))
+          :bins (map 'list #'bin-status (robot-bins robot))
+          :sensors (map 'list #'sensor-status (robot-sensors robot))
+          :place (robot-last-place robot)
+          :thinking (simulation-thinking (robot-simulation robot))
+          :live (live-p (robot-simulation robot))
+          :under-way (mapcan #'under-way-status resources)
+          :interrupted (mapcan #'interrupted-status resources)
+          :failed (last-failure robot)
+          :designators (mapcar #'designator-status (live-designators robot)))))
+
+(defun robot-meant (robot operator)
+  "Return the robot that ROBOT, an argument of OPERATOR, means: a robot, the name of one, or, if it
+is NIL, the first of the current simulation."
+  (if robot
+      (find-robot robot)
+      (or (first (simulation-robots (current-simulation)))
+          (reject-use "~(~A~): there is no robot in ~A." operator
+                      (simulation-name (current-simulation))))))
+
+(addition status)
+(defun status (&optional robot)
+  "Return all that the prompt's STATUS shows of ROBOT, a robot or the name of one, or else the first
+robot of the current simulation, as a property list: :ROBOT, :MAP, :TICK; :POSITION, :LAST-MOVE and
+:ESTIMATED-LAST-MOVE, lists (x y) in metres; :ANGLE in radians, :SPEED in metres and :TURN-ANGLE in
+radians a tick; :CAMERAS, :HANDS, :BINS and :SENSORS, a property list for each part; :PLACE, the
+place type it sensed last, or NIL; :THINKING, how much time thinking costs, and :LIVE, true of a
+live run; :UNDER-WAY and :INTERRUPTED, lists of property lists that say whose commands it and its
+parts carry out, and whose were interrupted last by whose; :FAILED, what LAST-FAILURE returns;
+:DESIGNATORS, a property list for each. All of it is plain data, and looking changes nothing in the
+run. Signals UNKNOWN-NAME, and MISUSE if there is no robot."
+  (let ((robot (robot-meant robot 'status)))
+    (ask robot (lambda () (robot-status robot)))))
+
+(defun under-way-facts (status)
+  (format nil "~{~A~^; ~}"
+          (loop for entry in (getf status :under-way)
+                collect (destructuring-bind (&key part command for) entry
+                          (format nil "~@[~A: ~]~(~A~), for ~A" part command for)))))
+
+(defmethod facts ((robot robot))
+  (let ((status (robot-status robot)))
+    (known-facts
+     "Stands in" (format nil "~(~A~) at (~{~,2F~^,~}), heading ~,2F, tick ~D" (getf status :map)
+                         (getf status :position) (getf status :angle) (getf status :tick))
+     "Carries out" (and (getf status :under-way) (under-way-facts status))
+     "Holds" (listed (remove nil (loop for hand in (getf status :hands)
+                                           collect (getf hand :holds))))
+     "Carries in its bins" (listed (loop for bin in (getf status :bins)
+                                             append (getf bin :contents)))
+     "Designators" (listed (loop for designator in (getf status :designators)
+                                     collect (getf designator :number)))
+     "Failed last" (getf (getf status :failed) :text))))
