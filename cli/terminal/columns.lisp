@@ -56,16 +56,16 @@ last blank in time, or else the first; NIL if it need not be broken or has no bl
 map has."
   (search "  " line :start2 indent))
 
-(defun broken-line (line first columns)
+(defun pieces-of-line (line first columns)
   "Return LINE as a list of lines of at most COLUMNS, the first of FIRST, as far as blanks allow.
 What goes on is indented as far as LINE is."
   (let ((place (breaking-point line first))
         (indent (or (position #\Space line :test #'char/=) 0)))
     (if (and place (not (table-line-p line indent)))
         (cons (string-right-trim " " (subseq line 0 place))
-              (broken-line (format nil "~VA~A" indent ""
-                                   (string-left-trim " " (subseq line place)))
-                           columns columns))
+              (pieces-of-line (format nil "~VA~A" indent ""
+                                      (string-left-trim " " (subseq line place)))
+                              columns columns))
         (list line))))
 
 (defun broken-text (text columns &optional (used 0))
@@ -74,5 +74,5 @@ first line begins after USED columns."
   (loop with lines = (uiop:split-string text :separator '(#\Newline))
         for line in lines
         for first = (- columns used) then columns
-        append (broken-line line first columns) into all
+        append (pieces-of-line line first columns) into all
         finally (return (format nil "~{~A~^~%~}" all))))
