@@ -267,6 +267,18 @@
     :components ((:file "package") (:file "deciding") (:file "subject") (:file "trying")
                  (:file "repeating") (:file "telling") (:file "checking")))))
 
+;;; Loaded by ./cli/ars-magna --manual.
+(defsystem "ars-magna/manual"
+  :description "Writes the manual as HTML pages."
+  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/cli" "ars-magna/fiveam")
+  :serial t
+  :components
+  ((:module "cli/manual" :serial t
+    :components ((:file "package") (:file "html") (:file "markdown") (:file "guide")
+                 (:file "examples") (:file "entries") (:file "command-entries")
+                 (:file "definition-entries") (:file "symbol-entries") (:file "book")
+                 (:file "linking") (:file "frame") (:file "reference") (:file "writing")))))
+
 ;;; Loaded by tests/clim.lisp, after the package of the tests, where McCLIM is found.
 (defsystem "ars-magna/clim-tests"
   :description "What the window claims."
@@ -276,7 +288,7 @@
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
   :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/figures" "ars-magna/cli"
-               "ars-magna/fiveam" "fiveam")
+               "ars-magna/manual" "ars-magna/fiveam" "fiveam")
   :serial t
   :components
   ((:module "tests" :serial t
@@ -352,6 +364,7 @@
                  (:file "readme") (:file "rpl-readme")
                  (:file "experiments-readme") (:file "tutorial") (:file "ways-readme")
                  (:file "floors-readme")
+                 (:file "our-manual") (:file "examples")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
                  (:file "experiments-tables") (:file "experiments-fingerprints")
                  (:file "thinking-experiments")

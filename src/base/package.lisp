@@ -113,7 +113,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:entry-digest #:registry-entries #:users-p #:current-form-digest #:form-digest
            #:file-digest #:text-checksum
            #:name-string
-           #:defined-names #:find-definition #:definition-to-replace #:variable-in-use-p
+           #:defined-names #:find-definition #:all-definitions #:definition-to-replace
+           #:variable-in-use-p
            #:entries-meant
            #:*kept-variables* #:undefine #:take-back #:reinstate #:become
            #:with-own-definitions #:call-with-own-definitions)
