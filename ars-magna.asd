@@ -225,15 +225,19 @@
     :components
     ((:file "package")
      (:module "terminal" :serial t
-      :components ((:file "process") (:file "telling") (:file "input") (:file "escapes")
-                   (:file "keys") (:file "console") (:file "progress") (:file "json")
-                   (:file "layout")))
+      :components ((:file "keyboard") (:file "process") (:file "telling") (:file "columns")
+                   (:file "input") (:file "escapes") (:file "drawn-line") (:file "console")
+                   (:file "progress") (:file "json") (:file "layout")))
+     (:module "editing" :serial t
+      :components ((:file "keys") (:file "changes") (:file "history") (:file "editor")
+                   (:file "search") (:file "tabbing") (:file "standard")))
      (:module "prompt" :serial t
-      :components ((:file "user-names") (:file "reporting") (:file "session") (:file "line") (:file "quantities")
-                   (:file "arguments") (:file "errands") (:file "reading") (:file "robot-lines") (:file "finding")
+      :components ((:file "user-names") (:file "reporting") (:file "session") (:file "line")
+                   (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")
+                   (:file "robot-lines") (:file "finding")
                    (:file "evaluation") (:file "carrying-out") (:file "guarding")
-                   (:file "plans") (:file "loading") (:file "worlds")
-                   (:file "debugger") (:file "prompt") (:file "visits")))
+                   (:file "plans") (:file "loading") (:file "worlds") (:file "choices")
+                   (:file "debugger") (:file "completing") (:file "prompt") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
                    (:file "status-data") (:file "status-lines") (:file "map-lines")
@@ -321,6 +325,7 @@
                  (:file "worlds-searching")
                  (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
                  (:file "clim") (:file "cli") (:file "text-maps") (:file "cli-quantities")
+                 (:file "editing") (:file "editing-screens") (:file "completing")
                  (:file "ways-going") (:file "cli-plans") (:file "cli-colour")
                  (:file "cli-rewinding")
                  (:file "cli-robots") (:file "cli-hostile")

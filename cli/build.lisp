@@ -106,16 +106,9 @@ defined twice, that a package has grown since it was defined."
 
 ;;; The prompt.
 
-(defun write-words (file)
-  (with-open-file (out file :direction :output :if-exists :supersede)
-    (format out "~(~{~A~%~}~)" (uiop:symbol-call :ars-magna.cli :all-words))))
-
 (defun save-prompt ()
-  "Save a core that runs the prompt in the file that the environment says, and the names of its
-commands beside it."
+  "Save a core that runs the prompt in the file that the environment says."
   (load-strictly "ars-magna/cli")
-  (write-words (uiop:parse-native-namestring
-                (uiop:strcat (uiop:getenv "ARS_MAGNA_CORE") ".words")))
   ;; What is in the core is not to be compiled again under its user.
   (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))
   (uiop:call-image-dump-hook)

@@ -61,8 +61,6 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
            #:line-family #:line-details #:line-full-name #:line-action #:usage)
   ;; help
   (:export #:slot-help)
-  ;; plan-lines
-  (:export #:all-words)
   ;; arguments
   (:export #:read-argument #:argument-words)
   ;; session, prompt

@@ -62,7 +62,7 @@ The beginning of a command's name will do. A line in parentheses is Lisp." 0))
                                           (bad-line-text condition) name))))
     (find-line name)))
 
-(define-line "HELP" (session (name :token "a command, a plan, or whatever has a name" :optional))
+(define-line "HELP" (session (name :topic "a command, a plan, or whatever has a name" :optional))
     (:general)
     "List the commands of the prompt and those that move the robot, or tell what NAME does or is: a
 command, plan, parameter, place type, attribute, value, error code, name of Lisp ..."

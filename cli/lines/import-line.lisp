@@ -16,7 +16,7 @@
                WORLD ~2:*~(~A~).~%"
             (map-name map) (free-middle map))))
 
-(define-line "IMPORT" (session (file :token "a YAML file, as ROS's map_server keeps them"))
+(define-line "IMPORT" (session (file :file "a YAML file, as ROS's map_server keeps them"))
     (:seeing)
     "Make a map of the occupancy grid in FILE, and of the image that it names. The map is called
 like FILE."

@@ -66,7 +66,11 @@ few."
                            (setf (errand-done-p errand) t)))))
     (push errand (session-errands session))))
 
-(define-line "MANIPULATE" (session (name :token "a manipulation" :optional)
+(defmethod choices ((type (eql :manipulation)) session typed)
+  (declare (ignore session typed))
+  (mapcar #'manipulation-name (all-manipulations)))
+
+(define-line "MANIPULATE" (session (name :manipulation "a manipulation" :optional)
                                    (args :rest "numbers of designators, then of the hand or so"
                                           :optional))
     (:manipulating)

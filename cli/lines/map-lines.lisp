@@ -7,11 +7,11 @@
 (defun terminal-size (session)
   "Return how many columns the terminal of SESSION has, as far as can be found out, and how many
 lines; NIL if there is none."
-  (let ((size (and (terminal-p session) (lines-and-columns))))
-    (flet ((size-said (variable)
-             (ignore-errors (parse-integer (environment-value variable)))))
-      (values (or (size-said "COLUMNS") (second size) 80)
-              (and (terminal-p session) (or (size-said "LINES") (first size) 24))))))
+  (flet ((size-said (variable)
+           (ignore-errors (parse-integer (environment-value variable)))))
+    (multiple-value-bind (columns lines) (if (terminal-p session) (window-size) (values 80 nil))
+      (values (or (size-said "COLUMNS") columns)
+              (and lines (or (size-said "LINES") lines))))))
 
 ;;; What of it.
 

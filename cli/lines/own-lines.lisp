@@ -13,7 +13,7 @@
   (setf *aliases* (cons (list name text) (remove name *aliases* :key #'first :test #'string=))))
 
 (define-line "ALIAS" (session (alias :token "a name" :optional)
-                              (cmd :rest "a command, with arguments if you like" :optional))
+                              (cmd :line "a command, with arguments if you like" :optional))
     (:general)
     "List the aliases, or let ALIAS stand for CMD."
   (let ((name (and alias (string-upcase alias))))
@@ -23,7 +23,7 @@
                (unless known (reject-line "There is no alias ~A." name))
                (format t "~{~A = ~A~}~%" known))))))
 
-(define-line "EVAL" (session (exp :rest "a Lisp form"))
+(define-line "EVAL" (session (exp :form "a Lisp form"))
     (:general)
     "Evaluate EXP as Lisp and print its values; so does a line that begins with a parenthesis."
   (evaluate-text session exp))
@@ -44,7 +44,7 @@ only what comes of your own; say which, if SETTING is left out."
           (session-quiet-p session)))
 
 ;; As reading 204 says.
-(define-line "REPEAT" (session (num count "how often") (cmd :rest "a command, with its arguments"))
+(define-line "REPEAT" (session (num count "how often") (cmd :line "a command, with its arguments"))
     (:general)
     "Give the command CMD, NUM times over, each time when the last has completed; in a
 trial without waiting."

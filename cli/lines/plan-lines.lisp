@@ -31,9 +31,9 @@ package; NIL if there is none."
                         candidates))
           (t (plan-called (string (first candidates)))))))
 
-(defun all-words ()
-  "Return a list of all words that a prompt may complete: names of commands and plans."
-  (append (all-line-names) (mapcar #'string (plan-names))))
+(defmethod choices ((type (eql :plan)) session typed)
+  (declare (ignore session typed))
+  (plan-names))
 
 ;;; What plans take.
 
@@ -137,7 +137,7 @@ package; NIL if there is none."
                   (setf position (skip-blanks text end))
                   datum)))
 
-(define-line "PLAN" (session (name :token "the name of a plan" :optional)
+(define-line "PLAN" (session (name :plan "the name of a plan" :optional)
                              (args :rest "what the plan takes, not evaluated" :optional))
     (:planning)
     "List the plans that there are, or let the robot carry out the plan NAME with ARGS. A live

@@ -47,7 +47,7 @@ which fluent woke it, who had set that, and how it was started. That needs a tra
       (let ((robot (session-robot)))
         (still (dolist (sentence (failure-sentences robot)) (write-filled sentence 0))))))
 
-(define-line "PLAN-TIMELINE" (session (file :token "a name that ends in .svg or .png"))
+(define-line "PLAN-TIMELINE" (session (file :file "a name that ends in .svg or .png"))
     (:planning)
     "Save a picture of the plans that have run in FILE, replacing it: each task as a bar over
 ticks, with what it waited for and the commands that it gave. Needs a trace: (setf *trace-plans* t)

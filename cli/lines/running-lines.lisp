@@ -57,7 +57,7 @@
             rate
             (reject-line "The rate cannot be ~A. Give ~A." text (argument-type-text 'rate))))))
 
-(define-line "RATE" (session (x :token "a number of ticks per second, or free" :optional))
+(define-line "RATE" (session (x :rate "a number of ticks per second, or free" :optional))
     (:running)
     "Set the pace of a live simulator; show what it is, and how many ticks have passed."
   (let ((simulation (current-simulation)))
@@ -114,7 +114,7 @@ those that have it in their names."
   (handler-case (values (read-data-from-string text 0))
     (error () (reject-line "~A cannot be read; give a number, T or NIL." text))))
 
-(define-line "PARAMS" (session (name :token "the name of a parameter" :optional)
+(define-line "PARAMS" (session (name :parameter "the name of a parameter" :optional)
                                (value :rest "its new value" :optional))
     (:running)
     "List the parameters of the simulation, or those whose names begin with NAME or have it in them;
@@ -132,7 +132,7 @@ give one a new VALUE."
 (defun moment-text (tick digest)
   (format nil "tick ~D, state ~16,'0X~%" tick digest))
 
-(define-line "SAVE-JOURNAL" (session (file :token "the name of a file"))
+(define-line "SAVE-JOURNAL" (session (file :file "the name of a file"))
     (:running)
     "Write all that was asked of this run to FILE, for REPLAY."
   (let ((simulation (current-simulation)))
@@ -163,7 +163,7 @@ digest that it comes to."
                                                   (journal-end journal)))))
    (session-console session) (terminal-p session)))
 
-(define-line "REPLAY" (session (file :token "the name of a file that SAVE-JOURNAL wrote")
+(define-line "REPLAY" (session (file :file "the name of a file that SAVE-JOURNAL wrote")
                                (anyway :token "the word ANYWAY" :optional))
     (:running)
     "Repeat the run in FILE in a world of its own; show the tick and the state that it comes to.

@@ -197,6 +197,10 @@ max-speed*."
           (t (format t "~A, ~A~%" (topic-name topic) (topic-title topic))
              (write-filled (topic-words topic) 2)))))
 
+(defmethod choices ((type (eql :topic)) session typed)
+  (append (choices :command session typed)
+          (mapcar (lambda (topic) (string-downcase (topic-name topic))) (all-topics))))
+
 ;;; Searching.
 
 (defparameter *most-topics* 40

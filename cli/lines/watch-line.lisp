@@ -37,8 +37,7 @@
   "True if SESSION is on a terminal that can be written over, and can hear keys."
   (and (watched-p session)
        (not (session-batch-p session))
-       (terminal-stream-p (console-stream (session-console session)))
-       (escapes-known-p)))
+       (console-edited-p (session-console session))))
 
 (defun frame (session simulation options)
   "Return what is to be seen now: the map, and below it the time and what was said last."

@@ -26,8 +26,8 @@
           (reject-line "There is no robot ~A there, but ~{~A~^, ~}." (string-upcase name) names))
       (first names)))
 
-(define-line "WORLD" (session (name :token "a shipped world, or a Lisp file" :optional)
-                              (robot :token "a robot there; the first if left out" :optional))
+(define-line "WORLD" (session (name :world "a shipped world, or a Lisp file" :optional)
+                              (robot :robot-name "a robot there; the first if left out" :optional))
     (:seeing)
     "List the worlds, or go to the world NAME, and command ROBOT there. There it is tick 0; what
 goes on here is over."
@@ -54,7 +54,7 @@ goes on here is over."
                 tick 0; what goes on here is over then."
                name (map-name (world-of name))))
 
-(define-line "ROBOT" (session (name :token "the robot to command" :optional))
+(define-line "ROBOT" (session (name :robot-name "the robot to command" :optional))
     (:seeing)
     "List the robots of this world, or command the robot NAME of it from now on. WORLD leads to
 those of others."

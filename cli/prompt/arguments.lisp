@@ -137,12 +137,21 @@ line."
   (unless (argument-of-type-p value (slot-type slot))
     (reject-line "~A cannot be ~S. ~A" (slot-name slot) value (takes line))))
 
+(deftype rest-type ()
+  "The types of arguments that are all that is left of a line."
+  '(member :rest :line :form))
+
+(defun token-value (type token)
+  "Return what TOKEN stands for as an argument of TYPE: a file's name has the home directory for ~."
+  (if (eq type :file) (native-name (path-called token)) token))
+
 (defun read-slot (slot text start line)
   "Return what TEXT has at START for SLOT of LINE, and where that ends."
-  (case (slot-type slot)
-    (:rest (values (string-trim " " (subseq text start)) (length text)))
-    (:token (let ((end (token-end text start)))
-              (values (without-quotes (subseq text start end)) end)))
+  (typecase (slot-type slot)
+    (rest-type (values (string-trim " " (subseq text start)) (length text)))
+    (keyword (let ((end (token-end text start)))
+               (values (token-value (slot-type slot) (without-quotes (subseq text start end)))
+                       end)))
     (t (multiple-value-bind (datum end) (read-number-or-datum slot text start line)
          (let ((value (read-argument (type-key (slot-type slot)) datum (reading-robot line))))
            (check-read value slot line)

@@ -20,8 +20,9 @@
   (let ((arguments (read-arguments line text)))
     (if (unhurried-p line)
         (apply (line-action line) session arguments)
-        (write-string (with-output-to-string (*standard-output*)
-                        (apply (line-action line) session arguments))))))
+        (write-string (fitted (with-output-to-string (*standard-output*)
+                                (apply (line-action line) session arguments))
+                              (session-console session))))))
 
 (defun run-text (session text)
   "Do what TEXT, a line as typed, says; what it asks for, the prompt asks for."

@@ -82,7 +82,7 @@ may be expected to. Only the thread that has the prompt can ask him for a value.
 (defun tell-break (session breakage)
   "Show what has happened, and let the prompt that stands be the debugger's."
   (let ((console (session-console session)))
-    (write-fresh (break-text session breakage) console)
+    (write-fresh (fitted (break-text session breakage) console) console)
     (if (console-prompt console)
         (show-prompt console "Break> ")
         (finish-output console))))

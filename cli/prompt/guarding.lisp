@@ -18,15 +18,33 @@
       (regain-room condition)
       (complain session (condition-text condition)))))
 
+(defun command-going-on ()
+  "Return the robot that the prompt commands, and the name of the command that it carries out; NIL
+if it carries out none."
+  (let* ((robot (and *simulation* (null (simulation-over *simulation*)) (session-robot)))
+         (event (and robot (at-work-p robot) (resource-event robot))))
+    (and (typep event 'operation)
+         (values robot (string-upcase (command-prompt-name (operation-command event)))))))
+
+(defun what-goes-on (session)
+  "Return sentences that say what goes on in the simulator, though the line of SESSION does not,
+and how it can be ended. In a trial, nothing does."
+  (unless (session-visit session)
+    (multiple-value-bind (robot command) (command-going-on)
+      (format nil "~@[ ~A goes on with ~]~@[~A; STOP ends that.~]~
+                   ~:[~; Plans go on; STOP-PLAN ends them.~]"
+              robot command (notevery #'plan-ending-p (plans))))))
+
 (defun interrupted (session)
   "Tell the user of SESSION that his interrupt has ended the line. Users' code that keeps the
 simulator waiting is aborted, too."
   (when (session-batch-p session) (throw 'leave 130))
   (when *simulation* (abort-hog *simulation*))
-  (answered (session-console session))
-  (write-fresh (format nil "Interrupted.~:[~; Plans go on; STOP-PLAN ends them.~]~%"
-                       (and (null (session-visit session)) (notevery #'plan-ending-p (plans))))
-               (session-console session)))
+  (forget-pasted (session-input session))
+  (let ((console (session-console session)))
+    (answered console)
+    (write-fresh (fitted (format nil "Interrupted.~@[~A~]~%" (what-goes-on session)) console)
+                 console)))
 
 (defun call-guarded (session function)
   "Call FUNCTION, which may be interrupted; complain of what goes wrong in it."

@@ -8,8 +8,9 @@
 
 (defstruct (parameter-of-line (:conc-name slot-) (:copier nil)
                               (:constructor make-slot (name type text optional-p)))
-  "An argument of a line command. TYPE is an argument type of the command layer, or :TOKEN, for
-the characters up to the next blank, or :REST, for all that is left of the line."
+  "An argument of a line command. TYPE is an argument type of the command layer, or a keyword:
+:REST, :LINE (another line) or :FORM (of Lisp) for all that is left of the line; any other for the
+characters up to the next blank: :TOKEN, or what they stand for, such as :FILE (see CHOICES)."
   (name "" :type string :read-only t)
   (type nil :type symbol :read-only t)
   (text "" :type string :read-only t)
@@ -76,9 +77,9 @@ SESSION to the session. FAMILY, a keyword, says where HELP lists it, and SENTENC
 
 (defun slot-words (slot)
   "Return what the argument in SLOT has to be."
-  (case (slot-type slot)
-    ((:token :rest) (slot-text slot))
-    (t (argument-words (slot-type slot)))))
+  (if (keywordp (slot-type slot))
+      (slot-text slot)
+      (argument-words (slot-type slot))))
 
 (defun takes (line)
   "Return in a sentence what LINE takes."

@@ -99,6 +99,11 @@ NIL if there is none."
          (unit (find-unit (subseq text start end))))
     (and unit (values unit end))))
 
+(defun unit-names (dimension)
+  "Return the names of the units of DIMENSION."
+  (loop for (nil . names) in (cddr (assoc dimension *units*))
+        append names))
+
 (defun in-own-units (number unit dimension said reject)
   "Return NUMBER UNITs in the simulator's units of DIMENSION. If they are of another, call REJECT, a
 function, with what is wrong with what was SAID, in words."

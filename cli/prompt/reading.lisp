@@ -2,9 +2,22 @@
 
 (in-package :ars-magna.cli)
 
-(defun read-input (session prompt)
-  "Return the next line of SESSION, or NIL at the end. Show PROMPT unless it is a batch, and what
-comes of earlier lines if the session waits for that."
+;; What knows what can be typed where sets it.
+(defvar *completion* (constantly nil)
+  "A function of a session, a text and a place in it: what *COMPLETER* returns of the text.")
+
+(defun read-typed (session before)
+  "Return the next line that is typed in SESSION, or NIL at the end. Whoever edits it can complete
+it, and have it again; if BEFORE is a text, together with that, which it goes on from."
+  (let* ((*completer* (lambda (text point) (funcall *completion* session text point)))
+         (line (read-line (session-input session) nil)))
+    (when line (remember-line (session-input session) line before))
+    line))
+
+(defun read-input (session prompt &optional before)
+  "Return the next line of SESSION, or NIL at the end; it goes on from the text BEFORE, if there is
+one. Show PROMPT unless it is a batch, and what comes of earlier lines if the session waits for
+that."
   (let ((console (session-console session)))
     (unless (or (session-batch-p session)
                 (and (unanswered-p console) (string= prompt (console-prompt console))))
@@ -13,12 +26,12 @@ comes of earlier lines if the session waits for that."
     (let* ((given (pop (session-lines session)))
            (line (or given
                      (and (not (console-trouble console))
-                          (read-line (session-input session) nil)))))
+                          (read-typed session before)))))
       (with-lock ((session-lock session))
-        (cond ((session-batch-p session))
-              ((null line) (terpri console))
-              ((or given (session-echo-p session)) (format console "~A~%" (visible line))))
-        (answered console))
+        (cond ((and line (not (session-batch-p session)) (or given (session-echo-p session)))
+               (show-answer console (visible line)))
+              (t (unless (or line (session-batch-p session)) (fresh-line console))
+                 (answered console))))
       (note-read (session-account session))
       line)))
 

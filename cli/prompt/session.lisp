@@ -119,9 +119,10 @@ DISPLAY says so."
   (incf (session-errors session))
   (let ((account (session-account session)) (console (session-console session)))
     (unless (report-trouble account text)
-      (write-fresh (painted (format nil "*ERROR* -> ~A~%"
-                                    (complaint-text (placed-text account text)))
-                            (ink-of :error) console)
+      (write-fresh (fitted (painted (format nil "*ERROR* -> ~A~%"
+                                            (complaint-text (placed-text account text)))
+                                    (ink-of :error) console)
+                           console)
                    console))))
 
 (defun take-all-messages ()
@@ -157,8 +158,8 @@ DISPLAY says so."
   (let ((text (with-output-to-string (out)
                 (dolist (message messages) (write-painted message console out)))))
     (if (and (unanswered-p console) (eq (message-kind (first messages)) :message))
-        (write-string text console)
-        (write-fresh text console))))
+        (write-after-prompt (fitted text console (console-prompt console)) console)
+        (write-fresh (fitted text console) console))))
 
 ;; Programs set it that know what an error belongs to, such as a plan under way.
 (defvar *error-counts-p* (constantly t)

@@ -57,9 +57,9 @@ sits there, it shows what it reads and waits for each command, for a transcript 
 E. A batch that has plans to carry out does not wait for lines to be typed."
   (let* ((script (option-value :script options))
          (objects (and (option-value :json options) (object-console)))
-         (input (if script (open-script script) (standard-input)))
-         (piped (not (typed-by-hand-p input)))
          (batch (or script objects (option-value :batch options)))
+         (input (if script (open-script script) (standard-input *standard-output* batch)))
+         (piped (not (typed-by-hand-p input)))
          (lines (plan-lines options)))
     (make-session :input (if (and batch lines (not piped)) (make-concatenated-stream) input)
                   :output (or objects *standard-output*) :batch batch
@@ -69,17 +69,21 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
                   :patient (or batch piped) :echo (and piped (not batch))
                   :color (option-value :color options :auto))))
 
+(defun run-in-world (session robot-name options)
+  "Run the lines of SESSION, beginning with ROBOT-NAME."
+  ;; What has been said of the world's definitions; a headless run has messages of its own.
+  (show-messages session)
+  (let ((*forks-to-keep* t))
+    (if (and (session-batch-p session) (null (option-value :rate options)))
+        (run-batch session robot-name (option-value :seed options 0))
+        (run-live session robot-name options))))
+
 (defun run-prompt (options)
   "Do what OPTIONS say. Return the status to exit with."
   (let ((robot-name (first-robot options))
         (session (standard-session options)))
-    ;; What has been said of the world's definitions; a headless run has messages of its own.
     (report-beginning session robot-name options)
-    (show-messages session)
-    (let ((*forks-to-keep* t))
-      (if (and (session-batch-p session) (null (option-value :rate options)))
-          (run-batch session robot-name (option-value :seed options 0))
-          (run-live session robot-name options)))
+    (call-typing (lambda () (run-in-world session robot-name options)) (session-input session))
     (report-end session
                 (if (and (session-batch-p session) (plusp (session-errors session))) 1 0))))
 
@@ -149,7 +153,7 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
 
 (defun run-process ()
   "Do what the arguments of this process say. Return the status to exit with."
-  (let ((console (make-console (text-output 1))))
+  (let ((console (standard-output)))
     (setf *standard-output* console)
     (deliver console (call-for-status (lambda () (run-arguments (process-arguments)))))))
 

@@ -13,7 +13,7 @@
 (defun open-script (name)
   "Return a stream of the lines of the script NAME; - is what is typed."
   (if (string= name "-")
-      (standard-input)
+      (standard-input *standard-output* t)
       (make-instance 'typed-text
                      :octets (open (or (script-path name)
                                        (reject-usage "There is no script ~A." name))

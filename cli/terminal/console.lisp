@@ -7,25 +7,39 @@
 ;;; over and must be shown again. A terminal moves the cursor when the user presses return; nobody
 ;;; but ANSWERED can know. When what is written cannot be delivered, it is lost, and the program
 ;;; ends.
+;;;
+;;; While the prompt edits a line itself, that stands below all that is written, with the prompt
+;;; before it: it is taken off before something is written, and drawn again when that is shown.
+
+(defconstant +longest-line-kept+ 500 "How many characters of a line that goes on are kept.")
 
 (defclass console (fundamental-character-output-stream)
   ((stream :initarg :stream :reader console-stream)
+   (window :initarg :window :initform nil :reader console-window)
    (lock :initform (make-lock "console") :reader console-lock)
    (column :initform 0 :accessor console-column)
+   (rest :initform "" :accessor console-rest)
+   (wrapped-p :initform nil :accessor console-wrapped-p)
+   (edited-p :initform nil :accessor console-edited-p)
+   (line :initform nil :accessor console-line)
    (question :initform nil :accessor console-prompt)
    (overwritten-p :initform nil :accessor console-overwritten-p)
    (trouble :initform nil :accessor console-trouble)
    (colored-p :initform nil :accessor console-colored-p)
    (held-back-p :initform nil :accessor console-held-back-p)
    (held-back :initform '() :accessor console-held-back))
-  (:documentation "An output stream on top of another. QUESTION is what stands there for the user to
-answer, or NIL; OVERWRITTEN-P is true if something was written after it. TROUBLE is the condition
-that what was written could not be delivered, or NIL. COLORED-P is true if its messages and prompts
-have colours. While HELD-BACK-P is true, what is written is kept in HELD-BACK, a list of strings,
-newest first."))
+  (:documentation "An output stream on top of another. WINDOW is a function that returns columns and
+rows of the terminal's window, or NIL if there is none. REST is what was written last, since a
+newline, as far as it is short; WRAPPED-P is true if that fills a row, and the cursor has gone on to
+the next. EDITED-P is true if the prompt edits what is typed, LINE the drawn-line that is being
+typed, or NIL. QUESTION is what stands there for the user to answer, or NIL; OVERWRITTEN-P is true
+if something was written after it. TROUBLE is the condition that what was written could not be
+delivered, or NIL. COLORED-P is true if its messages and prompts have colours. While HELD-BACK-P is
+true, what is written is kept in HELD-BACK, a list of strings, newest first."))
 
-(defun make-console (stream)
-  (if (typep stream 'console) stream (make-instance 'console :stream stream)))
+(defun make-console (stream &optional window)
+  "Return a console on STREAM, or STREAM if it is one. WINDOW is as in CONSOLE."
+  (if (typep stream 'console) stream (make-instance 'console :stream stream :window window)))
 
 (defvar *leave-unheard-p* nil
   "True in the thread that ends this process, when there is nobody any more to write for.")
@@ -62,16 +76,132 @@ now."
     (setf (console-held-back console)
           (if (nthcdr (* 2 +most-held-back+) held) (subseq held 0 +most-held-back+) held))))
 
+;;; Where the cursor is.
+
+(defun begin-row (console)
+  "Note that the cursor is at the beginning of a line."
+  (setf (console-column console) 0
+        (console-rest console) ""
+        (console-wrapped-p console) nil))
+
+(defun note-written (console string start end)
+  "Note that STRING from START to END has been written."
+  (let ((newline (position #\Newline string :start start :end end :from-end t)))
+    (when newline
+      (begin-row console)
+      (setf start (1+ newline)))
+    (incf (console-column console) (- end start))
+    (setf (console-rest console)
+          (if (<= (console-column console) +longest-line-kept+)
+              (concatenate 'string (console-rest console) (subseq string start end))
+              ""))))
+
+(defun column-of-row (console)
+  "Return in which column of the window the cursor is; 0 if it is after the last."
+  (mod (if (string= "" (console-rest console))
+           (console-column console)
+           (text-columns (console-rest console)))
+       (values (funcall (console-window console)))))
+
+;;; The line that is being typed.
+
+(defun call-in-window (function console stream)
+  "Call FUNCTION with the line of CONSOLE, STREAM, and how many columns and rows the window has."
+  (multiple-value-call function (console-line console) stream (funcall (console-window console))))
+
+(defun wipe (console stream)
+  "Take the line that is being typed off the screen, if it is there, so that what is written next
+goes on where the last has ended."
+  (let ((line (console-line console)))
+    (when (and line (drawn-line-shown line))
+      (call-in-window #'wipe-line console stream)
+      (unless (or (zerop (console-column console)) (console-wrapped-p console))
+        (move-up 1 stream)
+        (move-right (column-of-row console) stream)))))
+
+(defun draw (console stream)
+  "Draw the line that is being typed below what was written, if there is one and it is not there."
+  (let ((line (console-line console)))
+    (when (and line (null (drawn-line-shown line)))
+      (unless (or (zerop (console-column console)) (console-wrapped-p console))
+        (terpri stream)
+        (setf (console-wrapped-p console) (zerop (column-of-row console))))
+      (call-in-window #'draw-line console stream))))
+
+(defun change-line (console function)
+  "Call FUNCTION with the line that is being typed, if any, and show what it has made of it."
+  (with-console (stream console)
+    (when (console-line console)
+      (wipe console stream)
+      (funcall function (console-line console))
+      (draw console stream)
+      (finish-output stream))))
+
+(defun begin-line (console)
+  "Let a line be typed after what has been written last, unless one stands already."
+  (with-console (stream console)
+    (unless (console-line console)
+      (when (/= (console-column console) (length (console-rest console)))
+        (put-string (string #\Newline) console stream))
+      (let ((prompt (console-rest console)))
+        (setf (console-line console)
+              (make-drawn-line :prompt prompt :shown (list prompt "" 0)))))
+    (begin-row console)
+    (wipe console stream)
+    (draw console stream)
+    (finish-output stream)))
+
+(defun hide-line (console)
+  "Take the line that is being typed off the screen, until something is shown."
+  (with-console (stream console)
+    (wipe console stream)
+    (finish-output stream)))
+
+(defun clear-window (console)
+  "Let nothing stand in the window but the line that is being typed."
+  (hide-line console)
+  (with-console (stream console)
+    (format stream "~C[H~:*~C[2J" #\Escape)
+    (begin-row console)
+    (draw console stream)
+    (finish-output stream)))
+
+(defun end-line (console)
+  "Let what was typed stand as it is, and what is written next begin below."
+  (with-console (stream console)
+    (let ((line (console-line console)))
+      (wipe console stream)
+      (setf (drawn-line-point line) (length (drawn-line-text line)))
+      (draw console stream)
+      (when (plusp (drawn-line-column line)) (terpri stream))
+      (finish-output stream))
+    (setf (console-line console) nil
+          (console-prompt console) nil)
+    (begin-row console)))
+
+;;; Writing.
+
+(defun put-now (string console stream start end)
+  "Write STRING from START to END to STREAM, below CONSOLE, where the line being typed is not."
+  ;; The cursor is there already.
+  (when (and (shiftf (console-wrapped-p console) nil) (char= #\Newline (char string start)))
+    (begin-row console)
+    (incf start))
+  (write-string string stream :start start :end end)
+  (note-written console string start end)
+  (unless (console-line console) (setf (console-overwritten-p console) t)))
+
 (defun put-string (string console stream &optional (start 0) (end (length string)))
   "Write STRING from START to END to STREAM, which is below CONSOLE, where nobody else writes now."
-  (let ((newline (position #\Newline string :start start :end end :from-end t)))
-    (if (console-held-back-p console)
-        (hold-back (subseq string start end) console)
-        (write-string string stream :start start :end end))
-    (setf (console-overwritten-p console) t
-          (console-column console) (if newline
-                                       (- end newline 1)
-                                       (+ (console-column console) (- end start))))))
+  (cond ((= start end))
+        ((console-held-back-p console) (hold-back (subseq string start end) console))
+        (t (wipe console stream)
+           (put-now string console stream start end))))
+
+(defun put-fresh (text console stream)
+  "Do as PUT-STRING does with TEXT, from the beginning of a line on."
+  (when (plusp (console-column console)) (put-string (string #\Newline) console stream))
+  (put-string text console stream))
 
 (defmethod stream-write-string ((console console) string &optional (start 0) end)
   (with-console (stream console)
@@ -80,29 +210,57 @@ now."
 
 (defun write-fresh (text console)
   "Write TEXT from the beginning of a line of CONSOLE on, all of it in one piece."
+  (with-console (stream console) (put-fresh text console stream)))
+
+(defun write-after-prompt (text console)
+  "Write TEXT after the prompt that stands; above it, if something has been typed there."
   (with-console (stream console)
-    (when (plusp (console-column console)) (put-string (string #\Newline) console stream))
-    (put-string text console stream)))
+    (let ((line (console-line console)))
+      (cond ((null line) (put-string text console stream))
+            ((string/= "" (drawn-line-text line)) (put-fresh text console stream))
+            (t (put-fresh (concatenate 'string (drawn-line-prompt line) text) console stream))))))
+
+(defun fitted (text console &optional (prompt ""))
+  "Return TEXT as it is written after PROMPT: on a terminal, with lines that are broken between
+words."
+  (if (console-window console)
+      (broken-text text (1- (funcall (console-window console))) (text-columns prompt))
+      text))
 
 (defmethod stream-write-char ((console console) char)
   (stream-write-string console (string char))
   char)
 
 (defmethod stream-force-output ((console console))
-  (with-console (stream console) (force-output stream)))
+  (with-console (stream console)
+    (draw console stream)
+    (force-output stream)))
 
 (defmethod stream-finish-output ((console console))
-  (with-console (stream console) (finish-output stream)))
+  (with-console (stream console)
+    (draw console stream)
+    (finish-output stream)))
 
 ;;; Prompts.
 
+(defun put-prompt (prompt console stream)
+  "Put PROMPT at the start of a line, or before the line that is being typed."
+  (let ((line (console-line console)))
+    (cond (line
+           (wipe console stream)
+           (setf (drawn-line-prompt line) prompt))
+          ((console-edited-p console)
+           (setf (console-line console) (make-drawn-line :prompt prompt)))
+          (t (put-fresh prompt console stream)))))
+
 (defun show-prompt (console prompt)
-  "Write PROMPT, a string, at the start of a line."
-  (fresh-line console)
-  (write-string (painted prompt :bold console) console)
-  (finish-output console)
-  (setf (console-overwritten-p console) nil
-        (console-prompt console) prompt))
+  "Show PROMPT, a string, at the start of a line."
+  (with-console (stream console)
+    (put-prompt (painted prompt :bold console) console stream)
+    (draw console stream)
+    (finish-output stream)
+    (setf (console-overwritten-p console) nil
+          (console-prompt console) prompt)))
 
 (defun unanswered-p (console)
   "True if a prompt stands and nothing has been written after it."
@@ -119,8 +277,16 @@ now."
 
 (defun answered (console)
   "Note that the user has ended the line of the prompt."
-  (setf (console-prompt console) nil
-        (console-column console) 0))
+  (cond ((console-line console) (end-line console))
+        (t (setf (console-prompt console) nil)
+           (unless (console-edited-p console) (begin-row console)))))
+
+(defun show-answer (console text)
+  "Show TEXT as if the user had typed it, and ended the line."
+  (if (console-line console)
+      (change-line console (lambda (line) (setf (drawn-line-text line) text)))
+      (format console "~A~%" text))
+  (answered console))
 
 ;;; A screen of its own.
 
@@ -146,16 +312,14 @@ now."
   (with-console (stream console)
     (setf (console-held-back-p console) nil)
     (dolist (string (reverse (shiftf (console-held-back console) '())))
-      (write-string string stream))
+      (put-string string console stream))
     (finish-output stream)))
 
 (defun call-with-screen (function console)
-  "Call FUNCTION while CONSOLE, on a terminal, shows a screen that is written over by WRITE-AT-ONCE
-and OVER-SCREEN, and gives each key as it is pressed. What others write meanwhile comes afterwards."
+  "Call FUNCTION while CONSOLE, on a terminal that hands over keys, shows a screen that is written
+over by WRITE-AT-ONCE and OVER-SCREEN. What others write meanwhile comes afterwards."
   (call-holding-interrupts
    (lambda ()
-     (call-with-keys
-      (lambda ()
-        (begin-screen console)
-        (unwind-protect (call-open-to-interrupts function)
-          (end-screen console)))))))
+     (begin-screen console)
+     (unwind-protect (call-open-to-interrupts function)
+       (end-screen console)))))

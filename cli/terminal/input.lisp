@@ -34,16 +34,27 @@ line has at most; and whether there were more."
                    (stream-error () nil)))))
     (values line (< (1+ +longest-line-typed+) count))))
 
-(defun fill-line (stream)
-  "Let STREAM have something left of a line, unless it is at its end."
-  (when (= (typed-position stream) (length (typed-line stream)))
+(defgeneric next-typed-line (stream)
+  (:documentation "Return the next line that is typed into STREAM, with the newline at its end, if
+there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
+  (:method ((stream typed-text))
     (multiple-value-bind (octets too-long-p) (read-octets (typed-octets stream))
-      (setf (typed-position stream) 0
-            (typed-line stream) (if too-long-p "" (decoded octets)))
       (when too-long-p
         (reject-line "The line is longer than ~D bytes. Put what is in it into a file, ~
                       and (load \"FILE\")."
-                     +longest-line-typed+)))))
+                     +longest-line-typed+))
+      (decoded octets))))
+
+(defun fill-line (stream)
+  "Let STREAM have something left of a line, unless it is at its end."
+  (when (= (typed-position stream) (length (typed-line stream)))
+    (setf (typed-position stream) 0
+          (typed-line stream) "")
+    (setf (typed-line stream) (next-typed-line stream))))
+
+(defun line-left-p (stream)
+  "True if STREAM has something left of a line that was typed."
+  (< (typed-position stream) (length (typed-line stream))))
 
 (defmethod stream-read-line ((stream typed-text))
   (fill-line stream)
@@ -68,18 +79,16 @@ line has at most; and whether there were more."
 (defmethod stream-line-column ((stream typed-text))
   nil)
 
+(defgeneric typed-ahead-p (stream)
+  (:documentation "True if STREAM has something that was typed and can be read without waiting.")
+  (:method ((stream typed-text)) (line-left-p stream)))
+
 (defmethod stream-listen ((stream typed-text))
-  (or (< (typed-position stream) (length (typed-line stream)))
-      (listen (typed-octets stream))))
+  (or (typed-ahead-p stream) (listen (typed-octets stream))))
 
 (defmethod stream-clear-input ((stream typed-text))
   (setf (typed-position stream) (length (typed-line stream)))
   (clear-input (typed-octets stream)))
-
-(defun standard-input ()
-  "Return what is typed into this process."
-  (let ((octets (octet-input 0)))
-    (make-instance 'typed-text :octets octets :by-hand-p (interactive-stream-p octets))))
 
 ;;; Whether something has been typed can be found out, without waiting for it, of this process's own
 ;;; streams only.
@@ -98,5 +107,5 @@ line has at most; and whether there were more."
 
 (defun typed-within-p (stream seconds)
   "Wait until something is typed into STREAM, or it ends, for SECONDS at most. True if it is."
-  (or (and (typep stream 'typed-text) (< (typed-position stream) (length (typed-line stream))))
+  (or (and (typep stream 'typed-text) (typed-ahead-p stream))
       (octets-within-p (source-of stream) seconds)))

@@ -8,6 +8,7 @@
 
 (defun end-process (status)
   "End this process with STATUS, at once: nothing is flushed and no thread is waited for."
+  (restore-manner)
   (call-allowing-exits (lambda () (uiop:quit status nil))))
 
 ;;; Streams.

@@ -67,9 +67,15 @@ last one has left goes on as if that had been begun again."
 (defun play-resize (terminal text)
   (apply #'resize-terminal terminal (mapcar #'parse-integer (uiop:split-string text))))
 
+(defun play-paste (terminal text)
+  "Paste TEXT, in which \\n stands for a newline."
+  (tell-terminal terminal "set-buffer -- ~A"
+                 (quoted-for-tmux (uiop:frob-substrings text '("\\n") (string #\Return))))
+  (tell-terminal terminal "paste-buffer -p -r"))
+
 (defparameter *session-words*
   '(("type" . type-line) ("keys" . type-text) ("press" . press-key)
-    ("wait" . await-text) ("prompt" . await-prompt) ("resize" . play-resize)
+    ("wait" . await-text) ("prompt" . await-prompt) ("resize" . play-resize) ("paste" . play-paste)
     ("page" . play-page) ("lisp" . play-lisp))
   "The words of sessions but SCREEN, and what does what they say.")
 

@@ -10,7 +10,7 @@
 
 (defparameter *longest-wait* 60 "After how many seconds what is waited for counts as hung.")
 
-(defparameter *terminal-programs* '("tmux" "rlwrap")
+(defparameter *terminal-programs* '("tmux")
   "The programs without which a newcomer cannot be played.")
 
 (define-condition newcomer-stuck (error)

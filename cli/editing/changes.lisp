@@ -1,0 +1,111 @@
+;;;; changes.lisp -- the keys that move the cursor in the line that is typed, or change the line.
+
+(in-package :ars-magna.cli)
+
+;;; Each such key is a function from a text and the place of the cursor in it, its point, to
+;;; another text and point; and to what it has killed, which control Y brings back. They are those
+;;; that Emacs has, and shells. A text that was pasted may have several lines.
+
+(defvar *changes* '() "Lists (key function).")
+
+(defmacro define-change (keys (text point) documentation &body body)
+  "Let each of KEYS do what BODY does with TEXT and POINT; it returns as values another text and
+point, and what was killed, if anything."
+  `(let ((function (lambda (,text ,point) ,documentation (declare (ignorable ,text)) ,@body)))
+     (dolist (key ',keys)
+       (setf *changes* (cons (list key function) (remove key *changes* :key #'first))))))
+
+(defun change-of (key)
+  "Return the function that KEY stands for, or NIL."
+  (second (assoc key *changes*)))
+
+;;; Places in a text.
+
+(defun line-start (text point)
+  "Return where in TEXT the line begins that POINT is in."
+  (let ((newline (position #\Newline text :end point :from-end t)))
+    (if newline (1+ newline) 0)))
+
+(defun line-end (text point)
+  (or (position #\Newline text :start point) (length text)))
+
+(defun before-word (text point &optional (in-word-p #'alphanumericp))
+  "Return where in TEXT the word begins that ends at POINT, or before."
+  (let* ((end (position-if in-word-p text :end point :from-end t))
+         (gap (and end (position-if-not in-word-p text :end end :from-end t))))
+    (if gap (1+ gap) 0)))
+
+(defun after-word (text point)
+  "Return where in TEXT the word ends that begins at POINT, or after."
+  (let ((start (position-if #'alphanumericp text :start point)))
+    (or (and start (position-if-not #'alphanumericp text :start start))
+        (length text))))
+
+;;; Moving.
+
+(define-change (:control-a :home) (text point)
+  "Go to the beginning of the line."
+  (values text (line-start text point)))
+
+(define-change (:control-e :end) (text point)
+  "Go to the end of the line."
+  (values text (line-end text point)))
+
+(define-change (:control-b :left) (text point)
+  "Go one character back."
+  (values text (max 0 (1- point))))
+
+(define-change (:control-f :right) (text point)
+  "Go one character on."
+  (values text (min (length text) (1+ point))))
+
+(define-change (:meta-b) (text point)
+  "Go to the beginning of the word, or of the one before."
+  (values text (before-word text point)))
+
+(define-change (:meta-f) (text point)
+  "Go to the end of the word, or of the next."
+  (values text (after-word text point)))
+
+;;; Changing.
+
+(defun inserted (string text point)
+  "Return TEXT with STRING in it at POINT, and the point after that."
+  (values (concatenate 'string (subseq text 0 point) string (subseq text point))
+          (+ point (length string))))
+
+(defun deleted (text start end)
+  "Return TEXT without what is from START to END, and START."
+  (values (concatenate 'string (subseq text 0 start) (subseq text end)) start))
+
+(defun killed (text start end)
+  "Do as DELETED does; return as a third value what was there."
+  (multiple-value-call #'values (deleted text start end) (subseq text start end)))
+
+(define-change (:rubout) (text point)
+  "Delete the character before the cursor."
+  (deleted text (max 0 (1- point)) point))
+
+(define-change (:delete) (text point)
+  "Delete the character under the cursor."
+  (deleted text point (min (length text) (1+ point))))
+
+(define-change (:control-k) (text point)
+  "Kill what follows, up to the end of the line."
+  (killed text point (line-end text point)))
+
+(define-change (:control-u) (text point)
+  "Kill what comes before, from the beginning of the line on."
+  (killed text (line-start text point) point))
+
+(define-change (:control-w) (text point)
+  "Kill what comes before, back to a blank."
+  (killed text (before-word text point (lambda (char) (not (blank-p char)))) point))
+
+(define-change (:meta-rubout) (text point)
+  "Kill the word before the cursor."
+  (killed text (before-word text point) point))
+
+(define-change (:meta-d) (text point)
+  "Kill the word after the cursor."
+  (killed text point (after-word text point)))

@@ -1,0 +1,251 @@
+;;;; editor.lisp -- a line that is typed at a terminal, key by key: what is edited, and where.
+
+(in-package :ars-magna.cli)
+
+;;; Why not rlwrap, or GNU readline? What arrives while a line is typed is to be written above it,
+;;; by whichever thread has it; control C is to end what was typed before it and nothing else; Tab
+;;; is to know what the simulator knows. A program around this one can do none of that, and readline
+;;; can be called by one thread only, and has a licence of another kind.
+
+(defclass edited-text (typed-text)
+  ((console :initarg :console :reader edited-console)
+   (history :initarg :history :initform (make-history) :reader edited-history)
+   ;; Octets that were handed over before their time, and lines that were pasted.
+   (ahead :initform "" :accessor edited-ahead)
+   (lines :initform '() :accessor edited-lines)
+   (killed :initform "" :accessor edited-killed)
+   ;; The entries of the history before the one that is shown, and those after it, the nearest
+   ;; first; after the newest comes what was typed.
+   (older :initform '() :accessor edited-older)
+   (newer :initform '() :accessor edited-newer))
+  (:documentation "The text that somebody types at this process's terminal, who can edit each line,
+and have again what he has typed before. The line is shown on CONSOLE."))
+
+(defmethod initialize-instance :after ((stream edited-text) &key)
+  (setf (console-edited-p (edited-console stream)) t))
+
+(defvar *while-typing* nil
+  "NIL, or a function that is called now and then while a line is typed.")
+
+;;; Octets.
+
+(defun await-octets (stream)
+  "Wait until STREAM has octets, or is at its end."
+  (when *while-typing*
+    (loop until (octets-within-p (typed-octets stream) 0.05)
+          do (funcall *while-typing*))))
+
+(defun next-octet (stream)
+  "Return the next octet of STREAM, as a character, or NIL at the end."
+  (let ((ahead (edited-ahead stream)))
+    (cond ((string/= "" ahead)
+           (setf (edited-ahead stream) (subseq ahead 1))
+           (char ahead 0))
+          (t (await-octets stream)
+             (handler-case (read-char (typed-octets stream) nil)
+               (stream-error () nil))))))
+
+(defun octet-reader (stream)
+  "Return a function that returns the next octet of STREAM, or is given one to return first."
+  (lambda (&optional octet)
+    (if octet
+        (progn (setf (edited-ahead stream) (uiop:strcat octet (edited-ahead stream))) nil)
+        (next-octet stream))))
+
+(defun octets-at-hand (stream)
+  "Return the octets that STREAM has without waiting."
+  (with-output-to-string (out)
+    (write-string (shiftf (edited-ahead stream) "") out)
+    (loop for char = (handler-case (read-char-no-hang (typed-octets stream) nil)
+                       (stream-error () nil))
+          while char do (write-char char out))))
+
+(defparameter *control-c* (code-char 3))
+
+(defun look-ahead (stream)
+  "Take what has been typed after the line that has ended. Control C in it is for that line."
+  (let* ((octets (octets-at-hand stream))
+         (interrupt (position *control-c* octets :from-end t)))
+    (setf (edited-ahead stream) (subseq octets (if interrupt (1+ interrupt) 0)))
+    (when interrupt (heed-interrupt))))
+
+(defun paste-in-brackets (console on)
+  "Let the terminal tell what is pasted from what is typed, if ON is true."
+  (with-console (stream console)
+    (format stream "~C[?2004~:[l~;h~]" #\Escape on)
+    (finish-output stream)))
+
+;;; The line.
+
+(defun line-of (stream)
+  (console-line (edited-console stream)))
+
+(defun typed-text-of (stream)
+  (drawn-line-text (line-of stream)))
+
+(defun change-to (stream text point)
+  "Let the line that is typed be TEXT, the cursor at POINT."
+  (change-line (edited-console stream)
+               (lambda (line)
+                 (setf (drawn-line-text line) text
+                       (drawn-line-point line) point))))
+
+(defun insert-typed (stream string)
+  "Insert STRING where the cursor is."
+  (let ((line (line-of stream)))
+    (multiple-value-call #'change-to stream
+      (inserted string (drawn-line-text line) (drawn-line-point line)))))
+
+(defun do-change (stream function)
+  "Do to the line that is typed what FUNCTION, of a key in *CHANGES*, does."
+  (let ((line (line-of stream)))
+    (multiple-value-bind (text point killed)
+        (funcall function (drawn-line-text line) (drawn-line-point line))
+      (when (and killed (string/= "" killed)) (setf (edited-killed stream) killed))
+      (change-to stream text point))))
+
+;;; Keys that do other things: each a function of the stream. What it returns ends the line, if it
+;;; is not NIL: the text that was typed, or :EOF.
+
+(defvar *actions* '() "Lists (key function).")
+
+(defmacro define-action (keys (stream) documentation &body body)
+  "Let each of KEYS do what BODY does. If that returns a text, or :EOF, the line has ended."
+  `(let ((function (lambda (,stream) ,documentation ,@body)))
+     (dolist (key ',keys)
+       (setf *actions* (cons (list key function) (remove key *actions* :key #'first))))))
+
+(defun action-of (key)
+  (second (assoc key *actions*)))
+
+(define-action (:return) (stream)
+  "End the line."
+  (typed-text-of stream))
+
+(define-action (:control-c) (stream)
+  "Clear the line; if there is nothing typed, end what waits for it."
+  (if (string= "" (typed-text-of stream))
+      (heed-interrupt)
+      (change-to stream "" 0))
+  nil)
+
+(define-action (:control-d) (stream)
+  "Delete the character under the cursor; if there is nothing typed, end the input."
+  (cond ((string= "" (typed-text-of stream)) :eof)
+        (t (do-change stream (change-of :delete)) nil)))
+
+(define-action (:control-y) (stream)
+  "Insert what was killed last."
+  (insert-typed stream (edited-killed stream))
+  nil)
+
+(define-action (:control-l) (stream)
+  "Clear the screen."
+  (clear-window (edited-console stream))
+  nil)
+
+(define-action (:control-z) (stream)
+  "Stop this process until its user wants it back."
+  (hide-line (edited-console stream))
+  (paste-in-brackets (edited-console stream) nil)
+  (stop-for-a-while)
+  (paste-in-brackets (edited-console stream) t)
+  (change-line (edited-console stream) (constantly nil))
+  nil)
+
+;;; The history.
+
+(defun enter-history (stream)
+  "Let the whole history be older than the line that begins."
+  (setf (edited-older stream) (history-entries (edited-history stream))
+        (edited-newer stream) '()))
+
+(defun show-entry (stream from to)
+  "Show the entry that the place FROM of STREAM begins with; what is shown goes before those at TO."
+  (let ((entry (first (slot-value stream from))))
+    (when entry
+      (pop (slot-value stream from))
+      (push (typed-text-of stream) (slot-value stream to))
+      (change-to stream entry (length entry)))))
+
+(defun go-up (stream)
+  "Go up a line in what is typed; from the first, to the entry of the history before it."
+  (let* ((line (line-of stream))
+         (start (line-start (drawn-line-text line) (drawn-line-point line))))
+    (if (zerop start)
+        (show-entry stream 'older 'newer)
+        (change-to stream (drawn-line-text line) (1- start)))))
+
+(defun go-down (stream)
+  (let* ((line (line-of stream))
+         (text (drawn-line-text line))
+         (end (line-end text (drawn-line-point line))))
+    (if (= end (length text))
+        (show-entry stream 'newer 'older)
+        (change-to stream text (line-end text (1+ end))))))
+
+(define-action (:up :control-p) (stream)
+  "Go back in the history."
+  (go-up stream)
+  nil)
+
+(define-action (:down :control-n) (stream)
+  "Go on in the history."
+  (go-down stream)
+  nil)
+
+;;; Reading a line.
+
+(defun press (stream key)
+  "Do what KEY does. Return a text, or :EOF, if the line has ended."
+  (cond ((stringp key) (insert-typed stream key) nil)
+        ((consp key) (insert-typed stream (second key)) nil)
+        ((null key) (if (string= "" (typed-text-of stream)) :eof (typed-text-of stream)))
+        ((change-of key) (do-change stream (change-of key)) nil)
+        ((action-of key) (funcall (action-of key) stream))))
+
+(defun call-editing (function stream)
+  "Call FUNCTION, while a line can be edited on the console of STREAM."
+  (let ((console (edited-console stream)))
+    (unwind-protect (progn (hand-over-keys)
+                           (begin-line console)
+                           (enter-history stream)
+                           (funcall function))
+      (when (console-line console) (end-line console))
+      (hand-over-keys :interrupts t))))
+
+(defun edit-line (stream)
+  "Let a line be typed. Return it, which has newlines in it if several were pasted; :EOF at the end
+of the input."
+  (prog1 (call-editing (lambda ()
+                         (loop for key = (read-key (octet-reader stream))
+                               for end = (press stream key)
+                               until end
+                               finally (return end)))
+                       stream)
+    (look-ahead stream)))
+
+;;; As a stream.
+
+(defun lines-in (text)
+  "Return the lines of TEXT, at least one."
+  (or (uiop:split-string text :separator '(#\Newline)) (list "")))
+
+(defmethod next-typed-line ((stream edited-text))
+  (let ((line (pop (edited-lines stream))))
+    (if line
+        (show-answer (edited-console stream) (visible line))
+        (let ((text (edit-line stream)))
+          (unless (eq text :eof)
+            (setf (edited-lines stream) (rest (lines-in text))
+                  line (first (lines-in text))))))
+    (if line (format nil "~A~%" line) "")))
+
+(defmethod typed-ahead-p ((stream edited-text))
+  (or (line-left-p stream)
+      (and (edited-lines stream) t)
+      (string/= "" (edited-ahead stream))))
+
+(defmethod stream-clear-input :after ((stream edited-text))
+  (setf (edited-lines stream) '()
+        (edited-ahead stream) ""))

@@ -1,0 +1,86 @@
+;;;; history.lisp -- the lines that were typed, in a file that later sessions read.
+
+(in-package :ars-magna.cli)
+
+;;; A Lisp form that was typed in several lines is one entry. So an entry is written into the file
+;;; when the next one begins, or the session ends. The file has an entry on each line, in which \n
+;;; stands for a newline and \\ for a backslash. Several sessions may add to it at once. What cannot
+;;; be read or written of it is done without.
+
+(defparameter *history-limit* 1000 "How many entries a history has.")
+
+(defstruct (line-history (:conc-name history-) (:copier nil)
+                         (:constructor %make-history))
+  "What was typed, newest first. FILE is the pathname of where it is kept, or NIL; UNSAVED-P is true
+if the newest entry is not in it."
+  (entries '() :type list)
+  (file nil :type (or null pathname) :read-only t)
+  (unsaved-p nil :type boolean))
+
+;;; The file.
+
+(defun entry-on-a-line (entry)
+  (uiop:frob-substrings (uiop:frob-substrings entry '("\\") "\\\\")
+                        (list (string #\Newline)) "\\n"))
+
+(defun entry-of-line (line)
+  "Return the entry that LINE of a file stands for."
+  (with-output-to-string (out)
+    (loop with position = 0
+          while (< position (length line))
+          do (let* ((char (char line position))
+                    (escaped (and (char= char #\\) (< (1+ position) (length line))
+                                  (position (char line (1+ position)) "n\\"))))
+               (write-char (if escaped (char (format nil "~%\\") escaped) char) out)
+               (incf position (if escaped 2 1))))))
+
+(defun entries-in (file)
+  "Return the newest entries in FILE, newest first."
+  (let ((lines (remove "" (uiop:split-string (file-text file) :separator '(#\Newline))
+                       :test #'string=)))
+    (mapcar #'entry-of-line (reverse (last lines *history-limit*)))))
+
+(defun call-with-history-file (function file)
+  "Call FUNCTION with a stream that appends to FILE."
+  (with-open-file (out file :direction :output :if-exists :append :if-does-not-exist :create
+                            :external-format :utf-8)
+    (funcall function out)))
+
+(defun shorten-file (file entries)
+  "Let FILE have no more than ENTRIES, newest first, if it has grown long."
+  (when (< (* 2 *history-limit*) (count #\Newline (file-text file)))
+    (call-replacing-file (lambda (out)
+                           (format out "~{~A~%~}" (mapcar #'entry-on-a-line (reverse entries))))
+                         file)))
+
+(defun make-history (&optional file)
+  "Return a history of what is in FILE, a pathname, if there is one; otherwise of nothing."
+  (let ((entries (and file (ignore-errors (entries-in file)))))
+    (when entries (ignore-errors (shorten-file file entries)))
+    (%make-history :entries entries :file file)))
+
+(defun save-entry (history)
+  "Write the newest entry into the file of HISTORY, if it is not there."
+  (when (and (shiftf (history-unsaved-p history) nil) (history-file history))
+    (ignore-errors
+     (call-with-history-file (lambda (out)
+                               (format out "~A~%"
+                                       (entry-on-a-line (first (history-entries history)))))
+                             (history-file history)))))
+
+;;; Entries.
+
+(defun add-entry (history text)
+  "Let TEXT, a line that was typed, be the newest entry, unless it is blank or is so already."
+  (save-entry history)
+  (unless (or (every #'blank-p text) (equal text (first (history-entries history))))
+    (push text (history-entries history))
+    (setf (history-unsaved-p history) t)))
+
+(defun amend-entry (history text)
+  "Let TEXT take the place of the newest entry, if it begins with that: it goes on over lines."
+  (let ((newest (first (history-entries history))))
+    (when (and newest (starts-with-subseq newest text))
+      (pop (history-entries history))
+      (setf (history-unsaved-p history) (not (equal text (first (history-entries history)))))
+      (when (history-unsaved-p history) (push text (history-entries history))))))

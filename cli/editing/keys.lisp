@@ -1,0 +1,96 @@
+;;;; keys.lisp -- from what a terminal hands over to the keys that were pressed.
+
+(in-package :ars-magna.cli)
+
+;;; A key is the text that it types, a string; a keyword such as :UP or :CONTROL-A, or :META-F for
+;;; one after escape; or a list (:PASTE text). NEXT, in what follows, is a function that returns the
+;;; next octet that the terminal hands over, as a character, or NIL at the end; an octet that it is
+;;; called with, it will return first.
+
+(defparameter *keys-of-codes*
+  '(("A" :up) ("B" :down) ("C" :right) ("D" :left) ("H" :home) ("F" :end)
+    ("1~" :home) ("7~" :home) ("4~" :end) ("8~" :end) ("3~" :delete)
+    ("1;5C" :meta-f) ("1;5D" :meta-b) ("1;3C" :meta-f) ("1;3D" :meta-b)
+    ("200~" :paste))
+  "Lists (code key): what terminals hand over after escape and [, or escape and O.")
+
+(defun read-code (next)
+  "Return the code that NEXT returns: all up to the first letter or ~."
+  (with-output-to-string (out)
+    (loop for char = (funcall next)
+          while char
+          do (write-char char out)
+          until (or (alpha-char-p char) (char= char #\~)))))
+
+(defun octets-that-follow (lead)
+  "Return how many octets follow the octet LEAD, of a character in UTF-8."
+  (let ((code (char-code lead)))
+    (cond ((< code #xC0) 0)
+          ((< code #xE0) 1)
+          ((< code #xF0) 2)
+          ((< code #xF8) 3)
+          (t 0))))
+
+(defun follows-p (octet next)
+  "True if OCTET is one that follows in a character; if not, NEXT is to return it again."
+  (or (<= #x80 (char-code octet) #xBF)
+      (progn (funcall next octet) nil)))
+
+(defun read-text (lead next)
+  "Return the character in UTF-8 that begins with the octet LEAD, as a string."
+  (decoded (with-output-to-string (out)
+             (write-char lead out)
+             (loop repeat (octets-that-follow lead)
+                   for char = (funcall next)
+                   while (and char (follows-p char next)) do (write-char char out)))))
+
+(defun with-newlines (text)
+  "Return TEXT, as pasted, with newlines between its lines, but none at its end."
+  (let ((return (string #\Return)) (newline (string #\Newline)))
+    (setf text (uiop:frob-substrings text (list (uiop:strcat return newline) return) newline))
+    (string-right-trim newline text)))
+
+(defun ends-like-p (text end)
+  (let ((start (- (length text) (length end))))
+    (and (<= 0 start) (string= end text :start2 start))))
+
+(defun read-paste (next)
+  "Return the text that NEXT returns up to the code that ends what is pasted."
+  (loop with end = (format nil "~C[201~~" #\Escape)
+        with octets = (make-array 100 :element-type 'character :adjustable t :fill-pointer 0)
+        for char = (funcall next)
+        while char
+        do (vector-push-extend char octets)
+           (when (and (char= char #\~) (ends-like-p octets end))
+             (decf (fill-pointer octets) (length end))
+             (return (with-newlines (decoded octets))))
+        finally (return (with-newlines (decoded octets)))))
+
+(defun key-called (control &rest arguments)
+  (make-keyword (string-upcase (apply #'format nil control arguments))))
+
+(defun read-coded-key (next)
+  "Return the key whose code NEXT returns."
+  (let ((key (second (assoc (read-code next) *keys-of-codes* :test #'string=))))
+    (if (eq key :paste)
+        (list :paste (read-paste next))
+        (or key :unknown))))
+
+(defun read-key-after-escape (next)
+  (let ((char (funcall next)))
+    (case char
+      ((nil) nil)
+      ((#\[ #\O) (read-coded-key next))
+      (#\Rubout :meta-rubout)
+      (t (if (graphic-char-p char) (key-called "meta-~A" char) :unknown)))))
+
+(defun read-key (next)
+  "Return the next key, or NIL at the end."
+  (let ((char (funcall next)))
+    (cond ((null char) nil)
+          ((find char '(#\Return #\Newline)) :return)
+          ((char= char #\Tab) :tab)
+          ((find char '(#\Rubout #\Backspace)) :rubout)
+          ((char= char #\Escape) (read-key-after-escape next))
+          ((< (char-code char) 32) (key-called "control-~C" (code-char (+ 64 (char-code char)))))
+          (t (read-text char next)))))

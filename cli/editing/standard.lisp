@@ -1,0 +1,60 @@
+;;;; standard.lisp -- what is typed into this process: edited, where somebody sits at a terminal.
+
+(in-package :ars-magna.cli)
+
+;;; A terminal that obeys nothing, such as a buffer of Emacs, edits lines itself.
+
+(defun obeying-terminal-p (stream)
+  "True if STREAM, of this process, is a terminal that moves its cursor when it is told to."
+  (and (interactive-stream-p stream)
+       (not (member (environment-value "TERM") '(nil "" "dumb" "unknown") :test #'equal))))
+
+(defun standard-output ()
+  "Return the console of this process."
+  (let ((stream (text-output 1)))
+    (make-console stream (and (obeying-terminal-p stream) #'window-size))))
+
+(defun file-for-history ()
+  "Return the pathname of the file that the environment names for what was typed, or NIL."
+  (let ((name (environment-value "ARS_MAGNA_HISTORY")))
+    (and name (string/= name "") (native-path name))))
+
+(defun standard-input (console plain)
+  "Return what is typed into this process. It is edited on CONSOLE if that is possible, unless PLAIN
+is true."
+  (let ((octets (octet-input 0)))
+    (if (and (not plain) (console-window console) (obeying-terminal-p octets))
+        (make-instance 'edited-text :octets octets :by-hand-p t :console console
+                                    :history (make-history (file-for-history)))
+        (make-instance 'typed-text :octets octets :by-hand-p (interactive-stream-p octets)))))
+
+(defgeneric call-typing (function input)
+  (:documentation "Call FUNCTION, which reads lines from INPUT.")
+  (:method (function input)
+    (declare (ignore input))
+    (funcall function))
+  (:method (function (input edited-text))
+    (let ((console (edited-console input)))
+      (unwind-protect (progn (paste-in-brackets console t)
+                             (call-handing-over-keys function))
+        (save-entry (edited-history input))
+        (answered console)
+        (paste-in-brackets console nil)))))
+
+(defgeneric remember-line (input line before)
+  (:documentation "Let whoever types into INPUT have LINE again, together with the text BEFORE, if
+that is not NIL.")
+  (:method (input line before)
+    (declare (ignore input line before)))
+  (:method ((input edited-text) line before)
+    (if before
+        (amend-entry (edited-history input) (format nil "~A~%~A" before line))
+        (add-entry (edited-history input) line))))
+
+(defgeneric forget-pasted (input)
+  (:documentation "Leave what was pasted into INPUT and has not been read.")
+  (:method (input)
+    (declare (ignore input)))
+  (:method ((input edited-text))
+    (setf (edited-lines input) '()
+          (typed-position input) (length (typed-line input)))))

@@ -1,0 +1,224 @@
+;;;; completing.lisp -- what a line that is being typed could become, for Tab.
+
+(in-package :ars-magna.cli)
+
+;;; The first word is the name of a command; each other is of the type that the command takes there;
+;;; inside parentheses stand symbols, in quotes files. What of it makes no sense is not completed.
+
+(defun text-of-choice (choice)
+  "Return how CHOICE, a string, symbol or number, is typed."
+  (typecase choice
+    (string choice)
+    (keyword (format nil "~(~S~)" choice))
+    (symbol (string-downcase choice))
+    (t (princ-to-string choice))))
+
+(defun matching (typed choices)
+  "Return those of CHOICES that begin with TYPED, in whatever case, as they are typed, in order."
+  (flet ((begins-p (text)
+           (and (<= (length typed) (length text))
+                (string-equal typed text :end2 (length typed)))))
+    (remove-duplicates (stable-sort (remove-if-not #'begins-p (mapcar #'text-of-choice choices))
+                                    #'string<)
+                       :test #'string=)))
+
+;;; Parts of Lisp.
+
+(defun token-char-p (char)
+  (not (or (blank-p char) (find char "()'`,\";|#"))))
+
+(defun token-start (text point)
+  "Return where the symbol begins in TEXT that ends at POINT."
+  (let ((before (position-if-not #'token-char-p text :end point :from-end t)))
+    (if before (1+ before) 0)))
+
+(defun open-quote (text point)
+  "Return where in TEXT the string begins that POINT is in, or NIL."
+  (loop with start = nil
+        for position from 0 below point
+        do (case (char text position)
+             (#\\ (incf position))
+             (#\" (setf start (if start nil position))))
+        finally (return start)))
+
+(defun operator-at (text point)
+  "Return the symbol that the innermost form begins with that POINT is in, or NIL."
+  (loop with depth = 0
+        for position from (1- point) downto 0
+        do (case (char text position)
+             (#\) (incf depth))
+             (#\( (when (minusp (decf depth))
+                    (let* ((start (1+ position))
+                           (end (position-if-not #'token-char-p text :start start)))
+                      (return (and end
+                                   (find-symbol (string-upcase (subseq text start end)))))))))))
+
+;;; What descriptors are made of.
+
+(defun attribute-keys ()
+  (mapcar #'attribute-name (all-attributes)))
+
+(defun last-attribute (text point)
+  "Return the attribute whose key stands last before POINT in TEXT, or NIL."
+  (let* ((colon (position #\: text :end point :from-end t))
+         (end (and colon (position-if-not #'token-char-p text :start colon :end point))))
+    (and end
+         (find (subseq text (1+ colon) end) (attribute-keys) :test #'string-equal))))
+
+(defun values-of (key)
+  "Return the values that the attribute called KEY can have, if they are few; none of NIL."
+  (and key (attribute-domain (attribute-of key))))
+
+;;; Lisp.
+
+(defun keywords-of (operator)
+  "Return the keywords that the function OPERATOR, a symbol, takes, as far as is known."
+  (loop for type in (and operator (fboundp operator) (function-arguments operator))
+        when (and (consp type) (keywordp (first type)))
+          collect (first type)))
+
+(defun exported-names (package)
+  (let ((names '()))
+    (do-external-symbols (symbol package names) (push (string-downcase symbol) names))))
+
+(defun merely-read-p (symbol)
+  "True if SYMBOL means nothing: somebody has once typed it."
+  (and (eq *package* (symbol-package symbol)) (not (defined-p symbol))))
+
+(defun symbols-here ()
+  "Return the symbols that can be typed without their packages."
+  (let ((symbols '()))
+    (do-symbols (symbol *package* (remove-if #'merely-read-p symbols)) (push symbol symbols))))
+
+(defun symbol-choices (typed operator-p operator)
+  "Return the symbols that TYPED may be the beginning of; only those of functions and the like if
+OPERATOR-P is true, otherwise keywords of OPERATOR too."
+  (let* ((colon (position #\: typed))
+         (package (and colon (plusp colon)
+                       (find-package (string-upcase (subseq typed 0 colon))))))
+    (cond (package
+           (loop with prefix = (subseq typed 0 (1+ (position #\: typed :from-end t)))
+                 for name in (exported-names package)
+                 collect (uiop:strcat prefix name)))
+          (colon (append (keywords-of operator) (attribute-keys)))
+          (operator-p (remove-if-not #'fboundp (symbols-here)))
+          (t (symbols-here)))))
+
+(defun lisp-completions (session text point)
+  (let ((quote (open-quote text point)))
+    (if quote
+        (let ((typed (subseq text (1+ quote) point)))
+          (values (1+ quote) (matching typed (choices :file session typed)) "\""))
+        (let* ((start (token-start text point))
+               (typed (subseq text start point))
+               (operator-p (and (plusp start) (char= #\( (char text (1- start))))))
+          (values start
+                  (and (string/= "" typed)
+                       (or (matching typed (values-of (last-attribute text start)))
+                           (matching typed (symbol-choices typed operator-p
+                                                           (operator-at text start)))))
+                  "")))))
+
+(defun specification-completions (text point)
+  "Complete a symbol in a descriptor specification, such as ((:color (red blue)))."
+  (let* ((start (token-start text point))
+         (typed (subseq text start point))
+         (key (last-attribute text start)))
+    (values start
+            (matching typed (if (or (null key) (starts-with-subseq ":" typed))
+                                (attribute-keys)
+                                (values-of key)))
+            "")))
+
+;;; Arguments.
+
+(defun datum-end (text start)
+  "Return where the Lisp datum ends that begins in TEXT at START, or NIL if it goes on."
+  (let ((*read-suppress* t))
+    (handler-case (nth-value 1 (read-data-from-string text start))
+      (error () nil))))
+
+(defun unit-end (text position)
+  "Return where the unit ends that stands in TEXT from POSITION on, or POSITION if there is none, or
+it is being typed."
+  (let ((end (nth-value 1 (unit-after text position))))
+    (if (and end (< end (length text))) end position)))
+
+(defun slot-end (slot text start)
+  "Return where what TEXT has for SLOT from START on ends, or NIL if that goes on at its end."
+  (let ((end (typecase (slot-type slot)
+               (rest-type nil)
+               (keyword (token-end text start))
+               (t (datum-end text start)))))
+    (cond ((or (null end) (= end (length text))) nil)
+          ((dimension-of (slot-type slot)) (unit-end text end))
+          (t end))))
+
+(defun slot-at-end (line text start)
+  "Return which argument of LINE is being typed at the end of TEXT, or NIL if it has no more, where
+that begins, and which is before it; START is where the first one does."
+  (loop for before = nil then slot
+        for slot in (append (line-parameters line) '(nil))
+        for position = (or (position-if-not #'blank-p text :start start) (length text))
+        for end = (and slot (< position (length text)) (slot-end slot text position))
+        unless end
+          return (values slot position before)
+        do (setf start end)))
+
+(defun unit-choices (slot text start)
+  "Return the units that can go on from START in TEXT, after what is typed for SLOT, a number."
+  (let ((dimension (and slot (< start (length text)) (dimension-of (slot-type slot)))))
+    (and dimension
+         (digit-char-p (char text (position-if-not #'blank-p text :end start :from-end t)))
+         (unit-names dimension))))
+
+(defun argument-completions (session line text start)
+  "Complete the argument of LINE at the end of TEXT; START is where the first one begins."
+  (multiple-value-bind (slot start before) (slot-at-end line text start)
+    (let ((type (and slot (type-key (slot-type slot)))))
+      (case type
+        (:line (line-completions session text start))
+        (:form (lisp-completions session text (length text)))
+        (:specification (specification-completions text (length text)))
+        (t (let ((typed (subseq text start)))
+             (values start
+                     (matching typed (append (unit-choices before text start)
+                                             (and type (choices type session typed))))
+                     " ")))))))
+
+(defun line-meant (name)
+  "Return the line command that NAME or the alias NAME means. Signals BAD-LINE."
+  (find-line (split-line (expand-alias (format nil "~A " name)))))
+
+(defun line-completions (session text start)
+  "Complete the command that begins in TEXT at START."
+  (let* ((start (or (position-if-not #'blank-p text :start start) (length text)))
+         (end (if (< start (length text)) (token-end text start) start))
+         (typed (subseq text start end)))
+    (cond ((starts-with-subseq "(" typed) (lisp-completions session text (length text)))
+          ((= end (length text))
+           (values start (matching typed (choices :command session typed)) " "))
+          (t (argument-completions session (line-meant typed) text end)))))
+
+;;; Breaks.
+
+(defun break-completions (breakage text)
+  "Complete a way to go on after BREAKAGE."
+  (values 0
+          (matching text (append '("backtrace" "quit")
+                                 (mapcar #'restart-name (breakage-restarts breakage))))
+          ""))
+
+(defun completions-in (session text point)
+  "Return where what is to be completed begins in TEXT, typed in SESSION up to POINT, all that it
+could become, and what follows one that is the only one."
+  (let* ((text (subseq text 0 point))
+         (breakage (first (session-breaks session))))
+    (handler-case
+        (cond ((starts-with-subseq "(" (string-left-trim " " text))
+               (lisp-completions session text point))
+              (breakage (break-completions breakage text))
+              (t (line-completions session text 0)))
+      (ars-magna-error () nil))))
+
+(setf *completion* 'completions-in)

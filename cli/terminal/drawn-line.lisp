@@ -1,0 +1,113 @@
+;;;; drawn-line.lisp -- a line that is being typed, as it stands on a terminal.
+
+(in-package :ars-magna.cli)
+
+;;; The line stands below all that is written meanwhile: it is wiped out before something is
+;;; written, and drawn again after that. It has as many rows as the window is wide for; of more
+;;; rows than the window has, those around the cursor are drawn. A window that becomes narrower
+;;; breaks rows anew, as we do; so rows that go on in the next one are not ended by a newline.
+
+(defstruct (drawn-line (:copier nil))
+  "A line that is being typed. It stands on the screen if SHOWN is true: as the list of prompt, text
+and point that it was drawn from."
+  (prompt "" :type string)
+  (text "" :type string)
+  ;; Where in the text the cursor is.
+  (point 0 :type (integer 0))
+  (shown nil :type list)
+  ;; The column of the cursor when it was drawn last.
+  (column 0 :type (integer 0)))
+
+;;; Rows.
+
+(defun shown-char (char)
+  "Return the characters that stand for CHAR on the screen."
+  (cond ((char= char #\Newline) (string char))
+        ((char= char #\Tab) " ")
+        ((obeyed-p char) (if (< (char-code char) 32)
+                             (format nil "^~C" (code-char (+ 64 (char-code char))))
+                             "?"))
+        (t (string char))))
+
+(defun shown-chars (prompt text)
+  "Return a list of what is shown for each character of PROMPT, as it is, and of TEXT, as texts."
+  (append (map 'list #'string prompt) (map 'list #'shown-char text)))
+
+(defun rows-of (prompt text point columns)
+  "Return PROMPT and TEXT as a list of rows of COLUMNS, each a list of a string and of what ends it:
+:NEWLINE, or NIL if it is full or the last. Also the row and the column of POINT in TEXT."
+  (let ((rows '()) (out (make-string-output-stream)) (column 0) (place-row 0) (place-column 0))
+    (labels ((end-row (how)
+               (push (list (get-output-stream-string out) how) rows)
+               (setf column 0))
+             (note-place (position)
+               (when (= position point)
+                 (setf place-row (length rows)
+                       place-column column)))
+             (put (shown width)
+               ;; What is wide may not fit although there is room.
+               (when (> (+ column width) columns) (end-row :newline))
+               (write-string shown out)
+               (incf column width)
+               (when (= column columns) (end-row nil))))
+      (loop with widths = (columns-of-chars prompt)
+            for shown in (shown-chars prompt text)
+            for position from (- (length prompt))
+            do (note-place position)
+               (cond ((string= shown (string #\Newline)) (end-row :newline))
+                     ((minusp position)
+                      (put shown (aref widths (+ position (length prompt)))))
+                     (t (put shown (reduce #'+ shown :key #'char-columns)))))
+      (note-place (length text))
+      (end-row nil))
+    (values (nreverse rows) place-row place-column)))
+
+(defun window-on (rows place-row height)
+  "Return those of ROWS around PLACE-ROW that HEIGHT has room for, and how many come before them."
+  (let ((start (max 0 (min (- place-row (floor height 2)) (- (length rows) height)))))
+    (values (subseq rows start (min (length rows) (+ start height))) start)))
+
+(defun rows-to-show (prompt text point columns height)
+  "Return the rows of a line in a window of COLUMNS and HEIGHT, and the row and column of the
+cursor."
+  (multiple-value-bind (rows row column) (rows-of prompt text point columns)
+    (multiple-value-bind (rows start) (window-on rows row height)
+      (values rows (- row start) column))))
+
+;;; What terminals obey.
+
+(defun move-up (count stream)
+  (when (plusp count) (format stream "~C[~DA" #\Escape count)))
+
+(defun move-right (count stream)
+  (when (plusp count) (format stream "~C[~DC" #\Escape count)))
+
+(defun clear-below (stream)
+  (format stream "~C[J" #\Escape))
+
+(defun write-rows (rows stream)
+  "Write ROWS. The cursor is then in the last of them."
+  (loop for ((text how) . more) on rows
+        do (write-string text stream)
+           ;; Only what is written next moves the cursor on from a row that is full; and that need
+           ;; not be in the next one.
+           (when (and more (or how (string= "" (first (first more))))) (terpri stream))))
+
+(defun draw-line (line stream columns height)
+  "Draw LINE from the cursor on, which is at the beginning of a row, in a window of COLUMNS and
+HEIGHT."
+  (with-accessors ((prompt drawn-line-prompt) (text drawn-line-text) (point drawn-line-point)) line
+    (multiple-value-bind (rows row column) (rows-to-show prompt text point columns height)
+      (write-rows rows stream)
+      (move-up (- (length rows) row 1) stream)
+      (write-char #\Return stream)
+      (move-right column stream)
+      (setf (drawn-line-column line) column))
+    (setf (drawn-line-shown line) (list prompt text point))))
+
+(defun wipe-line (line stream columns height)
+  "Take LINE off the screen; the cursor is then where it began."
+  (destructuring-bind (prompt text point) (shiftf (drawn-line-shown line) '())
+    (move-up (nth-value 1 (rows-to-show prompt text point columns height)) stream)
+    (write-char #\Return stream)
+    (clear-below stream)))

@@ -1,0 +1,72 @@
+;;;; keyboard.lisp -- this process's terminal: in what manner it hands over keys, and its size.
+
+(in-package :ars-magna.cli)
+
+;;; Left alone, a terminal hands over whole lines, and shows what is typed wherever the cursor is.
+;;; While the prompt edits lines itself, it hands over each key at once and shows nothing. What
+;;; control C does is told apart: while a line is carried out, it is a signal; while one is typed, a
+;;; key like others, so that nothing typed before or after it comes in another order.
+
+(defvar *first-manner* nil "The manner of the terminal before the prompt changed it, or NIL.")
+
+(defun manner ()
+  "Return the manner of the terminal, as the system keeps it, or NIL if there is no terminal."
+  (ignore-errors (sb-posix:tcgetattr 0)))
+
+(defun set-manner (manner)
+  "Let the terminal have MANNER. One that is gone needs none."
+  (ignore-errors (sb-posix:tcsetattr 0 sb-posix:tcsanow manner)))
+
+(defun hand-over-keys (&key interrupts)
+  "Let the terminal hand over keys as they are pressed, without showing them. If INTERRUPTS is true,
+control C and its like are signals instead. Only within CALL-HANDING-OVER-KEYS."
+  (let ((manner (manner))
+        (line-manner (logior sb-posix:icanon sb-posix:echo sb-posix:iexten sb-posix:isig)))
+    (when (and manner *first-manner*)
+      (setf (sb-posix:termios-lflag manner)
+            (logior (logandc2 (sb-posix:termios-lflag manner) line-manner)
+                    (if interrupts sb-posix:isig 0))
+            (aref (sb-posix:termios-cc manner) sb-posix:vmin) 1
+            (aref (sb-posix:termios-cc manner) sb-posix:vtime) 0)
+      (set-manner manner))))
+
+(defun restore-manner ()
+  "Let the terminal hand over lines, as it did before the prompt began to edit them, if it did."
+  (when *first-manner* (set-manner *first-manner*)))
+
+(defun call-handing-over-keys (function)
+  "Call FUNCTION, while the terminal hands over keys."
+  (setf *first-manner* (manner))
+  (unwind-protect (progn (hand-over-keys :interrupts t)
+                         (funcall function))
+    (restore-manner)
+    (setf *first-manner* nil)))
+
+(defun stop-for-a-while ()
+  "Let whoever started this process have the terminal, as control Z wants, until this process is
+told to go on."
+  (restore-manner)
+  (sb-posix:kill 0 sb-posix:sigtstp)
+  (hand-over-keys))
+
+;;; How large the window is.
+
+(defconstant +ask-for-size+ (if (uiop:featurep :linux) #x5413 #x40087468)
+  "The number of the system's request for the size of a terminal's window.")
+
+(defun size-as-the-system-says ()
+  "Return how many rows and columns the window has; zeros if the system does not know."
+  (sb-alien:with-alien ((size (array sb-alien:unsigned-short 4)))
+    (setf (sb-alien:deref size 0) 0
+          (sb-alien:deref size 1) 0)
+    (sb-alien:alien-funcall
+     (sb-alien:extern-alien "ioctl" (function sb-alien:int sb-alien:int sb-alien:unsigned-long
+                                              (* (array sb-alien:unsigned-short 4))))
+     1 +ask-for-size+ (sb-alien:addr size))
+    (values (sb-alien:deref size 0) (sb-alien:deref size 1))))
+
+(defun window-size ()
+  "Return how many columns and rows the window of this process's terminal has."
+  (multiple-value-bind (rows columns) (size-as-the-system-says)
+    (values (if (plusp columns) columns 80)
+            (if (plusp rows) rows 24))))

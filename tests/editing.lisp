@@ -1,0 +1,247 @@
+;;;; editing.lisp -- lines typed at a terminal, key by key.
+
+(in-package :ars-magna.tests)
+
+(def-suite* editing :in ars-magna)
+
+;;; A keyboard whose keys are known. Nothing is typed before it is read, unless that is the point.
+
+(defclass keyboard (trivial-gray-streams:fundamental-character-input-stream)
+  ((octets :initarg :octets :accessor keyboard-octets)
+   (at-hand :initarg :at-hand :initform nil :reader keyboard-at-hand)
+   (before :initarg :before :initform (constantly nil) :reader keyboard-before))
+  (:documentation "A terminal that hands over OCTETS, a list; BEFORE is called before each. AT-HAND
+is true if they are typed all at once."))
+
+(defmethod trivial-gray-streams:stream-read-char ((keyboard keyboard))
+  (funcall (keyboard-before keyboard))
+  (or (pop (keyboard-octets keyboard)) :eof))
+
+(defmethod trivial-gray-streams:stream-read-char-no-hang ((keyboard keyboard))
+  (and (keyboard-at-hand keyboard) (or (pop (keyboard-octets keyboard)) :eof)))
+
+(defparameter *key-codes*
+  (flet ((escape (code) (format nil "~C[~A" #\Escape code)))
+    `((:up . ,(escape "A")) (:down . ,(escape "B")) (:right . ,(escape "C"))
+      (:left . ,(escape "D")) (:home . ,(escape "H")) (:end . ,(escape "4~"))
+      (:delete . ,(escape "3~")) (:paste . ,(escape "200~")) (:pasted . ,(escape "201~"))
+      (:word-left . ,(escape "1;5D")) (:enter . ,(string #\Return))
+      (:rubout . ,(string (code-char 127))) (:tab . ,(string #\Tab))
+      (:escape . ,(string #\Escape)) (:unknown . ,(escape "17~"))))
+  "What a terminal hands over for keys that type nothing.")
+
+(defun octets-of-key (key)
+  "Return what a terminal hands over for KEY: a text, a character that is typed with control, or a
+name in *KEY-CODES*."
+  (etypecase key
+    (string (map 'list #'code-char (sb-ext:string-to-octets key :external-format :utf-8)))
+    (character (list (code-char (- (char-code key) 64))))
+    (keyword (coerce (cdr (assoc key *key-codes*)) 'list))))
+
+(defun keyboard-for (keys &rest options)
+  (apply #'make-instance 'keyboard :octets (mapcan #'octets-of-key keys) options))
+
+(defun typed-text-for (keyboard console &rest options)
+  (apply #'make-instance 'cli::edited-text :octets keyboard :console console :by-hand-p t options))
+
+(defun terminal-console (&optional (columns 80) (rows 24))
+  "Return a console on a terminal of that size, and the stream that hears it."
+  (let ((out (make-string-output-stream)))
+    (values (cli::make-console out (lambda () (values columns rows))) out)))
+
+(defun keyed-in (&rest keys)
+  "Return the lines that KEYS type, a list."
+  (let ((stream (typed-text-for (keyboard-for keys) (terminal-console))))
+    (loop for line = (read-line stream nil)
+          while line
+          collect line
+          do (cli::remember-line stream line nil))))
+
+(defmacro types-p (expected &rest keys)
+  `(is (equal ',expected (keyed-in ,@keys))))
+
+;;; Editing.
+
+(test editing.types-what-is-typed
+  (types-p ("turn 1" "" "go") "turn 1" :enter :enter "go" :enter)
+  (types-p ("größer 漢字 é") "größer 漢字 é" :enter)
+  (types-p ("at the end") "at the end")
+  (types-p () #\D))
+
+(test editing.moves
+  (types-p ("xabc") "abc" #\A "x" :enter)
+  (types-p ("xabcy") "abc" :home "x" :end "y" :enter)
+  (types-p ("abxc") "abc" :left "x" :enter)
+  (types-p ("aybxc") "abc" #\B "x" :left :left "y" :enter)
+  (types-p ("axbc") "abc" :home :right "x" :enter)
+  (types-p ("one xtwo") "one two" :word-left "x" :enter)
+  (types-p ("xone two") "one two" :escape "b" :escape "b" "x" :enter)
+  (types-p ("onex two") "one two" :home :escape "f" "x" :enter)
+  (types-p ("xabcy") "abc" :left :left :left :left :left "x" #\E :right :right "y" :enter))
+
+(test editing.deletes
+  (types-p ("ab") "abc" :rubout :enter)
+  (types-p ("bc") "abc" :home :delete :enter)
+  (types-p ("ac") "abc" :left :left #\D :enter)
+  (types-p ("" "x") :rubout :delete :enter #\H "x" :enter))
+
+(test editing.kills-and-brings-back
+  (types-p ("ab") "abc" :left #\K :enter)
+  (types-p ("c") "abc" :left #\U :enter)
+  (types-p ("two one ") "one two" #\W #\A #\Y " " #\E :enter)
+  (types-p ("robot- robot-turn-left") "robot-turn-left" #\U "robot-" " " #\Y :enter)
+  (types-p ("robot-") "robot-turn" :escape :rubout :enter)
+  (types-p (" two") "one two" :home :escape "d" :enter)
+  (types-p ("abc") "abc" #\K :enter))
+
+(test editing.ignores-what-it-does-not-know
+  (types-p ("abc") "a" :unknown "b" :escape "?" "c" #\G :enter))
+
+(test editing.reads-on-whatever-octets
+  (let ((stream (typed-text-for
+                 (make-instance 'keyboard :octets (map 'list #'code-char '(97 200 13 255 98 13)))
+                 (terminal-console))))
+    (is (= 2 (length (loop for line = (read-line stream nil) while line collect line))))))
+
+;;; Pasting.
+
+(test editing.takes-what-is-pasted-at-once
+  "Nothing of it is carried out, or completed, before the user presses return."
+  (types-p ("turn 1" "map 4") :paste "turn 1" :enter "map 4" :enter :pasted :enter)
+  (types-p ("turn 1!" "map 4") :paste (format nil "turn 1~%map 4~%") :pasted :up "!" :enter)
+  (is (equal (list (format nil "(list~A1)" #\Tab))
+             (keyed-in :paste (format nil "(list~A1)" #\Tab) :pasted :enter)))
+  (is (equal '("[201" "~x") (keyed-in :paste "[201" :enter "~x" :pasted :enter))))
+
+(test editing.shows-pasted-lines-one-by-one
+  (multiple-value-bind (console out) (terminal-console)
+    (let ((stream (typed-text-for (keyboard-for '(:paste "one" :enter "two" :pasted :enter))
+                                  console)))
+      (cli::show-prompt console "Robot> ")
+      (read-line stream)
+      (get-output-stream-string out)
+      (cli::show-prompt console "Robot> ")
+      (read-line stream)
+      (let ((shown (get-output-stream-string out)))
+        (is (search "Robot> two" shown))
+        (is (char= #\Newline (char shown (1- (length shown)))))))))
+
+;;; Control C and D.
+
+(defun interrupted-p (keys &rest options)
+  "True if KEYS interrupt the line that is being read."
+  (let ((stream (typed-text-for (apply #'keyboard-for keys options) (terminal-console))))
+    (handler-case (progn (read-line stream nil) nil)
+      (sb-sys:interactive-interrupt () t))))
+
+(test interrupts.clear-what-is-typed
+  (types-p ("go") "turn 1" #\C "go" :enter)
+  (is-false (interrupted-p '("turn 1" #\C :enter))))
+
+(test interrupts.end-what-waits-for-a-line
+  (is-true (interrupted-p '(#\C)))
+  (is-true (interrupted-p '("turn 1" #\C #\C))))
+
+(test interrupts.straight-after-a-line-are-for-that-line
+  "Also if they have come before the line was read."
+  (is-true (interrupted-p '("(loop)" :enter #\C) :at-hand t))
+  (is-false (interrupted-p '("(loop)" :enter "go" :enter) :at-hand t)))
+
+(test interrupts.leave-what-was-pasted
+  (let ((stream (typed-text-for (keyboard-for '(:paste "one" :enter "two" :pasted :enter
+                                                "three" :enter))
+                                (terminal-console))))
+    (is (equal "one" (read-line stream)))
+    (cli::forget-pasted stream)
+    (is (equal "three" (read-line stream)))))
+
+(test editing.keeps-what-is-typed-ahead
+  (let ((stream (typed-text-for (keyboard-for '("one" :enter "two" :enter) :at-hand t)
+                                (terminal-console))))
+    (is (equal "one" (read-line stream)))
+    (is-true (cli::typed-within-p stream 0))
+    (is (equal "two" (read-line stream)))))
+
+(test editing.answers-programs-that-ask
+  (multiple-value-bind (console out) (terminal-console)
+    (let* ((stream (typed-text-for (keyboard-for '("x" :enter "y" :rubout "y" :enter)) console))
+           (*query-io* (make-two-way-stream stream console)))
+      (is-true (y-or-n-p "Really?"))
+      (is (search "Really? (y or n) y" (get-output-stream-string out))))))
+
+;;; The history.
+
+(test history.goes-back-and-on
+  (types-p ("one" "two" "one") "one" :enter "two" :enter :up :up :enter)
+  (types-p ("one" "two" "two") "one" :enter "two" :enter :up :up :down :enter)
+  (types-p ("one" "draft") "one" :enter "draft" :up :down :enter)
+  (types-p ("one" "onetwo" "onetwo") "one" :enter #\P "two" :enter :up :enter)
+  (types-p ("one" "one") "one" :enter :up :up :up :enter))
+
+(test history.has-no-blanks-and-nothing-twice-in-a-row
+  (types-p ("one" "two" "two" "  " "" "one")
+           "one" :enter "two" :enter "two" :enter "  " :enter :enter :up :up :enter))
+
+(test history.is-searched
+  (types-p ("turn 1" "go 5" "turn 1") "turn 1" :enter "go 5" :enter #\R "tur" :enter)
+  (types-p ("turn 1" "turn 2" "turn 1") "turn 1" :enter "turn 2" :enter #\R "turn" #\R :enter)
+  (types-p ("turn 1" "x turn 1") "turn 1" :enter #\R "1" #\A "x " :enter)
+  (types-p ("turn 1" "draft") "turn 1" :enter "draft" #\R "turn" #\G :enter)
+  (types-p ("turn 1" "draft" "turn 1")
+           "turn 1" :enter "draft" #\R "zz" :enter #\R "tuq" :rubout :enter))
+
+(test history.brings-back-forms-of-several-lines
+  (let ((stream (typed-text-for (keyboard-for '("(list 1" :enter "2)" :enter :up :enter :up :up :end
+                                                " ; x" :enter))
+                                (terminal-console))))
+    (flet ((take (before)
+             (let ((line (read-line stream)))
+               (cli::remember-line stream line before)
+               line)))
+      (is (equal "(list 1" (take nil)))
+      (is (equal "2)" (take "(list 1")))
+      (is (equal "(list 1" (take nil)))
+      (is (equal "2)" (take "(list 1")))
+      (is (equal "(list 1 ; x" (take nil)))
+      (is (equal "2)" (take "(list 1 ; x"))))
+    (is (equal (list (format nil "(list 1 ; x~%2)") (format nil "(list 1~%2)"))
+               (cli::history-entries (cli::edited-history stream))))))
+
+(defmacro with-history-file ((file) &body body)
+  `(uiop:with-temporary-file (:pathname ,file) ,@body))
+
+(defun type-into-history (file &rest entries)
+  (let ((history (cli::make-history file)))
+    (dolist (entry entries) (cli::add-entry history entry))
+    (cli::save-entry history)))
+
+(test history.is-there-in-the-next-session
+  (with-history-file (file)
+    (let ((entries (list "turn 1" (format nil "(list 1~%  \"a\\nb\")") "größer" "\\")))
+      (apply #'type-into-history file entries)
+      (is (equal (reverse entries) (cli::history-entries (cli::make-history file))))
+      (type-into-history file "go")
+      (is (equal (cons "go" (reverse entries))
+                 (cli::history-entries (cli::make-history file)))))))
+
+(test history.of-two-sessions-at-once-is-that-of-both
+  (with-history-file (file)
+    (let ((one (cli::make-history file)) (two (cli::make-history file)))
+      (cli::add-entry one "a")
+      (cli::add-entry two "b")
+      (mapc #'cli::save-entry (list one two))
+      (is (equal '("b" "a") (cli::history-entries (cli::make-history file)))))))
+
+(test history.does-without-a-file-that-cannot-be-used
+  (let ((history (cli::make-history #p"/no/such/directory/history")))
+    (cli::add-entry history "a")
+    (finishes (cli::save-entry history))
+    (is (equal '("a") (cli::history-entries history)))))
+
+(test history.does-not-grow-for-ever
+  (with-history-file (file)
+    (let ((cli::*history-limit* 10))
+      (apply #'type-into-history file (loop for i below 30 collect (format nil "turn ~D" i)))
+      (is (= 10 (length (cli::history-entries (cli::make-history file)))))
+      (is (= 10 (length (lines-of (base:file-text file)))))
+      (is (equal "turn 29" (first (cli::history-entries (cli::make-history file))))))))
