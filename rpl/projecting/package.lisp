@@ -19,9 +19,10 @@ that a robot believes in, and choosing by that.")
                 #:find-procedure
                 #:fluent-value #:form-text #:frame #:frame-up #:lisp-failure
                 #:lisp-failure-condition #:node #:park
-                #:plan-failure #:plan-runner-steps #:procedure #:procedure-name #:procedure-p
+                #:plan-failure #:counted-steps #:procedure #:procedure-name #:procedure-p
                 #:runner-client #:runner-dice #:stop-trace #:task #:task-label #:task-p
-                #:task-result #:task-runner #:task-top #:value #:escape-p #:entity #:*realm* #:fork-realm)
+                #:task-result #:task-runner #:task-top #:value #:escape-p #:entity
+                #:*realm* #:fork-realm)
   (:import-from :ars-magna.trails #:note-places #:ways-along #:ways-chart #:part-of-map)
   (:import-from :ars-magna.display #:take-snapshot #:picture-kind #:snapshot-map)
   (:import-from :ars-magna.plots #:save-chart)

@@ -67,7 +67,8 @@ ticks have passed, 600 if not given. PLAN is a plan procedure or the name of one
 list ARGUMENTS; a list of both; or a task, of which it is found out what is left. See
 PROJECTION-PROBABILITY and others.
   SEED, an integer, decides the seeds; by default the run's does, and the tick.
-  COST, a function without arguments, is called in each fork at the end and returns a number.
+  COST, a function without arguments, is called in each fork at the end and returns a number,
+or positive infinity, which is worse than any.
   WORLD, a function, makes worlds that rollouts are run in instead of forks, such as the one that
 the robot believes in. It is called with a function and a seed, and is to call that function inside
 of (with-simulation (robot :seed seed) ...). The true run cannot be seen there; PLAN has a name
