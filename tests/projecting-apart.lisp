@@ -1,4 +1,4 @@
-;;;; projecting-apart.lisp -- what rollouts keep from the true run, and from each other; their price.
+;;;; projecting-apart.lisp -- what worlds believed in cannot reach, and what rollouts cost.
 
 (in-package :ars-test-projecting)
 (in-readtable :nisp)
@@ -158,3 +158,13 @@
       (let ((texts (mapcar #'message-text (take-messages))))
         (is (search "in 2 of 2 rollouts" (first texts)))
         (is (search "positive infinity for the worst" (first texts)))))))
+
+;;; Tasks.
+
+(test project.says-that-worlds-believed-in-know-no-tasks
+  (on-true-court
+    (refused ("with :world there are no tasks")
+      (project *true-task* :trials 1 :world #'believed-court))
+    (is (search "with :world there are no tasks"
+                (told-error (interp-lambda ()
+                              (project *true-task* :trials 1 :world #'believed-court)))))))

@@ -24,14 +24,19 @@ the list ARGUMENTS, or a list of both. INTERFACE is whose plans they are. Signal
 WRONG-ARGUMENT."
   (let ((options (checked-options 'project options)))
     (if (task-p plan)
-        (%make-question :task task :interface interface :subject (checked-subject plan interface)
+        (%make-question :task task :interface interface
+                        :subject (checked-subject plan interface (getf options :world))
                         :options options)
         (destructuring-bind (plan . arguments) (plan-of plan arguments)
           (%make-question :task task :interface interface :plan plan :arguments arguments
                           :options options)))))
 
-(defun checked-subject (task interface)
-  "Return TASK. Signals WRONG-ARGUMENT unless it is of the plans of INTERFACE."
+(defun checked-subject (task interface world)
+  "Return TASK. Signals WRONG-ARGUMENT unless it is of the plans of INTERFACE, and there is no WORLD
+believed in, which does not know it."
+  (when world
+    (reject-argument 'project 'plan task
+                     "a plan that has a name: with :world there are no tasks of this run"))
   (unless (and interface (task-runner task) (eq interface (runner-client (task-runner task))))
     (reject-argument 'project 'plan task "a task of the plans of the robot that is driven here"))
   task)
