@@ -5,6 +5,8 @@
 
 (in-suite projecting)
 
+(defrobot second-runner (court (12 10) 0))
+
 ;;; Global variables lead from a world believed in to the true run.
 
 (defvar *true-runner* nil)
@@ -160,6 +162,14 @@
         (is (search "positive infinity for the worst" (first texts)))))))
 
 ;;; Tasks.
+
+(test project.takes-no-task-of-plans-that-another-robot-has-ended
+  (with-simulation ((runner second-runner))
+    (rpl-init-robot runner)
+    (let ((task (begin-plan 'toss 1 9)))
+      (rpl-init-robot second-runner)
+      (refused ("a task of the plans of the robot that is driven here")
+        (project task :trials 1)))))
 
 (test project.says-that-worlds-believed-in-know-no-tasks
   (on-true-court

@@ -37,7 +37,10 @@ believed in, which does not know it."
   (when world
     (reject-argument 'project 'plan task
                      "a plan that has a name: with :world there are no tasks of this run"))
-  (unless (and interface (task-runner task) (eq interface (runner-client (task-runner task))))
+  (unless (and interface
+               (task-runner task)
+               (eq interface (runner-client (task-runner task)))
+               (member interface (simulation-participants (interface-simulation interface))))
     (reject-argument 'project 'plan task "a task of the plans of the robot that is driven here"))
   task)
 

@@ -33,7 +33,8 @@ plans nor a simulator.")
   ;; runner
   (:export #:*runaway-limit* #:alone-p #:blocked-p #:current-task #:exhaust-reaction #:make-ready
            #:note-event #:plan-runner #:plan-runner-steps #:counted-steps
-           #:plan-runner-tasks #:plan-runner-tick #:plan-time #:plan-trace #:runner-blocks #:runner-dice #:runner-tick
+           #:plan-runner-tasks #:plan-runner-tick #:plan-time #:plan-trace #:runner-blocks
+           #:runner-dice #:runner-tick
            #:runner-ticks-per-second #:runner-timers #:runner-current #:runner-stepper
            #:runner-note #:client-forked-p #:runner-trace #:runner-client #:*plan-task-limit*)
   ;; words
