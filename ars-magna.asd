@@ -16,7 +16,8 @@
                  (:file "processes") (:file "environments") (:file "compiling") (:file "interrupts")
                  (:file "stacks") (:file "debuggers") (:file "abridging") (:file "conditions")
                  (:file "exits")
-                 (:file "telling") (:file "threads") (:file "weak") (:file "dice") (:file "random") (:file "names")
+                 (:file "telling") (:file "writing") (:file "threads") (:file "weak")
+                 (:file "dice") (:file "random") (:file "names")
                  (:file "digest") (:file "sources") (:file "places-in-text")
                  (:file "variables") (:file "definitions") (:file "user-macros")
                  (:file "registry") (:file "own-definitions") (:file "messages")
@@ -97,9 +98,11 @@
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "gcontext") (:file "canvas")
                  (:file "drawing") (:file "text") (:file "svg") (:file "package")
-                 (:file "text-map") (:file "history") (:file "snapshot") (:file "subjects")
+                 (:file "history") (:file "snapshot") (:file "subjects")
                  (:file "contents") (:file "terrain") (:file "place-marks")
                  (:file "world-display") (:file "details") (:file "displays")
+                 (:file "text-view") (:file "text-glyphs") (:file "text-layers")
+                 (:file "text-sheet") (:file "text-legend") (:file "text-map")
                  (:file "picture") (:file "way-picture") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
     :components ((:file "package") (:file "realm") (:file "home") (:file "fluent") (:file "network")
@@ -222,8 +225,8 @@
     :components
     ((:file "package")
      (:module "terminal" :serial t
-      :components ((:file "process") (:file "telling") (:file "input") (:file "console")
-                   (:file "progress") (:file "json")
+      :components ((:file "process") (:file "telling") (:file "input") (:file "escapes")
+                   (:file "keys") (:file "console") (:file "progress") (:file "json")
                    (:file "layout")))
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "reporting") (:file "session") (:file "line") (:file "quantities")
@@ -233,8 +236,8 @@
                    (:file "debugger") (:file "prompt") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
-                   (:file "status-data") (:file "status-lines")
-                   (:file "running-lines") (:file "world-lines")
+                   (:file "status-data") (:file "status-lines") (:file "map-lines")
+                   (:file "running-lines") (:file "watch-line") (:file "world-lines")
                    (:file "plan-lines") (:file "plan-views") (:file "help")
                    (:file "topics") (:file "manipulate-line")
                    (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")
@@ -263,6 +266,18 @@
     :components ((:file "package") (:file "deciding") (:file "subject") (:file "trying")
                  (:file "repeating") (:file "telling") (:file "checking")))))
 
+;;; Loaded by ./cli/ars-magna --manual.
+(defsystem "ars-magna/manual"
+  :description "Writes the manual as HTML pages."
+  :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/cli" "ars-magna/fiveam")
+  :serial t
+  :components
+  ((:module "cli/manual" :serial t
+    :components ((:file "package") (:file "html") (:file "markdown") (:file "guide")
+                 (:file "examples") (:file "entries") (:file "command-entries")
+                 (:file "definition-entries") (:file "symbol-entries") (:file "book")
+                 (:file "linking") (:file "frame") (:file "reference") (:file "writing")))))
+
 ;;; Loaded by tests/clim.lisp, after the package of the tests, where McCLIM is found.
 (defsystem "ars-magna/clim-tests"
   :description "What the window claims."
@@ -272,7 +287,7 @@
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
   :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/figures" "ars-magna/cli"
-               "ars-magna/fiveam" "fiveam")
+               "ars-magna/manual" "ars-magna/fiveam" "fiveam")
   :serial t
   :components
   ((:module "tests" :serial t
@@ -305,8 +320,9 @@
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
                  (:file "worlds-searching")
                  (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
-                 (:file "clim") (:file "cli") (:file "cli-quantities")
-                 (:file "ways-going") (:file "cli-plans") (:file "cli-rewinding")
+                 (:file "clim") (:file "cli") (:file "text-maps") (:file "cli-quantities")
+                 (:file "ways-going") (:file "cli-plans") (:file "cli-colour")
+                 (:file "cli-rewinding")
                  (:file "cli-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "experiment-replay")
                  (:file "cli-trials") (:file "cli-newcomers") (:file "cli-files") (:file "cli-plan-tree")
@@ -347,6 +363,7 @@
                  (:file "readme") (:file "rpl-readme")
                  (:file "experiments-readme") (:file "tutorial") (:file "ways-readme")
                  (:file "floors-readme")
+                 (:file "our-manual") (:file "examples")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
                  (:file "experiments-tables") (:file "experiments-fingerprints")
                  (:file "thinking-experiments")

@@ -10,7 +10,7 @@
   (:documentation "Compiling, saving the prompt's core, running the tests.")
   (:use :cl)
   (:export #:print-missing-libraries #:load-strictly #:save-prompt #:run-tests
-           #:record-sessions))
+           #:record-sessions #:write-manual))
 
 (in-package :ars-magna.build)
 
@@ -122,6 +122,14 @@ commands beside it."
   (uiop:symbol-call :ars-magna.cli :make-process-own)
   (sb-ext:save-lisp-and-die (path-in-environment "ARS_MAGNA_CORE")
                             :toplevel (uiop:find-symbol* :main :ars-magna.cli)))
+
+;;; The manual.
+
+(defun write-manual ()
+  "Write the manual into the directory that the environment names; end this Lisp, with status 1 if
+that fails."
+  (load-strictly "ars-magna/manual")
+  (uiop:quit (uiop:symbol-call :ars-magna.manual :main (uiop:getenv "ARS_MAGNA_MANUAL"))))
 
 ;;; The tests.
 

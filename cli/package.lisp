@@ -57,7 +57,10 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
            #:stream-listen #:stream-clear-input)
   ;; line, names
   (:export #:line #:line-name #:line-parameters #:line-sentence #:define-line #:all-lines
-           #:all-line-names #:find-line #:bad-line)
+           #:all-line-names #:find-line #:bad-line
+           #:line-family #:line-details #:line-full-name #:line-action #:usage)
+  ;; help
+  (:export #:slot-help)
   ;; plan-lines
   (:export #:all-words)
   ;; arguments

@@ -170,6 +170,10 @@ project's systems has been loaded.")
                                  "get-time-of-day" "get-internal-run-time")
                                '("src/" "rpl/" "worlds/")))))
 
+(test escape-codes.are-known-to-one-file
+  (is (equal '("cli/terminal/escapes.lisp")
+             (files-mentioning '("(code-char 27)") '("src/" "rpl/" "cli/" "worlds/")))))
+
 (test cli.alone-ends-the-process
   ;; One refuses to.
   (is (equal '("src/base/exits.lisp")

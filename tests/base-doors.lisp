@@ -11,6 +11,22 @@
                         most-negative-double-float))
     (is (eql number (base:bits-to-double (base:double-to-bits number))))))
 
+(test paths.know-the-home-directory
+  (let ((home (user-homedir-pathname)))
+    (is (equal home (base:path-called "~")))
+    (is (equal (merge-pathnames "x.svg" home) (base:path-called "~/x.svg")))
+    (is (equal (merge-pathnames "results/" home) (base:path-called "~/results" :directory t)))
+    (is (string= "a~b" (base:native-name (base:path-called "a~b"))))))
+
+(test files.that-cannot-be-written-are-told-of-in-a-sentence
+  (handler-case (base:write-file-anew (lambda (out) (write-string "x" out))
+                                      (base:native-path "/no/such/directory/x") "the picture")
+    (base:misuse (condition)
+      (is (string= (format nil "The picture cannot be written to /no/such/directory/x: there is ~
+                                no such directory. What was there is as before.")
+                   (princ-to-string condition))))
+    (:no-error (path) (is (null path)))))
+
 (defvar *bound* :at-top "For GLOBALS.ARE-BENEATH-BINDINGS.")
 
 (test globals.are-beneath-bindings

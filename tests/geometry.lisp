@@ -104,6 +104,8 @@
   (is (string= "#<PT 1.0 -2.5>" (prin1-to-string (pt 1 -2.5))))
   (is (string= "(1.00,-2.50)" (princ-to-string (pt 1 -2.5))))
   (is (string= "#<INTERVAL 0.0 1.0>" (prin1-to-string (span 0 1))))
+  (is (string= "#<INTERVAL 0.0 0.333333>" (prin1-to-string (span -2d-13 1/3)))
+      "no more digits than mean something")
   (is (string= "[0.00,1.00]" (princ-to-string (span 0 1))))
   (is (string= "#<PT-INTERVAL 0.0 1.0 2.0 3.0>" (prin1-to-string (box 0 1 2 3))))
   (is (string= "([0.00,1.00],[2.00,3.00])" (princ-to-string (box 0 1 2 3)))))

@@ -16,7 +16,8 @@ layers' symbols are qualified by short local nicknames: geo:add, nisp:matchq, ro
                                   (:fluents "RPL.FLUENTS") (:tasks "RPL.TASKS")
                                   (:language "RPL.LANGUAGE") (:constructs "RPL.CONSTRUCTS")
                                   (:display "DISPLAY") (:trails "TRAILS")
-                                  (:experiment "EXPERIMENT") (:rates "FIVEAM") (:cli "CLI"))
+                                  (:experiment "EXPERIMENT") (:rates "FIVEAM") (:cli "CLI")
+                                  (:manual "MANUAL"))
         for package = (find-package (concatenate 'string "ARS-MAGNA." layer))
         when package
           do (sb-ext:add-package-local-nickname nickname package :ars-magna.tests)))

@@ -267,6 +267,17 @@
         (time:resume s)
         (is-true (base:wait-on-semaphore stepped 60))))))
 
+(test live.pause-holds-the-tick-that-is-due
+  (with-bare-simulation (s)
+    (with-live (s 1/100)
+      (flet ((tick () (time:ask s (lambda () (run:simulation-tick s)))))
+        (time:call-scheduled (lambda () nil) nil :timer 50 :simulation s)
+        (tick)
+        (time:pause s)
+        (let ((before (tick)))
+          (time:set-rate :free s)
+          (is (equal (list before before before) (list (tick) (tick) (tick)))))))))
+
 (test live.run-ticks-is-refused
   (with-bare-simulation (s)
     (with-live (s 20)

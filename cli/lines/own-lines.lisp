@@ -28,6 +28,21 @@
     "Evaluate EXP as Lisp and print its values; so does a line that begins with a parenthesis."
   (evaluate-text session exp))
 
+(defun switch-setting (name word)
+  "Return true if WORD, what the line NAME was given, is on, NIL if it is off. Signals BAD-LINE for
+another."
+  (cond ((string-equal word "on") t)
+        ((string-equal word "off") nil)
+        (t (reject-line "~A does not know ~A. It is ~A ON or ~A OFF." name word name name))))
+
+(define-line "ECHO" (session (setting :token "on or off" :optional))
+    (:general)
+    "Show what comes of the commands that plans and programs give to the robot, or, with OFF,
+only what comes of your own; say which, if SETTING is left out."
+  (when setting (setf (session-quiet-p session) (not (switch-setting "ECHO" setting))))
+  (format t "What comes of the commands of plans and programs is ~:[~;not ~]shown.~%"
+          (session-quiet-p session)))
+
 ;; As reading 204 says.
 (define-line "REPEAT" (session (num count "how often") (cmd :rest "a command, with its arguments"))
     (:general)

@@ -32,7 +32,7 @@
               (camera-index camera)
               (camera-field-of-view camera)
               (camera-resolution camera)
-              (camera-angle camera)
+              (hundredths (camera-angle camera))
               (location-text camera)
               (tracked-text camera)))
 

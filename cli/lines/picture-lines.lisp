@@ -3,10 +3,10 @@
 (in-package :ars-magna.cli)
 
 (define-line "PICTURE" (session (file :token "a name that ends in .svg or .png")
-                                (scale number "how many pixels there are to a cell" :optional))
+                                (scale picture-scale "how large it is; 8 if left out" :optional))
     (:seeing)
     "Save a picture of the world as it is now in FILE, replacing it, SCALE pixels to a cell."
-  (let ((path (apply #'save-picture (session-robot) (native-path file)
+  (let ((path (apply #'save-picture (session-robot) (path-called file)
                      (when scale (list :scale scale)))))
     (format t "~A~%" (native-name path))))
 

@@ -52,4 +52,4 @@ which fluent woke it, who had set that, and how it was started. That needs a tra
     "Save a picture of the plans that have run in FILE, replacing it: each task as a bar over
 ticks, with what it waited for and the commands that it gave. Needs a trace: (setf *trace-plans* t)
 before the plan starts."
-  (format t "~A~%" (native-name (save-plan-timeline (native-path file)))))
+  (format t "~A~%" (native-name (save-plan-timeline (path-called file)))))

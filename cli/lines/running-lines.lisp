@@ -138,7 +138,7 @@ give one a new VALUE."
   (let ((simulation (current-simulation)))
     (multiple-value-bind (path tick digest)
         (asking (simulation)
-          (values (save-journal (native-path file) simulation)
+          (values (save-journal (path-called file) simulation)
                   (simulation-tick simulation)
                   (state-digest simulation)))
       (format t "~A: ~A" (native-name path) (moment-text tick digest)))))
@@ -169,5 +169,5 @@ digest that it comes to."
     "Repeat the run in FILE in a world of its own; show the tick and the state that it comes to.
 With ANYWAY also if what is defined here is not what the run was recorded with."
   (multiple-value-bind (tick digest)
-      (replay-showing session (load-journal (native-path file)) (anyway-p anyway))
+      (replay-showing session (load-journal (path-called file)) (anyway-p anyway))
     (format t "~A: ~A" file (moment-text tick digest))))

@@ -5,7 +5,8 @@
 ;;; In Lisp NIL is nothing, false and the empty list, and a list may be a property list or not. So
 ;;; here is said by their keys what the values are, where a program could not tell.
 
-(defparameter *keys-of-objects* '(:cameras :hands :bins :sensors :under-way :interrupted :designators)
+(defparameter *keys-of-objects*
+  '(:cameras :hands :bins :sensors :under-way :interrupted :designators)
   "The keys whose values are lists of property lists.")
 
 (defparameter *keys-of-lists* '(:view :contents :slots :data)

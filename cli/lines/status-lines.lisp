@@ -1,4 +1,4 @@
-;;;; status-lines.lisp -- STATUS, THINGS, MAP, POS and ANGLE.
+;;;; status-lines.lisp -- STATUS, THINGS, POS and ANGLE.
 
 (in-package :ars-magna.cli)
 
@@ -25,7 +25,7 @@
         (put-line "  ~{~:(~A~)~^ ~}" data))))
 
 (defun write-position (label position)
-  (format t "~19A(~{~,2F~^,~})~%" label position))
+  (format t "~19A(~{~,2F~^,~})~%" label (mapcar #'hundredths position)))
 
 (defun entry-text (entry control)
   "Return what ENTRY, of :UNDER-WAY or :INTERRUPTED, says, formatted by CONTROL, behind its part."
@@ -54,7 +54,7 @@
                              ("Est D Position:" :estimated-last-move))
         do (write-position label (getf status key)))
   (loop for (label key) in '(("Angle:" :angle) ("Speed:" :speed) ("Turn Angle:" :turn-angle))
-        do (format t "~19A~,2F~%" label (getf status key)))
+        do (format t "~19A~,2F~%" label (hundredths (getf status key))))
   (write-views (getf status :cameras))
   (mapc #'write-sensor (getf status :sensors))
   (format t "~19A~A~%" "Place:" (getf status :place))
@@ -88,25 +88,6 @@ designators. In Lisp: (status)."
       (do-things (thing world)
         (put-line "~A ~A" thing (where-text thing))
         (write-descriptor (thing-attributes thing) #'amount-text)))))
-
-;;; The map.
-
-(defun terminal-width (session)
-  "Return how many columns the terminal of SESSION has, as far as can be found out."
-  (or (ignore-errors (parse-integer (environment-value "COLUMNS")))
-      (and (terminal-p session)
-           (ignore-errors
-            (let ((size (nth-value 1 (run-command "stty" '("size") :input :interactive
-                                                                   :output :string))))
-              (parse-integer size :start (position #\Space size)))))
-      80))
-
-(define-line "MAP" (session (radius count "how many cells around the robot to show" :optional))
-    (:seeing)
-    "Show the world as characters: all of it, or what is within RADIUS cells of the robot."
-  (let ((robot (session-robot))
-        (columns (max 20 (1- (terminal-width session)))))
-    (still (write-string (text-map robot :columns columns :radius radius)))))
 
 ;;; Putting the robot somewhere.
 

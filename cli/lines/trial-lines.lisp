@@ -202,7 +202,7 @@ conditions; without NAME, the experiments, or say where the prompt is."
     "Show what went wrong in the trials of an experiment, by condition and reason, with a line that
 opens one of each."
   (let ((names (experiment-names name)))
-    (print-failures (if (and names (null (rest names)) (not (existing-path (native-path name))))
+    (print-failures (if (and names (null (rest names)) (not (existing-path (path-called name))))
                         (first names)
                         name)
                     condition)))

@@ -16,7 +16,7 @@
   (let ((rate (and *simulation* (simulation-rate *simulation*))))
     (when (plans) (format t "The plans under way end.~%"))
     (when *simulation* (end-simulation *simulation* "the prompt has gone elsewhere"))
-    (simulator robot-name :rate (or rate *default-rate*) :display (terminal-p session)))
+    (simulator robot-name :rate (or rate *default-rate*) :display (display-wanted-p session)))
   (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))
 
 (defun robot-among (names name)

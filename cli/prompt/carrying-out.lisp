@@ -13,7 +13,7 @@
 (defun unhurried-p (line)
   "True if what LINE prints is to be seen as it comes."
   (or (line-full-name line)
-      (member (line-name line) '("EVAL" "REPEAT" "TRIAL" "FORK") :test #'string=)))
+      (member (line-name line) '("EVAL" "REPEAT" "TRIAL" "FORK" "WATCH") :test #'string=)))
 
 (defun run-line (session line text)
   "Do what LINE does with the arguments in TEXT. What it prints comes out in one piece."
@@ -25,7 +25,7 @@
 
 (defun run-text (session text)
   "Do what TEXT, a line as typed, says; what it asks for, the prompt asks for."
-  (let ((*asker* "the prompt"))
+  (let ((*asker* +asker+))
     (cond ((comment-p text))
           ((lisp-p text) (evaluate-text session text))
           (t (let ((text (expand-alias text)))

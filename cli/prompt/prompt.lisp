@@ -66,12 +66,12 @@
                           (call-with-streams session (lambda () (call-holding-interrupts #'run))))))
   session)
 
-(defun prompt (&rest options &key input output batch patient echo lines)
+(defun prompt (&rest options &key input output batch patient echo lines color)
   "Run the command-line interface: prompt for commands to the robot last given to SIMULATOR, until
 QUIT or the end of input. INPUT and OUTPUT are streams, by default the standard ones. If PATIENT,
 or headless, each command completes before the next is read; BATCH is that without a prompt; with
-ECHO, lines are shown as they are read; the list LINES is done first. Returns nothing (manual A,
-E)."
-  (declare (ignore input output batch patient echo lines))
+ECHO, lines are shown as they are read; the list LINES is done first. COLOR is :AUTO (on a terminal,
+unless the environment has NO_COLOR), :ALWAYS or :NEVER. Returns nothing (manual A, E)."
+  (declare (ignore input output batch patient echo lines color))
   (run-session (apply #'make-session options))
   (values))

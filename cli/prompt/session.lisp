@@ -26,6 +26,8 @@
   (patient-p nil :type boolean :read-only t)
   ;; What is read is shown, for transcripts.
   (echo-p nil :type boolean :read-only t)
+  ;; What comes of the commands that plans and programs give is not shown.
+  (quiet-p nil :type boolean)
   (lock (make-lock "session") :read-only t)
   ;; The simulation whose messages are shown as they arrive, and its observer if it is live.
   (simulation nil)
@@ -66,14 +68,17 @@
 error messages, but not those of a plan that goes on.")
 
 (defun make-session (&key (input *standard-input*) (output *standard-output*) batch
-                       (patient batch) echo files lines account stop)
+                       (patient batch) echo files lines account stop (color :auto))
   "Return a session that loads FILES, does the list LINES, then reads others from INPUT, and writes
 to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes before
 the next is read; with ECHO, it shows what it reads. ACCOUNT, if any, is an account of its lines.
-With STOP, it is over when one of them is an error."
-  (%make-session :input input :console (make-console output) :batch-p (and batch t)
-                 :patient-p (and patient t) :echo-p (and echo t)
-                 :files files :lines lines :account account :stop-p (and stop t)))
+With STOP, it is over when one of them is an error. COLOR, which is :AUTO, :ALWAYS or :NEVER, says
+whether it writes in colours: by default on a terminal, unless the environment has NO_COLOR."
+  (let ((console (make-console output)))
+    (setf (console-colored-p console) (color-wanted-p color (console-stream console)))
+    (%make-session :input input :console console :batch-p (and batch t)
+                   :patient-p (and patient t) :echo-p (and echo t)
+                   :files files :lines lines :account account :stop-p (and stop t))))
 
 (defun check-run ()
   "Signal BAD-LINE if the run that the prompt is in is over."
@@ -102,25 +107,55 @@ over."
   (and (terminal-p session)
        (typep (source-of (session-input session)) 'descriptor-stream)))
 
+(defun display-wanted-p (session)
+  "True if a robot that starts for SESSION is to have a window. Where none is to be had, only
+DISPLAY says so."
+  (and (terminal-p session) *display-opener* t))
+
 ;;; Complaints and messages.
 
 (defun complain (session text)
   "Show TEXT as an error."
   (incf (session-errors session))
-  (let ((account (session-account session)))
+  (let ((account (session-account session)) (console (session-console session)))
     (unless (report-trouble account text)
-      (write-fresh (format nil "*ERROR* -> ~A~%" (complaint-text (placed-text account text)))
-                   (session-console session)))))
+      (write-fresh (painted (format nil "*ERROR* -> ~A~%"
+                                    (complaint-text (placed-text account text)))
+                            (ink-of :error) console)
+                   console))))
 
 (defun take-all-messages ()
   (append (take-messages)
           (when (and *simulation* (not (eq *message-queue* (simulation-messages *simulation*))))
             (take-messages (simulation-messages *simulation*)))))
 
+;;; What others than the prompt ask of the robot, such as plans, ends with messages like its own.
+
+(define-constant +asker+ "the prompt" :test #'string=
+  :documentation "Who asks for what lines ask for.")
+
+(defun others-p (message)
+  "True if MESSAGE tells how a command ended that a plan or program has given."
+  (let ((asker (message-asker message)))
+    (not (or (null asker) (equal asker +asker+)))))
+
+(defun ink-of (kind)
+  "Return the ink of what is of KIND: :ERROR, :WARNING, :MESSAGE, or :OTHERS, of others' commands."
+  (ecase kind (:error :red) (:warning :yellow) (:message :cyan) (:others :grey)))
+
+(defun message-ink (message)
+  (ink-of (if (others-p message) :others (message-kind message))))
+
+(defun write-painted (message console out)
+  "Write MESSAGE to OUT as CONSOLE is to show it."
+  (write-string (painted (visible (with-output-to-string (text) (write-message message text)))
+                         (message-ink message) console)
+                out))
+
 ;; As reading 197 says.
 (defun write-messages (messages console)
-  (let ((text (visible (with-output-to-string (out)
-                         (dolist (message messages) (write-message message out))))))
+  (let ((text (with-output-to-string (out)
+                (dolist (message messages) (write-painted message console out)))))
     (if (and (unanswered-p console) (eq (message-kind (first messages)) :message))
         (write-string text console)
         (write-fresh text console))))
@@ -147,6 +182,7 @@ over."
             (messages (take-all-messages)))
         (incf (session-errors session)
               (count-if (lambda (message) (counts-p message session)) messages))
+        (when (session-quiet-p session) (setf messages (remove-if #'others-p messages)))
         (when (and messages (not flush-all-errors*))
           (or (report-messages (session-account session) messages)
               (write-messages messages console)))
@@ -192,6 +228,7 @@ another, so that nobody waits for the tick to end, which it may never."
   (setf (session-simulation session) simulation
         (message-queue-listener (simulation-messages simulation))
         (lambda () (hear session simulation)))
+  (keep-history simulation)
   (when (live-p simulation)
     (let ((observer (observer-for session)))
       (setf (session-observer session) observer)

@@ -123,7 +123,7 @@ to say of that."
   "Let robots be called by their names, and be seen if there is a window to be had."
   (unless (shiftf (visit-begun-p visit) t)
     (call-by-name (mapcar #'robot-name (simulation-robots *simulation*)))
-    (when (and (terminal-p session) *display-opener*)
+    (when (display-wanted-p session)
       (announce-display (session-robot) '()))))
 
 (defun visit-line (session visit)

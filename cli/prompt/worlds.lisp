@@ -48,7 +48,7 @@ there are none."
 
 (defun existing-file (name)
   "Return the path of the Lisp file NAME, with or without its type, or NIL."
-  (let ((path (native-path name)))
+  (let ((path (path-called name)))
     (and (pathname-name path)
          (or (existing-path path)
              (existing-path (make-pathname :type "lisp" :defaults path))))))

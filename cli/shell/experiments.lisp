@@ -53,7 +53,7 @@ none."
 (defun experiments-called (word)
   "Return the experiments that WORD stands for: those of a file, which is loaded, or one by its
 name. Signals BAD-LINE."
-  (let* ((path (native-path word))
+  (let* ((path (path-called word))
          (known (experiment-among word (all-experiments)))
          (file (or (and (pathname-name path) (existing-path path))
                    (and (not known) (existing-file word)))))

@@ -42,7 +42,7 @@
 (defun run-live (session robot-name options)
   "Run the lines of SESSION in the live world of ROBOT-NAME."
   (apply #'simulator robot-name :rate (option-value :rate options *default-rate*)
-                                :display (terminal-p session)
+                                :display (display-wanted-p session)
          (when (option-value :seed options) (list :seed (option-value :seed options))))
   (when (terminal-p session) (greet session))
   (run-session session))
@@ -66,7 +66,8 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
                   :account (when (or script objects) (make-account script objects))
                   :stop (option-value :stop options)
                   :files (option-values :load options) :lines lines
-                  :patient (or batch piped) :echo (and piped (not batch)))))
+                  :patient (or batch piped) :echo (and piped (not batch))
+                  :color (option-value :color options :auto))))
 
 (defun run-prompt (options)
   "Do what OPTIONS say. Return the status to exit with."

@@ -24,10 +24,16 @@
     (bad-line ()
       (reject-usage "--rate takes a number of ticks per second, or free, not ~A." text))))
 
+(defun parse-color (text)
+  (if (member text +color-settings+ :test #'string-equal)
+      (make-keyword (string-upcase text))
+      (reject-usage "--color takes ~{~A~#[~; or ~:;, ~]~}, not ~A." +color-settings+ text)))
+
 (defparameter *options*
   '(("--world" :world identity) ("--robot" :robot identity) ("--seed" :seed parse-seed)
     ("--rate" :rate parse-pace) ("--load" :load identity) ("--plan" :plan identity)
-    ("--batch" :batch nil) ("--json" :json nil) ("--stop" :stop nil) ("--list" :list nil))
+    ("--batch" :batch nil) ("--json" :json nil) ("--stop" :stop nil)
+    ("--color" :color parse-color) ("--list" :list nil))
   "Lists (option key parser [:optional]); PARSER is NIL for an option without a value. If the value
 is optional, an empty one stands for none.")
 

@@ -14,10 +14,15 @@
    (column :initform 0 :accessor console-column)
    (question :initform nil :accessor console-prompt)
    (overwritten-p :initform nil :accessor console-overwritten-p)
-   (trouble :initform nil :accessor console-trouble))
+   (trouble :initform nil :accessor console-trouble)
+   (colored-p :initform nil :accessor console-colored-p)
+   (held-back-p :initform nil :accessor console-held-back-p)
+   (held-back :initform '() :accessor console-held-back))
   (:documentation "An output stream on top of another. QUESTION is what stands there for the user to
 answer, or NIL; OVERWRITTEN-P is true if something was written after it. TROUBLE is the condition
-that what was written could not be delivered, or NIL."))
+that what was written could not be delivered, or NIL. COLORED-P is true if its messages and prompts
+have colours. While HELD-BACK-P is true, what is written is kept in HELD-BACK, a list of strings,
+newest first."))
 
 (defun make-console (stream)
   (if (typep stream 'console) stream (make-instance 'console :stream stream)))
@@ -43,13 +48,26 @@ now."
   "Run BODY with STREAM bound to the stream below CONSOLE, nobody else writing to it."
   `(call-with-console (lambda (,stream) ,@body) ,console))
 
+(defun painted (text ink console)
+  "Return TEXT as CONSOLE shows it: in INK, if it has colours."
+  (if (console-colored-p console) (paint text ink) text))
+
 (defmethod stream-line-column ((console console))
   (console-column console))
+
+(defconstant +most-held-back+ 1000 "How many strings a console holds back; older ones are lost.")
+
+(defun hold-back (string console)
+  (let ((held (cons string (console-held-back console))))
+    (setf (console-held-back console)
+          (if (nthcdr (* 2 +most-held-back+) held) (subseq held 0 +most-held-back+) held))))
 
 (defun put-string (string console stream &optional (start 0) (end (length string)))
   "Write STRING from START to END to STREAM, which is below CONSOLE, where nobody else writes now."
   (let ((newline (position #\Newline string :start start :end end :from-end t)))
-    (write-string string stream :start start :end end)
+    (if (console-held-back-p console)
+        (hold-back (subseq string start end) console)
+        (write-string string stream :start start :end end))
     (setf (console-overwritten-p console) t
           (console-column console) (if newline
                                        (- end newline 1)
@@ -81,7 +99,7 @@ now."
 (defun show-prompt (console prompt)
   "Write PROMPT, a string, at the start of a line."
   (fresh-line console)
-  (write-string prompt console)
+  (write-string (painted prompt :bold console) console)
   (finish-output console)
   (setf (console-overwritten-p console) nil
         (console-prompt console) prompt))
@@ -103,3 +121,41 @@ now."
   "Note that the user has ended the line of the prompt."
   (setf (console-prompt console) nil
         (console-column console) 0))
+
+;;; A screen of its own.
+
+(defun write-at-once (text console)
+  "Write TEXT to what is below CONSOLE, whether or not that holds back what is written to it."
+  (with-console (stream console)
+    (write-string text stream)
+    (finish-output stream)))
+
+(defun last-held-back (console)
+  "Return the last line that CONSOLE holds back, without colours, or an empty string."
+  (let* ((text (find-if (lambda (string) (find #\Newline string :test #'char/=))
+                        (console-held-back console)))
+         (text (string-right-trim '(#\Newline) (unpainted-text (or text "")))))
+    (subseq text (1+ (or (position #\Newline text :from-end t) -1)))))
+
+(defun begin-screen (console)
+  (setf (console-held-back-p console) t)
+  (write-at-once (screen-begun) console))
+
+(defun end-screen (console)
+  (write-at-once (screen-ended) console)
+  (with-console (stream console)
+    (setf (console-held-back-p console) nil)
+    (dolist (string (reverse (shiftf (console-held-back console) '())))
+      (write-string string stream))
+    (finish-output stream)))
+
+(defun call-with-screen (function console)
+  "Call FUNCTION while CONSOLE, on a terminal, shows a screen that is written over by WRITE-AT-ONCE
+and OVER-SCREEN, and gives each key as it is pressed. What others write meanwhile comes afterwards."
+  (call-holding-interrupts
+   (lambda ()
+     (call-with-keys
+      (lambda ()
+        (begin-screen console)
+        (unwind-protect (call-open-to-interrupts function)
+          (end-screen console)))))))

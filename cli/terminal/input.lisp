@@ -91,6 +91,11 @@ line has at most; and whether there were more."
     (synonym-stream (source-of (symbol-value (synonym-stream-symbol stream))))
     (t stream)))
 
+(defun terminal-stream-p (stream)
+  "True if STREAM is on a terminal, as far as that can be found out."
+  (let ((source (source-of stream)))
+    (and (typep source 'descriptor-stream) (interactive-stream-p source))))
+
 (defun typed-within-p (stream seconds)
   "Wait until something is typed into STREAM, or it ends, for SECONDS at most. True if it is."
   (or (and (typep stream 'typed-text) (< (typed-position stream) (length (typed-line stream))))

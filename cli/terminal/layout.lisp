@@ -39,7 +39,8 @@
 
 (defun bearing-text (designator)
   "Return the distance and the angle of DESIGNATOR, as STATUS tells of it."
-  (format nil "~,2F, ~,2F" (getf designator :distance) (getf designator :angle)))
+  (format nil "~,2F, ~,2F" (hundredths (getf designator :distance))
+          (hundredths (getf designator :angle))))
 
 (defun location-text (part)
   "Return where PART is, if inside something (manual E; reading 202)."

@@ -70,6 +70,11 @@ Return their names."
   (storage-bin-error* "The error code of the last bin command; NIL: success.")
   (storage-bin-jammer* "The camera or hand that kept the bin from closing, or NIL."))
 
+(defun all-fluent-variables ()
+  "Return lists (variable kind) of all fluent variables, in order of definition; the kind of part is
+a symbol, NIL for the robot itself."
+  (reverse (loop for (variable kind) in *fluent-variables* collect (list variable kind))))
+
 (defun make-fluents (robot)
   "Give all fluent variables fresh fluents that suit ROBOT (reading 183)."
   (let ((kinds (mapcar #'type-of (robot-parts robot))))

@@ -51,7 +51,7 @@
            #:camera-moved* #:camera-movement-error* #:hand-moved* #:hand-error* #:hand-lost*
            #:hand-inside* #:hand-grasping* #:hand-input* #:storage-bin-moved*
            #:storage-bin-error* #:storage-bin-jammer*)
-  (:export #:define-fluents #:define-outcome)
+  (:export #:define-fluents #:define-outcome #:all-fluent-variables)
   ;; interface, accessors
   (:export #:rpl-init-robot #:rpl-robot #:rpl-robot-valve #:rpl-robot-part #:*trace-plans*
            #:rpl-robot-speed #:rpl-robot-turn-angle #:rpl-robot-num-cameras #:rpl-robot-num-hands

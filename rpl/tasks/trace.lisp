@@ -198,6 +198,4 @@ written anew: a line with tick, event, task number and expression for each."
   (etypecase destination
     (stream (loop for entry across trace do (write-trace-entry entry destination)))
     ((or string pathname)
-     (with-open-file (stream destination :direction :output :if-exists :supersede
-                                              :external-format :utf-8)
-       (write-trace trace stream)))))
+     (write-file-anew (lambda (out) (write-trace trace out)) destination "the trace"))))

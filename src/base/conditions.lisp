@@ -20,7 +20,8 @@
              (format stream "~(~A~): ~(~A~) is ~S; give ~A."
                      (wrong-argument-operator condition)
                      (wrong-argument-name condition)
-                     (abridged (wrong-argument-value condition))
+                     (let ((value (wrong-argument-value condition)))
+                       (if (pathnamep value) (shown-name value) (abridged value)))
                      (wrong-argument-expected condition))))
   (:documentation "A function was called with an argument that it cannot use."))
 

@@ -16,12 +16,20 @@
   "Return the pathname of what the operating system calls NAME, a string."
   (uiop:parse-native-namestring name))
 
-(defun path-called (name)
-  "Return the pathname that NAME, a string or pathname, stands for; ~/ is the home directory."
-  (cond ((pathnamep name) name)
-        ((starts-with-subseq "~/" name)
-         (merge-pathnames (native-path (subseq name 2)) (user-homedir-pathname)))
-        (t (native-path name))))
+(defun path-called (name &key directory)
+  "Return the pathname that NAME, a string or pathname, stands for, of a file, or if DIRECTORY of a
+directory; ~ and ~/ are the home directory."
+  (flet ((path (name) (uiop:parse-native-namestring name :ensure-directory directory)))
+    (cond ((pathnamep name) (if directory (uiop:ensure-directory-pathname name) name))
+          ((string= "~" name) (user-homedir-pathname))
+          ((starts-with-subseq "~/" name)
+           (merge-pathnames (path (subseq name 2)) (user-homedir-pathname)))
+          (t (path name)))))
+
+(defun shown-name (file)
+  "Return FILE, a pathname or string, as the operating system writes it; an empty name in quotes."
+  (let ((name (if (and (pathnamep file) (not (wild-pathname-p file))) (native-name file) file)))
+    (if (equal name "") "\"\"" name)))
 
 (defun existing-path (path)
   "Return the truename of the file PATH, or NIL if there is none, or it is a directory."

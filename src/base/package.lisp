@@ -48,11 +48,13 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; files, processes
   (:export #:native-name #:native-path #:path-called #:existing-path #:missing-directory
            #:replace-file #:plain-file-p
-           #:unusable-file-text
+           #:unusable-file-text #:shown-name
            #:call-replacing-file #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
            #:host-name #:process-number
            #:environment-value #:real-microseconds #:run-command #:run-attached)
+  ;; writing
+  (:export #:write-file-anew)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
            #:local-function-p #:known-function-p #:macro-expander
@@ -85,7 +87,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:debugger-hook #:with-debugger-hook)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:reading-trouble
-           #:text-of-condition #:editors-output)
+           #:text-of-condition #:one-line-text #:hundredths #:editors-output)
   ;; dice, random
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice
@@ -114,7 +116,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:entry-digest #:registry-entries #:users-p #:current-form-digest #:form-digest
            #:file-digest #:text-checksum
            #:name-string
-           #:defined-names #:find-definition #:definition-to-replace #:variable-in-use-p
+           #:defined-names #:find-definition #:all-definitions #:definition-to-replace
+           #:variable-in-use-p
            #:entries-meant
            #:*kept-variables* #:undefine #:take-back #:reinstate #:become
            #:with-own-definitions #:call-with-own-definitions)
@@ -122,7 +125,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:error-set #:warning-set #:message-set #:error-display #:flush-all-errors*
            #:*message-queue* #:make-message-queue #:message-queue
            #:copy-message-queue #:message-queue-listener
-           #:message #:message-kind #:message-items #:take-messages #:message-text
+           #:message #:message-kind #:message-items #:message-asker #:*told-of* #:take-messages
+           #:message-text
            #:write-message #:write-items #:out #:*message-limit*)
   ;; askers
   (:export #:*asker* #:asker-note #:asker-forked-p #:*goes-on-in-forks-p* #:goes-on-in-forks-p

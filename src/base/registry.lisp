@@ -224,6 +224,13 @@ BEFORE is an object of the registry to come directly before, instead of last. Re
       (reject-name "kind of definition" kind
                    (mapcar #'usual-name (remove-if #'registry-fixed-p *registries*)))))
 
+(defun all-definitions (kind)
+  "Return lists (name object source) for all definitions of KIND, as UNDEFINE takes it, in order.
+SOURCE is the file that it is from, :OWN of what is the simulator's, or NIL of what was typed."
+  (loop for entry in (registry-entries (find-registry kind))
+        collect (list (entry-name entry) (entry-object entry)
+                      (if (users-p entry) (source-file (entry-source entry)) :own))))
+
 (defun usual-name (registry)
   "Return what users call the kind of REGISTRY."
   (or (first (registry-synonyms registry)) (registry-kind registry)))

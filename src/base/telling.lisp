@@ -84,6 +84,15 @@ streams that no user knows."
                     (t (own-text condition)))))
     (if (string= text "") (string-downcase (type-of condition)) text)))
 
+(defun hundredths (number)
+  "Return NUMBER, to be written with two decimals: 0 if it is nearer to that than these can tell, as
+-0.00 says no more than 0.00."
+  (if (< (abs number) 0.005d0) 0 number))
+
+(defun one-line-text (condition)
+  "Return what CONDITION says as the part of a sentence."
+  (string-right-trim "." (cut (one-line (text-of-condition condition)) 400)))
+
 ;;; Where users look.
 
 (defun followed (stream)

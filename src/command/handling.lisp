@@ -24,7 +24,7 @@
 
 (defun succeed-saying (operation text &rest results)
   "End OPERATION successfully with RESULTS; TEXT is what its message says."
-  (message-set (command-prefix (operation-command operation)) ": " text)
+  (tell-of operation text)
   (apply #'succeed operation results))
 
 ;;; Designators.

@@ -83,7 +83,7 @@ designators silently."
 
 (defun answer (operation code text)
   "End OPERATION with CODE, which answers a question and is no failure; TEXT says it."
-  (message-set (command-prefix (operation-command operation)) ": " text)
+  (tell-of operation text)
   (setf (operation-finished-p operation) t)
   (notify operation code '()))
 

@@ -96,9 +96,15 @@ command that it cut short, or NIL"))
       (string (format nil "~A" text))
       (function (funcall text operation)))))
 
+(defun tell-of (operation text)
+  "Queue the message TEXT about OPERATION."
+  (let ((*told-of* (request-asker operation)))
+    (message-set (command-prefix (operation-command operation)) ": " text)))
+
 (defun report (operation code results)
   "Queue the message that OPERATION ends with (reading 229)."
-  (let* ((command (operation-command operation))
+  (let* ((*told-of* (request-asker operation))
+         (command (operation-command operation))
          (report (command-report command)))
     (cond ((eq code :interrupt)
            (warning-set (interrupted-text operation))
@@ -107,8 +113,7 @@ command that it cut short, or NIL"))
                   (error-set text)
                   (note-failure operation code text)))
           (report (let ((text (apply report operation results)))
-                    (when text
-                      (message-set (command-prefix command) ": " text)))))))
+                    (when text (tell-of operation text)))))))
 
 (defun fit-results (operation results)
   "Return RESULTS, with NIL for each of the command's results that is missing (reading 85)."

@@ -80,7 +80,9 @@ the world shows. To be called within WITH-CANVAS."
                            :expected (format nil "a list of some of ~{~(~S~)~^, ~}"
                                              +picture-layers+))))
 
+(define-argument-type 'picture-scale (lambda (value) (and (finite-p value) (<= 1 value 256)))
+  "a number of pixels to a cell, from 1 to 256")
+
 (defun check-scale (operator scale)
-  (unless (and (finite-p scale) (<= 1 scale 256))
-    (error 'wrong-argument :operator operator :name "graphics-scale*" :value scale
-                           :expected "a number of pixels to a cell, from 1 to 256")))
+  (unless (argument-of-type-p scale 'picture-scale)
+    (reject-argument operator "scale" scale (argument-type-text 'picture-scale))))

@@ -8,7 +8,7 @@
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.command #:under-way-text #:interruption-text)
   ;; text-map
-  (:export #:text-map)
+  (:export #:text-map #:+text-layers+)
   ;; history
   (:export #:history #:history-of #:keep-history)
   ;; snapshot
@@ -21,6 +21,7 @@
   (:export #:draw-terrain #:draw-movers #:draw-world #:*picture-layers* #:+picture-layers+
            #:draw-display #:display-title #:+displays+)
   ;; picture, animation
+  (:export #:picture-scale)
   (:export #:picture-kind #:save-svg #:save-picture #:save-snapshot #:svg-picture #:save-animation
            #:save-way-picture)
   ;; opening

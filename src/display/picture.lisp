@@ -31,10 +31,7 @@ are to a cell. IN-COLOR is false for a picture in black and white. Signals WRONG
 ;;; Files.
 
 (defun save-text (text file)
-  (with-open-file (stream file :direction :output :if-exists :supersede
-                               :external-format :utf-8)
-    (write-string text stream))
-  (truename file))
+  (write-file-anew (lambda (out) (write-string text out)) file "the picture"))
 
 (defun convert-to-png (svg file)
   "Write the SVG document SVG to FILE as PNG, by the program rsvg-convert."

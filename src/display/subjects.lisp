@@ -12,7 +12,8 @@
 
 (defun angle-text (angle)
   "Return ANGLE, in radians, as text that gives degrees too."
-  (format nil "~,2F rad (~D deg)" angle (mod (round (* angle (/ 180 pi))) 360)))
+  (format nil "~,2F rad (~D deg)" (hundredths angle)
+          (mod (round (* angle (/ 180 pi))) 360)))
 
 (defun denotation-text (image)
   "Return what the designator whose image is IMAGE denotes, as text; false ones say so (manual B)."

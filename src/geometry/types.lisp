@@ -258,12 +258,19 @@ not be changed then."
 
 (define-table-test equal hash)
 
+(defun shown-number (number)
+  "Return NUMBER as it is shown: to a millionth, as far as floats of its size have that."
+  (if (< (abs number) 1d9)
+      (+ 0d0 (/ (fround (* number 1d6)) 1d6))
+      number))
+
 (defun print-value (object stream numbers control &rest parts)
-  "Print OBJECT unreadably, as all digits of NUMBERS; for PRINC, its PARTS by CONTROL."
+  "Print OBJECT unreadably, as NUMBERS to a millionth; for PRINC, its PARTS by CONTROL."
   (if (or *print-escape* *print-readably*)
       (let ((*read-default-float-format* 'double-float))
         (print-unreadable-object (object stream)
-          (format stream "~A~{ ~A~}" (symbol-name (type-of object)) numbers)))
+          (format stream "~A~{ ~A~}" (symbol-name (type-of object))
+                  (mapcar #'shown-number numbers))))
       (apply #'format stream control parts)))
 
 (defun bounds (interval)

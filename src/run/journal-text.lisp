@@ -59,11 +59,7 @@
 MISUSE if that cannot be, as when an entry holds a function, or another object without a readable
 form; then FILE is as it was."
   (check-printable journal)
-  (handler-case
-      (call-replacing-file (lambda (out) (write-data (journal-data journal) out)) file)
-    (error (trouble)
-      (reject-use "The journal cannot be written to ~A: ~A. What was there is as before."
-                  (shown-name file) (one-line-text trouble)))))
+  (write-file-anew (lambda (out) (write-data (journal-data journal) out)) file "the journal"))
 
 ;;; Reading.
 

@@ -162,13 +162,8 @@ be told."
   (let ((noise (noise-to-come-back simulation)))
     (call-with-savable
      (lambda (simulation journal)
-       (handler-case
-           (call-replacing-file (lambda (out) (write-saved simulation journal noise out)) file)
-         (ars-magna-error (trouble) (error trouble))
-         (error (trouble)
-           (reject-use "The run cannot be written to ~A: ~A. What was there is as before."
-                       (cut (princ-to-string (shown-name file)) 200)
-                       (cut (one-line-text trouble) 200)))))
+       (write-file-anew (lambda (out) (write-saved simulation journal noise out)) file
+                        "the run"))
      simulation)))
 
 (addition save-simulation)

@@ -9,11 +9,6 @@
 (defconstant +longest-line+ 1000000 "How many characters a line of a saved file has at most.")
 (defconstant +longest-file+ (expt 2 28) "How many bytes a saved file has at most.")
 
-(defun shown-name (file)
-  "Return FILE, a pathname or string, as the operating system writes it; an empty name in quotes."
-  (let ((name (if (and (pathnamep file) (not (wild-pathname-p file))) (native-name file) file)))
-    (if (equal name "") "\"\"" name)))
-
 (addition damaged-file)
 (define-condition damaged-file (ars-magna-error)
   ((file   :initarg :file   :reader damaged-file-name)
@@ -37,10 +32,6 @@ before."
     sum))
 
 ;;; Reading.
-
-(defun one-line-text (condition)
-  "Return what CONDITION says as the part of a sentence."
-  (string-right-trim "." (cut (one-line (text-of-condition condition)) 400)))
 
 (defun ascii-p (text)
   (every (lambda (char) (char< char #.(code-char 128))) (the simple-string text)))

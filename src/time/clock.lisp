@@ -16,9 +16,13 @@
     (wait-on-semaphore (custody-wake-up custody) seconds))
   (setf (custody-asleep-p custody) nil))
 
+(defun held-p (pacing)
+  "True if no tick is to pass, since PACING is paused."
+  (and (pacing-paused-p pacing) (zerop (pacing-steps pacing))))
+
 (defun nothing-to-do-p (pacing)
   (if (pacing-paused-p pacing)
-      (zerop (pacing-steps pacing))
+      (held-p pacing)
       (funcall (pacing-idle-p pacing))))
 
 (defun rest-thread (custody pacing)
@@ -67,7 +71,8 @@
                   (rest-thread custody pacing)
                   (setf due (seconds-now)))
                  (t (setf due (keep-pace custody pacing due))
-                    (unless (pacing-stopping-p pacing)
+                    ;; It may have been paused while it waited.
+                    (unless (or (pacing-stopping-p pacing) (held-p pacing))
                       (pass-tick pacing))))))
 
 (defun let-go (custody pacing)

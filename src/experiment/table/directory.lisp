@@ -25,9 +25,7 @@
 
 (defun directory-called (name)
   "Return the absolute path of the directory NAME, a string or pathname."
-  (uiop:ensure-directory-pathname
-   (merge-pathnames (if (stringp name) (uiop:parse-native-namestring name :ensure-directory t) name)
-                    (uiop:getcwd))))
+  (uiop:ensure-directory-pathname (merge-pathnames (path-called name :directory t) (uiop:getcwd))))
 
 (defun ensure-store-directory (name)
   "Return the path of the directory NAME, made if there is none. Signals MISUSE."

@@ -1,0 +1,85 @@
+;;;; map-lines.lisp -- MAP: the world as characters.
+
+(in-package :ars-magna.cli)
+
+;;; On a terminal a map is made to fit, and has colours; elsewhere it is as long as the world.
+
+(defun terminal-size (session)
+  "Return how many columns the terminal of SESSION has, as far as can be found out, and how many
+lines; NIL if there is none."
+  (let ((size (and (terminal-p session) (lines-and-columns))))
+    (flet ((size-said (variable)
+             (ignore-errors (parse-integer (environment-value variable)))))
+      (values (or (size-said "COLUMNS") (second size) 80)
+              (and (terminal-p session) (or (size-said "LINES") (first size) 24))))))
+
+;;; What of it.
+
+(defparameter *map-words* '("CONES" "WAY" "BELIEF" "LEGEND") "The words that MAP understands.")
+
+(defun map-word (text)
+  "Return the keyword of *MAP-WORDS* that begins with TEXT. Signals BAD-LINE if there is none."
+  (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word))
+                       *map-words*)))
+    (unless word
+      (reject-line "MAP does not know ~A.~@[ Did you mean ~A?~] It takes a radius, or LEFT TOP ~
+                    RIGHT BOTTOM, and ~{~A~#[~; or ~:;, ~]~}."
+                   text (nearest-name text *map-words*) *map-words*))
+    (make-keyword word)))
+
+(defun words-in (text)
+  (remove "" (uiop:split-string text :separator '(#\Space #\Tab)) :test #'string=))
+
+(defun number-typed (text)
+  "Return the number that TEXT is, or NIL."
+  (let ((datum (ignore-errors (values (read-data-from-string text 0)))))
+    (and (realp datum) datum)))
+
+(defun map-part (numbers)
+  "Return what NUMBERS, as typed, say of the part that is to be shown, as options of TEXT-MAP."
+  (case (length numbers)
+    (0 '())
+    (1 (unless (whole-p (first numbers))
+         (reject-line "The radius cannot be ~A. Give a whole number of cells, from 0 to 1e9."
+                      (first numbers)))
+     (list :radius (first numbers)))
+    (4 (destructuring-bind (left top right bottom) numbers
+         (unless (and (< left right) (< top bottom) (every #'finite-p numbers))
+           (reject-line "~{~A~^ ~} is no region. Give LEFT TOP RIGHT BOTTOM in metres, such as ~
+                         MAP 0 0 40 20."
+                        numbers)))
+     (list :region numbers))
+    (t (reject-line "MAP takes one number, a radius, or four, LEFT TOP RIGHT BOTTOM; not ~
+                     ~{~A~^ ~}."
+                    numbers))))
+
+(defun map-options (text)
+  "Return as options of TEXT-MAP what TEXT, as typed after MAP, asks for."
+  (loop for word in (words-in (or text ""))
+        for number = (number-typed word)
+        if number collect number into numbers
+        else collect (map-word word) into words
+        finally (return (append (map-part numbers)
+                                (list :layers (remove :legend words)
+                                      :only-legend (and (member :legend words) t))))))
+
+(defun map-text (session options &optional (lines-below 1))
+  "Return the map that OPTIONS of TEXT-MAP ask for, as it fits into the terminal of SESSION above
+LINES-BELOW lines."
+  (let ((robot (session-robot))
+        (console (session-console session)))
+    (multiple-value-bind (columns lines) (terminal-size session)
+      (with-output-to-string (*standard-output*)
+        (still (write-string (apply #'text-map robot
+                                    :columns (max 20 (1- columns))
+                                    :rows (and lines (max 5 (- lines lines-below)))
+                                    :paint (and (console-colored-p console) #'paint)
+                                    options)))))))
+
+(define-line "MAP" (session (what :rest "a radius or LEFT TOP RIGHT BOTTOM; CONES WAY BELIEF LEGEND"
+                                   :optional))
+    (:seeing)
+    "Show the world as characters: all of it, what is within a radius of the robot, or a region.
+CONES shows what the robot's cameras have in view, WAY where it went, BELIEF where it believes
+itself and what its designators denote to be, LEGEND only what the characters mean."
+  (write-string (map-text session (map-options what))))

@@ -1,0 +1,113 @@
+;;;; watch-line.lisp -- WATCH: the map, again and again, while the robot moves.
+
+(in-package :ars-magna.cli)
+
+;;; On a terminal each map is written over the one before, and a key ends that. What comes
+;;; meanwhile, such as messages, is shown afterwards, its last line at once. Elsewhere the maps
+;;; follow one another.
+
+(defconstant +frame-seconds+ 0.1d0 "How long a map is seen at least, in seconds.")
+(defconstant +usual-rate+ 20 "How many ticks pass in a second where time has no pace of its own.")
+
+(defun time-passes-p (session simulation)
+  "True if ticks of SIMULATION, in which SESSION is, pass by themselves."
+  (and (live-p simulation)
+       (null (session-visit session))
+       (not (paused-p simulation))))
+
+(defun pass-tick (session simulation)
+  "Let a tick of SIMULATION pass, or wait until one has passed."
+  (let ((goal (1+ (simulation-tick simulation))))
+    (unless (time-passes-p session simulation) (step-ticks 1 simulation))
+    (await (lambda () (>= (simulation-tick simulation) goal)))))
+
+;;; One after the other.
+
+(defun print-maps (session simulation count options)
+  "Print a map for each of COUNT ticks."
+  (loop repeat count
+        until (simulation-over simulation)
+        do (pass-tick session simulation)
+           (format t "Tick ~D.~%~A" (simulation-tick simulation) (map-text session options))
+           (finish-output)))
+
+;;; In place.
+
+(defun screen-p (session)
+  "True if SESSION is on a terminal that can be written over, and can hear keys."
+  (and (watched-p session)
+       (not (session-batch-p session))
+       (terminal-stream-p (console-stream (session-console session)))
+       (escapes-known-p)))
+
+(defun frame (session simulation options)
+  "Return what is to be seen now: the map, and below it the time and what was said last."
+  (let ((columns (1- (terminal-size session)))
+        (said (last-held-back (session-console session))))
+    (format nil "~A~A A key ends this.~%~A" (map-text session options 2)
+            (time-text session simulation)
+            (subseq said 0 (min columns (length said))))))
+
+(defun frame-seconds (session simulation)
+  "Return how many seconds pass from one map of SIMULATION to the next."
+  (let ((rate (simulation-rate simulation)))
+    (if (time-passes-p session simulation)
+        +frame-seconds+
+        (/ 1d0 (if (and (realp rate) (plusp rate)) rate +usual-rate+)))))
+
+(defun watch-screen (session simulation count options)
+  "Show maps of SIMULATION in place until COUNT ticks have passed, if that is not NIL, or a key is
+pressed, or there is something else to be answered."
+  (loop with end = (and count (+ (simulation-tick simulation) count))
+        with console = (session-console session)
+        do (write-at-once (over-screen (frame session simulation options)) console)
+        until (or (and end (>= (simulation-tick simulation) end))
+                  (simulation-over simulation)
+                  (session-breaks session)
+                  (typed-within-p (session-input session) (frame-seconds session simulation)))
+        do (unless (time-passes-p session simulation) (pass-tick session simulation))))
+
+(defun watch-in-place (session simulation count options)
+  (handler-case (call-with-screen
+                 (lambda () (watch-screen session simulation count options))
+                 (session-console session))
+    (user-interrupt () nil))
+  ;; The key that has ended it is no beginning of a line.
+  (clear-input (session-input session))
+  (format t "~A~%" (time-text session simulation)))
+
+;;; The line.
+
+(defun take-count (text)
+  "Return the number that TEXT begins with, or NIL, and what follows it."
+  (let* ((words (words-in (or text "")))
+         (count (and words (number-typed (first words)))))
+    (when (and count (not (whole-p count 1)))
+      (reject-line "WATCH cannot show ~A ticks. Give a whole number, from 1 to 1e9." count))
+    (values count (format nil "~{~A~^ ~}" (if count (rest words) words)))))
+
+(defun check-watchable (session simulation count)
+  "Signal BAD-LINE if WATCH would show nothing, or for ever."
+  (cond ((session-visit session)
+         (reject-line "In a trial time passes between lines only. STEP and MAP show it tick by ~
+                       tick."))
+        (count)
+        ((not (screen-p session))
+         (reject-line "There is no key here that would end this. WATCH n shows n ticks."))
+        ((not (time-passes-p session simulation))
+         (reject-line "Time stands still here. WATCH n lets n ticks pass.~@[ RESUME lets it go ~
+                       on.~]"
+                      (live-p simulation)))))
+
+(define-line "WATCH" (session (what :rest "how many ticks, then what MAP takes" :optional))
+    (:seeing)
+    "Show the map again and again while time passes, in place on a terminal, where a key or
+Control-C ends it: for as many ticks as the number that comes first says. Where time stands still,
+these ticks pass. What follows that number is as for MAP."
+  (check-run)
+  (multiple-value-bind (count rest) (take-count what)
+    (let ((simulation (current-simulation)) (options (map-options rest)))
+      (check-watchable session simulation count)
+      (if (screen-p session)
+          (watch-in-place session simulation count options)
+          (print-maps session simulation count options)))))

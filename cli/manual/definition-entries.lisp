@@ -1,0 +1,164 @@
+;;;; definition-entries.lisp -- entries of what definers have defined: parameters, robots ....
+
+(in-package :ars-magna.manual)
+
+;;; Parameters.
+
+(defparameter *effects-of-cleaning*
+  '((:noise . "`clean-simulation` takes it out") (:delay . "a delay") (:limit . "a limit")
+    (:setting . "a setting"))
+  "What the kinds of parameters are, in words.")
+
+(defun shortest-number (value)
+  "Return VALUE; of a double-float that a single-float was made of, that one: it has less digits."
+  (if (and (typep value 'double-float) (= value (coerce value 'single-float)))
+      (coerce value 'single-float)
+      value))
+
+(defun number-words (value)
+  "Return VALUE, a parameter's, as people write it."
+  (let ((value (shortest-number value)) (*print-case* :downcase))
+    (let ((*read-default-float-format* (if (floatp value) (type-of value) 'single-float)))
+      (prin1-to-string value))))
+
+(defun parameter-facts (parameter)
+  `(("Default" ,(format nil "~A ~A" (number-words (parameter-default parameter))
+                        (parameter-unit parameter)))
+    ("Range" ,(describe-type (parameter-type parameter)))
+    ("Kind" ,(rest (assoc (parameter-kind parameter) *effects-of-cleaning*)))))
+
+(defun parameter-entry (parameter)
+  (let ((symbol (parameter-symbol parameter)))
+    (make-entry :name (parameter-name parameter) :chapter :parameters :symbol symbol
+                :section (parameter-group parameter) :use (parameter-name parameter)
+                :facts (append (parameter-facts parameter) (symbol-facts symbol))
+                :text (parameter-sentence parameter) :file (file-of-symbol symbol))))
+
+(defun parameter-entries ()
+  (loop for parameter in (all-parameters)
+        when (packages-showing (parameter-symbol parameter))
+          collect (parameter-entry parameter)))
+
+;;; What is defined by name. Where the simulator's own definitions are from is not kept with them.
+
+(defun file-in-project (source)
+  "Return the file SOURCE as a name in the project; NIL if it is not of the project, or of a test."
+  (let ((name (and (not (eq :own source)) source (project-name (native-name source)))))
+    (and name (not (starts-with-subseq "tests/" name)) name)))
+
+(defun definitions-of (kind)
+  "Return lists (name object file) for the definitions of KIND that are the project's; FILE is NIL
+if it is not known."
+  (loop for (name object source) in (all-definitions kind)
+        for file = (file-in-project source)
+        when (or file (eq :own source))
+          collect (list name object file)))
+
+(defun entries-of (kind function)
+  "Return what FUNCTION makes of name, object and file of each definition of KIND."
+  (loop for (name object file) in (definitions-of kind)
+        collect (funcall function name object file)))
+
+(defun attribute-facts (attribute)
+  (append
+   (list (list "Values" (format nil "~:[numbers~;~:*~(~{~A~^, ~}~)~]"
+                                (attribute-domain attribute))))
+   (if (eq :discrete (attribute-kind attribute))
+       (list (list "Read rightly" (format nil "with probability ~A, close by"
+                                          (number-words (attribute-success attribute)))))
+       (list (list "Error" (format nil "deviation ~A close by, up to ~A times that far away"
+                                   (number-words (attribute-base attribute))
+                                   (number-words (attribute-max-mult attribute))))))
+   (list (list "Noticed unasked"
+               (format nil "with probability ~A~@[; more often with ~(~{~S~^, ~}~)~]"
+                       (number-words (attribute-noticed attribute))
+                       (attribute-supporters attribute))))))
+
+(defun attribute-entry (name attribute file)
+  (declare (ignore name))
+  (make-entry :name (format nil "~(~S~)" (attribute-name attribute)) :chapter :attributes
+              :use (format nil "(~(~S~) value)" (attribute-name attribute))
+              :facts (attribute-facts attribute)
+              :text "An attribute, which things have and designators tell; see DEFATTRIBUTE."
+              :file (or file "src/world/built-in-attributes.lisp")))
+
+(defun substance-entry (name substance file)
+  (make-entry :name (string-downcase name) :chapter :substances
+              :use (format nil "(:substance ~(~A~))" name)
+              :facts (list (list "Viewed as" (number-words (substance-parameter substance))))
+              :text "A substance of walls and things; see DEFSUBSTANCE and CAMERA-VIEW."
+              :file (or file "src/world/substances.lisp")))
+
+(defun place-type-entry (name type file)
+  (make-entry :name (string-downcase name) :chapter :place-types
+              :use (string-downcase name)
+              :facts (list (list "Rank" (format nil "~:R of those that fit"
+                                                (1+ (place-type-rank type))))
+                           (list "Confusion" (format nil "~A, the chance of a false designator"
+                                                     (number-words (place-type-confusion type))))
+                           (list "Seen" (if (place-type-invisible-p type)
+                                            "not by cameras" "by cameras, too")))
+              :text (format nil "A place type, which ROBOT-PLACE senses; see DEF-PLACE-TYPE.")
+              :file (or file "src/world/built-in-places.lisp")))
+
+(defun kicker-entry (name kicker file)
+  (make-entry :name (string-downcase name) :chapter :kickers
+              :use (format nil "(:kickers (~(~A~)))" name) :symbol name
+              :facts (list (list "Probability" (format nil "~A a tick"
+                                                       (number-words (kicker-prob kicker)))))
+              :text (or (first-text name) "A kicker of the shipped worlds; see DEFKICKER.")
+              :file file))
+
+(defun first-text (name)
+  (let ((text (text-of-symbol name)))
+    (and (string/= "" text) text)))
+
+(defun manipulation-entry (name manipulation file)
+  (declare (ignore manipulation))
+  (make-entry :name (string-downcase name) :chapter :manipulations
+              :use (format nil "(manipulate robot '~(~A~) designator [continuation])" name)
+              :text "A manipulation of the shipped worlds; see DEFMANIPULATION and MANIPULATE."
+              :file file))
+
+(defun map-entry (name map file)
+  (make-entry :name (string-downcase name) :chapter :robots :section "Maps"
+              :use (string-downcase name) :symbol name
+              :facts (list (list "Size" (format nil "~D x ~D cells" (map-width map)
+                                                (map-height map))))
+              :text (or (first-text name) "A map; see DEFMAP.") :file file))
+
+(defun robot-entry (name blueprint file)
+  (declare (ignore blueprint))
+  (make-robot-entry name (find-robot name) file))
+
+(defun make-robot-entry (name robot file)
+  (make-entry :name (string-downcase name) :chapter :robots :section "Robots"
+              :use (string-downcase name) :symbol name
+              :facts (list (list "Map" (in-code (map-name (world-map (robot-world robot)))))
+                           (list "Parts" (format nil "~R camera~:P, ~R hand~:P, ~R storage bin~:P"
+                                                 (length (robot-cameras robot))
+                                                 (length (robot-hands robot))
+                                                 (length (robot-bins robot)))))
+              :text (or (first-text name) "A robot; see DEFROBOT.") :file file))
+
+(defun plan-entry (name procedure file)
+  (make-entry :name (string-downcase name) :chapter :plans :symbol name
+              :use (plain-use name (procedure-lambda-list procedure))
+              :text (text-of-symbol name) :file file))
+
+(defun experiment-entry (name experiment file)
+  (make-entry :name (string-downcase name) :chapter :experiments :symbol name
+              :use (format nil "(run-experiment '~(~A~))" name)
+              :text (or (experiment-documentation experiment) "") :file file))
+
+(defun shipped-entries ()
+  "Return the entries of what has been defined by name, here and in the shipped worlds."
+  (append (entries-of 'attribute #'attribute-entry)
+          (entries-of 'substance #'substance-entry)
+          (entries-of 'place-type #'place-type-entry)
+          (entries-of 'map #'map-entry)
+          (entries-of 'robot #'robot-entry)
+          (entries-of 'kicker #'kicker-entry)
+          (entries-of 'manipulation #'manipulation-entry)
+          (entries-of 'plan #'plan-entry)
+          (entries-of 'experiment #'experiment-entry)))

@@ -1,0 +1,218 @@
+;;;; examples.lisp -- which blocks of code in the guide are examples of what.
+
+(in-package :ars-magna.manual)
+
+;;; A block is an example of the names that its author gives it: those in a heading or paragraph
+;;; that has nothing but names in code, as in "### `robot-turn`, `turn`", or before it in bold code,
+;;; as in "**`(par form...)`** succeeds when". The names hold for all blocks until others come, or a
+;;; heading. Of names that have no such block, the shortest that uses them is taken.
+
+(defstruct (example (:copier nil))
+  "A block of code in the guide: of Lisp, or of what is typed at the prompt. NAMES, strings, are
+what its author says that it shows, WORDS what it has in it, CALLS those of them that are surely no
+variables of its own. ID is that of the heading that it is under."
+  (page nil :type page :read-only t)
+  (id "" :type string :read-only t)
+  (heading "" :type string :read-only t)
+  (text "" :type string :read-only t)
+  (lisp-p nil :type boolean :read-only t)
+  (names '() :type list :read-only t)
+  (words '() :type list :read-only t)
+  (calls '() :type list :read-only t))
+
+;;; Names in text.
+
+(defun name-end-p (char)
+  (find char '(#\Space #\Newline #\( #\) #\' #\` #\, #\" #\;)))
+
+(defun first-name (code)
+  "Return the name that CODE begins with, perhaps after a parenthesis, in lower case."
+  (let* ((start (if (starts-with-subseq "(" code) 1 0))
+         (end (or (position-if #'name-end-p code :start start) (length code))))
+    (string-downcase (subseq code start end))))
+
+(defun names-alone (tokens)
+  "Return the names in TOKENS, a heading or paragraph, if there is nothing else in it."
+  (let ((codes '()) (others '()))
+    (loop with rest = (rest (butlast tokens))
+          while rest
+          do (if (tag-called-p "code" (first rest))
+                 (multiple-value-bind (element left) (element-at rest)
+                   (push (first-name (text-of element)) codes)
+                   (setf rest left))
+                 (push (pop rest) others)))
+    (when (every (lambda (other) (string= "" (string-trim '(#\Space #\, #\Newline) other))) others)
+      (reverse codes))))
+
+(defun name-in-bold (tokens)
+  "Return the name that TOKENS, an element in bold, are about, if it is code alone, or NIL."
+  (when (tag-called-p "code" (second tokens))
+    (multiple-value-bind (element left) (element-at (rest tokens))
+      (when (null (rest left)) (first-name (text-of element))))))
+
+;;; Names in blocks.
+
+(defun name-at (text start)
+  "Return the name in TEXT at START, in lower case and without its package, and where it ends."
+  (let* ((end (or (position-if #'name-end-p text :start start) (length text)))
+         (colon (position #\: text :start start :end end :from-end t))
+         (package-p (and colon (< start colon))))
+    (values (string-downcase (subseq text (if package-p (1+ colon) start) end)) end)))
+
+(defun text-end (text start)
+  "Return where the string or comment that begins in TEXT at START ends, or NIL if none does."
+  (case (char text start)
+    (#\" (let ((end (position #\" text :start (1+ start)))) (if end (1+ end) (length text))))
+    (#\; (or (position #\Newline text :start start) (length text)))))
+
+(defun map-names (function text)
+  "Call FUNCTION with each name in TEXT, of Lisp, and where it starts and ends. Strings and comments
+have none."
+  (loop with i = 0
+        while (< i (length text))
+        do (let ((skipped (text-end text i)))
+             (cond (skipped (setf i skipped))
+                   ((or (name-end-p (char text i)) (char= #\# (char text i))) (incf i))
+                   (t (multiple-value-bind (name end) (name-at text i)
+                        (funcall function name i end)
+                        (setf i end)))))))
+
+(defun call-p (name text start)
+  "True if NAME in TEXT at START is surely no variable of that text's own: what is called, or
+quoted, or has a name as those of this simulator are."
+  (or (find #\- name :start (min 1 (length name)))
+      (find (char name (1- (length name))) "*:")
+      (char= #\: (char text start))
+      (and (plusp start) (find (char text (1- start)) "('"))))
+
+(defun lisp-names (text &optional (test (constantly t)))
+  "Return the names in TEXT, of Lisp, each once: those for which TEST, of the name, TEXT and where
+it starts, is true."
+  (let ((names '()))
+    (map-names (lambda (name start end)
+                 (declare (ignore end))
+                 (when (funcall test name text start)
+                   (pushnew name names :test #'string=)))
+               text)
+    (nreverse names)))
+
+(defparameter *prompt* "Robot> " "What stands before what is typed in a session.")
+
+(defun typed-names (text)
+  "Return the first words of the lines in TEXT, a session, that have been typed."
+  (loop for line in (uiop:split-string text :separator '(#\Newline))
+        for start = (search *prompt* line)
+        when start
+          collect (first-name (subseq line (+ start (length *prompt*))))))
+
+;;; Blocks.
+
+(defun block-language (element)
+  "Return the language of ELEMENT, a block of code, or NIL."
+  (let ((class (attribute-value "class" (second element))))
+    (and class (starts-with-subseq "language-" class) (subseq class (length "language-")))))
+
+(defun example-in (element page heading names)
+  "Return the example that ELEMENT is, a block of code on PAGE under HEADING, a list (level id
+text), with NAMES; NIL if it is neither Lisp nor a session."
+  (let* ((text (text-of element))
+         (lisp-p (equal "lisp" (block-language element))))
+    (when (or lisp-p (search *prompt* text))
+      (make-example :page page :id (second heading) :heading (third heading) :text text
+                    :lisp-p lisp-p :names names
+                    :words (if lisp-p (lisp-names text) (typed-names text))
+                    :calls (if lisp-p (lisp-names text #'call-p) '())))))
+
+(defstruct (walk (:copier nil))
+  "How far somebody who looks for examples has come on PAGE: below HEADING, a list (level id text),
+with NAMES, which a block has shown if USED-P is true; EXAMPLES are those found, the last first."
+  (page nil :type page :read-only t)
+  (heading '() :type list)
+  (names '() :type list)
+  (used-p nil :type boolean)
+  (examples '() :type list))
+
+(defun take-names (walk names &key keep)
+  "Let NAMES be shown by what follows; with KEEP, beside those that nothing has shown yet."
+  (when names
+    (setf (walk-names walk) (if (and keep (not (walk-used-p walk)))
+                                (append (walk-names walk) names)
+                                names)
+          (walk-used-p walk) nil)))
+
+(defun pass-heading (walk element)
+  (setf (walk-heading walk) (list (heading-level (first element))
+                                  (attribute-value "id" (first element))
+                                  (text-of element))
+        (walk-names walk) '()
+        (walk-used-p walk) nil)
+  (take-names walk (names-alone element)))
+
+(defun pass-block (walk element)
+  (let ((example (example-in element (walk-page walk) (walk-heading walk) (walk-names walk))))
+    (setf (walk-used-p walk) t)
+    (when example (push example (walk-examples walk)))))
+
+(defun names-in-bold (tokens)
+  "Return the names in bold code in TOKENS, a paragraph."
+  (loop for rest on tokens
+        for name = (and (tag-called-p "strong" (first rest))
+                        (name-in-bold (element-at rest)))
+        when name collect name))
+
+(defun examples-of-page (page)
+  "Return the examples on PAGE, in order. Names that follow each other share what follows them."
+  (let ((walk (make-walk :page page :heading (list 1 "" (page-title page))))
+        (rest (page-tokens page)))
+    (flet ((pass (function)
+             (multiple-value-bind (element left) (element-at rest)
+               (funcall function element)
+               (setf rest left))))
+      (loop while rest
+            do (let ((token (first rest)))
+                 (cond ((heading-level token)
+                        (pass (lambda (element) (pass-heading walk element))))
+                       ((tag-called-p "p" token)
+                        (pass (lambda (element)
+                                (take-names walk (or (names-alone element)
+                                                     (names-in-bold element))
+                                            :keep t))))
+                       ((tag-called-p "pre" token)
+                        (pass (lambda (element) (pass-block walk element))))
+                       (t (pop rest))))))
+    (reverse (walk-examples walk))))
+
+(defun read-examples (pages)
+  "Return all examples on PAGES."
+  (mapcan #'examples-of-page (copy-list pages)))
+
+;;; Choosing.
+
+(defparameter *longest-example* 30
+  "How many lines a block may have that is shown for a name that only occurs in it.")
+
+(defun line-count (text)
+  (count #\Newline text))
+
+(defun words-of-kind (example kind)
+  "Return the words of EXAMPLE that can stand for what is of KIND: :TYPED, :CALLED or :WRITTEN."
+  (ecase kind
+    (:typed (if (example-lisp-p example) '() (example-words example)))
+    (:called (example-calls example))
+    (:written (if (example-lisp-p example) (example-words example) '()))))
+
+(defun shortest (examples)
+  (first (sort (copy-list examples) #'< :key (lambda (example) (length (example-text example))))))
+
+(defun examples-for (name kind examples)
+  "Return those of EXAMPLES that show NAME, a string: those that name it, and true; or in a list the
+shortest that has it as a word of KIND, as WORDS-OF-KIND has it, and NIL."
+  (flet ((having (reader)
+           (remove-if-not (lambda (example)
+                            (member name (funcall reader example) :test #'string=))
+                          examples)))
+    (let ((named (having #'example-names)))
+      (if named
+          (values named t)
+          (let ((using (having (lambda (example) (words-of-kind example kind)))))
+            (values (and using (list (shortest using))) nil))))))

@@ -1,0 +1,129 @@
+;;;; guide.lisp -- which of the project's pages make the guide, and what is in them.
+
+(in-package :ars-magna.manual)
+
+(defstruct (page (:copier nil))
+  "A page of the guide. SOURCE is its name in the project, FILE that of the HTML; TOKENS are the
+HTML of its Markdown, its headings with anchors."
+  (source "" :type string :read-only t)
+  (file "" :type string :read-only t)
+  (title "" :type string :read-only t)
+  (tokens '() :type list :read-only t))
+
+(document-functions
+  page-source "Return the name in the project of the Markdown that the page is made of."
+  page-file "Return the name of the page's HTML file.")
+
+(defparameter *known-pages*
+  '(("README.md" "introduction.html" "Introduction" :learning)
+    ("worlds/tutorial/README.md" "tutorial.html" "Tutorial" :learning)
+    ("worlds/README.md" "worlds.html" "The shipped worlds" :guide)
+    ("cli/README.md" "prompt.html" "The prompt" :guide)
+    ("cli/lines/README.md" "prompt-examples.html" "The prompt by example" :examples)
+    ("src/command/README.md" "command-examples.html" "Commands by example" :examples)
+    ("src/base/README.md" "parameter-examples.html" "Parameters, chance and mistakes by example"
+     :examples)
+    ("src/world/README.md" "world-examples.html" "Maps, places and things by example" :examples)
+    ("src/robot/README.md" "robot-examples.html" "Robots and their parts by example" :examples)
+    ("src/run/README.md" "run-examples.html" "Runs by example" :examples)
+    ("rpl/robot/README.md" "plan-robot-examples.html" "Plans and their robot by example" :examples)
+    ("rpl/tasks/README.md" "task-examples.html" "Tasks and failures by example" :examples)
+    ("src/experiment/report/README.md" "result-examples.html" "Results of experiments by example"
+     :examples)
+    ("src/statistics/README.md" "statistics-examples.html" "Statistics by example" :examples)
+    ("src/geometry/README.md" "geometry-examples.html" "Points, intervals and angles by example"
+     :examples)
+    ("src/display/README.md" "picture-examples.html" "Pictures by example" :examples)
+    ("rpl/README.md" "plans.html" "The plan language" :guide)
+    ("src/experiment/README.md" "experiments.html" "Experiments" :guide)
+    ("src/ways/README.md" "ways.html" "Ways through a map" :guide)
+    ("src/floors/README.md" "floors.html" "Floors from elsewhere" :guide)
+    ("src/README.md" "design.html" "The design" :inside)
+    ("src/readings.md" "readings.html" "How the manual of 1992 is read" :inside)
+    ("cli/manual/README.md" "about.html" "About this manual" :about))
+  "Lists (source file title part). Other README.md files are found, and go by their own titles.")
+
+(defun root () (asdf:system-relative-pathname "ars-magna" ""))
+
+(defun project-path (name)
+  "Return the path of the file NAME, a string, of the project."
+  (merge-pathnames (native-path name) (root)))
+
+(defun found-readmes ()
+  "Return the names of the README.md files in the project's folders, in order."
+  (sort (loop for folder in '("src/" "rpl/" "worlds/" "cli/" "tests/")
+              append (mapcar (lambda (path) (enough-namestring path (root)))
+                             (directory (merge-pathnames "**/README.md" (project-path folder)))))
+        #'string<))
+
+(defun page-sources ()
+  "Return the names of the pages of the guide: those known that there are, and all others."
+  (let ((known (remove-if-not (lambda (name) (existing-path (project-path name)))
+                              (mapcar #'first *known-pages*))))
+    (append known (remove-if (lambda (name) (member name known :test #'string=))
+                             (found-readmes)))))
+
+(defun known-page (source)
+  (rest (assoc source *known-pages* :test #'string=)))
+
+(defun page-part (page)
+  "Return where PAGE is listed: :LEARNING, :GUIDE, :EXAMPLES, :INSIDE or :ABOUT."
+  (let ((source (page-source page)))
+    (cond ((third (known-page source)))
+          ((starts-with-subseq "tests/" source) :inside)
+          (t :guide))))
+
+(defun file-for (source)
+  "Return the name of the HTML file for the page SOURCE: src-run.html for src/run/README.md."
+  (or (first (known-page source))
+      (format nil "~A.html" (substitute #\- #\/ (subseq source 0 (search "/README.md" source))))))
+
+;;; Headings.
+
+(defun heading-level (token)
+  "Return from 1 to 6 if TOKEN begins a heading, else NIL."
+  (let ((name (and (tag-p token) (tag-name token))))
+    (and name
+         (= 2 (length name))
+         (char= #\h (char name 0))
+         (digit-char-p (char name 1)))))
+
+(defun with-anchors (tokens)
+  "Return TOKENS with an id in each heading, no two of them the same."
+  (let ((counts (make-hash-table :test #'equal)))
+    (loop for rest on tokens
+          for token = (first rest)
+          collect (if (heading-level token)
+                      (let* ((slug (slug (text-of (element-at rest))))
+                             (count (1- (incf (gethash slug counts 0)))))
+                        (with-attribute "id" (format nil "~A~[~:;-~:*~D~]" slug count) token))
+                      token))))
+
+(defun headings (tokens)
+  "Return lists (level id text) for the headings in TOKENS, in order."
+  (loop for rest on tokens
+        for token = (first rest)
+        when (and (heading-level token) (attribute-value "id" token))
+          collect (list (heading-level token) (attribute-value "id" token)
+                        (text-of (element-at rest)))))
+
+(defun mark-readings (tokens)
+  "Return TOKENS, of the page of readings, with an id where each reading begins, as reading-12."
+  (loop for (token next) on tokens
+        for number = (and (tag-called-p "strong" token) next
+                          (parse-integer next :junk-allowed t))
+        collect (if number
+                    (with-attribute "id" (format nil "reading-~D" number) token)
+                    token)))
+
+(defun read-page (source)
+  "Return the page of the guide whose Markdown is in the file SOURCE of the project."
+  (let* ((tokens (with-anchors (html-tokens (markdown-html (file-text (project-path source))))))
+         (first (find 1 (headings tokens) :key #'first)))
+    (make-page :source source :file (file-for source)
+               :title (or (second (known-page source)) (third first) source)
+               :tokens (if (string= source "src/readings.md") (mark-readings tokens) tokens))))
+
+(defun read-guide ()
+  "Return all pages of the guide."
+  (mapcar #'read-page (page-sources)))

@@ -1,0 +1,69 @@
+;;;; html.lisp -- characters that HTML and JavaScript take for their own, and anchors.
+
+(in-package :ars-magna.manual)
+
+(defun escaped (text)
+  "Return TEXT as it is written in HTML, between tags or in an attribute's double quotes."
+  (with-output-to-string (out)
+    (loop for char across text
+          do (case char
+               (#\& (write-string "&amp;" out))
+               (#\< (write-string "&lt;" out))
+               (#\> (write-string "&gt;" out))
+               (#\" (write-string "&quot;" out))
+               (t (write-char char out))))))
+
+(defparameter *entities*
+  '(("&lt;" . #\<) ("&gt;" . #\>) ("&quot;" . #\") ("&amp;" . #\&))
+  "What HTML writes for characters that it takes for its own.")
+
+(defun entity-at (html position)
+  "Return the element of *ENTITIES* that HTML has at POSITION, or NIL."
+  (find-if (lambda (entity)
+             (let ((end (+ position (length (car entity)))))
+               (and (<= end (length html))
+                    (string= (car entity) html :start2 position :end2 end))))
+           *entities*))
+
+(defun unescaped (html)
+  "Return the text that HTML, without tags, stands for."
+  (with-output-to-string (out)
+    (loop with i = 0
+          while (< i (length html))
+          do (let ((entity (entity-at html i)))
+               (write-char (if entity (cdr entity) (char html i)) out)
+               (incf i (if entity (length (car entity)) 1))))))
+
+(defun javascript-string (text)
+  "Return TEXT as a string of JavaScript's, in its double quotes."
+  (with-output-to-string (out)
+    (write-char #\" out)
+    (loop for char across text
+          do (case char
+               ((#\" #\\) (write-char #\\ out) (write-char char out))
+               (#\Newline (write-char #\Space out))
+               ;; So that no </script> can end what it stands in.
+               (#\< (write-string "\\u003C" out))
+               (t (write-char char out))))
+    (write-char #\" out)))
+
+;;; Anchors.
+
+(defun plain-char-p (char)
+  (or (char<= #\a char #\z) (char<= #\0 char #\9) (char= char #\-)))
+
+(defun anchor (name)
+  "Return the id of the entry NAME on its page: in it are only characters that mean nothing in
+addresses, and no two names have the same."
+  (with-output-to-string (out)
+    (loop for char across (string-downcase name)
+          do (if (plain-char-p char)
+                 (write-char char out)
+                 (format out "_~(~2,'0X~)" (char-code char))))))
+
+(defun slug (heading)
+  "Return the id of HEADING, a text, on its page, as the sites that show Markdown make it."
+  (substitute #\- #\Space
+              (remove-if-not (lambda (char)
+                               (or (alphanumericp char) (find char " -_")))
+                             (string-downcase heading))))

@@ -1,0 +1,34 @@
+;;;; package.lisp -- our manual, as a set of HTML pages: ./cli/ars-magna --manual.
+
+(defpackage :ars-magna.manual
+  (:documentation "Writes the manual: its guide is made of the folders' README.md files, its
+reference of what is defined in this Lisp.")
+  (:use :cl :ars-magna.base)
+  (:shadow #:entry-name)                        ; an entry here is of the reference
+  (:import-from :ars-magna.world
+                #:attribute-name #:attribute-kind #:attribute-domain #:attribute-success
+                #:attribute-base #:attribute-max-mult #:attribute-noticed #:attribute-supporters
+                #:substance-name #:substance-parameter #:all-place-types #:place-type-name
+                #:place-type-rank #:place-type-confusion #:place-type-invisible-p
+                #:kicker-prob #:map-width #:map-height #:world-map #:map-name)
+  (:import-from :ars-magna.robot
+                #:find-robot #:robot-world #:robot-cameras #:robot-hands #:robot-bins)
+  (:import-from :ars-magna.command
+                #:all-commands #:command-name #:command-prompt-name #:command-family
+                #:command-section #:command-documentation #:command-resource
+                #:command-parameters #:command-results #:command-errors
+                #:spec-name #:spec-type #:spec-text #:error-code-keyword #:error-code-text)
+  (:import-from :ars-magna.rpl #:all-constructs #:find-procedure #:procedure-lambda-list)
+  (:import-from :ars-magna.rpl-robot #:all-fluent-variables)
+  (:import-from :ars-magna.experiment #:experiment-documentation)
+  (:import-from :ars-magna.cli
+                #:all-lines #:line-name #:line-family #:line-sentence #:line-details
+                #:line-parameters #:line-full-name #:line-action #:usage #:slot-help)
+  ;; html, markdown, guide
+  (:export #:escaped #:anchor #:html-tokens #:tag-p #:tag-name #:attribute-value
+           #:read-guide #:page-source #:page-file)
+  ;; entries, examples
+  (:export #:all-entries #:entry-name #:entry-chapter #:entry-symbol #:chapter-title
+           #:read-examples #:examples-of-entry)
+  ;; writing
+  (:export #:write-manual #:main))

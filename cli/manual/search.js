@@ -1,0 +1,62 @@
+// search.js -- finds entries and headings by what is typed. Pages can be read without it.
+
+(function () {
+  "use strict";
+  var place = document.getElementById("search");
+  var input = document.createElement("input");
+  var results = document.createElement("ol");
+  input.type = "search";
+  input.placeholder = "Search names, headings, sentences (press /)";
+  input.setAttribute("aria-label", "Search");
+  place.appendChild(input);
+  place.appendChild(results);
+
+  // The lower, the better; -1 is no match. Rows are [name, kind, address, sentence].
+  function rank(row, words) {
+    var name = row[0].toLowerCase(), all = (row[0] + " " + row[3]).toLowerCase(), whole = words.join(" ");
+    if (name === whole) return 0;
+    if (name.indexOf(whole) === 0) return 1;
+    if (words.every(function (word) { return name.indexOf(word) >= 0; })) return 2;
+    if (words.every(function (word) { return all.indexOf(word) >= 0; })) return 3;
+    return -1;
+  }
+
+  function find(text) {
+    var words = text.toLowerCase().split(/\s+/).filter(Boolean), found = [];
+    if (!words.length) return found;
+    SEARCH_INDEX.forEach(function (row, index) {
+      var value = rank(row, words);
+      if (value >= 0) found.push([value, row[0].length, index, row]);
+    });
+    found.sort(function (a, b) { return a[0] - b[0] || a[1] - b[1] || a[2] - b[2]; });
+    return found.slice(0, 20).map(function (item) { return item[3]; });
+  }
+
+  function show(row) {
+    var item = document.createElement("li"), link = document.createElement("a");
+    var kind = document.createElement("span");
+    link.href = row[2];
+    link.textContent = row[0];
+    kind.className = "kind";
+    kind.textContent = " " + row[1] + (row[3] ? ": " + row[3] : "");
+    item.appendChild(link);
+    item.appendChild(kind);
+    results.appendChild(item);
+  }
+
+  input.addEventListener("input", function () {
+    results.textContent = "";
+    find(input.value).forEach(show);
+  });
+  input.addEventListener("keydown", function (event) {
+    var first = results.querySelector("a");
+    if (event.key === "Enter" && first) location.href = first.href;
+    if (event.key === "Escape") { input.value = ""; results.textContent = ""; }
+  });
+  document.addEventListener("keydown", function (event) {
+    if (event.key === "/" && document.activeElement !== input) {
+      event.preventDefault();
+      input.focus();
+    }
+  });
+})();

@@ -1,0 +1,72 @@
+;;;; writing.lisp -- the manual, written to a directory.
+
+(in-package :ars-magna.manual)
+
+(defparameter *own-files* '("style.css" "search.js")
+  "The files beside this one that go with the pages as they are.")
+
+;;; What the search looks through.
+
+(defun index-row (name kind address text)
+  (format nil "[~{~A~^,~}]" (mapcar #'javascript-string (list name kind address text))))
+
+(defun entry-row (entry)
+  (index-row (entry-name entry) (chapter-title (entry-chapter entry)) (entry-address entry)
+             (entry-sentence entry)))
+
+(defun page-rows (page)
+  (loop for (nil id text) in (headings (page-tokens page))
+        collect (index-row text (page-title page) (format nil "~A#~A" (page-file page) id) "")))
+
+(defun write-index (out book)
+  (format out "var SEARCH_INDEX = [~%~{~A~^,~%~}~%];~%"
+          (append (mapcar #'entry-row (book-entries book))
+                  (mapcan #'page-rows (copy-list (book-pages book))))))
+
+;;; Files.
+
+(defun call-writing (function name directory)
+  "Call FUNCTION with a stream to the new file NAME in DIRECTORY."
+  (call-replacing-file function (merge-pathnames (native-path name) directory)))
+
+(defun copy-into (name source directory)
+  "Copy the file SOURCE to DIRECTORY, there to be called NAME."
+  (let ((copy (merge-pathnames (native-path name) directory)))
+    (make-directories (uiop:pathname-directory-pathname copy))
+    (uiop:copy-file source copy)))
+
+(defun write-pages (book directory)
+  (flet ((page (name writer &rest arguments)
+           (call-writing (lambda (out) (apply writer out (append arguments (list book))))
+                         name directory)))
+    (page "index.html" #'write-first-page)
+    (page "reference.html" #'write-reference)
+    (page "names.html" #'write-names)
+    (page "search-index.js" #'write-index)
+    (dolist (page (book-pages book))
+      (page (page-file page) #'write-guide-page page))
+    (dolist (chapter (chapters-in book))
+      (page (chapter-file chapter) #'write-chapter chapter))))
+
+(defun write-manual (directory)
+  "Write the manual into DIRECTORY, a name, which is made if there is none. Return the path of its
+first page."
+  (let ((directory (uiop:ensure-directory-pathname
+                    (merge-pathnames (path-called directory) (uiop:getcwd))))
+        (book (read-book)))
+    (make-directories directory)
+    (write-pages book directory)
+    (dolist (name *own-files*)
+      (copy-into name (project-path (format nil "cli/manual/~A" name)) directory))
+    (dolist (name (book-files book))
+      (copy-into (copied-name name) (project-path name) directory))
+    (merge-pathnames "index.html" directory)))
+
+(defun main (directory)
+  "Write the manual into DIRECTORY, a name, and say where it begins, or why not. Return the status
+to exit with."
+  (handler-case (progn (format t "~A~%" (native-name (write-manual directory)))
+                       0)
+    (error (condition)
+      (format *error-output* "ars-magna: ~A~%" (text-of-condition condition))
+      1)))

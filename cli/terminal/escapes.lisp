@@ -1,0 +1,88 @@
+;;;; escapes.lisp -- what a terminal is told besides text: colours, and where on it to write.
+
+(in-package :ars-magna.cli)
+
+;;; No other file knows an escape code. They are those that all terminals of today have in common.
+;;; Colours are the sixteen that users choose themselves, so that they suit their background; white
+;;; and black are left to be what text is.
+
+(defparameter *inks*
+  '(("RED" . "31") ("GREEN" . "32") ("YELLOW" . "33") ("BLUE" . "34") ("VIOLET" . "35")
+    ("CYAN" . "36") ("GREY" . "90") ("LIGHTRED" . "91") ("LIGHTGREEN" . "92")
+    ("LIGHTYELLOW" . "93") ("LIGHTBLUE" . "94") ("LIGHTVIOLET" . "95") ("LIGHTCYAN" . "96")
+    ("GRAY" . "90") ("SILVER" . "90") ("ORANGE" . "33") ("BROWN" . "33") ("GOLD" . "93")
+    ("PINK" . "95") ("PURPLE" . "35") ("MAGENTA" . "35") ("TURQUOISE" . "36")
+    ("BOLD" . "1") ("REVERSE" . "1;7"))
+  "What inks are called, and their codes.")
+
+(defun escape (control &rest arguments)
+  (format nil "~C[~?" (code-char 27) control arguments))
+
+(defun ink-code (ink)
+  "Return the code of INK, a symbol or string; NIL if it is none."
+  (cdr (assoc (string ink) *inks* :test #'string-equal)))
+
+(defun paint (text ink)
+  "Return TEXT as a terminal shows it in INK, the name of a colour, line by line; TEXT itself if INK
+is no ink."
+  (let ((code (and ink (string/= text "") (ink-code ink))))
+    (if (null code)
+        text
+        (with-output-to-string (out)
+          (loop for start = 0 then (1+ end)
+                for end = (position #\Newline text :start start)
+                for line = (subseq text start end)
+                do (if (string= line "")
+                       (write-string line out)
+                       (format out "~A~A~A" (escape "~Am" code) line (escape "0m")))
+                when end do (terpri out)
+                while end)))))
+
+(defun unpainted-text (text)
+  "Return TEXT without what PAINT has put into it."
+  (with-output-to-string (out)
+    (loop for start = 0 then (1+ (or (position #\m text :start escape) (1- (length text))))
+          for escape = (position (code-char 27) text :start start)
+          do (write-string text out :start start :end escape)
+          while escape)))
+
+;;; Is it wanted?
+
+(define-constant +color-settings+ '("auto" "always" "never") :test #'equal
+  :documentation "What --color takes.")
+
+(defun escapes-known-p ()
+  "True if this process's terminal, if it has one, says that it knows escape codes."
+  (not (member (environment-value "TERM") '(nil "" "dumb") :test #'equal)))
+
+(defun color-wanted-p (setting stream)
+  "True if what is written to STREAM is to be in colours: SETTING is :ALWAYS, :NEVER or :AUTO, on a
+terminal unless the environment has NO_COLOR."
+  (ecase setting
+    (:always t)
+    (:never nil)
+    (:auto (and (terminal-stream-p stream)
+                (escapes-known-p)
+                (member (environment-value "NO_COLOR") '(nil "") :test #'equal)
+                t))))
+
+;;; A screen of its own, on which what changes is written over.
+
+(defun screen-begun ()
+  "Return what lets a terminal show an empty screen, and no cursor; what was there is kept."
+  (format nil "~A~A~A" (escape "?1049h") (escape "?25l") (escape "2J")))
+
+(defun screen-ended ()
+  "Return what lets a terminal show again what it did before SCREEN-BEGUN."
+  (format nil "~A~A" (escape "?25h") (escape "?1049l")))
+
+(defun over-screen (text)
+  "Return TEXT, lines, as it is written over all that a screen shows."
+  (with-output-to-string (out)
+    (write-string (escape "H") out)
+    (loop for start = 0 then (1+ end)
+          for end = (position #\Newline text :start start)
+          do (format out "~A~A" (subseq text start end) (escape "K"))
+          when end do (format out "~C~%" #\Return)
+          while end)
+    (write-string (escape "J") out)))

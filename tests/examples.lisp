@@ -1,0 +1,109 @@
+;;;; examples.lisp -- what the folders' pages show is so, and which names they show.
+
+(in-package :ars-magna.tests)
+
+(def-suite* examples :in ars-magna)
+
+;;; Pages that no other suite runs.
+
+(defparameter *pages-run-elsewhere*
+  '("README.md" "src/README.md" "rpl/README.md" "src/experiment/README.md" "src/ways/README.md"
+    "src/floors/README.md" "worlds/tutorial/README.md" "cli/README.md")
+  "The pages whose Lisp other suites run.")
+
+(defun all-readmes ()
+  "Return the names of the project's README.md files."
+  (cons "README.md"
+        (loop for folder in '("src/" "rpl/" "worlds/" "cli/" "tests/")
+              append (mapcar (lambda (path) (enough-namestring path (project-file "")))
+                             (directory (merge-pathnames "**/README.md"
+                                                         (project-file folder)))))))
+
+(defun pages-of-examples ()
+  (set-difference (all-readmes) *pages-run-elsewhere* :test #'string=))
+
+(defun call-forgetting-packages (function)
+  "Call FUNCTION in ARS-USER; forget what is defined there, and the packages that it makes."
+  (let ((packages (list-all-packages))
+        (*package* (find-package :ars-user))
+        (base:*message-queue* (base:make-message-queue)))
+    (unwind-protect (base:with-own-definitions () (funcall function))
+      (mapc #'delete-package (set-difference (list-all-packages) packages)))))
+
+(test examples.of-lisp-are-so
+  (dolist (page (pages-of-examples))
+    (let ((blocks (lisp-blocks (project-file page))))
+      (call-forgetting-packages
+       (lambda ()
+         (is (<= 0 (reduce #'+ (mapcar #'run-block blocks))) page))))))
+
+;;; Sessions, each of which begins anew.
+
+(defparameter *pages-of-sessions* '("cli/lines/README.md")
+  "The pages whose blocks of text are sessions with DOT, in a world without noise.")
+
+(defun call-where-files-go (function)
+  "Call FUNCTION where files may be written, and are then forgotten."
+  (uiop:with-temporary-file (:pathname place)
+    (let ((directory (uiop:ensure-directory-pathname (format nil "~A-files" place))))
+      (ensure-directories-exist directory)
+      (unwind-protect (uiop:with-current-directory (directory) (funcall function))
+        (uiop:delete-directory-tree directory :validate t)))))
+
+(defun check-session (lines page)
+  "Check that what has been typed in LINES, of PAGE, is answered as they say."
+  (let* ((typed (remove nil (mapcar #'typed-line lines)))
+         (answers (remove nil (mapcar #'answered-line lines)))
+         (written (apply #'type-to 'ars-worlds:dot typed)))
+    (is (not (null typed)))
+    (is (found-in-order-p answers written) "~A:~%~{~A~%~}is not what came:~%~{~A~%~}" page
+        answers written)))
+
+(test examples.of-sessions-are-so
+  (call-where-files-go
+   (lambda ()
+     (dolist (page *pages-of-sessions*)
+       (dolist (lines (blocks-of "text" (project-file page)))
+         (let ((ars-magna.rpl-robot:*trace-plans* nil))
+           (check-session lines page)))))))
+
+(test examples.pages-have-lines-to-be-read
+  (dolist (page (pages-of-examples))
+    (dolist (line (file-lines (project-file page)))
+      (unless (or (begins-with-p "|" line) (begins-with-p "![" line))
+        (is (<= (length line) 112) "~A: ~A" page line)))))
+
+;;; Names without an example. The list may only get shorter.
+
+(defun names-without-examples ()
+  "Return lists (title name...) of the entries of the manual that no page shows, by chapter."
+  (let ((examples (manual:read-examples (manual:read-guide))) (chapters '()))
+    (dolist (entry (manual:all-entries) (reverse (mapcar #'reverse chapters)))
+      (let ((title (manual:chapter-title (manual:entry-chapter entry))))
+        (unless (equal title (first (last (first chapters)))) (push (list title) chapters))
+        (unless (manual:examples-of-entry entry examples)
+          (push (string-downcase (manual:entry-name entry)) (first chapters)))))))
+
+(defparameter *names-yet-to-be-shown* "tests/names-without-examples.txt"
+  "The file that lists them: a chapter a line, its title and its names.")
+
+(defun chapter-lines (chapters)
+  (loop for (title . names) in chapters
+        when names collect (format nil "~A: ~{~A~^ ~}" title names)))
+
+(test examples.are-there-for-all-names-but-those-listed
+  "To bring the list up to date: (ars-magna.tests::list-names-without-examples)."
+  (if (markdown-program-p)
+      (let ((found (chapter-lines (names-without-examples)))
+            (listed (file-lines (project-file *names-yet-to-be-shown*))))
+        (is (equal listed found) "~@[These lack an example, too:~%~{~A~%~}~]~@[These have one, and ~
+                                  need not be listed:~%~{~A~%~}~]"
+            (set-difference found listed :test #'string=)
+            (set-difference listed found :test #'string=)))
+      (skip "There is no cmark-gfm: no page can be read.")))
+
+(defun list-names-without-examples ()
+  "Bring the list of names without an example up to date."
+  (base:call-replacing-file (lambda (out)
+                              (format out "~{~A~%~}" (chapter-lines (names-without-examples))))
+                            (project-file *names-yet-to-be-shown*)))

@@ -1,0 +1,144 @@
+;;;; our-manual.lisp -- what ./cli/ars-magna --manual writes: pages whose links lead somewhere.
+
+(in-package :ars-magna.tests)
+
+(def-suite* our-manual :in ars-magna)
+
+;;; Without the program that reads Markdown there is no manual.
+
+(defun markdown-program-p ()
+  (and (base:run-command "cmark-gfm" '("--version")) t))
+
+(defun call-with-manual (function)
+  "Call FUNCTION with the directory of a manual that has just been written."
+  (if (markdown-program-p)
+      (uiop:with-temporary-file (:pathname place)
+        (let ((directory (uiop:ensure-directory-pathname (format nil "~A-manual" place))))
+          (unwind-protect (progn (manual:write-manual (base:native-name directory))
+                                 (funcall function directory))
+            (uiop:delete-directory-tree directory :validate t :if-does-not-exist :ignore))))
+      (skip "There is no cmark-gfm: no manual is written.")))
+
+(defmacro with-manual ((directory) &body body)
+  `(call-with-manual (lambda (,directory) ,@body)))
+
+(defun manual-files (directory)
+  "Return a list (name tokens) for each page in DIRECTORY."
+  (loop for path in (directory (merge-pathnames "*.html" directory))
+        collect (list (file-namestring path) (manual:html-tokens (base:file-text path)))))
+
+(defun tag-values (attribute tokens)
+  "Return the values of ATTRIBUTE in the tags among TOKENS."
+  (loop for token in tokens
+        for value = (and (manual:tag-p token) (manual:attribute-value attribute token))
+        when value collect value))
+
+;;; Pages.
+
+(defun nested-properly-p (tokens)
+  "True if each element in TOKENS, HTML, ends inside of that in which it begins."
+  (let ((open '()))
+    (dolist (token tokens (null open))
+      (let ((name (and (manual:tag-p token) (manual:tag-name token))))
+        (cond ((or (null name)
+                   (member name '("!DOCTYPE" "!--" "meta" "link" "img" "input" "br" "hr")
+                           :test #'string=)))
+              ((char/= #\/ (char name 0)) (push name open))
+              ((equal (subseq name 1) (first open)) (pop open))
+              (t (return nil)))))))
+
+(defun ids-of-pages (files)
+  "Return a table of the ids of FILES, lists (name tokens): name#id."
+  (let ((table (make-hash-table :test #'equal)))
+    (loop for (name tokens) in files
+          do (dolist (id (tag-values "id" tokens))
+               (setf (gethash (format nil "~A#~A" name id) table) t)))
+    table))
+
+(defun leads-somewhere-p (address file ids directory)
+  "True if ADDRESS, in FILE in DIRECTORY, is of something elsewhere, of a file, or one of IDS."
+  (destructuring-bind (name &optional id) (uiop:split-string address :separator "#")
+    (let ((name (if (string= "" name) file name)))
+      (cond ((search "://" address) t)
+            (id (gethash (format nil "~A#~A" name id) ids))
+            (t (uiop:file-exists-p (merge-pathnames name directory)))))))
+
+(defun addresses (tokens)
+  (let ((table (make-hash-table :test #'equal)))
+    (dolist (attribute '("href" "src"))
+      (dolist (value (tag-values attribute tokens))
+        (setf (gethash value table) t)))
+    (loop for address being the hash-keys of table collect address)))
+
+(test our-manual.pages-nest-properly
+  (is (nested-properly-p (manual:html-tokens "<p>a<br>b <b>c</b></p>")))
+  (is (not (nested-properly-p (manual:html-tokens "<p>a <b>c</p></b>")))))
+
+(test our-manual.pages-are-proper-and-links-lead-somewhere
+  "Pages are well formed, need no network, show what HTML takes for its own, and their links lead to
+what is there."
+  (with-manual (directory)
+    (let* ((files (manual-files directory)) (ids (ids-of-pages files)) (count 0))
+      (is (< 30 (length files)))
+      (loop for (name tokens) in files
+            for own = (tag-values "id" tokens)
+            do (is (nested-properly-p tokens) "~A is not well formed" name)
+               (is (= (length own) (length (remove-duplicates own :test #'string=)))
+                   "~A has an id twice" name)
+               (dolist (address (tag-values "src" tokens))
+                 (is (not (search "//" address)) "~A takes ~A from elsewhere" name address))
+               (dolist (address (addresses tokens))
+                 (incf count)
+                 (unless (leads-somewhere-p address name ids directory)
+                   (fail "~A leads to ~A, which is not there" name address))))
+      (is (< 5000 count))
+      (let ((page (base:file-text (merge-pathnames "reference-names.html" directory))))
+        (is (and (search "&amp;key" page) (not (search "&key" page))))))))
+
+(test our-manual.escapes-what-html-takes-for-its-own
+  (is (string= "a &lt;b&gt; &amp; &quot;c&quot;" (manual:escaped "a <b> & \"c\"")))
+  (is (string= "make-pt" (manual:anchor "MAKE-PT")))
+  (is (string/= (manual:anchor "add") (manual:anchor "add!")))
+  (is (every (lambda (char) (or (alphanumericp char) (find char "-_")))
+             (manual:anchor ":color <a href=\"x\">*"))))
+
+;;; Entries.
+
+(defun undescribed (package entries)
+  "Return the names that PACKAGE exports and none of ENTRIES has."
+  (let ((names (make-hash-table :test #'equal)))
+    (dolist (entry entries)
+      (setf (gethash (string-left-trim ":" (string-downcase (manual:entry-name entry))) names) t))
+    (loop for symbol in (external-symbols (face-package package))
+          unless (gethash (string-downcase symbol) names) collect symbol)))
+
+(test our-manual.has-an-entry-for-each-name
+  (let ((entries (manual:all-entries)))
+    (dolist (package '(:ars :nisp :ars-worlds :ars-magna.fiveam))
+      (is (null (undescribed package entries))))))
+
+(test our-manual.has-entries-of-all-kinds
+  (let ((entries (manual:all-entries)))
+    (loop for (chapter name) in '((:commands "robot-turn") (:prompt "turn")
+                                  (:parameters "motion-noise*") (:error-codes ":robot-blocked")
+                                  (:error-codes ":interrupt") (:definers "defmap")
+                                  (:constructs "par") (:plan-functions "rpl-robot-turn")
+                                  (:fluents "robot-stopped*") (:attributes ":color")
+                                  (:substances "wood") (:place-types "doorway")
+                                  (:colours "red*") (:conditions "unknown-name")
+                                  (:robots "robbie") (:kickers "roll-away")
+                                  (:manipulations "unlock") (:plans "fetch-thing")
+                                  (:experiments "three-ways-of-searching")
+                                  (:names "run-ticks") (:worlds-names "table*"))
+          do (is (find-if (lambda (entry)
+                            (and (eq chapter (manual:entry-chapter entry))
+                                 (string-equal name (manual:entry-name entry))))
+                          entries)
+                 "~A is no entry of ~(~S~)" name chapter))))
+
+(test our-manual.has-no-entries-of-others
+  "What the tests define is not told of."
+  (let ((names (mapcar #'manual:entry-name (manual:all-entries))))
+    (base:with-own-definitions ()
+      (eval '(world:defsubstance custard 7))
+      (is (equal names (mapcar #'manual:entry-name (manual:all-entries)))))))
