@@ -375,7 +375,7 @@
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "experiment-compare-levels")
                  (:file "experiment-compare-versions") (:file "rates") (:file "projecting")
-                 (:file "projecting-mistakes") (:file "trying-best")
+                 (:file "projecting-mistakes") (:file "projecting-apart") (:file "trying-best")
                  (:module "newcomer" :serial t
                   :components ((:file "terminal") (:file "screens") (:file "pages")
                                (:file "session") (:file "newcomer")))

@@ -46,6 +46,22 @@
     (is (equal '(nil) (command-and-owner)) "it is over")
     (is (null (command:last-interruption skater)) "and nothing was interrupted")))
 
+(test ownership.a-robot-that-only-thinks-carries-out-a-thought
+  (with-skater (:thinking :charged)
+    (command:think skater 50 nil)
+    (run:run-ticks 1)
+    (is (eq 'command:think (command:under-way skater)))
+    (is-true (from-lisp (owner)))
+    (command:robot-turn skater 2)
+    (run:run-ticks 2)
+    (is (eq 'command:robot-turn (command:under-way skater)))
+    (is (null (command:last-interruption skater)))
+    (command:think skater 3 nil)
+    (run:run-ticks 1)
+    (is (eq 'command:think (first (command:last-interruption skater))))
+    (run:run-ticks 60)
+    (is (null (command:under-way skater)))))
+
 (test ownership.a-continuation-asks-for-itself
   (with-skater ()
     (command:robot-turn skater .3 (lambda (err robot angle)

@@ -81,3 +81,14 @@
         (is (search "210" (base:file-text file)))
         (signals base:wrong-argument (lines '((1 2 3))))
         (signals base:wrong-argument (ars:save-way-picture 'two-doors (list way) "a.gif"))))))
+
+(test going.leaves-no-error-about-a-camera-that-has-lost-its-doorway
+  (run:with-simulation (ars-worlds:marvin :seed 0)
+    (let ((answers '()))
+      (ars-worlds:robot-go-to ars-worlds:marvin 109 24
+                              (lambda (err robot) (declare (ignore robot)) (push err answers)))
+      (run:run-until (lambda () answers) :limit 2000)
+      (is (equal '(nil) answers))
+      (let ((messages (base:take-messages)))
+        (is-true (find :warning messages :key #'base:message-kind) "the camera loses it")
+        (is (null (find :error messages :key #'base:message-kind)))))))

@@ -173,19 +173,23 @@ thing, round which it goes. Each third time it goes somewhere else first."
                          (lambda () (follow-to-doorway journey beyond))
                          (lambda () (note-obstacle journey))))))))
 
+;; In a doorway a camera may lose it of itself, before a CAMERA-UNTRACK is begun: that would fail.
+(defun free-from-track (camera designator)
+  "Let CAMERA track DESIGNATOR no more, if it does, and say nothing."
+  (when (eq designator (camera-tracks camera)) (grab-resource camera)))
+
 (defun follow-to-doorway (journey beyond)
   (robot-set-speed (journey-robot journey) driving-speed*
     (continuation (err robot speed)
       (robot-goto-designator robot (journey-camera journey)
         (continuation (err robot camera designator)
-          (camera-untrack camera
-            (continuation (untrack-err camera)
-              (after-command journey err
-                             (lambda () (leave-doorway journey beyond))
-                             (lambda ()
-                               (if (eq err :robot-blocked)
-                                   (note-obstacle journey)
-                                   (leave-doorway journey beyond)))))))))))
+          (free-from-track (journey-camera journey) designator)
+          (after-command journey err
+                         (lambda () (leave-doorway journey beyond))
+                         (lambda ()
+                           (if (eq err :robot-blocked)
+                               (note-obstacle journey)
+                               (leave-doorway journey beyond)))))))))
 
 (defun leave-doorway (journey beyond)
   "Let the robot of JOURNEY correct its reckoning, if it senses a doorway, and drive on to BEYOND."

@@ -37,7 +37,7 @@ they did, and why the first time."
     projections))
 
 (defun steps-of (projections)
-  "Return how many steps of plans PROJECTIONS took."
+  "Return how many steps of plans count that PROJECTIONS took."
   (loop for projection in projections
         sum (reduce #'+ (projection-rollouts projection) :key #'rollout-steps)))
 

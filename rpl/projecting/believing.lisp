@@ -5,7 +5,8 @@
 ;;; Such a world is made by a function of the user's, WORLD, which is called with a function and a
 ;;; seed: it is to call that in a WITH-SIMULATION with that seed, when it has put things where they
 ;;; are believed to be. Nothing there leads to the true run: that is not the current one, its robots
-;;; are not bound, and no object of it is taken for an argument.
+;;; are not bound, and no object of it is taken for an argument. What global variables lead to can
+;;; be read, but not changed or commanded; and fluents have a realm for each rollout.
 
 (defun object-of-run (object)
   "Return an object that belongs to a run and is OBJECT, or in it if that is a list or vector; or
@@ -37,12 +38,13 @@ NIL."
                                     lists of them")))))
 
 (defun call-without-run (function)
-  "Call FUNCTION where there is no current simulation, and no robot of one is bound."
+  "Call FUNCTION where there is no current simulation, no robot of one is bound, other runs than
+those that FUNCTION makes cannot be changed, and fluents of outside are as in a fork."
   (let ((robots (and *simulation* (simulation-robots *simulation*))))
     (progv (mapcar #'robot-name robots) '()
       (progv *simulation-variables* (mapcar #'symbol-value *simulation-variables*)
-        (let ((*simulation* nil) (*world* nil) (*interface* nil))
-          (funcall function))))))
+        (let ((*simulation* nil) (*world* nil) (*interface* nil) (*realm* (fork-realm *realm*)))
+          (secluded (funcall function)))))))
 
 (defun run-in-belief (scene trial seed)
   "Return the rollout number TRIAL, with SEED, of SCENE, run in the current simulation. Signals

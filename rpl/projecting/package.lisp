@@ -6,7 +6,7 @@ that a robot believes in, and choosing by that.")
   (:use :cl :ars-magna.base :ars-magna.rpl.language :ars-magna.rpl-robot)
   (:import-from :ars-magna.statistics #:wilson-interval)
   (:import-from :ars-magna.world #:*world* #:map-name #:world-map)
-  (:import-from :ars-magna.time #:*simulation* #:current-simulation)
+  (:import-from :ars-magna.time #:*simulation* #:current-simulation #:secluded)
   (:import-from :ars-magna.robot #:robot-name)
   (:import-from :ars-magna.run
                 #:*simulation-variables* #:simulation-tick #:simulation-seed #:simulation-robots
@@ -19,9 +19,10 @@ that a robot believes in, and choosing by that.")
                 #:find-procedure
                 #:fluent-value #:form-text #:frame #:frame-up #:lisp-failure
                 #:lisp-failure-condition #:node #:park
-                #:plan-failure #:plan-runner-steps #:procedure #:procedure-name #:procedure-p
+                #:plan-failure #:counted-steps #:procedure #:procedure-name #:procedure-p
                 #:runner-client #:runner-dice #:stop-trace #:task #:task-label #:task-p
-                #:task-result #:task-runner #:task-top #:value #:escape-p #:entity)
+                #:task-result #:task-runner #:task-top #:value #:escape-p #:entity
+                #:*realm* #:fork-realm)
   (:import-from :ars-magna.trails #:note-places #:ways-along #:ways-chart #:part-of-map)
   (:import-from :ars-magna.display #:take-snapshot #:picture-kind #:snapshot-map)
   (:import-from :ars-magna.plots #:save-chart)

@@ -24,15 +24,23 @@ the list ARGUMENTS, or a list of both. INTERFACE is whose plans they are. Signal
 WRONG-ARGUMENT."
   (let ((options (checked-options 'project options)))
     (if (task-p plan)
-        (%make-question :task task :interface interface :subject (checked-subject plan interface)
+        (%make-question :task task :interface interface
+                        :subject (checked-subject plan interface (getf options :world))
                         :options options)
         (destructuring-bind (plan . arguments) (plan-of plan arguments)
           (%make-question :task task :interface interface :plan plan :arguments arguments
                           :options options)))))
 
-(defun checked-subject (task interface)
-  "Return TASK. Signals WRONG-ARGUMENT unless it is of the plans of INTERFACE."
-  (unless (and interface (task-runner task) (eq interface (runner-client (task-runner task))))
+(defun checked-subject (task interface world)
+  "Return TASK. Signals WRONG-ARGUMENT unless it is of the plans of INTERFACE, and there is no WORLD
+believed in, which does not know it."
+  (when world
+    (reject-argument 'project 'plan task
+                     "a plan that has a name: with :world there are no tasks of this run"))
+  (unless (and interface
+               (task-runner task)
+               (eq interface (runner-client (task-runner task)))
+               (member interface (simulation-participants (interface-simulation interface))))
     (reject-argument 'project 'plan task "a task of the plans of the robot that is driven here"))
   task)
 
@@ -67,7 +75,8 @@ ticks have passed, 600 if not given. PLAN is a plan procedure or the name of one
 list ARGUMENTS; a list of both; or a task, of which it is found out what is left. See
 PROJECTION-PROBABILITY and others.
   SEED, an integer, decides the seeds; by default the run's does, and the tick.
-  COST, a function without arguments, is called in each fork at the end and returns a number.
+  COST, a function without arguments, is called in each fork at the end and returns a number,
+or positive infinity, which is worse than any.
   WORLD, a function, makes worlds that rollouts are run in instead of forks, such as the one that
 the robot believes in. It is called with a function and a seed, and is to call that function inside
 of (with-simulation (robot :seed seed) ...). The true run cannot be seen there; PLAN has a name

@@ -54,8 +54,9 @@ succeed: the class of a failure or its condition type, or else the rollout's sta
     (stable-sort (nreverse counts) #'> :key #'cdr)))
 
 (defun average (numbers)
-  "Return the mean of the list NUMBERS, exactly, or NIL of none."
-  (and numbers (/ (reduce #'+ (mapcar #'rational numbers)) (length numbers))))
+  "Return the mean of the list NUMBERS, exactly, or NIL of none. If one is infinite so is the mean."
+  (cond ((find-if #'positive-infinity-p numbers))
+        (numbers (/ (reduce #'+ (mapcar #'rational numbers)) (length numbers)))))
 
 (addition projection-mean-ticks)
 (defun projection-mean-ticks (projection)
@@ -88,12 +89,18 @@ nothing succeeded, what the rollouts cost that were counted. NIL if that is unkn
            (average (remove nil (mapcar #'rollout-cost (or good rollouts)))))
           (t (projection-mean-ticks projection)))))
 
+(defun less-p (price other)
+  "True if PRICE is less than OTHER; either may be infinite."
+  (cond ((positive-infinity-p price) nil)
+        ((positive-infinity-p other))
+        (t (< price other))))
+
 (defun better-p (projection other)
   "True if PROJECTION succeeds more often than OTHER, or as often and at a lower price."
   (let ((successes (projection-successes projection)) (others (projection-successes other))
         (price (price-of projection)) (other-price (price-of other)))
     (cond ((/= successes others) (> successes others))
-          ((and price other-price) (< price other-price)))))
+          ((and price other-price) (less-p price other-price)))))
 
 (defun best-of (projections)
   "Return the index of the best of PROJECTIONS, the first of those that are as good."

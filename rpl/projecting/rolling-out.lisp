@@ -79,13 +79,20 @@ counts; NIL if it has not."
         ((question-ended question))
         (t (how-over interface (task-top (wish-task question))))))
 
+(defun cost-p (object)
+  "True of real numbers, and of positive infinity, the worst; not of what is no number."
+  (typecase object
+    (float (or (finite-p object) (positive-infinity-p object)))
+    (real t)))
+
 (defun cost-of (question)
   "Return what the function :COST of QUESTION returns, or NIL without one. Signals WRONG-ARGUMENT."
   (let ((function (option question :cost)))
     (when function
       (let ((cost (funcall function)))
-        (unless (typep cost 'real)
-          (reject-argument (operator-of question) :cost cost "a function that returns a number"))
+        (unless (cost-p cost)
+          (reject-argument (operator-of question) :cost cost
+                           "a function that returns a number, or positive infinity for the worst"))
         cost))))
 
 (defvar *asked* nil
@@ -127,13 +134,13 @@ ended, with which result, at what cost, and the option whose function broke it o
 see GO-TO-END."
   (let* ((start (simulation-tick))
          (runner (interface-runner interface))
-         (steps (plan-runner-steps runner))
+         (steps (counted-steps runner))
          (trails '()))
     (multiple-value-bind (how result cost broken)
         (go-to-end question interface begin
                    (lambda () (setf trails (note-places (current-simulation) trails))))
       (make-rollout scene trial seed how result (- (simulation-tick) start) cost
-                    (- (plan-runner-steps runner) steps)
+                    (- (counted-steps runner) steps)
                     (ways-along trails trial (outcome-word how))
                     broken))))
 

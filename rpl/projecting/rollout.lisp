@@ -14,7 +14,7 @@ its answer, by taking its BRANCH, a number; or, without a MOMENT, in a world bel
                         (scene trial seed state result ticks cost steps ways &optional broken))
                     (:copier nil))
   "One trial, number TRIAL, of what a projection is about. RESULT is a value or a failure, STEPS how
-many steps plans took, WAYS where robots went. BROKEN is the option, :COST or :WORLD, of whose
+many steps of plans count, WAYS where robots went. BROKEN is the option, :COST or :WORLD, of whose
 function the failure is an error."
   (scene nil :type scene :read-only t)
   (trial 0 :type fixnum :read-only t)

@@ -18,7 +18,7 @@ most often; of these, the one that takes the fewest ticks on average where it su
 the first. Trials of the same number have the same chance in all branches.
   UNTIL :branch looks only at the branch: until that has ended.
   COST, a function without arguments, is called in each fork at the end and returns a number, of
-which less is better; it decides instead of ticks.
+which less is better, or positive infinity, the worst; it decides instead of ticks.
   SEED, an integer, decides the seeds of rollouts; by default the run's does, and the tick.
   TELL, a function, is called with the list of projections and the index of the chosen branch.
   PRINT, if true, lets plans write in rollouts as ever; otherwise that is lost.

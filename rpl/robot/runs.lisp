@@ -19,6 +19,7 @@
 (defun begin-in (interface plan arguments note)
   "Start PLAN with the list ARGUMENTS by INTERFACE, and return its task. NOTE, a function, has been
 called with that before anything else can happen."
+  (check-not-secluded (interface-simulation interface))
   (apply #'note-of-plans interface #'begin-plan plan arguments)
   (prog1 (with-plans (interface)
            (let ((task (apply #'start-plan (interface-runner interface) plan arguments)))
@@ -155,6 +156,7 @@ MISUSE."
 
 (defun want-end (interface task)
   "Let TASK of INTERFACE, or all if it is NIL, evaporate when its runner gets to that."
+  (check-not-secluded (interface-simulation interface))
   (note-of-plans interface #'end-again (and task (task-serial task)))
   (dolist (task (if task (list task) (tasks-of interface)))
     (unless (task-over-p task) (atomic-push task (interface-unwanted interface))))

@@ -24,13 +24,13 @@
 
 (defun failure-of (condition task frame)
   "Return the failure that CONDITION, met by TASK at FRAME, means, with all that is known of it. It
-counts as many steps as one could take meanwhile, so that a plan that only fails ends its slice."
+weighs as many steps as one could take meanwhile, so that a plan that only fails ends its slice."
   (let ((failure (if (typep condition 'plan-failure)
                      condition
                      (make-condition 'lisp-failure :condition condition
                                                    :backtrace (lisp-backtrace)))))
     (unless (failure-task-path failure)
-      (incf (runner-steps (task-runner task)) (if (typep failure 'lisp-failure) 5000 200))
+      (weigh (if (typep failure 'lisp-failure) 5000 200) (task-runner task) task)
       (setf (failure-task-path failure) (task-path task)
             (failure-tick failure) (runner-tick (task-runner task))
             (failure-plan-backtrace failure) (plan-backtrace task frame)

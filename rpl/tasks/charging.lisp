@@ -55,6 +55,7 @@ that is counted."
 
 (defun give-back (runner steps)
   "Let STEPS that a task of RUNNER has taken not count, unless these are too many in one tick."
+  (decf (runner-uncovered runner) steps)
   (when (runner-budget runner)
     (incf (runner-uncounted runner) steps)
     (when (<= (runner-uncounted runner) *runaway-limit*)
@@ -94,6 +95,7 @@ Signals WRONG-ARGUMENT."
            (now (min steps left)))
       (decf (runner-limit runner) now)
       (incf (runner-debt runner) (- steps now))
+      (incf (runner-uncovered runner) steps)
       (setf (runner-pause runner) (min (runner-pause runner) (runner-limit runner))))))
 
 (addition charge-steps)

@@ -48,7 +48,7 @@ Return the task, which runs at the next reaction."
     (let ((name (if (procedure-p plan) (procedure-name plan) plan)))
       (at-home (runner)
         (let ((task (spawn nil body environment 0 0 (make-task name body))))
-          (incf (runner-steps runner) (if (runner-budget runner) 1 +start+))
+          (weigh +start+ runner)
           (push task (runner-roots runner))
           (dolist (hook *plan-start-hooks*) (funcall hook task))
           task)))))

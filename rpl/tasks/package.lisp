@@ -32,8 +32,9 @@ plans nor a simulator.")
   (:export #:note-command #:note-event #:start-trace #:stop-trace #:with-answer #:call-with-answer)
   ;; runner
   (:export #:*runaway-limit* #:alone-p #:blocked-p #:current-task #:exhaust-reaction #:make-ready
-           #:note-event #:plan-runner #:plan-runner-steps #:plan-runner-tasks #:plan-runner-tick
-           #:plan-time #:plan-trace #:runner-blocks #:runner-dice #:runner-tick
+           #:note-event #:plan-runner #:plan-runner-steps #:counted-steps
+           #:plan-runner-tasks #:plan-runner-tick #:plan-time #:plan-trace #:runner-blocks
+           #:runner-dice #:runner-tick
            #:runner-ticks-per-second #:runner-timers #:runner-current #:runner-stepper
            #:runner-note #:client-forked-p #:runner-trace #:runner-client #:*plan-task-limit*)
   ;; words

@@ -56,6 +56,8 @@ as it needs. CLIENT is on whose behalf all this is."
   (debt 0 :type (integer 0))
   (still-until nil :type (or null real))
   (uncounted 0 :type (integer 0))
+  ;; How many steps count that are not among STEPS; less than 0 if some of those do not.
+  (uncovered 0 :type integer)
   (broken-off-p nil :type boolean)
   (ticks-per-second 20 :type (real (0)))
   (dice nil :type (or null dice))
@@ -115,6 +117,19 @@ as it needs. CLIENT is on whose behalf all this is."
 (defun plan-runner-steps (&optional (runner *runner*))
   "Return how many steps RUNNER has taken: expressions begun or ended."
   (runner-steps runner))
+
+(defun counted-steps (runner)
+  "Return how many steps of RUNNER have counted: those that plans were not spared, and more that
+they were charged for."
+  (+ (runner-steps runner) (runner-uncovered runner)))
+
+(defun weigh (steps runner &optional task)
+  "Let one step of RUNNER, perhaps of TASK, take as much of a reaction as STEPS, since it takes so
+long. Where steps are counted it is one."
+  (cond ((and task (task-uncounted-p task)) (incf (runner-steps runner) steps))
+        ((runner-budget runner) (incf (runner-steps runner)))
+        (t (incf (runner-steps runner) steps)
+           (decf (runner-uncovered runner) (1- steps)))))
 
 (addition plan-trace)
 (defun plan-trace (&optional (runner *runner*))

@@ -25,6 +25,10 @@ number, and integers and ratios that are too large."
       (finite-double-p object)
       (other-finite-p object)))
 
+(defun positive-infinity-p (object)
+  "True of the floats that are positive infinity."
+  (and (floatp object) (sb-ext:float-infinity-p object) (plusp object)))
+
 (declaim (inline double-to-bits bits-to-double))
 (defun double-to-bits (number)
   "Return the 64 bits of NUMBER, a double-float, as an integer that is not negative."

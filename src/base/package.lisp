@@ -28,7 +28,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; public
   (:export #:public #:addition #:settable #:settable-p #:addition-p #:public-symbols #:*marking-p*)
   ;; floats, globals
-  (:export #:finite-p #:double-to-bits #:bits-to-double #:global-value #:define-global
+  (:export #:finite-p #:positive-infinity-p #:double-to-bits #:bits-to-double
+           #:global-value #:define-global
            #:define-table-test)
   ;; numbers
   (:export #:+largest+ #:+largest-quantity+ #:within-reason-p #:quantity-p #:amount-p

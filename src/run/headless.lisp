@@ -63,6 +63,7 @@ its ticks."
   (check-argument run-ticks count (whole-p count 0) "a whole number of ticks, from 0 to 1e9")
   (check-headless simulation 'run-ticks)
   (check-not-over simulation 'run-ticks)
+  (check-not-secluded simulation)
   (check-passable simulation)
   (loop with custody = (timeline-custody (simulation-timeline simulation))
         until (call-with-custody custody

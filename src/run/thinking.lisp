@@ -17,6 +17,7 @@
   :CHARGED                   the ticks that THINK and WITH-CHARGE say
   (:CHARGED :BUDGET steps)   these, and a tick for each STEPS of plans: what is not done waits
   :REAL                      no ticks: where a clock runs, plans have a thread and the clock goes on
+A plan that says so hears of it in its next reaction, mostly in the next tick.
 Free and charged runs are the same on every machine. Without a clock :REAL is as :FREE. The journal
 notes it. Signals WRONG-ARGUMENT."
   (check-thinking 'set-thinking mode)

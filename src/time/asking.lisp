@@ -78,10 +78,15 @@ world, and if FUNCTION is aborted."
            ;; Who has given it up meanwhile leaves its questions to whoever waits.
            (call-with-custody custody (constantly nil) (constantly nil))))
 
+(defun keeping-seclusion (function)
+  "Return a function that calls FUNCTION as secluded as this code is, in whichever thread."
+  (let ((seclusion *seclusion*))
+    (lambda () (let ((*seclusion* seclusion)) (funcall function)))))
+
 (defun ask-holder (custody function)
   "Have the thread that has CUSTODY call FUNCTION. Return its values."
   (check-outside-ticks)
-  (let ((question (make-question function)))
+  (let ((question (make-question (keeping-seclusion function))))
     (atomic-push (lambda () (answer question)) (custody-questions custody))
     (wake-holder custody)
     (in-any-case

@@ -24,7 +24,7 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
            #:timeline-ticking-p #:timeline-passing-p #:timeline-notifications
            #:timeline-tick-dice
            #:timeline-inbox #:timeline-pacing #:timeline-fork-p #:check-not-over
-           #:check-own-run
+           #:check-own-run #:check-not-secluded #:secluded
            #:*simulation* #:current-simulation
            #:wake-owner #:post #:post-again #:take-requests #:owner-p
            #:notify-later #:deliver-notifications)

@@ -7,6 +7,15 @@
 ;;; commands are issued, from wherever. ASK, in asking.lisp, has a function called between two ticks
 ;;; and waits for its values. A timeline that nobody runs yet keeps what was posted.
 
+;;; Code may be secluded: kept to runs that begin where it works, so that it can change no other.
+
+(defvar *seclusion* nil
+  "A symbol that the timelines made by secluded code have, or NIL.")
+
+(defmacro secluded (&body body)
+  "Run BODY, which can change and command only runs that have begun in it."
+  `(let ((*seclusion* (gensym "SECLUSION"))) ,@body))
+
 (define-kind (timeline :constructor (make-timeline (name &optional (custody (make-custody)))))
     "The events of a run, and what was asked of it."
   (:fixed
@@ -26,6 +35,7 @@
    (ticking-p nil boolean "a tick is under way, and the world changes")
    (passing-p nil boolean "somebody passes ticks without a clock")
    (fork-p nil boolean "the timeline is that of a fork")
+   (seclusion *seclusion* symbol "what kept the code that made it apart from other runs, or NIL")
    (run nil t "the run that the timeline is of, NIL as long as there is none")
    (over nil (or null string) "why the run is over, a sentence without its full stop, or NIL")
    (tick-dice (make-tick-dice) tick-dice "Lisp's dice for users' code that changes the world")
@@ -98,8 +108,17 @@ TIMELINE after its world has changed."
 
 ;;; Forks look very much like the runs that they are of.
 
+(defun check-not-secluded (object)
+  "Signal MISUSE if this code is secluded, and OBJECT of a run that has not begun in there."
+  (when (and *seclusion* (not (eq *seclusion* (timeline-seclusion (timeline-of object)))))
+    (reject-use "That is of another run than the one that was made for this code, and cannot be ~
+                 commanded or changed here. Robots' names and FIND-THING lead to those that are ~
+                 here.")))
+
 (defun check-own-run (timeline)
-  "Signal MISUSE if the run that this thread works in is a fork, and TIMELINE that of another."
+  "Signal MISUSE if TIMELINE is of another run than this code may change: if that which this thread
+works in is a fork, or code is secluded."
+  (check-not-secluded timeline)
   (let ((own (and *simulation* (timeline-of *simulation*))))
     (when (and own
                (timeline-fork-p own)
