@@ -316,6 +316,7 @@
                  (:file "skipping")
                  (:file "kinds") (:file "digests") (:file "runs") (:file "rewinding")
                  (:file "rewinding-words") (:file "rewinding-handles")
+                 (:file "rewinding-values")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")
                  (:file "forking-values") (:file "forking-unforkable") (:file "forking-uses")
                  (:file "forking-plans") (:file "forking-live") (:file "forking-borders")

@@ -89,7 +89,7 @@ the place of that."
       (or (gethash token (realm-twins realm))
           (setf (entity-realm twin) realm
                 (entity-token twin) token
-                (entity-seen twin) (realm-count realm)
+                (entity-seen twin) 0
                 (gethash token (realm-twins realm)) twin)))))
 
 (document-functions
