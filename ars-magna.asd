@@ -85,7 +85,7 @@
    (:module "src/run" :serial t
     :components ((:file "package") (:file "participant") (:file "journal") (:file "run")
                  (:file "plain-data") (:file "references") (:file "fingerprint")
-                 (:file "past") (:file "noting") (:file "runs-of-worlds") (:file "changes")
+                 (:file "remembering") (:file "past") (:file "noting") (:file "runs-of-worlds") (:file "changes")
                  (:file "thinking")
                  (:file "tick") (:file "state") (:file "environments")
                  (:file "forking") (:file "counterparts") (:file "keeping") (:file "headless")

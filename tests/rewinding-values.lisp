@@ -26,3 +26,49 @@
         (run:rewind 2)
         (is (eq :shut (rpl:fluent-value door))))
       (is (eq :shut (rpl:fluent-value door))))))
+
+;;; Arguments of plans.
+
+(defstruct chore "What a plan is to do." (todo '()) (robot nil))
+
+(rpl:def-interp-proc do-chore (chore)
+  (rpl:n-times (length (chore-todo chore))
+    (driver:rpl-robot-turn (pop (chore-todo chore)))
+    (rpl:wait-for driver:robot-stopped*)))
+
+(defun angle-after-chore (&rest rewinds)
+  "Return how far the rover has turned on a chore after 120 ticks, and REWINDS of so many ticks."
+  (with-rover (:seed 1 :keep t :clean t)
+    (driver:begin-plan 'do-chore (make-chore :todo (list 1 2 3 1 2 3) :robot rover))
+    (run:run-ticks 20)
+    (dolist (ticks rewinds) (run:rewind ticks))
+    (run:run-ticks (- 120 (tick-of-run)))
+    (robot:robot-angle rover)))
+
+(test rewind.begins-plans-with-what-their-arguments-were
+  "A plan that uses up what it was given finds it again, as often as one likes."
+  (is (near-p 12 (angle-after-chore)))
+  (is (near-p 12 (angle-after-chore 5)))
+  (is (near-p 12 (angle-after-chore 5 3 2))))
+
+(test rewind.remembers-arguments-that-their-giver-changes
+  (with-rover (:seed 1 :keep t :clean t)
+    (let ((way (list 1 2)))
+      (driver:begin-plan 'do-chore (make-chore :todo way))
+      (run:run-ticks 2)
+      (setf (second way) 3)
+      (run:rewind 1)
+      (run:run-ticks 60)
+      (is (near-p 3 (robot:robot-angle rover))))))
+
+(test rewind.knows-robots-and-what-is-shared-in-arguments
+  (with-rover (:seed 1 :keep t)
+    (let* ((chore (make-chore :robot rover)) (given (vector chore (list chore)))
+           (seen (rpl:create-fluent 'seen)))
+      (rpl:set-value seen given)
+      (run:run-ticks 3)
+      (setf (chore-robot chore) :lost)
+      (run:rewind 1)
+      (let ((now (rpl:fluent-value seen)))
+        (is (eq rover (chore-robot (aref now 0))))
+        (is (eq (aref now 0) (first (aref now 1))))))))

@@ -12,8 +12,8 @@
   "That something was done. KIND is :REQUEST, for what a tick has begun with, or else :CHANGE. TICK
 had passed, or was under way in its PHASE, a number, 0 between ticks; of a request PHASE says when
 it was asked for. MOMENT is how often by then in the tick what goes on in forks too had acted. OWN-P
-is true of what a fork does by itself. OPERATOR is the name of an operator, or a function; ARGUMENTS
-are externalized. ASKER is a note of who asked for it, or NIL."
+is true of what a fork does by itself. OPERATOR is the name of an operator, and ARGUMENTS are
+externalized, or a function, and they are memorized. ASKER is a note of who asked for it, or NIL."
   (kind :change :type (member :request :change) :read-only t)
   (tick 0 :type fixnum :read-only t)
   (phase 0 :type fixnum :read-only t)
@@ -63,7 +63,7 @@ are externalized."
             (of-itself-p request) operator arguments (request-asker request)))
 
 (defun change-act (simulation operator arguments)
-  "Return the act that OPERATOR is done here and now with ARGUMENTS, which are externalized."
+  "Return the act that OPERATOR is done here and now with ARGUMENTS."
   (let ((timeline (simulation-timeline simulation)))
     (make-act :change (simulation-tick simulation) (phase-here timeline)
               (timeline-moments timeline)
@@ -75,8 +75,8 @@ are externalized."
   (incf (past-count past)))
 
 (defun remember (simulation operator arguments &optional request)
-  "Let SIMULATION, if it has a past, remember that OPERATOR was asked for with ARGUMENTS, which are
-externalized; by REQUEST, if that is given."
+  "Let SIMULATION, if it has a past, remember that OPERATOR was asked for with ARGUMENTS, see ACT; by
+REQUEST, if that is given."
   (let ((past (simulation-past simulation)))
     (when past
       (add-act past (if request
@@ -101,7 +101,7 @@ nothing."
   (when (and (simulation-past simulation)
              (not (goes-on-in-forks-p))
              (not (changing-inside-p simulation)))
-    (remember simulation function (externalize arguments)))
+    (remember simulation function (memorized arguments)))
   (values))
 
 ;;; Which part of the past is before a moment.
