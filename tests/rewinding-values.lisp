@@ -72,3 +72,73 @@
       (let ((now (rpl:fluent-value seen)))
         (is (eq rover (chore-robot (aref now 0))))
         (is (eq (aref now 0) (first (aref now 1))))))))
+
+;;; What is left when the run is over.
+
+(test rewind.leaves-fluents-as-they-are-where-the-run-has-gone-on
+  "Without rewinding a fluent of everybody's keeps what the run has set; so it does with it."
+  (let ((door (rpl:create-fluent 'door :shut)))
+    (with-rover (:seed 1 :keep t)
+      (run:run-ticks 3)
+      (rpl:set-value door :open)
+      (run:run-ticks 3)
+      (run:rewind 5))
+    (is (eq :shut (rpl:fluent-value door)))
+    (with-rover (:seed 1 :keep t)
+      (run:run-ticks 3)
+      (run:rewind 1)
+      (rpl:set-value door :ajar)
+      (run:run-ticks 3)
+      (run:rewind 1))
+    (is (eq :ajar (rpl:fluent-value door)))))
+
+;;; Dice of programs.
+
+(defun rolled-after (function &optional back)
+  "Return what RANDOM says after FUNCTION of a run, going back BACK ticks, and on again."
+  (with-rover (:seed 1 :keep t)
+    (run:run-ticks 3)
+    (funcall function)
+    (when back (run:rewind back))
+    (random 1000000)))
+
+(test rewind.restores-the-dice-of-programs
+  (flet ((both (function)
+           (is (= (rolled-after function) (rolled-after function 0)))))
+    (both (lambda () (run:run-ticks 1)))
+    (both (lambda () (random 10) (run:run-ticks 1)))
+    (both (lambda () (loop repeat 900 do (random 10)) (run:run-ticks 20)))
+    (both (lambda ()
+            (command:robot-turn rover 0.1 (lambda (&rest ignored)
+                                            (declare (ignore ignored))
+                                            (random 10)))
+            (run:run-ticks 9))))
+  (is (= (rolled-after #'list) (rolled-after (lambda () (random 10)) 0))))
+
+(rpl:def-interp-proc turn-by-chance ()
+  (rpl:n-times 40
+    (driver:rpl-robot-turn (random 3.0))
+    (rpl:wait-for driver:robot-stopped*)))
+
+(defun angle-by-chance (&optional back)
+  (with-rover (:seed 1 :keep t)
+    (random 10)
+    (driver:begin-plan 'turn-by-chance)
+    (run:run-ticks 5)
+    (random 10)
+    (run:run-ticks 10)
+    (when back (run:rewind back))
+    (run:run-ticks (- 55 (tick-of-run)))
+    (robot:robot-angle rover)))
+
+(test rewind.lets-plans-roll-what-they-rolled
+  (is (= (angle-by-chance) (angle-by-chance 0) (angle-by-chance 7))))
+
+;;; Forks.
+
+(test rewind.a-fork-goes-on-by-run-ticks
+  (with-rover (:seed 1)
+    (let ((fork (run:fork-simulation)))
+      (run:call-in-fork fork (lambda () (run:keep-forks) (run:run-ticks 5) (run:rewind 2)))
+      (is (= 5 (run:run-ticks 2 fork)))
+      (is (= 6 (nth-value 1 (run:run-until (lambda () nil) :limit 1 :simulation fork)))))))

@@ -261,3 +261,23 @@ all together. So whoever sees the pulses sees the values that came with them (re
                 (push (if more (first more) t) values))))
     (when changed (spread-all (nreverse changed)))
     (when pulsed (pulse-all (nreverse pulsed) (nreverse values)))))
+
+;;; A run that was rewound has gone on in a fork. When it is over, those who are left have what it
+;;; has left.
+
+(defun give-back (fluent realm)
+  "If FLUENT, of a realm whose run is over, is the twin of a base fluent of REALM, let that have its
+value."
+  (let ((first (weak-value (entity-first fluent))))
+    (when (and first (eq realm (entity-realm first)) (not (derived-p first)))
+      (let ((value (fluent-now fluent)) (home (home-of first)))
+        (cond ((eql value (fluent-now first)))
+              (home (set-elsewhere home first value))
+              (t (set-now first value)))))))
+
+(defun give-back-all (from realm)
+  "Let the base fluents of REALM have the values of their twins in the realm FROM, whose run is
+over."
+  (let ((*realm* realm))
+    (dolist (twin (twins-in from))
+      (when (fluent-p twin) (give-back twin realm)))))

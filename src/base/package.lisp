@@ -89,7 +89,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice
            #:*lisps-dice* #:seeded-lisps-dice #:reseed-lisps-dice #:call-with-own-lisps-dice
-           #:unheard-of-number #:tick-dice #:make-tick-dice #:begin-tick-dice #:*tick-dice*)
+           #:dice-rolled #:roll-back #:unheard-of-number #:tick-dice #:make-tick-dice #:begin-tick-dice #:*tick-dice*)
   ;; names
   (:export #:same-name-p #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables

@@ -33,7 +33,8 @@ externalized, or a function, and they are memorized. ASKER is a note of who aske
                  (:copier nil))
   "What is kept of a run's past: at most LIMIT FORKS, and COUNT ACTS, the newest of both first. The
 next fork is to be made at the tick NEXT, not before DUE, a time in seconds; KEEPER, a function of
-the run and its past, is then called. PACE is in how many ticks that is looked at again. COST is how
+the run and its past, is then called. ROLLED is what the dice of programs were when that was last
+looked at, or NIL. PACE is in how many ticks that is looked at again. COST is how
 many seconds a fork takes, on the average. WANTED is since when, in seconds, a fork is due that
 could not be made, as somebody was at work in the run; or NIL."
   (limit 0 :type fixnum)
@@ -46,6 +47,7 @@ could not be made, as somebody was at work in the run; or NIL."
   (cost 2d-4 :type double-float)
   (pace 1 :type fixnum)
   (wanted nil :type (or null double-float))
+  (rolled nil)
   (warned-p nil :type boolean))
 
 (defun noting-p (simulation)
@@ -94,6 +96,24 @@ REQUEST, if that is given."
   "True in the phases of a tick of SIMULATION in which the world changes."
   (<= 1 (phase-here (simulation-timeline simulation)) 4))
 
+;;; Programs around the run, and continuations, roll dice that plans roll too; and are not repeated.
+
+(defun look-at-dice (simulation past)
+  "Let PAST know what the dice of programs of SIMULATION are here and now. Return that if they have
+been rolled since it was last looked at, or NIL. Only a headless run has dice that all its programs
+roll."
+  (when (member *lisps-dice* (simulation-variables simulation) :test #'eq)
+    (let ((before (past-rolled past)))
+      (setf (past-rolled past) (dice-rolled before))
+      (if (eq before (past-rolled past)) nil (past-rolled past)))))
+
+(defun note-dice (simulation)
+  "Let SIMULATION, if it has a past, remember what the dice of programs are here and now, if they
+have been rolled by what a fork may not do again."
+  (let* ((past (simulation-past simulation))
+         (rolled (and past (look-at-dice simulation past))))
+    (when rolled (remember simulation #'roll-back (list rolled)))))
+
 (defun note-doing (simulation function &rest arguments)
   "Let SIMULATION, if it has a past, remember that from outside something was done that no journal
 has: FUNCTION, of ARGUMENTS, does it again. What a fork does by itself does not count. Return
@@ -101,6 +121,7 @@ nothing."
   (when (and (simulation-past simulation)
              (not (goes-on-in-forks-p))
              (not (changing-inside-p simulation)))
+    (when (eq simulation *simulation*) (note-dice simulation))
     (remember simulation function (memorized arguments)))
   (values))
 
