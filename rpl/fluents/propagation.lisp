@@ -265,19 +265,22 @@ all together. So whoever sees the pulses sees the values that came with them (re
 ;;; A run that was rewound has gone on in a fork. When it is over, those who are left have what it
 ;;; has left.
 
-(defun give-back (fluent realm)
-  "If FLUENT, of a realm whose run is over, is the twin of a base fluent of REALM, let that have its
-value."
-  (let ((first (weak-value (entity-first fluent))))
-    (when (and first (eq realm (entity-realm first)) (not (derived-p first)))
-      (let ((value (fluent-now fluent)) (home (home-of first)))
-        (cond ((eql value (fluent-now first)))
-              (home (set-elsewhere home first value))
-              (t (set-now first value)))))))
+(defun give-back (fluent from)
+  "Let FLUENT, a base fluent, have the value of its twin in the realm FROM."
+  (let ((value (fluent-now (entity-in fluent from))) (home (home-of fluent)))
+    (cond ((eql value (fluent-now fluent)))
+          (home (set-elsewhere home fluent value))
+          (t (set-now fluent value)))))
 
 (defun give-back-all (from realm)
-  "Let the base fluents of REALM have the values of their twins in the realm FROM, whose run is
-over."
+  "Let the base fluents of REALM have the values of their twins in FROM, a realm that has come of
+it, and whose run is over."
   (let ((*realm* realm))
-    (dolist (twin (twins-in from))
-      (when (fluent-p twin) (give-back twin realm)))))
+    (loop for each = from then (realm-parent each)
+          until (or (null each) (eq each realm))
+          do (dolist (twin (twins-in each))
+               (let ((first (weak-value (entity-first twin))))
+                 (when (and (fluent-p first)
+                            (eq realm (entity-realm first))
+                            (not (derived-p first)))
+                   (give-back first from)))))))

@@ -35,8 +35,8 @@ of this one, which is over."
   "The realm of the run that this thread works in.")
 
 (defstruct (entity (:constructor nil) (:copier nil))
-  "What has a twin in each fork: a fluent or a valve. FIRST leads, weakly, to the first of all twins,
-once there are any."
+  "What has a twin in each fork: a fluent or a valve. FIRST leads, weakly, to the first of all
+twins, once there are any."
   (realm *realm* :type realm)
   (token 0 :type fixnum)
   (seen 0 :type fixnum)

@@ -38,7 +38,8 @@
                 #:report-end #:reseed-runner #:digest-runner #:print-tasks #:find-procedure
                 #:plan-trace #:write-trace #:valve #:make-valve #:note-command #:with-answer
                 #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks* #:start-trace
-                #:task-runner #:leave-plan #:runner-client #:client-forked-p #:*realm* #:give-back-all
+                #:task-runner #:leave-plan #:runner-client #:client-forked-p #:*realm*
+                #:give-back-all
                 #:realm-source #:leave-realm #:source-realm #:at-home #:entity #:here
                 #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
                 #:reasons #:decide #:withdraw #:task-frame #:entity-realm #:entity-like

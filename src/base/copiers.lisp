@@ -6,8 +6,8 @@
   "What copies a run. TABLE has what was copied to what; WORK the copies that are to be put right,
 each followed by how; TABLES the hash tables that are to be filled when all else is done. HOLDER is
 what is being put right. ENVIRONMENT is a list (variable . value): what the run has bound. OPTIONS
-are a plist for those who know what to do about it, OBJECTS what a layer knows of its copies. SCREEN,
-a function or NIL, is called with what is about to be copied: it returns what there is to be instead
+are a plist for those who know what to do about it, OBJECTS what a layer knows of its copies.
+SCREEN, a function or NIL, is called with what is about to be copied: it returns what there is to be instead
 of a copy, and true; or NIL and false."
   (table (make-hash-table :test 'eq :size 500) :type hash-table)
   (work (make-array 512) :type simple-vector)

@@ -89,7 +89,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice
            #:*lisps-dice* #:seeded-lisps-dice #:reseed-lisps-dice #:call-with-own-lisps-dice
-           #:dice-rolled #:roll-back #:unheard-of-number #:tick-dice #:make-tick-dice #:begin-tick-dice #:*tick-dice*)
+           #:dice-rolled #:roll-back #:unheard-of-number #:tick-dice #:make-tick-dice
+           #:begin-tick-dice #:*tick-dice*)
   ;; names
   (:export #:same-name-p #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables
@@ -172,8 +173,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:copier-option #:copier-objects #:copying #:forked #:note-copy #:settled
            #:put-right-later #:copy-plan-value #:copy-values #:define-shared
            #:define-shared-slots #:copy-slots #:cannot-fork-value #:cannot-fork-place #:share-value
-           #:leave-out-value #:make-no-fork #:holds-p #:reference-slots #:instance-slot #:cannot-fork
-           #:closure-values #:environment-p #:environment-values)
+           #:leave-out-value #:make-no-fork #:holds-p #:reference-slots #:instance-slot
+           #:cannot-fork #:closure-values #:environment-p #:environment-values)
   ;; fields
   (:export #:field-name #:field-kept-p #:field-reader #:field-writer #:field-initial
            #:fields-of-type #:blank-object #:note-lasting #:lasting-name #:lasting-function)

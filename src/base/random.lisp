@@ -88,8 +88,8 @@ changes a world rolls other dice."
 (defconstant +place-of-place+ 2 "The index, in the words of a random state, of the place.")
 
 (defun dice-rolled (before)
-  "Return what the dice of programs are here and now, for ROLL-BACK. It is BEFORE, which was returned
-earlier, or NIL, if they have not been rolled since."
+  "Return what the dice of programs are here and now, for ROLL-BACK. It is BEFORE, which was
+returned earlier, or NIL, if they have not been rolled since."
   (let* ((now (funcall *words-of-state* *random-state*))
          (place (aref now +place-of-place+))
          (same-words-p (and before (= (aref now (1+ +place-of-place+))

@@ -77,8 +77,8 @@ are externalized."
   (incf (past-count past)))
 
 (defun remember (simulation operator arguments &optional request)
-  "Let SIMULATION, if it has a past, remember that OPERATOR was asked for with ARGUMENTS, see ACT; by
-REQUEST, if that is given."
+  "Let SIMULATION, if it has a past, remember that OPERATOR was asked for with ARGUMENTS, see ACT;
+by REQUEST, if that is given."
   (let ((past (simulation-past simulation)))
     (when past
       (add-act past (if request
