@@ -16,6 +16,11 @@
     (wait-on-semaphore (custody-wake-up custody) seconds))
   (setf (custody-asleep-p custody) nil))
 
+(defun standing-still-p (pacing)
+  "True if no tick may pass, as somebody has told PACING to pause or to stop."
+  (or (pacing-stopping-p pacing)
+      (and (pacing-paused-p pacing) (zerop (pacing-steps pacing)))))
+
 (defun nothing-to-do-p (pacing)
   (if (pacing-paused-p pacing)
       (zerop (pacing-steps pacing))
@@ -39,7 +44,7 @@
         (seconds-now)
         (loop for left = (- due (seconds-now))
               while (and (plusp left)
-                         (not (pacing-stopping-p pacing))
+                         (not (standing-still-p pacing))
                          (eql rate (pacing-rate pacing)))
               do (sleep-until-woken custody left)
                  (answer-questions custody)
@@ -67,7 +72,7 @@
                   (rest-thread custody pacing)
                   (setf due (seconds-now)))
                  (t (setf due (keep-pace custody pacing due))
-                    (unless (pacing-stopping-p pacing)
+                    (unless (standing-still-p pacing)
                       (pass-tick pacing))))))
 
 (defun let-go (custody pacing)
