@@ -86,7 +86,7 @@
    (:module "src/run" :serial t
     :components ((:file "package") (:file "participant") (:file "journal") (:file "run")
                  (:file "plain-data") (:file "references") (:file "fingerprint")
-                 (:file "past") (:file "noting") (:file "runs-of-worlds") (:file "changes")
+                 (:file "remembering") (:file "past") (:file "noting") (:file "runs-of-worlds") (:file "changes")
                  (:file "thinking")
                  (:file "tick") (:file "state") (:file "environments")
                  (:file "forking") (:file "counterparts") (:file "keeping") (:file "headless")
@@ -337,6 +337,7 @@
                  (:file "skipping")
                  (:file "kinds") (:file "digests") (:file "runs") (:file "rewinding")
                  (:file "rewinding-words") (:file "rewinding-handles")
+                 (:file "rewinding-values")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")
                  (:file "forking-values") (:file "forking-unforkable") (:file "forking-uses")
                  (:file "forking-plans") (:file "forking-live") (:file "forking-borders")

@@ -40,6 +40,7 @@
        '(sb-eval::expanders sb-eval::symbol-expansions sb-eval::tags sb-eval::blocks
          sb-eval::declarations sb-eval::native-lexenv))
       (tasks::plan-runner '(tasks::warned))
+      (fluents:entity '(first))
       (t (and kind
               (mapcar #'base:kind-slot-name
                       (remove-if-not #'base:kind-slot-shared-p (base:kind-slots kind))))))))

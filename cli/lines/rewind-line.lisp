@@ -28,7 +28,8 @@
 (define-line "REWIND" (session (n tick-span "how far"))
     (:running)
     "Go back N ticks, plans included, and go on from there; 0 undoes what was done since the last
-tick. What came after has not happened; the journal says that there was something."
+tick. What came after has not happened; the journal says that there was something. Programs that
+wait for the end of a command, such as that of GO-TO, do not go on: they are told :INTERRUPT."
   (check-run)
   (when (session-visit session)
     (reject-line "A trial is what it is. TRIAL begins it anew, at tick 0."))

@@ -18,12 +18,17 @@
                 ((paused-p simulation) "paused")
                 (t (rate-text (simulation-rate simulation))))))
 
+(defun pause-now (simulation)
+  "Let SIMULATION stand still, and wait until the tick that is under way has passed."
+  (pause simulation)
+  (asking (simulation)))
+
 (define-line "PAUSE" (session) (:running)
     "Let time stand still until RESUME."
   (let ((simulation (current-simulation)))
     (if (session-visit session)
         (pause-visit (session-visit session))
-        (pause (live-simulation)))
+        (pause-now (live-simulation)))
     (format t "~A~%" (time-text session simulation))))
 
 (define-line "RESUME" (session) (:running)

@@ -31,7 +31,7 @@ no plan.")
   (:export #:declare-fluent-variable #:known-fluent-variable-p #:known-vector-variable-p
            #:one-fluent #:truth-value)
   ;; propagation
-  (:export #:apply-settings #:repair-fluents #:pulse #:set-value)
+  (:export #:apply-settings #:give-back-all #:repair-fluents #:pulse #:set-value)
   ;; views
   (:export #:fl-pulsed #:fl-value-changed)
   ;; operators

@@ -261,3 +261,26 @@ all together. So whoever sees the pulses sees the values that came with them (re
                 (push (if more (first more) t) values))))
     (when changed (spread-all (nreverse changed)))
     (when pulsed (pulse-all (nreverse pulsed) (nreverse values)))))
+
+;;; A run that was rewound has gone on in a fork. When it is over, those who are left have what it
+;;; has left.
+
+(defun give-back (fluent from)
+  "Let FLUENT, a base fluent, have the value of its twin in the realm FROM."
+  (let ((value (fluent-now (entity-in fluent from))) (home (home-of fluent)))
+    (cond ((eql value (fluent-now fluent)))
+          (home (set-elsewhere home fluent value))
+          (t (set-now fluent value)))))
+
+(defun give-back-all (from realm)
+  "Let the base fluents of REALM have the values of their twins in FROM, a realm that has come of
+it, and whose run is over."
+  (let ((*realm* realm))
+    (loop for each = from then (realm-parent each)
+          until (or (null each) (eq each realm))
+          do (dolist (twin (twins-in each))
+               (let ((first (weak-value (entity-first twin))))
+                 (when (and (fluent-p first)
+                            (eq realm (entity-realm first))
+                            (not (derived-p first)))
+                   (give-back first from)))))))

@@ -35,10 +35,14 @@ of this one, which is over."
   "The realm of the run that this thread works in.")
 
 (defstruct (entity (:constructor nil) (:copier nil))
-  "What has a twin in each fork: a fluent or a valve."
+  "What has a twin in each fork: a fluent or a valve. FIRST leads, weakly, to the first of all
+twins, once there are any."
   (realm *realm* :type realm)
   (token 0 :type fixnum)
-  (seen 0 :type fixnum))
+  (seen 0 :type fixnum)
+  (first nil))
+
+(define-shared-slots entity first)
 
 (declaim (inline here))
 (defun here (entity)
@@ -79,7 +83,8 @@ the place of that."
   (when (zerop (entity-token entity))
     (with-lock ((realm-lock (entity-realm entity)))
       (when (zerop (entity-token entity))
-        (setf (entity-token entity) (1+ (atomic-incf (realm-tokens +root+)))))))
+        (setf (entity-first entity) (make-weak entity)
+              (entity-token entity) (1+ (atomic-incf (realm-tokens +root+)))))))
   (entity-token entity))
 
 (defun add-twin (entity realm twin)
@@ -89,7 +94,8 @@ the place of that."
       (or (gethash token (realm-twins realm))
           (setf (entity-realm twin) realm
                 (entity-token twin) token
-                (entity-seen twin) (realm-count realm)
+                (entity-first twin) (entity-first entity)
+                (entity-seen twin) 0
                 (gethash token (realm-twins realm)) twin)))))
 
 (document-functions
@@ -137,6 +143,7 @@ set.")
   (let ((realm (forked (entity-realm entity) copier))
         (copy (copy-slots entity copier)))
     (setf (entity-token copy) (ensure-token entity)
+          (entity-first copy) (entity-first entity)
           (entity-seen copy) 0)
     ;; Runs in other threads, of the same realm, may add twins of what they have.
     (with-lock ((realm-lock realm))

@@ -23,7 +23,7 @@
                 #:call-as-participant-makes-way #:participant-unsavable
                 #:fork-simulation #:refuse-fork
                 #:participant-place #:simulation-participants #:fork-p #:note-environment
-                #:environment-of #:*rewind-hooks*
+                #:environment-of #:*rewind-hooks* #:*rewound-end-hooks*
                 #:counterpart-here #:counterpart #:latest #:let-fork-be-kept #:note-doing
                 #:simulation-past)
   (:import-from :ars-magna.rpl
@@ -40,6 +40,7 @@
                 #:plan-trace #:write-trace #:valve #:make-valve #:note-command #:with-answer
                 #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks* #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p #:*realm*
+                #:give-back-all
                 #:realm-source #:leave-realm #:source-realm #:at-home #:entity #:here
                 #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
                 #:reasons #:decide #:withdraw #:task-frame #:entity-realm #:entity-like

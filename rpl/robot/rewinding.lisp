@@ -94,3 +94,11 @@ VALUE."
     (leave-realm (realm-of old) (realm-of new))))
 
 (pushnew 'leave-fluents *rewind-hooks*)
+
+(defun give-fluents-back (old new)
+  "Let the fluents of OLD, a run that was rewound, have the values that they have where it has gone
+on, in NEW, which is over."
+  (let ((from (realm-of new)) (realm (realm-of old)))
+    (unless (or (null realm) (eq from realm)) (give-back-all from realm))))
+
+(pushnew 'give-fluents-back *rewound-end-hooks*)

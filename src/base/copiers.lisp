@@ -6,7 +6,9 @@
   "What copies a run. TABLE has what was copied to what; WORK the copies that are to be put right,
 each followed by how; TABLES the hash tables that are to be filled when all else is done. HOLDER is
 what is being put right. ENVIRONMENT is a list (variable . value): what the run has bound. OPTIONS
-are a plist for those who know what to do about it, OBJECTS what a layer knows of its copies."
+are a plist for those who know what to do about it, OBJECTS what a layer knows of its copies.
+SCREEN, a function or NIL, is called with what is about to be copied: it returns what there is to be
+instead of a copy, and true; or NIL and false."
   (table (make-hash-table :test 'eq :size 500) :type hash-table)
   (work (make-array 512) :type simple-vector)
   (fill 0 :type fixnum)
@@ -14,6 +16,7 @@ are a plist for those who know what to do about it, OBJECTS what a layer knows o
   (holder nil)
   (environment '() :type list)
   (objects nil)
+  (screen nil :type (or null function))
   (options '() :type list))
 
 (document-functions
@@ -75,14 +78,16 @@ are a plist for those who know what to do about it, OBJECTS what a layer knows o
     (setf (copier-holder copier) nil
           (copier-environment copier) '()
           (copier-objects copier) nil
+          (copier-screen copier) nil
           (copier-options copier) '())
     (atomic-push copier (car *idle-copiers*))))
 
-(defmacro with-copier ((copier &key environment options) &body body)
+(defmacro with-copier ((copier &key environment options screen) &body body)
   "Run BODY with COPIER bound to what copies a run that has bound the variables of ENVIRONMENT, with
-OPTIONS. Return the values of BODY."
+OPTIONS and SCREEN. Return the values of BODY."
   `(let ((,copier (take-copier)))
      (setf (copier-environment ,copier) ,environment
-           (copier-options ,copier) ,options)
+           (copier-options ,copier) ,options
+           (copier-screen ,copier) ,screen)
      (multiple-value-prog1 (progn ,@body)
        (put-copier-back ,copier))))

@@ -23,7 +23,16 @@ not be complete before they have returned."
 (defun forked-object (value copier)
   (declare #.*hot* (type copier copier))
   (multiple-value-bind (copy known-p) (gethash value (copier-table copier))
-    (if known-p copy (begin-copy value copier))))
+    (cond (known-p copy)
+          ((copier-screen copier) (copy-unless-screened value copier))
+          (t (begin-copy value copier)))))
+
+(defun copy-unless-screened (value copier)
+  "Return what COPIER is to have for VALUE as its screen says: that, or a copy."
+  (multiple-value-bind (instead screened-p) (funcall (copier-screen copier) value)
+    (if screened-p
+        (note-copy value instead copier)
+        (begin-copy value copier))))
 
 (defmethod copy-plan-value ((value structure-object) fork)
   (copy-slots value fork))
@@ -198,3 +207,30 @@ function and an instance of a class of a user's may keep anything."
        (refresh-manners)
        (prog1 (progn ,@body)
          (finish-copies ,copier)))))
+
+;;; Values alone, of which no run is part.
+
+(defun plain-value-p (value)
+  "True if VALUE is a list, an array, a table, or a structure or instance of a class of a user's of
+which nobody has said how it is copied: nothing with an identity."
+  (typecase value
+    ((or cons array hash-table) t)
+    ((or condition function) nil)
+    (structure-object (and (null (kind-of value)) (eq :copy (manner-way (manner value)))))
+    (standard-object (eq (first (compute-applicable-methods #'copy-plan-value (list value nil)))
+                         (find-method #'copy-plan-value '()
+                                      (list (find-class 'standard-object) (find-class t)))))))
+
+(defun immediate-p (value)
+  (typep value '(or number symbol character)))
+
+(defun copy-values (list instead-of)
+  "Return LIST with copies of the plain values in it, and of those in these; what two hold is shared
+by their copies. For anything else there is what INSTEAD-OF, a function, returns."
+  (if (every #'immediate-p list)
+      list
+      (with-copier (copier :screen (lambda (value)
+                                     (if (plain-value-p value)
+                                         (values nil nil)
+                                         (values (funcall instead-of value) t))))
+        (copying (copier) (forked list copier)))))

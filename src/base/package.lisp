@@ -92,7 +92,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice
            #:*lisps-dice* #:seeded-lisps-dice #:reseed-lisps-dice #:call-with-own-lisps-dice
-           #:unheard-of-number #:tick-dice #:make-tick-dice #:begin-tick-dice #:*tick-dice*)
+           #:dice-rolled #:roll-back #:unheard-of-number #:tick-dice #:make-tick-dice
+           #:begin-tick-dice #:*tick-dice*)
   ;; names
   (:export #:same-name-p #:nearest-name #:resembles-p #:reject-name #:value-equal)
   ;; variables
@@ -175,10 +176,10 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:kind-slot-shared-p #:given)
   (:export #:copier #:with-copier #:closure-p #:copier-environment #:copier-variable
            #:copier-option #:copier-objects #:copying #:forked #:note-copy #:settled
-           #:put-right-later #:copy-plan-value #:define-shared #:define-shared-slots #:copy-slots
-           #:cannot-fork #:cannot-fork-value #:cannot-fork-place #:share-value #:leave-out-value
-           #:make-no-fork #:holds-p #:reference-slots #:instance-slot #:closure-values
-           #:environment-p #:environment-values)
+           #:put-right-later #:copy-plan-value #:copy-values #:define-shared
+           #:define-shared-slots #:copy-slots #:cannot-fork-value #:cannot-fork-place #:share-value
+           #:leave-out-value #:make-no-fork #:holds-p #:reference-slots #:instance-slot
+           #:cannot-fork #:closure-values #:environment-p #:environment-values)
   ;; fields
   (:export #:field-name #:field-kept-p #:field-reader #:field-writer #:field-initial
            #:fields-of-type #:blank-object #:note-lasting #:lasting-name #:lasting-function)

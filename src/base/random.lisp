@@ -77,6 +77,34 @@ seeded by the integers SEED and TICK."
 changes a world rolls other dice."
   (unless *tick-dice* (reseed *random-state* seed)))
 
+;;; What the dice are at a moment, for who is to repeat what is rolled next. Each roll changes the
+;;; place at which the words are read or, when all have been, the words.
+
+(defstruct (rolled (:constructor make-rolled (place words)) (:copier nil))
+  "What the dice of programs were: the WORDS of a random state, but for the PLACE in it."
+  (place 0 :type (unsigned-byte 32) :read-only t)
+  (words nil :type (simple-array (unsigned-byte 32) (*)) :read-only t))
+
+(defconstant +place-of-place+ 2 "The index, in the words of a random state, of the place.")
+
+(defun dice-rolled (before)
+  "Return what the dice of programs are here and now, for ROLL-BACK. It is BEFORE, which was
+returned earlier, or NIL, if they have not been rolled since."
+  (let* ((now (funcall *words-of-state* *random-state*))
+         (place (aref now +place-of-place+))
+         (same-words-p (and before (= (aref now (1+ +place-of-place+))
+                                      (aref (rolled-words before) (1+ +place-of-place+))))))
+    (declare (type (simple-array (unsigned-byte 32) (*)) now))
+    (cond ((not same-words-p) (make-rolled place (copy-seq now)))
+          ((= place (rolled-place before)) before)
+          (t (make-rolled place (rolled-words before))))))
+
+(defun roll-back (rolled)
+  "Let the dice of programs be here what they were when DICE-ROLLED returned ROLLED."
+  (let ((words (funcall *words-of-state* *random-state*)))
+    (replace words (rolled-words rolled))
+    (setf (aref words +place-of-place+) (rolled-place rolled))))
+
 (defun seed-tick-dice (dice)
   "Seed DICE, without a new random state if they have one."
   (let ((seed (word-of-tick dice)) (state (tick-dice-state dice)))

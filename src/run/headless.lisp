@@ -57,10 +57,17 @@ Nobody else can do that meanwhile, continuations neither."
 
 (addition run-ticks)
 (defun run-ticks (count &optional (simulation (current-simulation)))
-  "Pass COUNT ticks of the headless SIMULATION, at most 1e9. Return the tick then reached. Signals
-WRONG-ARGUMENT, and MISUSE if SIMULATION runs live or is inside a tick, or if another thread passes
-its ticks."
+  "Pass COUNT ticks of the headless SIMULATION, at most 1e9. Return the tick then reached. A fork
+that was rewound stands for the one that goes on in its place. Signals WRONG-ARGUMENT, and MISUSE if
+SIMULATION runs live or is inside a tick, or if another thread passes its ticks."
   (check-argument run-ticks count (whole-p count 0) "a whole number of ticks, from 0 to 1e9")
+  (pass-ticks-of (going-on simulation) count))
+
+(defun going-on (simulation)
+  "Return SIMULATION or, if it is a fork that was rewound, the one that goes on in its place."
+  (if (fork-p simulation) (latest simulation) simulation))
+
+(defun pass-ticks-of (simulation count)
   (check-headless simulation 'run-ticks)
   (check-not-over simulation 'run-ticks)
   (check-not-secluded simulation)
@@ -83,13 +90,14 @@ Signals WRONG-ARGUMENT, and MISUSE as RUN-TICKS does."
                                         (and (symbolp predicate) (fboundp predicate)))
                   "a function of no arguments")
   (check-argument run-until limit (typep limit '(integer 0)) "a number of ticks, 0 or more")
-  (check-headless simulation 'run-until)
-  (check-not-over simulation 'run-until)
-  (let ((answer (loop for left downfrom limit
-                      thereis (funcall predicate)
-                      until (zerop left)
-                      do (run-ticks 1 simulation))))
-    (values answer (simulation-tick simulation))))
+  (let ((simulation (going-on simulation)))
+    (check-headless simulation 'run-until)
+    (check-not-over simulation 'run-until)
+    (let ((answer (loop for left downfrom limit
+                        thereis (funcall predicate)
+                        until (zerop left)
+                        do (run-ticks 1 simulation))))
+      (values answer (simulation-tick simulation)))))
 
 (addition step-ticks)
 (defun step-ticks (&optional (count 1) (simulation (current-simulation)))
@@ -160,12 +168,19 @@ KEEP says, see KEEP-FORKS. Then the run is over."
       (note-environment simulation)
       (unwind-protect (progn (when keep (keep-forks keep simulation))
                              (funcall function))
-        (end-headless (latest simulation))))))
+        (end-headless simulation)))))
+
+(defvar *rewound-end-hooks* '()
+  "Functions of a headless run that was rewound, and of the one that went on in its place and is
+over now.")
 
 (defun end-headless (simulation)
-  (let ((reason "the headless simulation that it was in has ended"))
-    (retire-robots (simulation-robots simulation) reason)
-    (end-simulation simulation reason)))
+  "Let SIMULATION, or what goes on in its place, be over."
+  (let ((reason "the headless simulation that it was in has ended") (last (latest simulation)))
+    (retire-robots (simulation-robots last) reason)
+    (end-simulation last reason)
+    (unless (eq last simulation)
+      (dolist (hook *rewound-end-hooks*) (funcall hook simulation last)))))
 
 (defun variables-among (names)
   "Return the symbols among NAMES, a list or a single name, that can be variables."

@@ -129,6 +129,7 @@ until the tick has ended and there is one; not for long, as no tick may pass."
 (defun begin-keeping (simulation limit)
   "Let SIMULATION, which this thread has in custody, keep forks, at most LIMIT, from now on."
   (let ((past (setf (simulation-past simulation) (make-past limit #'keep-fork-in-time))))
+    (when (eq simulation *simulation*) (look-at-dice simulation past))
     ;; One can go back as far as here: what has been asked for stays so.
     (dolist (request (timeline-inbox (simulation-timeline simulation)))
       (when (zerop (request-phase request)) (setf (request-phase request) 5)))

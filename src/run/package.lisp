@@ -28,7 +28,7 @@ takes part in it. Manual 2.3 and appendix A.")
   (:export #:set-thinking)
   ;; past, keeping, rewinding
   (:export #:simulation-past #:note-doing #:let-fork-be-kept #:keep-forks #:*forks-to-keep*
-           #:rewind #:*rewind-hooks*)
+           #:rewind #:*rewind-hooks* #:*rewound-end-hooks*)
   ;; journal
   (:export #:journal #:make-journal #:journal-p #:journal-header #:journal-entries
            #:journal-end #:journal-length #:*journal-limit* #:note #:begin-journal

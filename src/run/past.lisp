@@ -12,8 +12,8 @@
   "That something was done. KIND is :REQUEST, for what a tick has begun with, or else :CHANGE. TICK
 had passed, or was under way in its PHASE, a number, 0 between ticks; of a request PHASE says when
 it was asked for. MOMENT is how often by then in the tick what goes on in forks too had acted. OWN-P
-is true of what a fork does by itself. OPERATOR is the name of an operator, or a function; ARGUMENTS
-are externalized. ASKER is a note of who asked for it, or NIL."
+is true of what a fork does by itself. OPERATOR is the name of an operator, and ARGUMENTS are
+externalized, or a function, and they are memorized. ASKER is a note of who asked for it, or NIL."
   (kind :change :type (member :request :change) :read-only t)
   (tick 0 :type fixnum :read-only t)
   (phase 0 :type fixnum :read-only t)
@@ -33,7 +33,8 @@ are externalized. ASKER is a note of who asked for it, or NIL."
                  (:copier nil))
   "What is kept of a run's past: at most LIMIT FORKS, and COUNT ACTS, the newest of both first. The
 next fork is to be made at the tick NEXT, not before DUE, a time in seconds; KEEPER, a function of
-the run and its past, is then called. PACE is in how many ticks that is looked at again. COST is how
+the run and its past, is then called. ROLLED is what the dice of programs were when that was last
+looked at, or NIL. PACE is in how many ticks that is looked at again. COST is how
 many seconds a fork takes, on the average. WANTED is since when, in seconds, a fork is due that
 could not be made, as somebody was at work in the run; or NIL."
   (limit 0 :type fixnum)
@@ -46,6 +47,7 @@ could not be made, as somebody was at work in the run; or NIL."
   (cost 2d-4 :type double-float)
   (pace 1 :type fixnum)
   (wanted nil :type (or null double-float))
+  (rolled nil)
   (warned-p nil :type boolean))
 
 (defun noting-p (simulation)
@@ -63,7 +65,7 @@ are externalized."
             (of-itself-p request) operator arguments (request-asker request)))
 
 (defun change-act (simulation operator arguments)
-  "Return the act that OPERATOR is done here and now with ARGUMENTS, which are externalized."
+  "Return the act that OPERATOR is done here and now with ARGUMENTS."
   (let ((timeline (simulation-timeline simulation)))
     (make-act :change (simulation-tick simulation) (phase-here timeline)
               (timeline-moments timeline)
@@ -75,8 +77,8 @@ are externalized."
   (incf (past-count past)))
 
 (defun remember (simulation operator arguments &optional request)
-  "Let SIMULATION, if it has a past, remember that OPERATOR was asked for with ARGUMENTS, which are
-externalized; by REQUEST, if that is given."
+  "Let SIMULATION, if it has a past, remember that OPERATOR was asked for with ARGUMENTS, see ACT;
+by REQUEST, if that is given."
   (let ((past (simulation-past simulation)))
     (when past
       (add-act past (if request
@@ -94,6 +96,24 @@ externalized; by REQUEST, if that is given."
   "True in the phases of a tick of SIMULATION in which the world changes."
   (<= 1 (phase-here (simulation-timeline simulation)) 4))
 
+;;; Programs around the run, and continuations, roll dice that plans roll too; and are not repeated.
+
+(defun look-at-dice (simulation past)
+  "Let PAST know what the dice of programs of SIMULATION are here and now. Return that if they have
+been rolled since it was last looked at, or NIL. Only a headless run has dice that all its programs
+roll."
+  (when (member *lisps-dice* (simulation-variables simulation) :test #'eq)
+    (let ((before (past-rolled past)))
+      (setf (past-rolled past) (dice-rolled before))
+      (if (eq before (past-rolled past)) nil (past-rolled past)))))
+
+(defun note-dice (simulation)
+  "Let SIMULATION, if it has a past, remember what the dice of programs are here and now, if they
+have been rolled by what a fork may not do again."
+  (let* ((past (simulation-past simulation))
+         (rolled (and past (look-at-dice simulation past))))
+    (when rolled (remember simulation #'roll-back (list rolled)))))
+
 (defun note-doing (simulation function &rest arguments)
   "Let SIMULATION, if it has a past, remember that from outside something was done that no journal
 has: FUNCTION, of ARGUMENTS, does it again. What a fork does by itself does not count. Return
@@ -101,7 +121,8 @@ nothing."
   (when (and (simulation-past simulation)
              (not (goes-on-in-forks-p))
              (not (changing-inside-p simulation)))
-    (remember simulation function (externalize arguments)))
+    (when (eq simulation *simulation*) (note-dice simulation))
+    (remember simulation function (memorized arguments)))
   (values))
 
 ;;; Which part of the past is before a moment.

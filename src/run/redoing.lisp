@@ -25,7 +25,7 @@ tick at which it did not come to what it had come to, or NIL."
 (defun perform-act (act simulation)
   "Do again in SIMULATION, which is the current one, what ACT says."
   (if (functionp (act-operator act))
-      (apply (act-operator act) (internalize (act-arguments act) simulation))
+      (apply (act-operator act) (recalled (act-arguments act) simulation))
       (perform-operator (act-operator act) (act-arguments act) simulation
                         (or (act-asker act) "the past"))))
 

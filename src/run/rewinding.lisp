@@ -189,10 +189,12 @@ it, and the tick at which plans strayed on the way, or NIL."
   "Go back TICKS ticks, to how SIMULATION was at the end of an earlier one, plans included. Return
 the simulation that goes on from there: it is the current one then, its robots are the values of
 their variables, and it is live, at the same rate, if SIMULATION was. That is over, and its robots
-take no more commands; who waits for the end of one is told :INTERRUPT. What was asked for or
-changed after that tick has not happened. Commands and plans under way go on; continuations of
-programs are not called for those. The journal is that of the past, and says where it was rewound.
-Variables that programs set themselves stay as they are.
+take no more commands. What was asked for or changed after that tick has not happened. Commands and
+plans under way go on, but programs do not: continuations are told :INTERRUPT now, and no more then,
+so what a program was to ask for next, as ROBOT-GO-TO does, is not asked for. The journal is that of
+the past, and says where it was rewound. RUN-PLAN, waiting in another thread, returns :STOPPED.
+Messages stay, and what variables programs have set themselves. A fork that was rewound stands, for
+RUN-TICKS, RUN-UNTIL and CALL-IN-FORK, for what goes on; its digest is of what it came to.
 SIMULATION must keep forks, see KEEP-FORKS. TICKS is a number from 0, for what was done since the
 last tick, to how many have passed since it began to. Signals WRONG-ARGUMENT that says how far one
 can go back; MISUSE inside of ticks and plans, and where SIMULATION is over."

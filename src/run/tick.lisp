@@ -88,10 +88,16 @@ have been begun."
 (defun let-participants-act (simulation)
   (when (simulation-participants simulation) (let-all-participants-act simulation)))
 
-(declaim (inline keep-fork-if-due))
+(declaim (inline note-rolls keep-fork-if-due))
+(defun note-rolls (simulation)
+  "Let SIMULATION, if it has a past, remember what programs have rolled that a fork does not."
+  (when (simulation-past simulation) (note-dice simulation)))
+
 (defun keep-fork-if-due (simulation)
   "Let SIMULATION, whose tick has ended, keep a fork of itself if it is to, and it is time."
   (let ((past (simulation-past simulation)))
+    ;; What plans have rolled they will roll again.
+    (when past (look-at-dice simulation past))
     (when (and past (>= (simulation-tick simulation) (past-next past)))
       (funcall (past-keeper past) simulation past))))
 
@@ -104,7 +110,8 @@ have been begun."
     (let ((*tick-dice* (timeline-tick-dice timeline)))
       (in-any-case
         (in-phases ((timeline-phase timeline))
-          (progn (begin-changing timeline world)
+          (progn (note-rolls simulation)
+                 (begin-changing timeline world)
                  (notice-parameters simulation timeline)
                  (perform-requests simulation timeline))
           (run-due-events timeline)
@@ -115,7 +122,8 @@ have been begun."
           (progn (end-changing timeline world)
                  (prolong-journal simulation)
                  (deliver-notifications timeline))
-          (tell-observers simulation)
+          (progn (tell-observers simulation)
+                 (note-rolls simulation))
           (let-participants-act simulation)
           (keep-fork-if-due simulation))
         (unless (zerop (timeline-phase timeline)) (tick simulation))))))

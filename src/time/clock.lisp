@@ -20,6 +20,10 @@
   "True if no tick is to pass, since PACING is paused."
   (and (pacing-paused-p pacing) (zerop (pacing-steps pacing))))
 
+(defun standing-still-p (pacing)
+  "True if no tick may pass, as somebody has told PACING to pause or to stop."
+  (or (pacing-stopping-p pacing) (held-p pacing)))
+
 (defun nothing-to-do-p (pacing)
   (if (pacing-paused-p pacing)
       (held-p pacing)
@@ -43,7 +47,7 @@
         (seconds-now)
         (loop for left = (- due (seconds-now))
               while (and (plusp left)
-                         (not (pacing-stopping-p pacing))
+                         (not (standing-still-p pacing))
                          (eql rate (pacing-rate pacing)))
               do (sleep-until-woken custody left)
                  (answer-questions custody)
@@ -72,7 +76,7 @@
                   (setf due (seconds-now)))
                  (t (setf due (keep-pace custody pacing due))
                     ;; It may have been paused while it waited.
-                    (unless (or (pacing-stopping-p pacing) (held-p pacing))
+                    (unless (standing-still-p pacing)
                       (pass-tick pacing))))))
 
 (defun let-go (custody pacing)

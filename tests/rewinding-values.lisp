@@ -1,0 +1,144 @@
+;;;; rewinding-values.lisp -- what fluents, arguments of plans and dice are, once a run is rewound.
+
+(in-package :ars-magna.tests)
+(in-suite rewinding)
+
+;;; Fluents.
+
+(test rewind.undoes-fluents-that-are-first-set-after-a-rewind
+  (let ((door (rpl:create-fluent 'door :shut)))
+    (with-rover (:seed 1 :keep t)
+      (run:run-ticks 5)
+      (run:rewind 2)
+      (run:run-ticks 5)
+      (rpl:set-value door :open)
+      (run:run-ticks 2)
+      (run:rewind 4)
+      (is (eq :shut (rpl:fluent-value door))))))
+
+(test rewind.undoes-fluents-that-are-set-in-forks
+  (let ((door (rpl:create-fluent 'door :shut)))
+    (with-rover (:seed 1)
+      (run:with-fork ()
+        (run:keep-forks)
+        (run:run-ticks 5)
+        (rpl:set-value door :open)
+        (run:rewind 2)
+        (is (eq :shut (rpl:fluent-value door))))
+      (is (eq :shut (rpl:fluent-value door))))))
+
+;;; Arguments of plans.
+
+(defstruct chore "What a plan is to do." (todo '()) (robot nil))
+
+(rpl:def-interp-proc do-chore (chore)
+  (rpl:n-times (length (chore-todo chore))
+    (driver:rpl-robot-turn (pop (chore-todo chore)))
+    (rpl:wait-for driver:robot-stopped*)))
+
+(defun angle-after-chore (&rest rewinds)
+  "Return how far the rover has turned on a chore after 120 ticks, and REWINDS of so many ticks."
+  (with-rover (:seed 1 :keep t :clean t)
+    (driver:begin-plan 'do-chore (make-chore :todo (list 1 2 3 1 2 3) :robot rover))
+    (run:run-ticks 20)
+    (dolist (ticks rewinds) (run:rewind ticks))
+    (run:run-ticks (- 120 (tick-of-run)))
+    (robot:robot-angle rover)))
+
+(test rewind.begins-plans-with-what-their-arguments-were
+  "A plan that uses up what it was given finds it again, as often as one likes."
+  (is (near-p 12 (angle-after-chore)))
+  (is (near-p 12 (angle-after-chore 5)))
+  (is (near-p 12 (angle-after-chore 5 3 2))))
+
+(test rewind.remembers-arguments-that-their-giver-changes
+  (with-rover (:seed 1 :keep t :clean t)
+    (let ((way (list 1 2)))
+      (driver:begin-plan 'do-chore (make-chore :todo way))
+      (run:run-ticks 2)
+      (setf (second way) 3)
+      (run:rewind 1)
+      (run:run-ticks 60)
+      (is (near-p 3 (robot:robot-angle rover))))))
+
+(test rewind.knows-robots-and-what-is-shared-in-arguments
+  (with-rover (:seed 1 :keep t)
+    (let* ((chore (make-chore :robot rover)) (given (vector chore (list chore)))
+           (seen (rpl:create-fluent 'seen)))
+      (rpl:set-value seen given)
+      (run:run-ticks 3)
+      (setf (chore-robot chore) :lost)
+      (run:rewind 1)
+      (let ((now (rpl:fluent-value seen)))
+        (is (eq rover (chore-robot (aref now 0))))
+        (is (eq (aref now 0) (first (aref now 1))))))))
+
+;;; What is left when the run is over.
+
+(test rewind.leaves-fluents-as-they-are-where-the-run-has-gone-on
+  "Without rewinding a fluent of everybody's keeps what the run has set; so it does with it."
+  (let ((door (rpl:create-fluent 'door :shut)))
+    (with-rover (:seed 1 :keep t)
+      (run:run-ticks 3)
+      (rpl:set-value door :open)
+      (run:run-ticks 3)
+      (run:rewind 5))
+    (is (eq :shut (rpl:fluent-value door)))
+    (with-rover (:seed 1 :keep t)
+      (run:run-ticks 3)
+      (run:rewind 1)
+      (rpl:set-value door :ajar)
+      (run:run-ticks 3)
+      (run:rewind 1))
+    (is (eq :ajar (rpl:fluent-value door)))))
+
+;;; Dice of programs.
+
+(defun rolled-after (function &optional back)
+  "Return what RANDOM says after FUNCTION of a run, going back BACK ticks, and on again."
+  (with-rover (:seed 1 :keep t)
+    (run:run-ticks 3)
+    (funcall function)
+    (when back (run:rewind back))
+    (random 1000000)))
+
+(test rewind.restores-the-dice-of-programs
+  (flet ((both (function)
+           (is (= (rolled-after function) (rolled-after function 0)))))
+    (both (lambda () (run:run-ticks 1)))
+    (both (lambda () (random 10) (run:run-ticks 1)))
+    (both (lambda () (loop repeat 900 do (random 10)) (run:run-ticks 20)))
+    (both (lambda ()
+            (command:robot-turn rover 0.1 (lambda (&rest ignored)
+                                            (declare (ignore ignored))
+                                            (random 10)))
+            (run:run-ticks 9))))
+  (is (= (rolled-after #'list) (rolled-after (lambda () (random 10)) 0))))
+
+(rpl:def-interp-proc turn-by-chance ()
+  (rpl:n-times 40
+    (driver:rpl-robot-turn (random 3.0))
+    (rpl:wait-for driver:robot-stopped*)))
+
+(defun angle-by-chance (&optional back)
+  (with-rover (:seed 1 :keep t)
+    (random 10)
+    (driver:begin-plan 'turn-by-chance)
+    (run:run-ticks 5)
+    (random 10)
+    (run:run-ticks 10)
+    (when back (run:rewind back))
+    (run:run-ticks (- 55 (tick-of-run)))
+    (robot:robot-angle rover)))
+
+(test rewind.lets-plans-roll-what-they-rolled
+  (is (= (angle-by-chance) (angle-by-chance 0) (angle-by-chance 7))))
+
+;;; Forks.
+
+(test rewind.a-fork-goes-on-by-run-ticks
+  (with-rover (:seed 1)
+    (let ((fork (run:fork-simulation)))
+      (run:call-in-fork fork (lambda () (run:keep-forks) (run:run-ticks 5) (run:rewind 2)))
+      (is (= 5 (run:run-ticks 2 fork)))
+      (is (= 6 (nth-value 1 (run:run-until (lambda () nil) :limit 1 :simulation fork)))))))
