@@ -175,6 +175,21 @@ KEYS have been pressed at Robot>."
              (shown-while-typing 40 24 (lambda (console) (cli::show-prompt console "Break> "))
                                  "tu"))))
 
+(test screen.loses-no-half-of-a-line-that-comes-before-the-first-key
+  "However it comes in between the prompt and what begins to read: another thread writes it."
+  (dolist (finish-p '(nil t))
+    (let ((paper (make-paper 40)))
+      (multiple-value-bind (console out) (terminal-console 40 24)
+        (setf (cli::console-edited-p console) t)
+        (cli::show-prompt console "Robot> ")
+        (write-string "on" console)
+        (when finish-p (finish-output console))
+        (cli::begin-line console)
+        (terpri console)
+        (finish-output console)
+        (print-on-paper paper (get-output-stream-string out)))
+      (is (equal '("on" "Robot>") (paper-lines paper))))))
+
 (test screen.shows-the-rows-around-the-cursor-of-what-is-too-long
   (let ((lines (apply #'shown-while-typing 40 5 (constantly nil)
                       (list :paste (format nil "~{~A~%~}" (loop for i below 20 collect i))

@@ -145,8 +145,9 @@ goes on where the last has ended."
         (put-string (string #\Newline) console stream))
       (let ((prompt (console-rest console)))
         (setf (console-line console)
-              (make-drawn-line :prompt prompt :shown (list prompt "" 0)))))
-    (begin-row console)
+              (make-drawn-line :prompt prompt :shown (list prompt "" 0))))
+      ;; What has been written last is the line's now. Under one that stands, it is not.
+      (begin-row console))
     (wipe console stream)
     (draw console stream)
     (finish-output stream)))
