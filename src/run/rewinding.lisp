@@ -190,8 +190,9 @@ it, and the tick at which plans strayed on the way, or NIL."
 the simulation that goes on from there: it is the current one then, its robots are the values of
 their variables, and it is live, at the same rate, if SIMULATION was. That is over, and its robots
 take no more commands. What was asked for or changed after that tick has not happened. Commands and
-plans under way go on, but programs do not: continuations are told :INTERRUPT now, and no more then,
-so what a program was to ask for next, as ROBOT-GO-TO does, is not asked for. The journal is that of
+plans under way go on, but programs do not: continuations of commands that are under way when this
+is called are told :INTERRUPT now, and those of commands that go on are called no more; so what a
+program was to ask for next, as ROBOT-GO-TO does, is not asked for. The journal is that of
 the past, and says where it was rewound. RUN-PLAN, waiting in another thread, returns :STOPPED.
 Messages stay, and what variables programs have set themselves. A fork that was rewound stands, for
 RUN-TICKS, RUN-UNTIL and CALL-IN-FORK, for what goes on; its digest is of what it came to.
