@@ -74,8 +74,8 @@
                  (:file "matching") (:file "sightings") (:file "scanning") (:file "views")
                  (:file "tending") (:file "soundness")))
    (:module "src/command" :serial t
-    :components ((:file "package") (:file "command") (:file "steps") (:file "operation")
-                 (:file "ownership") (:file "failures")
+    :components ((:file "package") (:file "command") (:file "steps") (:file "error-codes")
+                 (:file "failing") (:file "operation") (:file "ownership") (:file "failures")
                  (:file "define-command") (:file "turning") (:file "places") (:file "driving")
                  (:file "following") (:file "handling") (:file "hands") (:file "inserting")
                  (:file "bins") (:file "patterns") (:file "manipulations")

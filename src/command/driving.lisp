@@ -85,6 +85,13 @@ and if the robot has stopped meanwhile."
   (begin-movement robot)
   (go-on-now operation 'drive-to-wall))
 
+;; A stop that interrupts another goes on where that was.
+(defmethod note-cut-short ((name (eql 'robot-stop)) operation rival)
+  (if (eq name (command-name (operation-command rival)))
+      (setf (operation-subject operation) (operation-subject rival)
+            (operation-left operation) (operation-left rival))
+      (call-next-method)))
+
 (defun driving-p (robot)
   "True if ROBOT drove in the last tick, or in this."
   (>= (robot-drove-tick robot) (1- (world-tick (robot-world robot)))))

@@ -101,6 +101,13 @@ command that it cut short, or NIL"))
   (let ((*told-of* (request-asker operation)))
     (message-set (command-prefix (operation-command operation)) ": " text)))
 
+(defun note-failed (operation code text)
+  "Let the robot of OPERATION, which ends with the error CODE and the message TEXT, remember that."
+  (note-failure (resource-robot (operation-resource operation)) operation code text
+                :tick (timeline-tick (operation-timeline operation))
+                :asked (operation-asked operation)
+                :resource (resource-told operation)))
+
 (defun report (operation code results)
   "Queue the message that OPERATION ends with (reading 229)."
   (let* ((*told-of* (request-asker operation))
@@ -108,10 +115,10 @@ command that it cut short, or NIL"))
          (report (command-report command)))
     (cond ((eq code :interrupt)
            (warning-set (interrupted-text operation))
-           (note-failure operation code (interrupted-text operation)))
+           (note-failed operation code (interrupted-text operation)))
           (code (let ((text (error-text operation code)))
                   (error-set text)
-                  (note-failure operation code text)))
+                  (note-failed operation code text)))
           (report (let ((text (apply report operation results)))
                     (when text (tell-of operation text)))))))
 
@@ -239,20 +246,13 @@ and has only just been issued is carried out first, anything else is interrupted
         (t (note-interruption rival operation (1+ (agenda-tick agenda)))
            (interrupt-event agenda rival))))
 
-(defun named-p (operation name)
-  "True if OPERATION, an event, carries out the command called NAME."
-  (and (operation-p operation)
-       (eq name (command-name (operation-command operation)))))
-
-(defun note-cut-short (operation rival)
-  "Let OPERATION know what it cuts short by interrupting RIVAL: nothing, if that has not begun. A
-stop that interrupts another goes on where that was."
-  (cond ((not (operation-p rival)))
-        ((and (named-p operation 'robot-stop) (named-p rival 'robot-stop))
-         (setf (operation-subject operation) (operation-subject rival)
-               (operation-left operation) (operation-left rival)))
-        ((begun-p rival)
-         (setf (operation-subject operation) (command-name (operation-command rival))))))
+(defgeneric note-cut-short (name operation rival)
+  (:documentation "Let OPERATION, which carries out the command called NAME, know what it cuts short
+by interrupting RIVAL, an operation: nothing, if that has not begun.")
+  (:method (name operation rival)
+    (declare (ignore name))
+    (when (begun-p rival)
+      (setf (operation-subject operation) (command-name (operation-command rival))))))
 
 (defun begin (operation)
   "Take over the resource of OPERATION and let it wait for its command's delay."
@@ -260,7 +260,8 @@ stop that interrupts another goes on where that was."
          (rival (pending-event agenda (operation-resource operation)))
          (delay (funcall (command-delay (operation-command operation)))))
     (when rival
-      (note-cut-short operation rival)
+      (when (operation-p rival)
+        (note-cut-short (command-name (operation-command operation)) operation rival))
       (make-way operation agenda rival))
     (go-on operation 'start-body (ticks-for delay))))
 

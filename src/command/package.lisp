@@ -22,9 +22,12 @@
            #:fail-with #:notify #:report #:once-more #:go-on #:go-on-now)
   ;; ownership
   (:export #:under-way #:last-interruption #:under-way-text #:interruption-text)
+  ;; error-codes
+  (:export #:error-code-meaning #:error-code-remedy)
+  ;; failing
+  (:export #:command-failure)
   ;; failures
-  (:export #:last-failure #:failure-sentences #:error-code-meaning #:error-code-remedy
-           #:command-failure)
+  (:export #:last-failure #:failure-sentences)
   ;; define-command
   (:export #:define-command)
   ;; withdrawing

@@ -26,7 +26,7 @@ robot (reading 140)."
   (setf (operation-finished-p operation) t)
   (if (eq code :interrupt)
       (report operation code '())
-      (note-failure operation code (error-text operation code)))
+      (note-failed operation code (error-text operation code)))
   (notify operation code (list designator)))
 
 (defun interrupt-track (operation camera)
