@@ -63,6 +63,14 @@ that is counted."
 
 ;;; Taking steps and ticks.
 
+(addition exhaust-reaction)
+(defun exhaust-reaction (&optional (runner *runner*))
+  "Let the reaction of RUNNER under way end after this step: what is ready waits for the tick."
+  (note-from-outside #'exhaust-reaction runner)
+  (setf (runner-exhausted runner) t
+        (runner-limit runner) 0
+        (runner-pause runner) 0))
+
 (defun stand-still (runner ticks)
   "Let no task of RUNNER go on for TICKS, after those for which that is so already, once the step
 under way has ended."

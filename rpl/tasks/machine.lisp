@@ -98,20 +98,6 @@ the value. A leaf takes no frame of its own."
       (values frame (call-leaf node environment))
       (values (make-frame node environment frame) nil)))
 
-(defgeneric awaited-text (awaited)
-  (:documentation "Return in words what a task that waits for AWAITED waits for.")
-  (:method (awaited) (safe-text awaited :escape nil))
-  (:method ((fluent fluent)) (fluent-text fluent))
-  (:method ((watcher watcher)) (fluent-text (watcher-fluent watcher)))
-  (:method ((timer timer))
-    (format nil "tick ~A" (timer-due timer))))
-
-(defgeneric traced-subject (awaited)
-  (:documentation "Return what a trace keeps of AWAITED, that a task waits for: no task.")
-  (:method (awaited) awaited)
-  (:method ((watcher watcher)) (watcher-fluent watcher))
-  (:method ((timer timer)) (timer-due timer)))
-
 (defun park (task awaiting)
   "Note that TASK, at a step that will return +PARKED+, waits for AWAITING."
   (setf (task-state task) :waiting

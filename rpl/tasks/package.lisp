@@ -23,6 +23,8 @@ plans nor a simulator.")
            #:task-serial #:task-signal #:task-state #:task-status-fluent #:task-timer #:task-top
            #:evaporating-p #:part-of-p #:under-way-p #:frame-p #:node-names #:task-since
            #:task-doomed #:task-node #:task-uncounted-p)
+  ;; awaiting
+  (:export #:awaited-text)
   ;; trace
   (:export #:agent-text #:answer-p #:answer-error #:answer-issue #:issue-arguments #:issue-name
            #:issue-p #:issue-task #:trace-entry #:trace-entry-agent #:trace-entry-detail
@@ -31,7 +33,7 @@ plans nor a simulator.")
   ;; tracing
   (:export #:note-command #:note-event #:start-trace #:stop-trace #:with-answer #:call-with-answer)
   ;; runner
-  (:export #:*runaway-limit* #:alone-p #:blocked-p #:current-task #:exhaust-reaction #:make-ready
+  (:export #:*runaway-limit* #:alone-p #:blocked-p #:current-task #:make-ready
            #:note-event #:plan-runner #:plan-runner-steps #:counted-steps
            #:plan-runner-tasks #:plan-runner-tick #:plan-time #:plan-trace #:runner-blocks
            #:runner-dice #:runner-tick
@@ -40,11 +42,11 @@ plans nor a simulator.")
   ;; words
   (:export #:note-word #:task-now)
   ;; charging
-  (:export #:charge-steps #:charge-ticks #:count-steps
+  (:export #:charge-steps #:charge-ticks #:count-steps #:exhaust-reaction
            #:runner-charged-p #:set-charges #:stand-no-longer
            #:stand-still #:standing-still-p)
   ;; machine
-  (:export #:+nothing+ #:+parked+ #:awaited-text #:bundle-p #:bundle-values #:call-leaf
+  (:export #:+nothing+ #:+parked+ #:bundle-p #:bundle-values #:call-leaf
            #:completion-p #:enter #:escape-p #:escape-target #:escape-value #:leaf-function
            #:leaf-p #:make-bundle #:make-completion #:make-escape #:make-leaf #:park
            #:required-slot #:single-value #:wake)

@@ -216,14 +216,6 @@ have used their slice."
   (or (some (lambda (ring) (plusp (ring-count ring))) (runner-rings runner))
       (some (lambda (task) (eq (task-state task) :ready)) (runner-spent runner))))
 
-(addition exhaust-reaction)
-(defun exhaust-reaction (&optional (runner *runner*))
-  "Let the reaction of RUNNER under way end after this step: what is ready waits for the tick."
-  (note-from-outside #'exhaust-reaction runner)
-  (setf (runner-exhausted runner) t
-        (runner-limit runner) 0
-        (runner-pause runner) 0))
-
 (defun alone-p (task)
   "True if no other task of TASK's level or above is ready."
   (let ((runner (task-runner task)))
