@@ -113,8 +113,8 @@
                  (:file "task") (:file "awaiting") (:file "trace") (:file "runner")
                  (:file "words") (:file "charging") (:file "tracing") (:file "machine")
                  (:file "ending") (:file "stepping") (:file "blame") (:file "shape")
-                 (:file "procedure") (:file "forking") (:file "report") (:file "courtesy") (:file "repair") (:file "care")
-                 (:file "engine") (:file "circles")
+                 (:file "procedure") (:file "forking") (:file "report") (:file "courtesy")
+                 (:file "repair") (:file "care") (:file "engine") (:file "circles")
                  (:file "gate") (:file "blocking") (:file "variables") (:file "places")
                  (:file "alone")))
    (:module "rpl/language" :serial t
@@ -159,7 +159,7 @@
     :components ((:file "package") (:file "trails") (:file "trajectory") (:file "picture")))
    (:module "rpl/projecting" :serial t
     :components ((:file "package") (:file "rollout") (:file "projection") (:file "question")
-                 (:file "rolling-out") (:file "believing") (:file "answering")
+                 (:file "running") (:file "believing") (:file "rolling-out") (:file "answering")
                  (:file "projecting") (:file "try-best") (:file "looking") (:file "picture")))
    (:module "src/experiment" :serial t
     :components ((:file "package")))

@@ -26,7 +26,7 @@ they did, and why the first time."
     (when broken
       (report-user-error (error-of (first broken))
                          (format nil "the function ~S of ~A, in ~D of ~D rollouts; the first time"
-                                 (rollout-broken (first broken)) (operator-of question)
+                                 (rollout-broken (first broken)) (question-operator question)
                                  (length broken) (length rollouts))))))
 
 (defun project-branches (question moment)
@@ -60,7 +60,7 @@ they did, and why the first time."
   "Answer QUESTION, of a plan, by what rollouts tell. Return :LATER if nobody wants that any more."
   (let* ((interface (wish-interface question))
          (moment (and (null (option question :world))
-                      (let ((*fork-asker* (operator-of question)))
+                      (let ((*fork-asker* (question-operator question)))
                         (lighten (fork-at-rest interface)))))
          (projections (catch 'abandoned
                         (let ((*asked* question)) (project-branches question moment)))))

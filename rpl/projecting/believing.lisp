@@ -32,7 +32,9 @@ NIL."
                     (object-of-run (list (question-plan question)
                                          (question-arguments question))))))
     (when object
-      (reject-argument 'project (if (question-subject question) 'plan :arguments) object
+      (reject-argument (question-operator question)
+                       (if (question-subject question) 'plan :arguments)
+                       object
                        (format nil "what a plan can know in another world: :world goes with plans ~
                                     that have names, and arguments such as numbers, names and ~
                                     lists of them")))))

@@ -24,12 +24,12 @@ the list ARGUMENTS, or a list of both. INTERFACE is whose plans they are. Signal
 WRONG-ARGUMENT."
   (let ((options (checked-options 'project options)))
     (if (task-p plan)
-        (%make-question :task task :interface interface
+        (%make-question :operator 'project :task task :interface interface
                         :subject (checked-subject plan interface (getf options :world))
                         :options options)
         (destructuring-bind (plan . arguments) (plan-of plan arguments)
-          (%make-question :task task :interface interface :plan plan :arguments arguments
-                          :options options)))))
+          (%make-question :operator 'project :task task :interface interface
+                          :plan plan :arguments arguments :options options)))))
 
 (defun checked-subject (task interface world)
   "Return TASK. Signals WRONG-ARGUMENT unless it is of the plans of INTERFACE, and there is no WORLD
@@ -136,7 +136,7 @@ run cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
   "Return a fork of the run that QUESTION, asked from outside, is about, with it in it."
   (let ((interface (wish-interface question)))
     (call-with-plans (lambda () (add-wish question)) interface)
-    (unwind-protect (let ((*fork-asker* (operator-of question)))
+    (unwind-protect (let ((*fork-asker* (question-operator question)))
                       (lighten (fork-simulation (interface-simulation interface))))
       (call-with-plans (lambda () (forget-wish question)) interface))))
 

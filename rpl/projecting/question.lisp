@@ -8,8 +8,10 @@
 
 (defstruct (question (:include wish) (:constructor %make-question) (:copier nil))
   "What may become of BRANCHES, texts, in what is left of the plan, of PLAN with ARGUMENTS, or of
-the task SUBJECT. ENDED and RESULT say in a rollout how that has ended which the asking task does."
+the task SUBJECT. OPERATOR is what the plan or user has called who asks. ENDED and RESULT say in a
+rollout how that has ended which the asking task does."
   (token (gensym "QUESTION") :type symbol :read-only t)
+  (operator nil :type symbol :read-only t)
   (branches '() :type list :read-only t)
   (plan nil :read-only t)
   (arguments '() :type list :read-only t)
@@ -20,10 +22,6 @@ the task SUBJECT. ENDED and RESULT say in a rollout how that has ended which the
 
 (defun option (question key)
   (getf (question-options question) key))
-
-(defun operator-of (question)
-  "Return what the plan or user has called who asks QUESTION."
-  (if (question-branches question) 'try-best 'project))
 
 (defmethod awaited-text ((question question))
   (format nil "what ~:[may become of ~A~;is the best of ~A branches~]"

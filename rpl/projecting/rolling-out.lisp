@@ -1,13 +1,10 @@
-;;;; rolling-out.lisp -- a trial of a plan in a fork of its run.
+;;;; rolling-out.lisp -- a trial of a plan, in a fork of its run or in a world believed in.
 
 (in-package :ars-magna.rpl-projecting)
 
 ;;; A run is forked once for a question: that fork, the moment, never goes on. Each rollout is a
 ;;; fork of it with a seed of its own; so all begin alike, also if the run goes on meanwhile, and
 ;;; any of them can be looked at again.
-
-(defvar *rolling-out* nil
-  "True where a rollout runs: there TRY-BEST chooses by chance, and PROJECT knows nothing.")
 
 (defun call-in-peace (function print)
   "Call FUNCTION, which runs a rollout: no plan is at work around it, and nobody is to answer. What
@@ -72,78 +69,6 @@ end counts, or NIL: see NOTE-ENDED."
   "Return the projection without rollouts that PROJECT returns for QUESTION in a rollout."
   (make-projection (text-of question) (simulation-tick) (option question :horizon) '()))
 
-(defun end-of (task question interface)
-  "Return how the rollout has ended in which TASK, or else the asking task of QUESTION, is what
-counts; NIL if it has not."
-  (cond (task (how-over interface task))
-        ((question-ended question))
-        (t (how-over interface (task-top (wish-task question))))))
-
-(defun cost-p (object)
-  "True of real numbers, and of positive infinity, the worst; not of what is no number."
-  (typecase object
-    (float (or (finite-p object) (positive-infinity-p object)))
-    (real t)))
-
-(defun cost-of (question)
-  "Return what the function :COST of QUESTION returns, or NIL without one. Signals WRONG-ARGUMENT."
-  (let ((function (option question :cost)))
-    (when function
-      (let ((cost (funcall function)))
-        (unless (cost-p cost)
-          (reject-argument (operator-of question) :cost cost
-                           "a function that returns a number, or positive infinity for the worst"))
-        cost))))
-
-(defvar *asked* nil
-  "The question of a plan that rollouts are run for, or NIL.")
-
-(defun check-wanted ()
-  "Throw to ABANDONED if the plan whose question is to be answered does not wait for that any more."
-  (when (and *asked* (unwanted-wish-p *asked*))
-    (throw 'abandoned nil)))
-
-(defun broken-off (condition &optional option)
-  "Return what a rollout is that CONDITION broke off, an error of the function OPTION or of others:
-how it has ended, with which result, at no cost, and OPTION."
-  (values :failed (make-condition 'lisp-failure :condition condition) nil option))
-
-(defun with-cost (question how result)
-  "Return HOW a rollout for QUESTION has ended, with which RESULT, and at what cost."
-  (handler-case (values how result (cost-of question))
-    (error (condition) (broken-off condition :cost))))
-
-(defun go-to-end (question interface begin over)
-  "Call BEGIN, which returns the task whose end counts or NIL, and let ticks of the current
-simulation pass until what QUESTION is about has ended; OVER is called after each. Return how it has
-ended, with which result, at what cost, and the option whose function broke it off, if any."
-  (handler-case
-      (let* ((last (+ (simulation-tick) (option question :horizon)))
-             (task (funcall begin))
-             (how (pass-until interface
-                              (lambda ()
-                                (check-wanted)
-                                (funcall over)
-                                (end-of task question interface))
-                              last)))
-        (with-cost question how (if task (task-result task) (question-result question))))
-    (error (condition) (broken-off condition))))
-
-(defun run-rollout (scene trial seed question interface begin)
-  "Return the rollout number TRIAL, with SEED, of SCENE, having run it in the current simulation:
-see GO-TO-END."
-  (let* ((start (simulation-tick))
-         (runner (interface-runner interface))
-         (steps (counted-steps runner))
-         (trails '()))
-    (multiple-value-bind (how result cost broken)
-        (go-to-end question interface begin
-                   (lambda () (setf trails (note-places (current-simulation) trails))))
-      (make-rollout scene trial seed how result (- (simulation-tick) start) cost
-                    (- (counted-steps runner) steps)
-                    (ways-along trails trial (outcome-word how))
-                    broken))))
-
 (defun roll-out-in-fork (scene trial seed then)
   "Return the values of THEN, a function that is called with the rollout number TRIAL, with SEED, of
 SCENE, where that has ended in a fork of the scene's moment."
@@ -170,7 +95,7 @@ is true, or the option :PRINT of the question."
                  (let ((*standard-output* output) (*error-output* errors))
                    (funcall then rollout)))))
     (call-in-peace (lambda ()
-                     (let ((*fork-asker* (operator-of question)))
+                     (let ((*fork-asker* (question-operator question)))
                        (if (scene-moment scene)
                            (roll-out-in-fork scene trial seed then)
                            (roll-out-in-belief scene trial seed then))))
