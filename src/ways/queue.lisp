@@ -21,6 +21,13 @@
     (setf (queue-keys queue) (enlarged (queue-keys queue))
           (queue-nodes queue) (enlarged (queue-nodes queue)))))
 
+(declaim (inline put-in-place))
+(defun put-in-place (keys nodes place key node)
+  "Let NODE with KEY be at PLACE of the arrays KEYS and NODES of a queue."
+  (declare (type amounts keys) (type nodes nodes))
+  (setf (aref keys place) key
+        (aref nodes place) node))
+
 (declaim (inline queue-push))
 (defun queue-push (queue node key)
   "Add NODE with KEY."
@@ -31,11 +38,9 @@
     (loop while (plusp place)
           do (let ((parent (ash (1- place) -1)))
                (when (<= (aref keys parent) key) (return))
-               (setf (aref keys place) (aref keys parent)
-                     (aref nodes place) (aref nodes parent)
-                     place parent)))
-    (setf (aref keys place) key
-          (aref nodes place) node)
+               (put-in-place keys nodes place (aref keys parent) (aref nodes parent))
+               (setf place parent)))
+    (put-in-place keys nodes place key node)
     nil))
 
 (defun queue-drop (queue)
@@ -53,11 +58,9 @@
         (when (and (< (1+ child) count) (< (aref keys (1+ child)) (aref keys child)))
           (incf child))
         (when (>= (aref keys child) key) (return))
-        (setf (aref keys place) (aref keys child)
-              (aref nodes place) (aref nodes child)
-              place child)))
-    (setf (aref keys place) key
-          (aref nodes place) node)
+        (put-in-place keys nodes place (aref keys child) (aref nodes child))
+        (setf place child)))
+    (put-in-place keys nodes place key node)
     nil))
 
 (defun copy-into-queue (queue other)
