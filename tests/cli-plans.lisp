@@ -176,6 +176,26 @@
     (is-true (has-words-p text "Plan 1 is under way: dawdle" "Robot> 1 ")))
   (awaiting (null cli::*plan-errands*)))
 
+;;; Pausing. A tick that passes in a hundred seconds is one that does not pass.
+
+(defun resume-for-a-tick ()
+  "Let the paused live run go on, and wait until a tick has passed and the next one is waited for."
+  (let ((passed (base:make-semaphore "passed")))
+    (time:call-scheduled (lambda () (base:signal-semaphore passed)) nil)
+    (time:resume)
+    (base:wait-on-semaphore passed 60)
+    (awaiting (time::custody-asleep-p
+               (time::timeline-custody (time:timeline-of time:*simulation*))))))
+
+(test live.pause-at-the-prompt-holds-the-tick-that-is-due
+  "At a finite rate: the tick that is waited for does not pass, neither at once nor later."
+  (let ((text (joined (type-live '("pause" "go-forward 1000" "rate 0.01"
+                                   "(ars-magna.tests::resume-for-a-tick)" "rate"
+                                   "pause" "rate free" "pause" "pause" "step 2" "quit")))))
+    (is (search "Tick 1, 0.01 ticks a second." text) "~A" text)
+    (is (= 4 (occurrences "Tick 1, paused." text)) "~A" text)
+    (is (search "Tick 3." text) "~A" text)))
+
 ;;; Pictures.
 
 (test picture.goes-into-a-file
