@@ -92,3 +92,32 @@
       (let ((messages (base:take-messages)))
         (is-true (find :warning messages :key #'base:message-kind) "the camera loses it")
         (is (null (find :error messages :key #'base:message-kind)))))))
+
+(defun answers-of-journey (tick then)
+  "Send MARVIN through a doorway, and call THEN after TICK ticks. Return what it is told of that in
+the end, a list, and the errors about runs that are over."
+  (let ((answers '()) (queue nil))
+    (run:with-simulation (ars-worlds:marvin :seed 1 :keep t)
+      (setf queue (run:simulation-messages time:*simulation*))
+      (ars-worlds:robot-go-to ars-worlds:marvin 109 24
+                              (lambda (err robot) (declare (ignore robot)) (push err answers)))
+      (run:run-ticks tick)
+      (funcall then))
+    (values answers
+            (remove-if-not (lambda (message) (search "is over" (base:message-text message)))
+                           (base:take-messages queue)))))
+
+(defun is-told-once (what then)
+  "Check that who sends MARVIN is told once, whenever THEN is called, which does WHAT to its run."
+  (loop for tick from 20 to 100
+        do (multiple-value-bind (answers errors) (answers-of-journey tick then)
+             (is (equal '(:interrupt) answers) "tick ~D, its run ~A" tick what)
+             (is (null errors) "tick ~D, its run ~A: ~A" tick what errors))))
+
+(test going.is-told-once-whatever-becomes-of-its-run
+  "At each moment on the way through a doorway, also when only the camera has a command."
+  (is-told-once "ends" (lambda ()))
+  (is-told-once "is rewound" (lambda () (run:rewind 5) (run:run-ticks 10)))
+  (is-told-once "is rewound by no tick" (lambda () (run:rewind 0)))
+  (is-told-once "is forked" (lambda ()
+                              (run:with-fork (:continuations t) (run:run-ticks 5)))))

@@ -45,9 +45,9 @@
   "Let ROBOT go to the point (X,Y) of its map, or the nearest that is free, as near as TOLERANCE
 metres, through doorways and round obstacles: by its odometer, its place sense and a camera. START
 is where it is, a list (x y heading); by default it finds that out. Returns at once. CONTINUATION
-gets, in the end, an error code or NIL, and ROBOT. The codes: :NO-WAY, :GAVE-UP after PATIENCE
-troubles, and :INTERRUPT if another command took the robot or the camera over. Signals
-WRONG-ARGUMENT for a point that is nowhere near."
+gets, in the end and once, an error code or NIL, and ROBOT. The codes: :NO-WAY, :GAVE-UP after
+PATIENCE troubles, and :INTERRUPT if another command took the robot or the camera over, or the run
+is over, also since it was rewound. Signals WRONG-ARGUMENT for a point that is nowhere near."
   (let ((me (begin-reckoning (or start (here robot)) robot)))
     (go-on-journey (make-journey :robot robot :me me
                                  :goal (goal-near (reckoning-chart me) x y)
@@ -147,18 +147,19 @@ thing, round which it goes. Each third time it goes somewhere else first."
 
 (defun look-for-doorway (journey cell beyond)
   "Let the robot of JOURNEY, which faces the doorway CELL, go into it and to the point BEYOND."
-  (flet ((blindly ()
-           (drive-to-point journey (middle-of cell)
-                           (lambda (journey) (leave-doorway journey beyond)))))
+  (labels ((blindly ()
+             (drive-to-point journey (middle-of cell)
+                             (lambda (journey) (leave-doorway journey beyond))))
+           (look ()
+             (camera-get-all-place-designators (journey-camera journey) 'doorway
+               (continuation (err camera designators)
+                 (let ((doorway (nearest-ahead designators)))
+                   (if (and doorway (not (eq err :interrupt)))
+                       (go-to-doorway journey doorway beyond)
+                       (after-command journey err #'blindly #'blindly)))))))
     (if (journey-camera journey)
         (camera-align-robot (journey-camera journey)
-          (continuation (err camera angle)
-            (camera-get-all-place-designators camera 'doorway
-              (continuation (err camera designators)
-                (let ((doorway (nearest-ahead designators)))
-                  (if (and doorway (not (eq err :interrupt)))
-                      (go-to-doorway journey doorway beyond)
-                      (after-command journey err #'blindly #'blindly)))))))
+          (continuation (err camera angle) (after-command journey err #'look #'look)))
         (blindly))))
 
 (defun go-to-doorway (journey doorway beyond)
@@ -170,26 +171,37 @@ thing, round which it goes. Each third time it goes somewhere else first."
         (unless begun
           (setf begun t)
           (after-command journey err
-                         (lambda () (follow-to-doorway journey beyond))
+                         (lambda () (follow-to-doorway journey doorway beyond))
                          (lambda () (note-obstacle journey))))))))
 
 ;; In a doorway a camera may lose it of itself, before a CAMERA-UNTRACK is begun: that would fail.
-(defun free-from-track (camera designator)
-  "Let CAMERA track DESIGNATOR no more, if it does, and say nothing."
-  (when (eq designator (camera-tracks camera)) (grab-resource camera)))
+;; Where the run is over nothing is tracked any more, and nothing can be asked for.
+(defun free-from-track (journey doorway)
+  "Let the camera of JOURNEY track the designator DOORWAY no more, if it does, and say nothing."
+  (let ((camera (journey-camera journey)) (run (robot-simulation (journey-robot journey))))
+    (when (and (eq doorway (camera-tracks camera))
+               (not (ars-magna.run:simulation-over run)))
+      (grab-resource camera run))))
 
-(defun follow-to-doorway (journey beyond)
+(defun follow-to-doorway (journey doorway beyond)
+  "Let the robot of JOURNEY go to the designator DOORWAY, which its camera tracks."
   (robot-set-speed (journey-robot journey) driving-speed*
     (continuation (err robot speed)
-      (robot-goto-designator robot (journey-camera journey)
-        (continuation (err robot camera designator)
-          (free-from-track (journey-camera journey) designator)
-          (after-command journey err
-                         (lambda () (leave-doorway journey beyond))
-                         (lambda ()
-                           (if (eq err :robot-blocked)
-                               (note-obstacle journey)
-                               (leave-doorway journey beyond)))))))))
+      (flet ((follow () (go-to-tracked journey doorway beyond)))
+        (when (eq err :interrupt) (free-from-track journey doorway))
+        (after-command journey err #'follow #'follow)))))
+
+(defun go-to-tracked (journey doorway beyond)
+  "Let the robot of JOURNEY, which has its speed, go to the designator DOORWAY."
+  (robot-goto-designator (journey-robot journey) (journey-camera journey)
+    (continuation (err robot camera designator)
+      (free-from-track journey doorway)
+      (after-command journey err
+                     (lambda () (leave-doorway journey beyond))
+                     (lambda ()
+                       (if (eq err :robot-blocked)
+                           (note-obstacle journey)
+                           (leave-doorway journey beyond)))))))
 
 (defun leave-doorway (journey beyond)
   "Let the robot of JOURNEY correct its reckoning, if it senses a doorway, and drive on to BEYOND."
