@@ -109,6 +109,25 @@
     (base:undefine 'robot "BEETLE"))
   (delete-package :ars-test-house))
 
+;;; Plans of one of several robots.
+
+(rpl:def-interp-proc look-aside ()
+  (driver:rpl-robot-turn 1)
+  (rpl:wait-for driver:robot-stopped*))
+
+(test robots.that-the-prompt-commands-are-those-of-plans
+  "PROJECT, RUN-PLAN and BEGIN-PLAN typed as Lisp need no RPL-INIT-ROBOT, unless nobody is meant."
+  (with-names ("MARVIN" "GOFER")
+    (dolist (robot '(ars-worlds:gofer ars-worlds:marvin))
+      (is (equal (list "2" (format nil "#<~A>" (symbol-name robot)))
+                 (type-to robot
+                          "(projection-successes (project 'ars-magna.tests::look-aside :trials 2))"
+                          "(rpl-robot)"))))
+    (is (search "(rpl-init-robot marvin)."
+                (joined (type-to 'ars-worlds:marvin
+                                 "(setf ars-magna.cli::*prompt-robot* nil)"
+                                 "(run-plan 'ars-magna.tests::look-aside)"))))))
+
 ;;; A run that is over.
 
 (defun type-live-to (robot &rest lines)

@@ -53,6 +53,7 @@
   (let* ((*standard-output* (session-console session))
          (*standard-input* (session-input session))
          (*robot-meant* #'session-robot)
+         (*robot-to-drive* #'robot-commanded)
          (*query-io* (make-two-way-stream *standard-input* *standard-output*)))
     (funcall function)))
 

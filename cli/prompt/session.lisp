@@ -89,6 +89,11 @@ whether it writes in colours: by default on a terminal, unless the environment h
                    name (simulation-over *simulation*)
                    (and (find-map name nil) name)))))
 
+(defun robot-commanded ()
+  "Return the robot of the current simulation that has the name of the one that the prompt commands,
+or NIL. Where Lisp at the prompt runs a simulation of its own, that has perhaps none."
+  (find *prompt-robot* (simulation-robots *simulation*) :key #'robot-name))
+
 (defun session-robot ()
   "Return the robot that the prompt commands. Signals BAD-LINE when there is none, or its run is
 over."

@@ -79,6 +79,7 @@
   (:export #:*interface* #:interface-p #:interface-robot #:interface-simulation #:interface-runner
            #:interface-wishes #:holding-p #:call-with-plans #:wish #:wish-task #:wish-interface
            #:serve-wish #:add-wish #:forget-wish #:grant-wish #:wishes-in-tick #:fork-at-rest
-           #:unwanted-wish-p #:call-apart #:ensure-interface #:begin-in #:pass-until #:how-over)
+           #:unwanted-wish-p #:call-apart #:ensure-interface #:*robot-to-drive* #:begin-in
+           #:pass-until #:how-over)
   ;; seeing
   (:export #:plan-ending-p #:call-with-plans-in-use #:print-plans #:step-plan))

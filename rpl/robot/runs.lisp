@@ -6,15 +6,27 @@
 (defparameter *plan-limit* 100000
   "How many ticks RUN-PLAN lets pass, headless, before it gives a plan up.")
 
+;; The prompt sets it to know the robot that it commands.
+(defvar *robot-to-drive* (constantly nil)
+  "A function that returns which of several robots plans are to drive if nobody has said so; or NIL
+if there is none.")
+
+(defun robot-to-drive ()
+  "Return the robot of the current simulation that plans are to drive if nobody has said which: the
+only one, or that of the prompt. Signals MISUSE if that could be several."
+  (let ((robots (simulation-robots (current-simulation))))
+    (cond ((= 1 (length robots)) (first robots))
+          ((find (funcall *robot-to-drive*) robots))
+          (t (reject-use "There are ~D robots here. Say which is to be driven: (rpl-init-robot ~
+                          ~:[ROBOT~;~:*~(~A~)~])."
+                         (length robots)
+                         (and robots (robot-name (first robots))))))))
+
 (defun ensure-interface ()
-  "Return the interface in use; make one if the current simulation has a single robot."
+  "Return the interface in use; make one for ROBOT-TO-DRIVE if there is none."
   (or (usable-interface)
-      (let ((robots (simulation-robots (current-simulation))))
-        (unless (= 1 (length robots))
-          (reject-use "There are ~D robots here. Say which is to be driven: (rpl-init-robot ROBOT)."
-                      (length robots)))
-        (rpl-init-robot (first robots))
-        *interface*)))
+      (progn (rpl-init-robot (robot-to-drive))
+             *interface*)))
 
 (defun begin-in (interface plan arguments note)
   "Start PLAN with the list ARGUMENTS by INTERFACE, and return its task. NOTE, a function, has been
@@ -131,14 +143,15 @@ but somebody outside can let plans go on, say so, once."
 
 (addition run-plan)
 (defun run-plan (plan &rest arguments)
-  "Run PLAN, a plan procedure or its name, with ARGUMENTS on the robot of RPL-INIT-ROBOT, or on
-the only one of the current simulation. Return what it returns, or the failure with which it failed,
-and how it ended: :succeeded, :failed, :evaporated, :deadlock (headless; it waits for what can never
-come; live somebody may still bring that about, and there is a warning), :limit (*PLAN-LIMIT* ticks
-have passed, headless) or :stopped (the simulator was stopped or started anew, the robot defined
-anew, or the run rewound by another thread). Failures, deadlocks and limits are reported. A plan
-that is not over when RUN-PLAN returns or is left, as by an abort, ends, but one of a run that was
-rewound goes on in the run that takes its place. Signals UNKNOWN-NAME and MISUSE."
+  "Run PLAN, a plan procedure or its name, with ARGUMENTS on the robot of RPL-INIT-ROBOT; else
+on the only one of the current simulation, or at the prompt on the one that it commands. Return what
+it returns, or the failure with which it failed, and how it ended: :succeeded, :failed, :evaporated,
+:deadlock (headless; it waits for what can never come; live somebody may still bring that about, and
+there is a warning), :limit (*PLAN-LIMIT* ticks have passed, headless) or :stopped (the simulator
+was stopped or started anew, the robot defined anew, or the run rewound by another thread).
+Failures, deadlocks and limits are reported. A plan that is not over when RUN-PLAN returns or is
+left, as by an abort, ends, but one of a run that was rewound goes on in the run that takes its
+place. Signals UNKNOWN-NAME and MISUSE."
   (let ((interface (ensure-interface)))
     (check-outside interface)
     (let ((task nil) (state nil))

@@ -45,8 +45,9 @@ simulation inside of a live one has only inherited is left alone."
   "Let plans drive ROBOT, a robot or its name, or a fluent whose value is one, from now on: make the
 fluents anew, for the parts that it has. Plans under way end; what they do to clean up goes on only
 as far as it takes no time. Return the robot. To be called before anything else of the interface
-(manual C); RUN-PLAN does it for the robot of a simulation that has only one. Signals UNKNOWN-NAME,
-and MISUSE if the robot is in another world than the current one."
+(manual C); RUN-PLAN does it for the robot of a simulation that has only one, and at the prompt for
+the robot that this commands. Signals UNKNOWN-NAME, and MISUSE if the robot is in another world than
+the current one."
   (let* ((named (fluent-value robot))
          (robot (if (robot-p named) named (find-robot named)))
          (simulation (robot-simulation robot)))
