@@ -143,7 +143,7 @@
    (:module "rpl/robot" :serial t
     :components ((:file "package") (:file "fluents") (:file "interface") (:file "takeovers")
                  (:file "under-way") (:file "wishes") (:file "reacting") (:file "forking")
-                 (:file "rewinding")
+                 (:file "handles") (:file "rewinding")
                  (:file "watching") (:file "thread") (:file "starting") (:file "accessors")
                  (:file "outcomes") (:file "commands") (:file "runs") (:file "seeing")))
    (:module "rpl/pictures" :serial t

@@ -52,6 +52,58 @@
     (run:run-ticks 1)
     (is (null (driver:plans)))))
 
+(defmacro is-stale (task)
+  "Check that no word to TASK is taken for one to another task."
+  `(progn (is (null (run:counterpart ,task)))
+          (is-trouble ("was rewound" "(plans)" "begun plans anew") (driver:end-plan ,task))
+          (is-trouble ("count-for-ever") (rpl:suspend ,task))
+          (is (= 1 (length (driver:plans))) "nobody else has ended")))
+
+(test rewind.tasks-that-have-not-begun-are-no-others
+  "Not even if one of the same number has begun since."
+  (counting-run (count task)
+    (let ((late (driver:begin-plan 'count-for-ever (rpl:create-fluent 'late 0))))
+      (run:run-ticks 5)
+      (run:rewind 10)
+      (is (= 1 (length (driver:plans))))
+      (is-stale late)
+      (driver:end-plan task)
+      (let ((other (driver:begin-plan 'count-for-ever (rpl:create-fluent 'other 0))))
+        (is (= (rpl:task-serial late) (rpl:task-serial other)))
+        (run:run-ticks 5)
+        (is-stale late)
+        (is (null (driver:end-plan task)) "it is over: nothing happens")
+        (run:rewind 2)
+        (is-stale late)
+        (is (eq (run:counterpart other) (first (driver:plans))))
+        (driver:end-plan other)
+        (is (null (driver:plans)))))))
+
+(test rewind.tasks-of-plans-begun-anew-are-no-others
+  (counting-run (count task)
+    (run:rewind 10)
+    (driver:rpl-init-robot rover)
+    (let ((other (driver:begin-plan 'count-for-ever (rpl:create-fluent 'other 0))))
+      (is (= (rpl:task-serial task) (rpl:task-serial other)))
+      (run:run-ticks 5)
+      (is-stale task)
+      (run:rewind 2)
+      (is-stale task)
+      (is (eq (run:counterpart other) (first (driver:plans)))))))
+
+(test rewind.tasks-of-plans-that-were-begun-anew-are-found-again
+  "Also where RPL-INIT-ROBOT is done again, and where the run goes back to before it."
+  (counting-run (count task)
+    (driver:rpl-init-robot rover)
+    (let ((other (driver:begin-plan 'count-for-ever (rpl:create-fluent 'other 0))))
+      (run:run-ticks 10)
+      (run:rewind 3)
+      (is (eq (run:counterpart other) (first (driver:plans))))
+      (is-stale task)
+      (run:rewind 12)
+      (is-stale other)
+      (is (eq (run:counterpart task) (first (driver:plans)))))))
+
 (test rewind.forks-stand-for-what-they-became
   (with-rover (:seed 1)
     (run:run-ticks 3)

@@ -61,12 +61,3 @@ them."
 
 (defmethod counterpart-here ((entity entity))
   (here entity))
-
-(defmethod counterpart-here ((task task))
-  (let* ((client (and (task-runner task) (runner-client (task-runner task))))
-         (robot (and client (counterpart-here (interface-robot client))))
-         (interface (find-if (lambda (participant)
-                               (and (interface-p participant)
-                                    (eq robot (interface-robot participant))))
-                             (simulation-participants *simulation*))))
-    (and interface (task-numbered (task-serial task) (interface-runner interface)))))

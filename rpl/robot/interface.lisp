@@ -12,7 +12,7 @@
 plan: of all that happens to tasks and fluents, some 50 octets for each. See PLAN-TRACE, WHY and
 SAVE-PLAN-TIMELINE.")
 
-(define-kind (interface :constructor (make-interface (robot simulation)))
+(define-kind (interface :constructor (make-interface (robot simulation eras)))
     "The robot that plans drive, and what runs them."
   (:fixed
    (robot nil (or null robot) "the robot that plans drive")
@@ -30,6 +30,7 @@ SAVE-PLAN-TIMELINE.")
    (wishes-served 0 fixnum "how many wishes have been served in a tick")
    (wish-tick nil t "the tick in which that was"))
   (:memory
+   (eras '() list "which tasks are of which era, the newest first; see handles.lisp")
    (warned '() list "what was said of takeovers, and at which tick"))
   (:link
    (ender nil (or null function) "what the robot calls when its run is over")
@@ -109,6 +110,12 @@ known to be at Lisp code that does not return."
 again."
   (loop while (plusp (interface-wanted interface))
         do (yield-thread)))
+
+;;; Which tasks are the same in several runs; see handles.lisp.
+
+(defun first-eras ()
+  "Return the eras of an interface that has had no task."
+  (list (cons (gensym "ERA") 0)))
 
 ;;; Which interface.
 

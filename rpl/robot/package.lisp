@@ -34,7 +34,7 @@
                 #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:plan-runner-steps #:current-task #:task #:task-p
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
-                #:task-label #:task-serial #:task-form #:task-cleaning #:form-text
+                #:task-label #:runner-serial #:task-serial #:task-form #:task-cleaning #:form-text
                 #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-doomed
                 #:report-end #:reseed-runner #:digest-runner #:print-tasks #:find-procedure
                 #:plan-trace #:write-trace #:valve #:make-valve #:note-command #:with-answer

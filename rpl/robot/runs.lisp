@@ -207,9 +207,9 @@ a fork of it, or in the one that goes on since it was rewound."
 
 (defmethod task-now ((interface interface) task)
   (let ((latest (latest (interface-simulation interface))))
-    (or (cond ((elsewhere-p interface) (counterpart-here task))
-              ((not (eq latest (interface-simulation interface))) (counterpart task latest)))
-        task)))
+    (cond ((elsewhere-p interface) (task-of-now task *simulation*))
+          ((not (eq latest (interface-simulation interface))) (task-of-now task latest))
+          (t task))))
 
 (defun task-here (task)
   "Return TASK or, if it is in a run that this thread works in a fork of, or that has been rewound
@@ -223,7 +223,8 @@ since, what it is there."
 are interrupted, but for what they asked for to clean up. Lisp code of a live plan that keeps the
 plans' thread is aborted. A TASK can be ended anywhere; one of a simulation that we are not in hears
 of it when that goes on. One that is over stays as it is. Returns nothing. Signals WRONG-ARGUMENT,
-and MISUSE if there is no robot whose plans :ALL could be."
+and MISUSE if there is no robot whose plans :ALL could be, or the run of TASK was rewound to a tick
+before that began."
   (check-argument end-plan task (or (eq task :all) (task-p task))
                   "a task, as begin-plan returns, or :ALL")
   (if (eq task :all)

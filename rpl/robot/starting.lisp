@@ -40,6 +40,20 @@ simulation inside of a live one has only inherited is left alone."
       (not (interface-valid-p interface))
       (and (live-p simulation) (live-p (interface-simulation interface)))))
 
+;; Who repeats a run says which eras these were, so that the tasks of then are known.
+(defun drive-in-eras (robot eras)
+  "Do what RPL-INIT-ROBOT does with ROBOT, whose tasks are to be of ERAS. Return it."
+  (let ((simulation (robot-simulation robot)))
+    (note-doing simulation #'drive-in-eras robot eras)
+    (when (and *interface* (ended-by-p *interface* simulation))
+      (close-interface *interface*))
+    (make-fluents robot)
+    (let ((interface (make-interface robot simulation eras)))
+      (attach interface)
+      (setf *interface* interface))
+    (when (eq simulation *simulation*) (note-environment simulation))
+    robot))
+
 (public rpl-init-robot)
 (defun rpl-init-robot (robot)
   "Let plans drive ROBOT, a robot or its name, or a fluent whose value is one, from now on: make the
@@ -49,18 +63,9 @@ as far as it takes no time. Return the robot. To be called before anything else 
 the robot that this commands. Signals UNKNOWN-NAME, and MISUSE if the robot is in another world than
 the current one."
   (let* ((named (fluent-value robot))
-         (robot (if (robot-p named) named (find-robot named)))
-         (simulation (robot-simulation robot)))
+         (robot (if (robot-p named) named (find-robot named))))
     (check-world robot)
-    (note-doing simulation #'rpl-init-robot robot)
-    (when (and *interface* (ended-by-p *interface* simulation))
-      (close-interface *interface*))
-    (make-fluents robot)
-    (let ((interface (make-interface robot simulation)))
-      (attach interface)
-      (setf *interface* interface))
-    (when (eq simulation *simulation*) (note-environment simulation))
-    robot))
+    (drive-in-eras robot (first-eras))))
 
 ;;; When a simulator starts.
 

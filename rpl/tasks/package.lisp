@@ -38,7 +38,8 @@ plans nor a simulator.")
            #:plan-runner-tasks #:plan-runner-tick #:plan-time #:plan-trace #:runner-blocks
            #:runner-dice #:runner-tick
            #:runner-ticks-per-second #:runner-timers #:runner-current #:runner-stepper
-           #:runner-note #:client-forked-p #:runner-trace #:runner-client #:*plan-task-limit*)
+           #:runner-note #:runner-serial #:client-forked-p
+           #:runner-trace #:runner-client #:*plan-task-limit*)
   ;; words
   (:export #:note-word #:task-now)
   ;; charging

@@ -102,6 +102,7 @@ as it needs. CLIENT is on whose behalf all this is."
  runner-charged-p "True if thoughts of the plan runner's tasks that say what they cost take ticks."
  runner-timers "Return the timers of the plan runner."
  runner-blocks "Return how many blocks of tasks of the plan runner there are."
+ runner-serial "Return the number of the task of the plan runner that began last."
  runner-client "Return on whose behalf the plan runner runs plans, as MAKE-PLAN-RUNNER was told."
  runner-dice "Return the dice by which the plan runner's tasks choose, or NIL."
  runner-ticks-per-second "Return how many ticks are a second for the plan runner's tasks.")
