@@ -142,3 +142,30 @@
       (run:call-in-fork fork (lambda () (run:keep-forks) (run:run-ticks 5) (run:rewind 2)))
       (is (= 5 (run:run-ticks 2 fork)))
       (is (= 6 (nth-value 1 (run:run-until (lambda () nil) :limit 1 :simulation fork)))))))
+
+(defvar *top-count* (rpl:create-fluent 'top-count 0) "What top-level code counts in.")
+
+(defun root-now-p () (eq fluents:+root+ (base:global-value 'fluents:*realm*)))
+
+(test rewind.of-a-live-run-ends-with-it
+  "Once another run starts, top-level code works where it did, with what it had last."
+  (keeping-often
+    (live-rover (:rate 500 :seed 2)
+      (driver:rpl-init-robot rover)
+      (command:robot-turn rover 90)
+      (setf (rpl:fluent-value *top-count*) 1)
+      (awaiting (< 20 (tick-of-run)))
+      (run:rewind 10)
+      (is-false (root-now-p))
+      (setf (rpl:fluent-value *top-count*) 2)
+      (driver:begin-plan 'count-for-ever *top-count*)
+      (awaiting (< 5 (rpl:fluent-value *top-count*)))
+      (time:pause)
+      (time:ask time:*simulation* (constantly nil)))
+    (let ((count (rpl:fluent-value *top-count*)))
+      (live-rover (:rate 500 :seed 2)
+        (is-true (root-now-p))
+        (is (<= count (rpl:fluent-value *top-count*)))
+        (setf (rpl:fluent-value *top-count*) 0)
+        (is (= 0 (rpl:fluent-value *top-count*)))))
+    (is-true (root-now-p))))

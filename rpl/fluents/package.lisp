@@ -21,7 +21,7 @@ no plan.")
   (:export #:base-fluents #:depends-p #:fluent-watchers #:fl-apply #:fl-funcall #:fluent-text
            #:fluent-value #:unwatch #:watch)
   ;; realm
-  (:export #:*realm* #:fork-realm #:leave-realm #:realm-source #:source-realm
+  (:export #:*realm* #:+root+ #:fork-realm #:leave-realm #:realm-source #:source-realm
            #:entity #:entity-realm #:entity-like #:here #:fresh-twin #:foreign-p #:home-forked-p)
   ;; home
   (:export #:*runner* #:*home-in-use* #:*on-outside-change* #:home #:home-closed-p #:home-on-post

@@ -102,3 +102,16 @@ on, in NEW, which is over."
     (unless (or (null realm) (eq from realm)) (give-back-all from realm))))
 
 (pushnew 'give-fluents-back *rewound-end-hooks*)
+
+;; A live run that was rewound has let top-level code work in a fork of where that worked before.
+(defun leave-rewound (robot options)
+  "Let top-level code, now that the simulator of ROBOT has started a run of its own, work again
+where all runs do that are no forks. Fluents have the values there that they had last."
+  (declare (ignore robot options))
+  (let ((from (global-value '*realm*)))
+    (unless (eq from +root+)
+      (give-back-all from +root+)
+      (setf (global-value '*realm*) +root+)
+      (when (eq from *realm*) (setf *realm* +root+)))))
+
+(pushnew 'leave-rewound *simulator-hooks*)
