@@ -73,6 +73,40 @@ between one thing's kicks with the geometric law, as a draw per thing and tick w
                                         (* .25 (expt .75 (1- gap))))
                      "gap ~D: ~D of ~D" gap (count gap gaps) (length gaps)))))))
 
+(defun kicks-by-hand (count probability ticks seed)
+  "Return the vector of how often each of COUNT kickers in a new world runs in TICKS ticks."
+  (let* ((dice (world:world-dice (open-world :seed seed) :kickers))
+         (scale (world::gap-scale probability)) (kicks (make-array count :initial-element 0)))
+    (loop with trial = (world::draw-gap scale dice)
+          while (< trial (* ticks count))
+          do (incf (aref kicks (mod trial count)))
+             (incf trial (1+ (world::draw-gap scale dice))))
+    kicks))
+
+(test kickers.in-large-groups-run-as-the-dice-say
+  "Memory is read ahead for them, whether their things lie on the floor, in a chest or nowhere."
+  (with-own-definitions
+    (let* ((count 6000) (world (open-world :seed 3)) (chest (thing-in world 'chest 2 2 '()))
+           (kicker (world:define-kicker 'drift :prob .02
+                     :body (lambda (thing) (world:kick-thing thing 1/1024 0 nil))))
+           (things (loop for i below count
+                         collect (thing-in world 'box (+ 1 (mod i 18)) (+ 1 (mod i 17)) '()
+                                           :kickers (list kicker))))
+           (inside (subseq things 0 9)))
+      (dolist (thing inside) (world:move-thing thing chest))
+      (run-world world 10)
+      (loop for thing in things
+            for i from 0
+            for kicks across (kicks-by-hand count .02d0 10 3)
+            for start = (if (member thing inside) 2 (+ 1 (mod i 18)))
+            do (unless (and (member thing inside) (zerop kicks))
+                 (unless (= (world:thing-x thing) (+ start (/ kicks 1024)))
+                   (fail "~A has not been kicked ~D times" thing kicks))))
+      (mapc #'world:destroy-thing (subseq things 3000 3003))
+      (run-world world 10)
+      (is (= (- count 3) (world::group-count (first (world::world-kicker-groups world)))))
+      (is-sound world))))
+
 (test kickers.test-only-thins
   (with-own-definitions
     (multiple-value-bind (world counts)

@@ -19,15 +19,17 @@
     (declare (type word word))
     (logxor word (ash word -31))))
 
-(declaim (inline %make-dice dice-state (setf dice-state)))
-(defstruct (dice (:constructor %make-dice (state)) (:copier copy-dice))
+(declaim (inline %make-dice dice-state (setf dice-state) copy-dice))
+(defstruct (dice (:constructor %make-dice (state)) (:copier nil))
   "A stream of chance. Two dice in the same state roll the same numbers for ever."
   (state 0 :type word))
 (declaim-final dice)
-(setf (documentation 'copy-dice 'function)
-      "Return new dice that will roll what these dice would."
-      (documentation 'dice-state 'function)
+(setf (documentation 'dice-state 'function)
       "Return the state of the dice, an integer of 64 bits.")
+
+(defun copy-dice (dice)
+  "Return new dice that will roll what DICE would."
+  (%make-dice (dice-state dice)))
 
 (declaim (inline characters-word))
 (defun characters-word (string code)
