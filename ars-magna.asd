@@ -245,7 +245,8 @@
                    (:file "plan-lines") (:file "plan-views") (:file "help")
                    (:file "topics") (:file "manipulate-line")
                    (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")
-                   (:file "fork-line") (:file "import-line")))
+                   (:file "fork-line") (:file "import-line")
+                   (:file "export-line")))
      (:module "shell" :serial t
       :components ((:file "options") (:file "texts") (:file "report") (:file "experiments")
                    (:file "executable") (:file "spreading") (:file "experiment-command")
