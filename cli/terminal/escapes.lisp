@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.cli)
 
-;;; No other file of the prompt knows an escape code. They are those that all terminals of today have in common.
-;;; Colours are the sixteen that users choose themselves, so that they suit their background; white
-;;; and black are left to be what text is.
+;;; No other file of the prompt knows an escape code. They are those that all terminals of today
+;;; have in common. Colours are the sixteen that users choose themselves, so that they suit their
+;;; background; white and black are left to be what text is.
 
 (defparameter *inks*
   '(("RED" . "31") ("GREEN" . "32") ("YELLOW" . "33") ("BLUE" . "34") ("VIOLET" . "35")
