@@ -176,7 +176,7 @@
     :components ((:file "workers") (:file "stopwatch") (:file "progress") (:file "rounds")
                  (:file "stopping") (:file "repeatable") (:file "running")))
    (:module "src/experiment/report" :serial t
-    :components ((:file "estimates") (:file "summary") (:file "text-table")
+    :components ((:file "estimates") (:file "summary") (:file "text-table") (:file "texts")
                  (:file "remarks") (:file "report")))
    (:module "src/experiment/comparison" :serial t
     :components ((:file "differences") (:file "contrasts") (:file "overall") (:file "verdicts")
@@ -225,8 +225,8 @@
     :components
     ((:file "package")
      (:module "terminal" :serial t
-      :components ((:file "keyboard") (:file "process") (:file "telling") (:file "columns")
-                   (:file "input") (:file "escapes") (:file "drawn-line") (:file "console")
+      :components ((:file "keyboard") (:file "process") (:file "telling") (:file "input")
+                   (:file "escapes") (:file "columns") (:file "drawn-line") (:file "console")
                    (:file "progress") (:file "json") (:file "layout")))
      (:module "editing" :serial t
       :components ((:file "keys") (:file "changes") (:file "history") (:file "editor")
@@ -242,10 +242,11 @@
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
                    (:file "status-data") (:file "status-lines") (:file "map-lines")
                    (:file "running-lines") (:file "watch-line") (:file "world-lines")
-                   (:file "plan-lines") (:file "plan-views") (:file "help")
-                   (:file "topics") (:file "manipulate-line")
+                   (:file "plan-lines") (:file "plan-views") (:file "manipulate-line")
+                   (:file "help") (:file "topics") (:file "help-lines")
                    (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")
-                   (:file "fork-line") (:file "import-line")))
+                   (:file "fork-line") (:file "import-line")
+                   (:file "export-line")))
      (:module "shell" :serial t
       :components ((:file "options") (:file "texts") (:file "report") (:file "experiments")
                    (:file "executable") (:file "spreading") (:file "experiment-command")

@@ -72,6 +72,16 @@
   (is-false (written-p "5" (type-at-terminal "(break)" "quit" "(+ 2 3)")))
   (is-true (written-p "*BREAK* -> break" (type-at-terminal "(break)"))))
 
+(test errors.of-a-continuation-are-answered-in-its-name
+  (let* ((base:*break-on-user-error* t)
+         (written (type-at-terminal
+                   "(robot-turn butler 1 (lambda (&rest results) (error \"mine ~A\" results)))"
+                   "(run-ticks 9)" "abort" "(+ 2 3)")))
+    (dolist (line '("*BREAK* -> mine" "Report it and leave the continuation of robot-turn."
+                    "Try the continuation of robot-turn again." "5"))
+      (is-true (find-if (lambda (written) (search line written)) written)
+               "~A is not in ~S" line written))))
+
 (test break.on-a-full-stack-is-a-message
   (let* ((base:*break-on-user-error* t)
          (written (type-at-terminal

@@ -79,7 +79,7 @@
 
 (defun expected-rows (written line columns)
   "Return what a terminal shows after WRITTEN while LINE, a drawn-line, is typed."
-  (let ((text (concatenate 'string (cli::drawn-line-prompt line) (cli::drawn-line-text line))))
+  (let ((text (concatenate 'string (cli::drawn-line-label line) (cli::drawn-line-text line))))
     (append (if (or (string= "" written) (ends-with-p (string #\Newline) written))
                 (butlast (rows-in written columns))
                 (rows-in written columns))

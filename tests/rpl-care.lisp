@@ -144,6 +144,29 @@ value...), one after the other."
        (answer-debugger runner ,@(loop for answer in answers collect `',answer))
        (list (rpl:task-result task) (rpl:task-state task)))))
 
+(rpl:def-interp-proc stumbling ()
+  (rpl:seq (error "no")))
+
+(test debugger.restarts-name-the-plan
+  (let ((offered '()) (again 0))
+    (with-runner (runner)
+      (let ((base:*break-on-user-error* t)
+            (base:*message-queue* (base:make-message-queue)))
+        (rpl:start-plan runner 'stumbling)
+        (base:with-debugger-hook ((lambda (condition hook)
+                                    (declare (ignore hook))
+                                    (dolist (name '(tasks::fail-task tasks::leave-plan abort))
+                                      (push (princ-to-string (find-restart name condition))
+                                            offered))
+                                    (setf again (count 'tasks::retry (compute-restarts condition)
+                                                       :key #'restart-name))
+                                    (invoke-restart (find-restart 'tasks::fail-task condition))))
+          (rpl:react-to-all runner))))
+    (is (equal '("Let the task stumbling fail." "End the plan stumbling without a word."
+                 "End the plan stumbling.")
+               (reverse offered)))
+    (is (= 1 again) "what can be done again is offered once")))
+
 (test debugger.a-leaf-can-be-done-again
   (let ((tries 0))
     (is (equal '(:fine :succeeded)

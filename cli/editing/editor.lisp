@@ -69,10 +69,10 @@ and have again what he has typed before. The line is shown on CONSOLE."))
     (setf (edited-ahead stream) (subseq octets (if interrupt (1+ interrupt) 0)))
     (when interrupt (heed-interrupt))))
 
-(defun paste-in-brackets (console on)
+(defun tell-pastes-apart (console on)
   "Let the terminal tell what is pasted from what is typed, if ON is true."
   (with-console (stream console)
-    (format stream "~C[?2004~:[l~;h~]" #\Escape on)
+    (write-string (paste-in-brackets on) stream)
     (finish-output stream)))
 
 ;;; The line.
@@ -147,9 +147,9 @@ and have again what he has typed before. The line is shown on CONSOLE."))
 (define-action (:control-z) (stream)
   "Stop this process until its user wants it back."
   (hide-line (edited-console stream))
-  (paste-in-brackets (edited-console stream) nil)
+  (tell-pastes-apart (edited-console stream) nil)
   (stop-for-a-while)
-  (paste-in-brackets (edited-console stream) t)
+  (tell-pastes-apart (edited-console stream) t)
   (change-line (edited-console stream) (constantly nil))
   nil)
 

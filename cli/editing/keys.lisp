@@ -56,7 +56,7 @@
 
 (defun read-paste (next)
   "Return the text that NEXT returns up to the code that ends what is pasted."
-  (loop with end = (format nil "~C[201~~" #\Escape)
+  (loop with end = (paste-ended)
         with octets = (make-array 100 :element-type 'character :adjustable t :fill-pointer 0)
         for char = (funcall next)
         while char
@@ -91,6 +91,6 @@
           ((find char '(#\Return #\Newline)) :return)
           ((char= char #\Tab) :tab)
           ((find char '(#\Rubout #\Backspace)) :rubout)
-          ((char= char #\Escape) (read-key-after-escape next))
+          ((char= char +escape+) (read-key-after-escape next))
           ((< (char-code char) 32) (key-called "control-~C" (code-char (+ 64 (char-code char)))))
           (t (read-text char next)))))

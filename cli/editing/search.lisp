@@ -19,7 +19,7 @@ it SOUGHT begins; NIL if there is none."
   (multiple-value-bind (entry place) (found-entry stream sought skipped)
     (change-line (edited-console stream)
                  (lambda (line)
-                   (setf (drawn-line-prompt line)
+                   (setf (drawn-line-label line)
                          (format nil "(search~:[, not found~;~]) ~A: "
                                  (or entry (string= "" sought)) sought))
                    (when entry
@@ -43,13 +43,13 @@ it SOUGHT begins; NIL if there is none."
 (define-action (:control-r) (stream)
   "Look for a line in the history."
   (let* ((line (line-of stream))
-         (prompt (drawn-line-prompt line))
+         (prompt (drawn-line-label line))
          (text (drawn-line-text line))
          (point (drawn-line-point line)))
     (show-search stream "" 0)
     (let ((key (search-keys stream)))
       (change-line (edited-console stream)
-                   (lambda (line) (setf (drawn-line-prompt line) prompt)))
+                   (lambda (line) (setf (drawn-line-label line) prompt)))
       (if (member key '(:control-g :control-c))
           (progn (change-to stream text point) nil)
           (press stream key)))))

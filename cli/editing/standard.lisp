@@ -35,11 +35,11 @@ is true."
     (funcall function))
   (:method (function (input edited-text))
     (let ((console (edited-console input)))
-      (unwind-protect (progn (paste-in-brackets console t)
+      (unwind-protect (progn (tell-pastes-apart console t)
                              (call-handing-over-keys function))
         (save-entry (edited-history input))
         (answered console)
-        (paste-in-brackets console nil)))))
+        (tell-pastes-apart console nil)))))
 
 (defgeneric remember-line (input line before)
   (:documentation "Let whoever types into INPUT have LINE again, together with the text BEFORE, if

@@ -1,4 +1,4 @@
-;;;; help.lisp -- HELP and the menus, from the definitions.
+;;;; help.lisp -- what HELP says of lines, from their definitions, and its menus.
 
 (in-package :ars-magna.cli)
 
@@ -41,41 +41,3 @@ The beginning of a command's name will do. A line in parentheses is Lisp." 0))
   (write-filled (line-sentence line) 2)
   (dolist (slot (line-parameters line)) (write-filled (slot-help slot) 4))
   (dolist (detail (line-details line)) (write-filled detail 2)))
-
-(defun write-help-on (name)
-  "Tell what the command, alias, plan or whatever else is called NAME does or is."
-  (let ((line (find name (all-lines) :key #'line-name :test #'string-equal))
-        (alias (assoc name *aliases* :test #'string-equal))
-        (plan (plan-called name)))
-    (cond (line (write-help line))
-          (alias (format t "~{~A is an alias of ~A~}~%" alias))
-          (plan (write-plan-help plan))
-          (t (let ((topics (topics-called name)))
-               (if topics
-                   (mapc #'write-topic topics)
-                   (write-help (line-to-help-with name))))))))
-
-(defun line-to-help-with (name)
-  "Return the line whose name begins with NAME. Signals BAD-LINE."
-  (handler-bind ((bad-line (lambda (condition)
-                             (reject-line "~A APROPOS ~(~A~) searches all that has a name."
-                                          (bad-line-text condition) name))))
-    (find-line name)))
-
-(define-line "HELP" (session (name :topic "a command, a plan, or whatever has a name" :optional))
-    (:general)
-    "List the commands of the prompt and those that move the robot, or tell what NAME does or is: a
-command, plan, parameter, place type, attribute, value, error code, name of Lisp ..."
-  (if name (write-help-on name) (write-main-menu)))
-
-(define-line "MENU-BIN" (session) (:general)
-    "List the commands of storage bins."
-  (write-menu (lines-of :storage-bin)))
-
-(define-line "MENU-CAMERA" (session) (:general)
-    "List the commands of cameras."
-  (write-menu (lines-of :camera)))
-
-(define-line "MENU-HAND" (session) (:general)
-    "List the commands of hands."
-  (write-menu (lines-of :hand)))

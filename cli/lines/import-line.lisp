@@ -20,4 +20,4 @@
     (:seeing)
     "Make a map of the occupancy grid in FILE, and of the image that it names. The map is called
 like FILE."
-  (multiple-value-call #'tell-imported (import-map (native-path file))))
+  (multiple-value-call #'tell-imported (import-map file)))

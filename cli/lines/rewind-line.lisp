@@ -15,14 +15,14 @@
   (declare (ignore new))
   (dolist (errand (errands-in old))
     (setf (plan-errand-let-go-p errand) t
-          (session-rewound-p (plan-errand-session errand)) t)))
+          (session-after-rewind (plan-errand-session errand)) #'take-up-plans)))
 
 (pushnew 'let-errands-go *rewind-hooks*)
 
 (defun rewind-here (session ticks)
   "Let SESSION go on in a run that is TICKS ticks back."
   (rewind ticks)
-  (setf (session-rewound-p session) t)
+  (setf (session-after-rewind session) nil)
   (take-up-plans session))
 
 (define-line "REWIND" (session (n tick-span "how far"))

@@ -200,36 +200,3 @@ max-speed*."
 (defmethod choices ((type (eql :topic)) session typed)
   (append (choices :command session typed)
           (mapcar (lambda (topic) (string-downcase (topic-name topic))) (all-topics))))
-
-;;; Searching.
-
-(defparameter *most-topics* 40
-  "How many topics APROPOS lists that have a word in their texts only.")
-
-(defun topics-with (word)
-  "Return the topics that have WORD in their names, and those that have it in their texts only."
-  (flet ((in-p (text) (search word text :test #'char-equal)))
-    (let ((topics (all-topics)))
-      (values (remove-if-not (lambda (topic) (in-p (topic-name topic))) topics)
-              (remove-if-not (lambda (topic)
-                               (and (not (in-p (topic-name topic))) (in-p (topic-words topic))))
-                             topics)))))
-
-(defun write-topics (topics)
-  (dolist (topic topics)
-    (put-line "~A" (cut (format nil "  ~24A ~13A ~A" (topic-name topic) (topic-title topic)
-                                (one-line (topic-words topic)))
-                        79))))
-
-(define-line "APROPOS" (session (word :rest "a word, or a part of one"))
-    (:general)
-    "List all that has WORD in its name, or else in what is said of it: lines, plans, parameters,
-place types, attributes, error codes, names of Lisp. HELP tells more of each."
-  (multiple-value-bind (named others) (topics-with word)
-    (let ((more (- (length others) *most-topics*)))
-      (unless (or named others) (reject-line "Nothing has ~A in it." word))
-      (write-topics named)
-      (when others
-        (format t "~:[Said of it~;Also said of it~]:~%" named)
-        (write-topics (subseq others 0 (min *most-topics* (length others)))))
-      (when (plusp more) (format t "  and ~D more.~%" more)))))

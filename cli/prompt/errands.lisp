@@ -102,9 +102,14 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
        (or (not (live-p *simulation*))
            (and (session-patient-p session) (not (paused-p *simulation*))))))
 
+(defun heed-rewind (session)
+  "Let SESSION do what it has to if its run was rewound."
+  (let ((after-rewind (shiftf (session-after-rewind session) nil)))
+    (when after-rewind (funcall after-rewind session))))
+
 (defun catch-up (session)
   "Wait for what SESSION has issued, itself or by Lisp, if it is one that waits."
-  (take-up-plans session)
+  (heed-rewind session)
   (if (waits-p session)
       (progn (await-errands session)
              (when (shiftf (session-lisp-p session) nil) (settle)))

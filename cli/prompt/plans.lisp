@@ -227,11 +227,10 @@ answer to the last such question."
     (when (live-p *simulation*) (start-watching-plan errand))))
 
 (defun take-up-plans (session)
-  "Let SESSION, if plans that it waited for are of a run that was rewound, wait for those that go on
-in the place of them."
-  (when (shiftf (session-rewound-p session) nil)
-    (flet ((let-go-p (errand) (and (plan-errand-p errand) (plan-errand-let-go-p errand))))
-      (mapc #'close-errand (remove-if-not #'let-go-p (session-errands session)))
-      (setf (session-errands session) (remove-if #'let-go-p (session-errands session))))
-    (dolist (task (plans))
-      (unless (find task *plan-errands* :key #'plan-errand-task) (take-up-plan session task)))))
+  "Let SESSION, whose plans are of a run that was rewound, wait for those that go on in the place of
+them."
+  (flet ((let-go-p (errand) (and (plan-errand-p errand) (plan-errand-let-go-p errand))))
+    (mapc #'close-errand (remove-if-not #'let-go-p (session-errands session)))
+    (setf (session-errands session) (remove-if #'let-go-p (session-errands session))))
+  (dolist (task (plans))
+    (unless (find task *plan-errands* :key #'plan-errand-task) (take-up-plan session task))))

@@ -46,8 +46,8 @@
   ;; What has been issued and may not have ended, and whether Lisp may have issued more.
   (errands '() :type list)
   (lisp-p nil)
-  ;; The run of plans that it waits for was rewound.
-  (rewound-p nil)
+  ;; If the run of plans that it waits for was rewound: what to call first, with this session.
+  (after-rewind nil :type (or null function))
   (over-p nil)
   ;; The trial that the prompt is in, or NIL.
   (visit nil)

@@ -36,6 +36,10 @@ there are none."
   "Return the names of all robots."
   (mapcar #'blueprint-name (all-blueprints)))
 
+(defun world-of (robot-name)
+  "Return the map that the robot ROBOT-NAME is defined in."
+  (find-map (blueprint-map (find-blueprint robot-name))))
+
 (defun robots-of (map)
   "Return the names of the robots that are defined in MAP, or in the map so named."
   (loop for body in (all-blueprints)
@@ -73,7 +77,7 @@ a world. Signals BAD-LINE."
 
 (defun robots-beside (robot-name)
   "Return the names of all robots in the map of ROBOT-NAME, that one first."
-  (cons robot-name (remove robot-name (robots-of (blueprint-map (find-blueprint robot-name))))))
+  (cons robot-name (remove robot-name (robots-of (world-of robot-name)))))
 
 (defun write-worlds ()
   "List the worlds: their maps, and their robots."

@@ -6,6 +6,10 @@
 ;;; the same program, in which the user's file has been loaded: `./PROGRAM experiment NAME` runs
 ;;; what is in it, with the fingerprints that it would have here.
 
+;; What begins sets it.
+(defvar *beginning* (constantly nil)
+  "The function that a program which has been saved begins by calling.")
+
 (defvar *saved-by-user-p* nil "True in a program that a user has saved.")
 
 (defun program-words ()
@@ -24,7 +28,7 @@
   (let ((path (native-path name)))
     (when (existing-path path) (delete-file path))
     (handler-case (sb-ext:save-lisp-and-die path :executable t :save-runtime-options t
-                                                 :toplevel #'main)
+                                                 :toplevel *beginning*)
       (error (condition)
         (reject-line "~A cannot be saved: ~A" name (one-line (own-text condition)))))))
 

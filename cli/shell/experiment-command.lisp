@@ -5,14 +5,6 @@
 ;;; What comes of an experiment is written to the standard output when it is over, and nothing else
 ;;; is; how far it has come goes to the error output.
 
-(defun say (control &rest arguments)
-  "Tell the user something beside what he has asked for."
-  ;; A line that tells of progress may stand there.
-  (when (interactive-stream-p *error-output*)
-    (format *error-output* "~C~C[K" #\Return #\Escape))
-  (format *error-output* "ars-magna: ~?~%" control arguments)
-  (finish-output *error-output*))
-
 ;; A shell has no prompt that would show them.
 (defun tell-doubts ()
   "Say what is doubtful in the definitions that have been loaded."

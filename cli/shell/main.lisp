@@ -165,3 +165,5 @@ only asks whether the core starts."
   (mind-interrupts)
   ;; An interrupt that still waits when all is done is not to be taken then.
   (call-holding-interrupts (lambda () (end-process (run-process)))))
+
+(setf *beginning* #'main)

@@ -23,10 +23,6 @@
   "Return a console that turns what is written to it into objects on the standard output."
   (make-console (make-instance 'object-stream :stream (console-stream *standard-output*))))
 
-(defun world-of (robot-name)
-  "Return the map that the robot ROBOT-NAME is defined in."
-  (find-map (blueprint-map (find-blueprint robot-name))))
-
 (defun report-beginning (session robot-name options)
   "Report what SESSION begins with, if it reports by objects."
   (report-object (session-account session) "begin"

@@ -17,7 +17,7 @@
 
 (defun code-end (text position)
   "Return where the code ends that begins in TEXT at POSITION, or NIL if none does."
-  (and (char= #\Escape (char text position))
+  (and (char= +escape+ (char text position))
        (let ((letter (position-if #'alpha-char-p text :start position)))
          (and letter (1+ letter)))))
 

@@ -21,7 +21,7 @@
    (rest :initform "" :accessor console-rest)
    (wrapped-p :initform nil :accessor console-wrapped-p)
    (edited-p :initform nil :accessor console-edited-p)
-   (line :initform nil :accessor console-line)
+   (typed :initform nil :accessor console-line)
    (question :initform nil :accessor console-prompt)
    (overwritten-p :initform nil :accessor console-overwritten-p)
    (trouble :initform nil :accessor console-trouble)
@@ -31,7 +31,7 @@
   (:documentation "An output stream on top of another. WINDOW is a function that returns columns and
 rows of the terminal's window, or NIL if there is none. REST is what was written last, since a
 newline, as far as it is short; WRAPPED-P is true if that fills a row, and the cursor has gone on to
-the next. EDITED-P is true if the prompt edits what is typed, LINE the drawn-line that is being
+the next. EDITED-P is true if the prompt edits what is typed, TYPED the drawn-line that is being
 typed, or NIL. QUESTION is what stands there for the user to answer, or NIL; OVERWRITTEN-P is true
 if something was written after it. TROUBLE is the condition that what was written could not be
 delivered, or NIL. COLORED-P is true if its messages and prompts have colours. While HELD-BACK-P is
@@ -116,8 +116,7 @@ goes on where the last has ended."
     (when (and line (drawn-line-shown line))
       (call-in-window #'wipe-line console stream)
       (unless (or (zerop (console-column console)) (console-wrapped-p console))
-        (move-up 1 stream)
-        (move-right (column-of-row console) stream)))))
+        (format stream "~A~A" (cursor-up 1) (cursor-right (column-of-row console)))))))
 
 (defun draw (console stream)
   "Draw the line that is being typed below what was written, if there is one and it is not there."
@@ -145,7 +144,7 @@ goes on where the last has ended."
         (put-string (string #\Newline) console stream))
       (let ((prompt (console-rest console)))
         (setf (console-line console)
-              (make-drawn-line :prompt prompt :shown (list prompt "" 0))))
+              (make-drawn-line :label prompt :shown (list prompt "" 0))))
       ;; What has been written last is the line's now. Under one that stands, it is not.
       (begin-row console))
     (wipe console stream)
@@ -162,7 +161,7 @@ goes on where the last has ended."
   "Let nothing stand in the window but the line that is being typed."
   (hide-line console)
   (with-console (stream console)
-    (format stream "~C[H~:*~C[2J" #\Escape)
+    (write-string (window-cleared) stream)
     (begin-row console)
     (draw console stream)
     (finish-output stream)))
@@ -219,7 +218,7 @@ goes on where the last has ended."
     (let ((line (console-line console)))
       (cond ((null line) (put-string text console stream))
             ((string/= "" (drawn-line-text line)) (put-fresh text console stream))
-            (t (put-fresh (concatenate 'string (drawn-line-prompt line) text) console stream))))))
+            (t (put-fresh (concatenate 'string (drawn-line-label line) text) console stream))))))
 
 (defun fitted (text console &optional (prompt ""))
   "Return TEXT as it is written after PROMPT: on a terminal, with lines that are broken between
@@ -246,12 +245,12 @@ words."
 
 (defun put-prompt (prompt console stream)
   "Put PROMPT at the start of a line, or before the line that is being typed."
-  (let ((line (console-line console)))
-    (cond (line
+  (let ((typed (console-line console)))
+    (cond ((not (null typed))
            (wipe console stream)
-           (setf (drawn-line-prompt line) prompt))
+           (setf (drawn-line-label typed) prompt))
           ((console-edited-p console)
-           (setf (console-line console) (make-drawn-line :prompt prompt)))
+           (setf (console-line console) (make-drawn-line :label prompt)))
           (t (put-fresh prompt console stream)))))
 
 (defun show-prompt (console prompt)

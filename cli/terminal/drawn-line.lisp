@@ -8,9 +8,10 @@
 ;;; breaks rows anew, as we do; so rows that go on in the next one are not ended by a newline.
 
 (defstruct (drawn-line (:copier nil))
-  "A line that is being typed. It stands on the screen if SHOWN is true: as the list of prompt, text
+  "A line that is being typed. It stands on the screen if SHOWN is true: as the list of label, text
 and point that it was drawn from."
-  (prompt "" :type string)
+  ;; The prompt before the text.
+  (label "" :type string)
   (text "" :type string)
   ;; Where in the text the cursor is.
   (point 0 :type (integer 0))
@@ -29,12 +30,12 @@ and point that it was drawn from."
                              "?"))
         (t (string char))))
 
-(defun shown-chars (prompt text)
-  "Return a list of what is shown for each character of PROMPT, as it is, and of TEXT, as texts."
-  (append (map 'list #'string prompt) (map 'list #'shown-char text)))
+(defun shown-chars (label text)
+  "Return a list of what is shown for each character of LABEL, as it is, and of TEXT, as texts."
+  (append (map 'list #'string label) (map 'list #'shown-char text)))
 
-(defun rows-of (prompt text point columns)
-  "Return PROMPT and TEXT as a list of rows of COLUMNS, each a list of a string and of what ends it:
+(defun rows-of (label text point columns)
+  "Return LABEL and TEXT as a list of rows of COLUMNS, each a list of a string and of what ends it:
 :NEWLINE, or NIL if it is full or the last. Also the row and the column of POINT in TEXT."
   (let ((rows '()) (out (make-string-output-stream)) (column 0) (place-row 0) (place-column 0))
     (labels ((end-row (how)
@@ -50,13 +51,13 @@ and point that it was drawn from."
                (write-string shown out)
                (incf column width)
                (when (= column columns) (end-row nil))))
-      (loop with widths = (columns-of-chars prompt)
-            for shown in (shown-chars prompt text)
-            for position from (- (length prompt))
+      (loop with widths = (columns-of-chars label)
+            for shown in (shown-chars label text)
+            for position from (- (length label))
             do (note-place position)
                (cond ((string= shown (string #\Newline)) (end-row :newline))
                      ((minusp position)
-                      (put shown (aref widths (+ position (length prompt)))))
+                      (put shown (aref widths (+ position (length label)))))
                      (t (put shown (reduce #'+ shown :key #'char-columns)))))
       (note-place (length text))
       (end-row nil))
@@ -67,23 +68,14 @@ and point that it was drawn from."
   (let ((start (max 0 (min (- place-row (floor height 2)) (- (length rows) height)))))
     (values (subseq rows start (min (length rows) (+ start height))) start)))
 
-(defun rows-to-show (prompt text point columns height)
+(defun rows-to-show (label text point columns height)
   "Return the rows of a line in a window of COLUMNS and HEIGHT, and the row and column of the
 cursor."
-  (multiple-value-bind (rows row column) (rows-of prompt text point columns)
+  (multiple-value-bind (rows row column) (rows-of label text point columns)
     (multiple-value-bind (rows start) (window-on rows row height)
       (values rows (- row start) column))))
 
-;;; What terminals obey.
-
-(defun move-up (count stream)
-  (when (plusp count) (format stream "~C[~DA" #\Escape count)))
-
-(defun move-right (count stream)
-  (when (plusp count) (format stream "~C[~DC" #\Escape count)))
-
-(defun clear-below (stream)
-  (format stream "~C[J" #\Escape))
+;;; Drawing.
 
 (defun write-rows (rows stream)
   "Write ROWS. The cursor is then in the last of them."
@@ -96,18 +88,15 @@ cursor."
 (defun draw-line (line stream columns height)
   "Draw LINE from the cursor on, which is at the beginning of a row, in a window of COLUMNS and
 HEIGHT."
-  (with-accessors ((prompt drawn-line-prompt) (text drawn-line-text) (point drawn-line-point)) line
-    (multiple-value-bind (rows row column) (rows-to-show prompt text point columns height)
+  (with-accessors ((label drawn-line-label) (text drawn-line-text) (point drawn-line-point)) line
+    (multiple-value-bind (rows row column) (rows-to-show label text point columns height)
       (write-rows rows stream)
-      (move-up (- (length rows) row 1) stream)
-      (write-char #\Return stream)
-      (move-right column stream)
+      (format stream "~A~C~A" (cursor-up (- (length rows) row 1)) #\Return (cursor-right column))
       (setf (drawn-line-column line) column))
-    (setf (drawn-line-shown line) (list prompt text point))))
+    (setf (drawn-line-shown line) (list label text point))))
 
 (defun wipe-line (line stream columns height)
   "Take LINE off the screen; the cursor is then where it began."
-  (destructuring-bind (prompt text point) (shiftf (drawn-line-shown line) '())
-    (move-up (nth-value 1 (rows-to-show prompt text point columns height)) stream)
-    (write-char #\Return stream)
-    (clear-below stream)))
+  (destructuring-bind (label text point) (shiftf (drawn-line-shown line) '())
+    (format stream "~A~C~A" (cursor-up (nth-value 1 (rows-to-show label text point columns height)))
+            #\Return (cleared-below))))

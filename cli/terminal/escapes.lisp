@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.cli)
 
-;;; No other file knows an escape code. They are those that all terminals of today have in common.
-;;; Colours are the sixteen that users choose themselves, so that they suit their background; white
-;;; and black are left to be what text is.
+;;; No other file of the prompt knows an escape code. They are those that all terminals of today
+;;; have in common. Colours are the sixteen that users choose themselves, so that they suit their
+;;; background; white and black are left to be what text is.
 
 (defparameter *inks*
   '(("RED" . "31") ("GREEN" . "32") ("YELLOW" . "33") ("BLUE" . "34") ("VIOLET" . "35")
@@ -15,8 +15,11 @@
     ("BOLD" . "1") ("REVERSE" . "1;7"))
   "What inks are called, and their codes.")
 
+(defconstant +escape+ #\Escape "What codes begin with, of terminals and of their keys.")
+
 (defun escape (control &rest arguments)
-  (format nil "~C[~?" (code-char 27) control arguments))
+  "Return the code that is formatted from CONTROL and ARGUMENTS."
+  (format nil "~C[~?" +escape+ control arguments))
 
 (defun ink-code (ink)
   "Return the code of INK, a symbol or string; NIL if it is none."
@@ -42,7 +45,7 @@ is no ink."
   "Return TEXT without what PAINT has put into it."
   (with-output-to-string (out)
     (loop for start = 0 then (1+ (or (position #\m text :start escape) (1- (length text))))
-          for escape = (position (code-char 27) text :start start)
+          for escape = (position +escape+ text :start start)
           do (write-string text out :start start :end escape)
           while escape)))
 
@@ -66,6 +69,38 @@ terminal unless the environment has NO_COLOR."
                 (member (environment-value "NO_COLOR") '(nil "") :test #'equal)
                 t))))
 
+;;; Where the cursor is, and what is wiped out.
+
+(defun cursor-up (count)
+  "Return what moves the cursor up by COUNT rows."
+  (if (plusp count) (escape "~DA" count) ""))
+
+(defun cursor-right (count)
+  "Return what moves the cursor right by COUNT columns."
+  (if (plusp count) (escape "~DC" count) ""))
+
+(defun row-cleared ()
+  "Return what wipes out the row of the cursor, from there on."
+  (escape "K"))
+
+(defun cleared-below ()
+  "Return what wipes out all from the cursor on."
+  (escape "J"))
+
+(defun window-cleared ()
+  "Return what wipes out all, and moves the cursor to the upper left."
+  (format nil "~A~A" (escape "H") (escape "2J")))
+
+;;; What is pasted.
+
+(defun paste-in-brackets (on)
+  "Return what lets a terminal say where what is pasted begins and ends, if ON is true."
+  (escape "?2004~:[l~;h~]" on))
+
+(defun paste-ended ()
+  "Return what a terminal hands over after what was pasted."
+  (escape "201~~"))
+
 ;;; A screen of its own, on which what changes is written over.
 
 (defun screen-begun ()
@@ -82,7 +117,7 @@ terminal unless the environment has NO_COLOR."
     (write-string (escape "H") out)
     (loop for start = 0 then (1+ end)
           for end = (position #\Newline text :start start)
-          do (format out "~A~A" (subseq text start end) (escape "K"))
+          do (format out "~A~A" (subseq text start end) (row-cleared))
           when end do (format out "~C~%" #\Return)
           while end)
-    (write-string (escape "J") out)))
+    (write-string (cleared-below) out)))

@@ -52,9 +52,9 @@
 
 (defclass object-stream (fundamental-character-output-stream)
   ((stream :initarg :stream :reader object-stream-target)
-   (line :initform (make-string-output-stream) :reader object-stream-line)
+   (words :initform (make-string-output-stream) :reader object-stream-words)
    (column :initform 0 :accessor object-stream-column))
-  (:documentation "A stream that writes objects of JSON to STREAM; LINE is what has been written of
+  (:documentation "A stream that writes objects of JSON to STREAM; WORDS is what has been written of
 a line of text, COLUMN how long that is."))
 
 (defun write-object (object stream)
@@ -69,12 +69,12 @@ a line of text, COLUMN how long that is."))
   (when (or always (plusp (object-stream-column stream)))
     (setf (object-stream-column stream) 0)
     (write-object (list :type "output"
-                        :text (get-output-stream-string (object-stream-line stream)))
+                        :text (get-output-stream-string (object-stream-words stream)))
                   stream)))
 
 (defmethod stream-write-char ((stream object-stream) char)
   (cond ((char= char #\Newline) (end-text-line stream t))
-        (t (write-char char (object-stream-line stream))
+        (t (write-char char (object-stream-words stream))
            (incf (object-stream-column stream))))
   char)
 

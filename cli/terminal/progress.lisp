@@ -33,3 +33,13 @@ WANTED-P; then the line is as it was. Return what FUNCTION returns."
   (let ((progress (and wanted-p (make-progress-line console))))
     (unwind-protect (funcall function progress)
       (when progress (end-progress progress)))))
+
+;;; Beside it.
+
+(defun say (control &rest arguments)
+  "Tell the user something beside what he has asked for."
+  ;; A line that tells of progress may stand there.
+  (when (interactive-stream-p *error-output*)
+    (format *error-output* "~C~A" #\Return (row-cleared)))
+  (format *error-output* "ars-magna: ~?~%" control arguments)
+  (finish-output *error-output*))

@@ -59,10 +59,6 @@
 
 ;;; Calling.
 
-(defun offer-failing (stream) (write-string "Let the task fail." stream))
-(defun offer-ending (stream) (write-string "End the plan." stream))
-(defun offer-leaving (stream) (write-string "End the plan without a word." stream))
-
 (defun leave-plan ()
   "In a plan's Lisp code: end the plan, and report nothing. Elsewhere return."
   (let ((restart (find-restart 'leave-plan)))
@@ -72,10 +68,17 @@
   "Call FUNCTION with RUNNER and the restarts FAIL-TASK, LEAVE-PLAN and ABORT, which call FAIL,
 LEAVE and END."
   (declare (type function function fail end leave))
-  (flet ((in-step-p (condition)
-           (declare (ignore condition))
-           (running-task runner)))
-    (declare (dynamic-extent #'in-step-p))
+  (labels ((in-step-p (condition)
+             (declare (ignore condition))
+             (running-task runner))
+           (current () (runner-current runner))
+           (offer-failing (stream)
+             (format stream "Let the task ~A fail." (task-label (current))))
+           (offer-ending (stream)
+             (format stream "End the plan ~A." (task-label (task-top (current)))))
+           (offer-leaving (stream)
+             (format stream "End the plan ~A without a word." (task-label (task-top (current))))))
+    (declare (dynamic-extent #'in-step-p #'offer-failing #'offer-ending #'offer-leaving))
     (restart-bind ((fail-task fail :report-function #'offer-failing
                                    :test-function #'in-step-p)
                    (leave-plan leave :report-function #'offer-leaving

@@ -47,7 +47,8 @@ may look into errors."
                  (timed-step clock node task frame value)
                  (funcall (node-step node) node task frame value))))
       (when stepper (funcall stepper task frame))
-      (if *leaves-offer-restarts*
+      ;; A leaf offers the same, and a value in its place.
+      (if (and *leaves-offer-restarts* (not (leaf-p node)))
           (call-offering-again frame #'take)
           (take)))))
 

@@ -13,9 +13,9 @@
 (defvar *break-on-user-error* nil
   "When true, an error in user code (a continuation, kicker, manipulation, test or graphics
 body) enters the debugger where it happens, if somebody is there to answer it: at a terminal, or in
-an editor. Its restarts are: report it and go on, try again, and stop the simulator if that runs
-live. When NIL, the default, or without a terminal, the error is queued as an error message that
-names its origin, and the run goes on.")
+an editor. Its restarts are: report it and leave that code, try it again, and stop the simulator if
+that runs live; they name whose code it is. When NIL, the default, or without a terminal, the error
+is queued as an error message that names its origin, and the run goes on.")
 
 ;;; Finishing what has been begun.
 
@@ -112,38 +112,43 @@ list of items."
 
 ;;; Calling.
 
-(defun offer-abort (stream) (write-string "Report it and go on." stream))
-(defun offer-retry (stream) (write-string "Try again." stream))
-(defun offer-stop (stream) (write-string "Report it and stop the simulator." stream))
+(define-constant +leave+ "Report it and leave " :test #'string=
+  :documentation "How what the restart ABORT of a call of users' code says begins.")
 
 (defun stoppable-p (condition)
   "True if what this thread does can be stopped, whatever CONDITION has come up."
   (declare (ignore condition))
   (and *user-calls* (user-calls-stop *user-calls*) t))
 
-(defun call-offering (function go-on again)
-  "Call FUNCTION with restarts: ABORT, which calls GO-ON; RETRY, which calls AGAIN; and if this
-thread can be stopped STOP-SIMULATOR."
+(defun call-offering (function origin go-on again)
+  "Call FUNCTION, whose code ORIGIN says, with restarts: ABORT, which calls GO-ON; RETRY, which
+calls AGAIN; and if this thread can be stopped STOP-SIMULATOR."
   (declare (type function function go-on again))
   (flet ((stop ()
            (funcall (the function (user-calls-stop *user-calls*)))
-           (funcall go-on)))
-    (declare (dynamic-extent #'stop))
+           (funcall go-on))
+         (offer-abort (stream)
+           (format stream "~A~A." +leave+ (text-of-origin origin)))
+         (offer-retry (stream)
+           (format stream "Try ~A again." (text-of-origin origin)))
+         (offer-stop (stream)
+           (write-string "Report it and stop the simulator." stream)))
+    (declare (dynamic-extent #'stop #'offer-abort #'offer-retry))
     (restart-bind ((abort go-on :report-function #'offer-abort)
                    (retry again :report-function #'offer-retry)
                    (stop-simulator #'stop :report-function #'offer-stop
                                           :test-function #'stoppable-p))
       (funcall function))))
 
-(defmacro offering ((go-on again) &body body)
+(defmacro offering ((origin go-on again) &body body)
   "Run BODY as CALL-OFFERING would a function."
   `(flet ((body () ,@body))
      (declare (dynamic-extent #'body))
-     (call-offering #'body ,go-on ,again)))
+     (call-offering #'body ,origin ,go-on ,again)))
 
 (defun our-abort-p (restart)
   (and (eq 'abort (restart-name restart))
-       (string= (princ-to-string restart) (with-output-to-string (out) (offer-abort out)))))
+       (starts-with-subseq +leave+ (princ-to-string restart))))
 
 (defun continue-inside (condition)
   "Continue after CONDITION, if what offers that has been called by users' code, not around it."
@@ -185,7 +190,7 @@ queue an error message saying that it came from ORIGIN (an item or list of items
                            (go-on)))))
            (declare (dynamic-extent #'note #'answer))
            (return
-             (offering (#'go-on #'again)
+             (offering (origin #'go-on #'again)
                (handler-bind (((or error storage-condition time-limit) #'note))
                  (answering-debugger (#'answer)
                    (as-users-code (origin)

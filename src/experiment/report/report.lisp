@@ -19,13 +19,6 @@ they are too large or small for that."
     (lambda (number)
       (if decimals (fixed-text number decimals) (figure-text number)))))
 
-(defun fixed-text (number decimals)
-  "Return NUMBER with so many DECIMALS."
-  (multiple-value-bind (whole rest)
-      (truncate (abs (round (* (rational number) (expt 10 decimals)))) (expt 10 decimals))
-    (format nil "~:[~;-~]~D~:[~;.~V,'0D~]" (and (minusp number) (plusp (+ whole rest)))
-            whole (plusp decimals) decimals rest)))
-
 (defun percent-writer (trials)
   "Return a function that writes a share seen in TRIALS in hundredths."
   (let ((decimals (max 0 (- (length (princ-to-string (max 0 (1- trials)))) 2))))
@@ -64,16 +57,6 @@ they are too large or small for that."
     (loop for text in texts
           for estimate in estimates
           collect (format nil "~VA  n=~D" width text (estimate-count estimate)))))
-
-(defun tally-text (tally most)
-  "Return TALLY, an alist from texts to counts, in one line, the MOST commonest first."
-  (flet ((counted (text count)
-           (unbroken (format nil "~A (~D)" (cut text 60) count))))
-    (let ((rest (nthcdr most tally)))
-      (format nil "~{~A~^, ~}"
-              (append (loop for (text . count) in tally
-                            repeat most collect (counted text count))
-                      (and rest (list (counted "others" (reduce #'+ rest :key #'cdr)))))))))
 
 (defun kind-heading (estimate)
   (ecase (estimate-kind estimate)
