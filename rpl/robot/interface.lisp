@@ -45,7 +45,7 @@ SAVE-PLAN-TIMELINE.")
    (wake-up (make-semaphore "plans") t "what wakes that thread")
    (rests 0 atomic-count "how often all plans have come to rest there")
    (hog nil (or null task)
-        "the task that keeps the thread by Lisp code that does not return, or NIL")))
+        "the task that was seen to be at Lisp code that does not return, or NIL")))
 
 (document-functions
   interface-p "True of interfaces: what runs the plans that drive a robot.")
@@ -79,9 +79,15 @@ SAVE-PLAN-TIMELINE.")
                     (funcall function))
     (setf (interface-holder interface) nil)))
 
+(defun hog-of (interface)
+  "Return the task that keeps the thread of the plans of INTERFACE, or NIL."
+  ;; Whoever watches sees only at his next look that it has gone on.
+  (let ((task (interface-hog interface)))
+    (and task (eq :running (task-state task)) task)))
+
 (defun check-not-kept (interface)
   "Signal MISUSE if a plan keeps the thread of those of INTERFACE, which is another than this."
-  (let ((task (interface-hog interface)))
+  (let ((task (hog-of interface)))
     (when (and task (not (eq (current-thread) (interface-thread interface))))
       (reject-use "The plan ~A keeps the plans' thread, at ~A. (end-plan :all) ends it."
                   (task-label (task-top task)) (form-text (task-form task))))))

@@ -50,7 +50,7 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
   "How many characters a report of plans has at most.")
 
 (defun deadlocked-p (interface)
-  (and (null (interface-hog interface))
+  (and (null (hog-of interface))
        (with-plans (interface) (plan-deadlocked-p (interface-runner interface)))))
 
 (defun ended-by-itself-p (task)
