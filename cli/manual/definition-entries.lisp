@@ -146,6 +146,11 @@ if it is not known."
               :use (plain-use name (procedure-lambda-list procedure))
               :text (text-of-symbol name) :file file))
 
+(defun plan-entries ()
+  "Return the entries of the plans for users to call, but none of what only those call."
+  (remove-if-not (lambda (entry) (packages-showing (entry-symbol entry)))
+                 (entries-of 'plan #'plan-entry)))
+
 (defun experiment-entry (name experiment file)
   (make-entry :name (string-downcase name) :chapter :experiments :symbol name
               :use (format nil "(run-experiment '~(~A~))" name)
@@ -160,5 +165,5 @@ if it is not known."
           (entries-of 'robot #'robot-entry)
           (entries-of 'kicker #'kicker-entry)
           (entries-of 'manipulation #'manipulation-entry)
-          (entries-of 'plan #'plan-entry)
+          (plan-entries)
           (entries-of 'experiment #'experiment-entry)))

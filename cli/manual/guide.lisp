@@ -19,6 +19,9 @@ HTML of its Markdown, its headings with anchors."
     ("worlds/tutorial/README.md" "tutorial.html" "Tutorial" :learning)
     ("worlds/README.md" "worlds.html" "The shipped worlds" :guide)
     ("cli/README.md" "prompt.html" "The prompt" :guide)
+    ("worlds/examples/README.md" "shipped-examples.html" "The shipped worlds by example" :examples)
+    ("worlds/plan-examples/README.md" "shipped-plan-examples.html" "The shipped plans by example"
+     :examples)
     ("cli/lines/README.md" "prompt-examples.html" "The prompt by example" :examples)
     ("src/command/README.md" "command-examples.html" "Commands by example" :examples)
     ("src/base/README.md" "parameter-examples.html" "Parameters, chance and mistakes by example"
