@@ -102,7 +102,18 @@ what is there."
   (is (every (lambda (char) (or (alphanumericp char) (find char "-_")))
              (manual:anchor ":color <a href=\"x\">*"))))
 
+(test our-manual.writes-numbers-as-people-do
+  (is (equal '("0.0005" "0.004" "1" "0.1")
+             (mapcar #'manual::number-words (list 5d-4 .004 1 .1d0)))))
+
 ;;; Entries.
+
+(test our-manual.has-the-plans-for-users-and-not-their-parts
+  (let ((plans (mapcar #'manual:entry-name
+                       (remove :plans (manual:all-entries)
+                               :key #'manual:entry-chapter :test-not #'eq))))
+    (is (subsetp '("fetch-thing" "turn-by" "choose-way") plans :test #'string=))
+    (is (null (intersection '("bring-thing" "follow-way") plans :test #'string=)))))
 
 (defun undescribed (package entries)
   "Return the names that PACKAGE exports and none of ENTRIES has."

@@ -18,8 +18,10 @@
 (defun number-words (value)
   "Return VALUE, a parameter's, as people write it."
   (let ((value (shortest-number value)) (*print-case* :downcase))
-    (let ((*read-default-float-format* (if (floatp value) (type-of value) 'single-float)))
-      (prin1-to-string value))))
+    (if (and (floatp value) (< 1d-6 (abs value) 1d-3))
+        (format nil "~F" value)
+        (let ((*read-default-float-format* (if (floatp value) (type-of value) 'single-float)))
+          (prin1-to-string value)))))
 
 (defun parameter-facts (parameter)
   `(("Default" ,(format nil "~A ~A" (number-words (parameter-default parameter))
