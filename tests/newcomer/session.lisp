@@ -64,6 +64,23 @@ last one has left goes on as if that had been begun again."
     (when (equal "lisp" (page-block-kind block))
       (dolist (form (forms-in (page-block-lines block))) (type-form terminal form)))))
 
+(defun definitions-below (text)
+  "Return the lines of the blocks of Lisp that TEXT asks for, as BLOCKS-BELOW has it, but of those
+that show what a form returns."
+  (loop for block in (blocks-below text)
+        for lines = (page-block-lines block)
+        when (and (equal "lisp" (page-block-kind block))
+                  (notany (lambda (line) (begins-with-p "; =>" line)) lines))
+          append (append lines '(""))))
+
+(defun play-file (terminal text)
+  "Write at the end of a file in the home directory what DEFINITIONS-BELOW returns. TEXT is the name
+of the file, then what that takes."
+  (let ((end (position #\Space text)))
+    (with-open-file (out (uiop:strcat (terminal-home terminal) (subseq text 0 end))
+                         :direction :output :if-exists :append :if-does-not-exist :create)
+      (format out "~{~A~%~}" (definitions-below (subseq text (1+ end)))))))
+
 (defun play-resize (terminal text)
   (apply #'resize-terminal terminal (mapcar #'parse-integer (uiop:split-string text))))
 
@@ -76,7 +93,7 @@ last one has left goes on as if that had been begun again."
 (defparameter *session-words*
   '(("type" . type-line) ("keys" . type-text) ("press" . press-key)
     ("wait" . await-text) ("prompt" . await-prompt) ("resize" . play-resize) ("paste" . play-paste)
-    ("page" . play-page) ("lisp" . play-lisp))
+    ("page" . play-page) ("lisp" . play-lisp) ("file" . play-file))
   "The words of sessions but SCREEN, and what does what they say.")
 
 ;;; Playing.
