@@ -2,7 +2,7 @@
 
 (defsystem "ars-magna"
   :description "An abstract robot simulator for people who build reactive planners."
-  :version "1.0.0"
+  :version "1.9.0"
   :license "MIT"
   :depends-on ("alexandria" "bordeaux-threads" "closer-mop" "lparallel"
                "named-readtables" "sb-cltl2" "sb-introspect" "sb-posix")
