@@ -146,6 +146,26 @@
       (is-true (has-words-p (second lines) "(defrobot NAME (ward (" "WORLD ward"))))
   (is-true (has-words-p (complaint "import nowhere.yaml") "nowhere.yaml" "no such file")))
 
+(test export.writes-what-import-reads
+  (call-where-files-go
+   (lambda ()
+     (base:with-own-definitions ()
+       (let ((lines (type-batch "export own.yaml" "import own.yaml")))
+         (is-true (has-words-p (first lines) "own.yaml"))
+         (is-true (has-words-p (second lines) "own.pgm"))
+         (is-true (has-words-p (third lines) "own: " "walls"))))))
+  (is-true (has-words-p (complaint "export own.txt") "ends in .yaml"))
+  (is-true (has-words-p (complaint "export /no/where/own.yaml") "no such directory")))
+
+(test help.fits-where-there-is-less-room
+  (flet ((widest (width)
+           (let ((cli::*text-width* width))
+             (reduce #'max (lines-of (with-output-to-string (*standard-output*)
+                                       (cli::write-help-on "rewind")))
+                     :key #'length))))
+    (is (<= 41 (widest 79) 79))
+    (is (<= (widest 40) 40))))
+
 (test robot.never-leaves-the-world
   (is-true (has-words-p (complaint "robot dot") "another world" "WORLD tiny dot" "over"))
   (let ((text (joined (type-live '("pause" "step 3" "robot dot" "status" "rate" "quit")))))

@@ -58,7 +58,7 @@ command, plan, parameter, place type, attribute, value, error code, name of Lisp
   (dolist (topic topics)
     (put-line "~A" (cut (format nil "  ~24A ~13A ~A" (topic-name topic) (topic-title topic)
                                 (one-line (topic-words topic)))
-                        79))))
+                        *text-width*))))
 
 (define-line "APROPOS" (session (word :rest "a word, or a part of one"))
     (:general)

@@ -15,9 +15,14 @@
   (or (line-full-name line)
       (member (line-name line) '("EVAL" "REPEAT" "TRIAL" "FORK" "WATCH") :test #'string=)))
 
+(defun text-width (session)
+  "Return how many characters a line of running text may have for SESSION: as its window has room
+for, or 79."
+  (if (terminal-p session) (max 40 (min 79 (1- (window-size)))) 79))
+
 (defun run-line (session line text)
   "Do what LINE does with the arguments in TEXT. What it prints comes out in one piece."
-  (let ((arguments (read-arguments line text)))
+  (let ((arguments (read-arguments line text)) (*text-width* (text-width session)))
     (if (unhurried-p line)
         (apply (line-action line) session arguments)
         (write-string (fitted (with-output-to-string (*standard-output*)

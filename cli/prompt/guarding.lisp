@@ -28,12 +28,15 @@ if it carries out none."
 
 (defun what-goes-on (session)
   "Return sentences that say what goes on in the simulator, though the line of SESSION does not,
-and how it can be ended. In a trial, nothing does."
-  (unless (session-visit session)
-    (multiple-value-bind (robot command) (command-going-on)
-      (format nil "~@[ ~A goes on with ~]~@[~A; STOP ends that.~]~
-                   ~:[~; Plans go on; STOP-PLAN ends them.~]"
-              robot command (notevery #'plan-ending-p (plans))))))
+and how it can be ended; if nothing does, how the prompt is left. In a trial, nothing goes on."
+  (multiple-value-bind (robot command) (command-going-on)
+    (let ((plans-p (notevery #'plan-ending-p (plans))))
+      (cond ((session-visit session) "")
+            ((or robot plans-p)
+             (format nil "~@[ ~A goes on with ~]~@[~A; STOP ends that.~]~
+                          ~:[~; Plans go on; STOP-PLAN ends them.~]"
+                     robot command plans-p))
+            (t " QUIT leaves.")))))
 
 (defun interrupted (session)
   "Tell the user of SESSION that his interrupt has ended the line. Users' code that keeps the
@@ -43,7 +46,7 @@ simulator waiting is aborted, too."
   (forget-pasted (session-input session))
   (let ((console (session-console session)))
     (answered console)
-    (write-fresh (fitted (format nil "Interrupted.~@[~A~]~%" (what-goes-on session)) console)
+    (write-fresh (fitted (format nil "Interrupted.~A~%" (what-goes-on session)) console)
                  console)))
 
 (defun call-guarded (session function)

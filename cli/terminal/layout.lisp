@@ -60,6 +60,8 @@
 
 ;;; Running text.
 
+(defvar *text-width* 79 "How many characters a line of running text has at most.")
+
 (defun split-words (text)
   (loop for start = (position-if-not #'blank-p text)
           then (position-if-not #'blank-p text :start end)
@@ -80,11 +82,11 @@
           collect line))
 
 (defun write-filled (text indent &optional (head ""))
-  "Write TEXT in lines of at most 79 characters from column INDENT on, after HEAD, which has a line
-of its own if it is too long."
+  "Write TEXT in lines of at most *TEXT-WIDTH* characters from column INDENT on, after HEAD, which
+has a line of its own if it is too long."
   (when (and (plusp indent) (>= (length head) indent))
     (format t "~A~%" (shiftf head "")))
-  (loop for line in (filled-lines text (- 79 indent))
+  (loop for line in (filled-lines text (- *text-width* indent))
         for start = head then ""
         do (format t "~VA~A~%" indent start line)))
 
