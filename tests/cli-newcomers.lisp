@@ -101,6 +101,11 @@
       (is (string/= (after "robot-set-speed: Speed set to 0.80") (car (last lines)))))
     (is-true (has-words-p (joined lines) "In a fork" "FORK OFF" "Back from the fork. Tick"))))
 
+(test fork.goes-back-too
+  (let ((lines (type-batch "go 2.4" "fork" "step 9" "rewind 4" "fork off")))
+    (is (equal '("Tick 14, headless." "Back from the fork. Tick 9, headless.")
+               (remove-if-not (lambda (line) (search "headless" line)) lines)))))
+
 (test fork.goes-into-another-and-as-chance-will-have-it
   (flet ((states (&rest forks)
            (remove-if-not (lambda (line) (every #'digit-char-p line))

@@ -21,7 +21,8 @@ output, its status, and what it writes to the error output."
          (base:*message-queue* (base:make-message-queue))
          (cli::*prompt-robot* nil)
          (status (let ((*standard-output* (cli::make-console output)) (*error-output* errors))
-                   (handler-case (cli::run-arguments arguments)
+                   (handler-case (let ((*trace-output* *trace-output*))
+                                   (cli::run-arguments arguments))
                      (cli::usage-error (condition)
                        (format errors "~A" condition)
                        2)))))
@@ -94,6 +95,16 @@ written."
 (defun objects-of-script (text &rest options)
   "Return the lines that a script of TEXT makes with --json and OPTIONS, but the first."
   (rest (apply #'run-script text "--json" options)))
+
+(test json.is-all-that-is-written
+  "Also what is traced and timed."
+  (dolist (line (objects-of-script "(time (+ 1 2))
+(format *trace-output* \"traced~%\")
+(defun ars-user::traced (x) x)
+(trace ars-user::traced)
+(ars-user::traced 1)
+(untrace)"))
+    (is (eql 0 (search "{\"type\":" line)) line)))
 
 (test json.tells-each-message-and-each-end-of-a-line
   (let ((objects (run-script *small-script* "--json")))

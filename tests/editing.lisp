@@ -224,6 +224,16 @@ name in *KEY-CODES*."
       (is (equal (cons "go" (reverse entries))
                  (cli::history-entries (cli::make-history file)))))))
 
+(test history.is-kept-before-the-next-line-is-typed
+  (with-history-file (file)
+    (let ((stream (make-instance 'cli::edited-text :octets (make-concatenated-stream)
+                                                   :console (terminal-console)
+                                                   :history (cli::make-history file))))
+      (cli::remember-line stream "go" nil)
+      (is (null (cli::history-entries (cli::make-history file))) "it may go on")
+      (cli::keep-lines stream)
+      (is (equal '("go") (cli::history-entries (cli::make-history file)))))))
+
 (test history.of-two-sessions-at-once-is-that-of-both
   (with-history-file (file)
     (let ((one (cli::make-history file)) (two (cli::make-history file)))

@@ -41,6 +41,12 @@ is true."
         (answered console)
         (tell-pastes-apart console nil)))))
 
+(defgeneric keep-lines (input)
+  (:documentation "Let no line that was typed into INPUT be lost, whatever becomes of this
+process.")
+  (:method (input))
+  (:method ((input edited-text)) (save-entry (edited-history input))))
+
 (defgeneric remember-line (input line before)
   (:documentation "Let whoever types into INPUT have LINE again, together with the text BEFORE, if
 that is not NIL.")

@@ -8,7 +8,9 @@
 
 (defun copied-run (seed)
   "Return a fork of the current run, all whose chance is to come from SEED unless that is NIL."
-  (if seed (fork-simulation :seed seed) (fork-simulation)))
+  (let ((fork (if seed (fork-simulation :seed seed) (fork-simulation))))
+    (keep-forks t fork)
+    fork))
 
 (defun leave-fork ()
   (throw 'left-fork t))

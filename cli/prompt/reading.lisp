@@ -10,7 +10,10 @@
   "Return the next line that is typed in SESSION, or NIL at the end. Whoever edits it can complete
 it, and have it again; if BEFORE is a text, together with that, which it goes on from."
   (let* ((*completer* (lambda (text point) (funcall *completion* session text point)))
-         (line (read-line (session-input session) nil)))
+         (line (progn
+                 ;; What goes on over lines is kept whole.
+                 (unless before (keep-lines (session-input session)))
+                 (read-line (session-input session) nil))))
     (when line (remember-line (session-input session) line before))
     line))
 

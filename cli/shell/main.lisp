@@ -82,6 +82,10 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
   "Do what OPTIONS say. Return the status to exit with."
   (let ((robot-name (first-robot options))
         (session (standard-session options)))
+    ;; Threads of users' write objects, too.
+    (when (option-value :json options)
+      (setf *standard-output* (session-console session)
+            *trace-output* (session-console session)))
     (report-beginning session robot-name options)
     (call-typing (lambda () (run-in-world session robot-name options)) (session-input session))
     (report-end session
@@ -154,7 +158,8 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
 (defun run-process ()
   "Do what the arguments of this process say. Return the status to exit with."
   (let ((console (standard-output)))
-    (setf *standard-output* console)
+    (setf *standard-output* console
+          *trace-output* console)
     (deliver console (call-for-status (lambda () (run-arguments (process-arguments)))))))
 
 (defun main ()
