@@ -26,6 +26,7 @@
   "Call FUNCTION in ARS-USER; forget what is defined there, and the packages that it makes."
   (let ((packages (list-all-packages))
         (*package* (find-package :ars-user))
+        (*readtable* *readtable*)
         (base:*message-queue* (base:make-message-queue)))
     (unwind-protect (base:with-own-definitions () (funcall function))
       (mapc #'delete-package (set-difference (list-all-packages) packages)))))
