@@ -31,11 +31,14 @@ HTML of its Markdown, its headings with anchors."
     ("src/run/README.md" "run-examples.html" "Runs by example" :examples)
     ("rpl/robot/README.md" "plan-robot-examples.html" "Plans and their robot by example" :examples)
     ("rpl/tasks/README.md" "task-examples.html" "Tasks and failures by example" :examples)
+    ("rpl/seeing/README.md" "seeing-examples.html" "Looking at plans by example" :examples)
+    ("rpl/projecting/README.md" "projection-examples.html" "Looking ahead by example" :examples)
     ("src/experiment/report/README.md" "result-examples.html" "Results of experiments by example"
      :examples)
     ("src/statistics/README.md" "statistics-examples.html" "Statistics by example" :examples)
     ("src/geometry/README.md" "geometry-examples.html" "Points, intervals and angles by example"
      :examples)
+    ("src/nisp/README.md" "nisp-examples.html" "Nisp by example" :examples)
     ("src/display/README.md" "picture-examples.html" "Pictures by example" :examples)
     ("rpl/README.md" "plans.html" "The plan language" :guide)
     ("src/experiment/README.md" "experiments.html" "Experiments" :guide)
