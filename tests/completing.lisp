@@ -106,6 +106,17 @@
               do (is (equal (list (format nil line name)) (completions (format nil line start)))))
         (is (null (completions (format nil "replay ~Axyz/" start))))))))
 
+(test completing.quotes-files-with-blanks
+  (uiop:with-temporary-file (:pathname file :prefix "ars completing" :type "lisp")
+    (let* ((name (base:native-name file))
+           (whole (format nil "world \"~A" name)))
+      (in-parlour
+        (is (member whole (completions (format nil "world ~A"
+                                               (subseq name 0 (position #\Space name))))
+                    :test #'string=))
+        (is (equal (list whole) (completions (subseq whole 0 (- (length whole) 4)))))
+        (is (null (completions (format nil "world \"~A\"" name))))))))
+
 (test completing.knows-the-home-directory
   (in-parlour
     (is (every (lambda (text) (eql 0 (search "picture ~/" text))) (completions "picture ~/")))

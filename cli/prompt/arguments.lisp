@@ -94,12 +94,12 @@ line."
         (length text))))
 
 (defun token-end (text start)
-  "Return where the token that begins in TEXT at START ends; one in double quotes may hold blanks."
-  (let ((quote (and (char= (char text start) #\")
-                    (position #\" text :start (1+ start)))))
-    (if quote
-        (1+ quote)
-        (or (position-if #'blank-p text :start start) (length text)))))
+  "Return where the token that begins in TEXT at START ends; one in double quotes may hold blanks,
+and goes on to the end of TEXT if there is no second one."
+  (if (char= (char text start) #\")
+      (let ((quote (position #\" text :start (1+ start))))
+        (if quote (1+ quote) (length text)))
+      (or (position-if #'blank-p text :start start) (length text))))
 
 (defun without-quotes (token)
   "Return TOKEN without the double quotes around it, if any."

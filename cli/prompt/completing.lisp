@@ -172,6 +172,13 @@ that begins, and which is before it; START is where the first one does."
          (digit-char-p (char text (position-if-not #'blank-p text :end start :from-end t)))
          (unit-names dimension))))
 
+(defun as-arguments (start texts quoted-p)
+  "Return what COMPLETIONS-IN does if an argument that begins at START can become one of TEXTS; in
+double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
+  (if (or quoted-p (some (lambda (text) (some #'blank-p text)) texts))
+      (values start (mapcar (lambda (text) (uiop:strcat "\"" text)) texts) "\" ")
+      (values start texts " ")))
+
 (defun argument-completions (session line text start)
   "Complete the argument of LINE at the end of TEXT; START is where the first one begins."
   (multiple-value-bind (slot start before) (slot-at-end line text start)
@@ -180,11 +187,13 @@ that begins, and which is before it; START is where the first one does."
         (:line (line-completions session text start))
         (:form (lisp-completions session text (length text)))
         (:specification (specification-completions text (length text)))
-        (t (let ((typed (subseq text start)))
-             (values start
-                     (matching typed (append (unit-choices before text start)
-                                             (and type (choices type session typed))))
-                     " ")))))))
+        (t (let* ((typed (subseq text start))
+                  (quoted-p (starts-with-subseq "\"" typed))
+                  (begun (if quoted-p (subseq typed 1) typed)))
+             (as-arguments start
+                           (matching begun (append (unit-choices before text start)
+                                                   (and type (choices type session begun))))
+                           quoted-p)))))))
 
 (defun line-meant (name)
   "Return the line command that NAME or the alias NAME means. Signals BAD-LINE."
