@@ -61,6 +61,8 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
            #:line-family #:line-details #:line-full-name #:line-action #:usage)
   ;; help
   (:export #:slot-help)
+  ;; manipulate-line
+  (:export #:manipulation-usages)
   ;; arguments
   (:export #:read-argument #:argument-words)
   ;; session, prompt

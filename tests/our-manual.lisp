@@ -147,6 +147,17 @@ what is there."
                           entries)
                  "~A is no entry of ~(~S~)" name chapter))))
 
+(defun entry-called (name chapter)
+  (find-if (lambda (entry)
+             (and (eq chapter (manual:entry-chapter entry))
+                  (string= name (manual:entry-name entry))))
+           (manual:all-entries)))
+
+(test our-manual.shows-how-manipulations-are-called
+  (loop for (name use) in '(("open" "(manipulate open container hand [continuation])")
+                            ("lock" "(manipulate lock container key hand [continuation])"))
+        do (is (string= use (manual::entry-use (entry-called name :manipulations))))))
+
 (test our-manual.has-no-entries-of-others
   "What the tests define is not told of."
   (let ((names (mapcar #'manual:entry-name (manual:all-entries))))

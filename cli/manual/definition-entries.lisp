@@ -115,11 +115,26 @@ if it is not known."
   (let ((text (text-of-symbol name)))
     (and (string/= "" text) text)))
 
+(defun manipulation-use (name method)
+  "Return how METHOD of the manipulation NAME is called."
+  (multiple-value-bind (objects by others) (method-shape method)
+    (format nil "(manipulate ~(~A~{ ~A~} ~A~{ ~A~}~) [continuation])" name objects (first by)
+            (mapcar #'first others))))
+
+(defun manipulation-uses (manipulation)
+  "Return how MANIPULATION may be called, a list of different texts."
+  (remove-duplicates (loop for method in (manipulation-methods manipulation)
+                           collect (manipulation-use (manipulation-name manipulation) method))
+                     :test #'string=))
+
 (defun manipulation-entry (name manipulation file)
-  (declare (ignore manipulation))
   (make-entry :name (string-downcase name) :chapter :manipulations
-              :use (format nil "(manipulate robot '~(~A~) designator [continuation])" name)
-              :text "A manipulation of the shipped worlds; see DEFMANIPULATION and MANIPULATE."
+              :use (format nil "~{~A~^ or ~}" (manipulation-uses manipulation))
+              :facts (list (list "At the prompt"
+                                 (format nil "~{`manipulate ~A`~^ or ~}"
+                                         (manipulation-usages manipulation))))
+              :text "A manipulation of the shipped worlds: see DEFMANIPULATION and MANIPULATE.
+Things are given as designators, the hand as that of a robot, such as `(robot-hand robbie 0)`."
               :file file))
 
 (defun map-entry (name map file)

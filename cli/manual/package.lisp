@@ -17,13 +17,15 @@ reference of what is defined in this Lisp.")
                 #:all-commands #:command-name #:command-prompt-name #:command-family
                 #:command-section #:command-documentation #:command-resource
                 #:command-parameters #:command-results #:command-errors
-                #:spec-name #:spec-type #:spec-text #:error-code-keyword #:error-code-text)
+                #:spec-name #:spec-type #:spec-text #:error-code-keyword #:error-code-text
+                #:manipulation-name #:manipulation-methods #:method-shape)
   (:import-from :ars-magna.rpl #:all-constructs #:find-procedure #:procedure-lambda-list)
   (:import-from :ars-magna.rpl-robot #:all-fluent-variables)
   (:import-from :ars-magna.experiment #:experiment-documentation)
   (:import-from :ars-magna.cli
                 #:all-lines #:line-name #:line-family #:line-sentence #:line-details
-                #:line-parameters #:line-full-name #:line-action #:usage #:slot-help)
+                #:line-parameters #:line-full-name #:line-action #:usage #:slot-help
+                #:manipulation-usages)
   ;; html, markdown, guide
   (:export #:escaped #:anchor #:html-tokens #:tag-p #:tag-name #:attribute-value
            #:read-guide #:page-source #:page-file)
