@@ -108,3 +108,19 @@
     (is (refused-p 'robot:find-designator 0.5 0))
     (is (refused-p 'run:run-until 't :simulation nil))
     (is (refused-p 'base:undefine 'kicker '(1 2)))))
+
+(test directories.are-new-to-one-only
+  "Though others remove them meanwhile."
+  (uiop:with-temporary-file (:pathname place)
+    (let ((path (uiop:ensure-directory-pathname (format nil "~A-new" place))) (troubles '()))
+      (flet ((make-and-remove ()
+               (handler-case (loop repeat 2000
+                                   do (when (base:make-new-directory path)
+                                        (uiop:delete-empty-directory path)))
+                 (error (condition) (push (princ-to-string condition) troubles)))))
+        (mapc #'base:join-thread
+              (loop repeat 2 collect (base:start-thread #'make-and-remove "directories")))
+        (is (null troubles) "~A" (first troubles))
+        (is-true (base:make-new-directory path))
+        (is-false (base:make-new-directory path))
+        (uiop:delete-empty-directory path)))))

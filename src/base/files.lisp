@@ -131,10 +131,11 @@ octets that are no text in UTF-8."
         (unless (uiop:directory-exists-p path) (error condition))))))
 
 (defun make-new-directory (path)
-  "Make the directory PATH, in one that is there. True if it was not there before."
+  "Make the directory PATH, in one that is there. True if nothing of that name was there before."
   (handler-case (progn (sb-posix:mkdir (string-right-trim "/" (native-name path)) #o700) t)
     (sb-posix:syscall-error (condition)
-      (unless (uiop:directory-exists-p path) (error condition)))))
+      ;; Whoever had it may have removed it by now.
+      (unless (= sb-posix:eexist (sb-posix:syscall-errno condition)) (error condition)))))
 
 (defun call-with-file-lock (function path refused)
   "Call FUNCTION while no other process that asks so has the file PATH, which is made if there is
