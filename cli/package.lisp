@@ -46,6 +46,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:run-experiment #:trial-under-way #:merge-results #:processors
                 #:settle-fingerprints
                 #:results-directory #:print-results #:save-result-pictures #:read-results
+                #:call-on-page
                 #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture
                 #:shard-directory #:directories-with-rows #:count-rows #:trials-in-shard-p
                 #:missing-shards #:check-same-code)

@@ -7,9 +7,20 @@
       (format t "~:{~A = ~A~%~}" (sort (copy-list *aliases*) #'string< :key #'first))
       (format t "No aliases. ALIAS name command defines one.~%")))
 
+(defun check-alias (name text)
+  "Signal BAD-LINE if TEXT, which the alias NAME is to stand for, begins with no command, or leads
+back to NAME."
+  (let ((expansion (expand-alias text)))
+    (unless (lisp-p expansion)
+      (let ((command (split-line expansion)))
+        (when (string-equal name command)
+          (reject-line "The alias ~A would stand for itself. Give a command after its name." name))
+        (find-line command)))))
+
 (defun define-alias (name text)
   (when (find name (all-line-names) :test #'string=)
     (reject-line "~A is a command already; choose another name for the alias." name))
+  (check-alias name text)
   (setf *aliases* (cons (list name text) (remove name *aliases* :key #'first :test #'string=))))
 
 (define-line "ALIAS" (session (alias :token "a name" :optional)

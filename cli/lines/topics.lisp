@@ -78,9 +78,20 @@
 
 (defun code-words (entry)
   (destructuring-bind (code . commands) entry
-    (format nil "~@[~A. ~]Told to the continuations of ~{~(~A~)~^, ~}."
-            (and (stringp (error-code-text code)) (error-code-text code))
+    (format nil "~A Told to the continuations of ~{~(~A~)~^, ~}." (code-text code)
             (mapcar #'command-name commands))))
+
+(defun code-text (code)
+  "Return what CODE, an error code of a command, means, and what to try."
+  (let ((keyword (error-code-keyword code)))
+    (if (error-code-meaning keyword)
+        (format nil "~A~@[ ~A~]" (error-code-meaning keyword) (error-code-remedy keyword))
+        (format nil "~@[~A.~]" (and (stringp (error-code-text code)) (error-code-text code))))))
+
+;;; Restarts, which a debugger offers.
+
+(defun restart-words (name)
+  (format nil "~A In Lisp: (invoke-restart '~(~A~))." (restart-documentation name) name))
 
 ;;; Names of Lisp.
 
@@ -156,6 +167,7 @@ far as they are documented; but for parameters."
     ("robot" all-blueprints blueprint-name robot-words)
     ("experiment" all-experiments experiment-name experiment-text)
     ("error code" codes-and-commands code-name code-words)
+    ("restart" all-restarts identity restart-words)
     (lisp-title lisp-names identity lisp-words write-lisp-topic))
   "Lists (title lister name words [writer]): what there is of each kind, what one is called, what is
 said of it, and how HELP writes that. The title may be a function.")

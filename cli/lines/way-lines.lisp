@@ -19,7 +19,11 @@ SIMULATION."
                          robot))
     (t (error-set (format nil "go-to: Interrupted on the way to ~A ~A" x y)))))
 
-(define-line "GO" (session (distance metres "how far"))
+;; What ROBOT-GO-DISTANCE takes.
+(define-argument-type 'distance (lambda (value) (and (realp value) (< 0 value 1000001)))
+  "a number of metres, more than 0, at most a million")
+
+(define-line "GO" (session (distance distance "how far"))
     (:moving)
     "Drive DISTANCE metres straight ahead, no faster than the robot's speed. GO-FORWARD drives for a
 number of ticks."

@@ -99,7 +99,9 @@
                                              (mapcar (lambda (command)
                                                        (in-code (command-name command)))
                                                      failing))))
-                :text "What the continuation of a command gets as its first argument.")))
+                :text (format nil "~@[~A ~]~@[~A ~]The continuation of a command gets it as its ~
+                                   first argument."
+                              (error-code-meaning keyword) (error-code-remedy keyword)))))
 
 (defun interrupt-entry ()
   (make-entry :name ":interrupt" :chapter :error-codes :use ":interrupt"

@@ -18,6 +18,7 @@ reference of what is defined in this Lisp.")
                 #:command-section #:command-documentation #:command-resource
                 #:command-parameters #:command-results #:command-errors
                 #:spec-name #:spec-type #:spec-text #:error-code-keyword #:error-code-text
+                #:error-code-meaning #:error-code-remedy
                 #:manipulation-name #:manipulation-methods #:method-shape)
   (:import-from :ars-magna.rpl #:all-constructs #:find-procedure #:procedure-lambda-list)
   (:import-from :ars-magna.rpl-robot #:all-fluent-variables)

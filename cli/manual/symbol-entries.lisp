@@ -75,7 +75,8 @@
     (when value (list (list "Value" value)))))
 
 (defun restart-text (symbol)
-  (format nil "The name of a restart: (invoke-restart '~(~A~))." symbol))
+  (format nil "~@[~A ~]The name of a restart: (invoke-restart '~(~A~))."
+          (restart-documentation symbol) symbol))
 
 (defun symbol-entry (symbol)
   (let ((chapter (chapter-of-symbol symbol)))

@@ -29,13 +29,19 @@ for, or 79."
                                 (apply (line-action line) session arguments))
                               (session-console session))))))
 
+(defun evaluate-line (session text)
+  "Evaluate TEXT as Lisp. The tables that it prints fit the window of SESSION, if it has one."
+  (if (terminal-p session)
+      (call-on-page (lambda () (evaluate-text session text)) (1- (window-size)))
+      (evaluate-text session text)))
+
 (defun run-text (session text)
   "Do what TEXT, a line as typed, says; what it asks for, the prompt asks for."
   (let ((*asker* +asker+))
     (cond ((comment-p text))
-          ((lisp-p text) (evaluate-text session text))
+          ((lisp-p text) (evaluate-line session text))
           (t (let ((text (expand-alias text)))
                (if (lisp-p text)
-                   (evaluate-text session text)
+                   (evaluate-line session text)
                    (multiple-value-bind (name rest) (split-line text)
                      (run-line session (find-line name) rest))))))))

@@ -38,10 +38,21 @@ and how it can be ended; if nothing does, how the prompt is left. In a trial, no
                      robot command plans-p))
             (t " QUIT leaves.")))))
 
-(defun interrupted (session)
-  "Tell the user of SESSION that his interrupt has ended the line. Users' code that keeps the
-simulator waiting is aborted, too."
-  (when (session-batch-p session) (throw 'leave 130))
+(defun whose-code ()
+  "Return in words whose code this thread is in, as far as anybody watches it; else NIL."
+  (let ((origin (and *user-calls* (user-calls-origin *user-calls*))))
+    (and origin (text-of-origin origin))))
+
+(defun leave-batch (session whose)
+  "End the batch of SESSION, which was interrupted in code of WHOSE, a text or NIL."
+  (say-on-error-output (placed-text (session-account session)
+                                    (format nil "stopped~@[ in ~A~]." whose)))
+  (throw 'leave 130))
+
+(defun interrupted (session whose)
+  "Tell the user of SESSION that his interrupt has ended the line, in code of WHOSE, a text or NIL.
+Users' code that keeps the simulator waiting is aborted, too."
+  (when (session-batch-p session) (leave-batch session whose))
   (when *simulation* (abort-hog *simulation*))
   (forget-pasted (session-input session))
   (let ((console (session-console session)))
@@ -51,11 +62,16 @@ simulator waiting is aborted, too."
 
 (defun call-guarded (session function)
   "Call FUNCTION, which may be interrupted; complain of what goes wrong in it."
-  (flet ((look-into (condition) (debug-if-wanted session condition)))
-    (handler-case
-        (with-simple-restart (end-line "End the line.")
-          (call-complaining session
-                            (lambda ()
-                              (handler-bind ((error #'look-into))
-                                (call-open-to-interrupts function)))))
-      (user-interrupt () (interrupted session)))))
+  (let ((whose nil))
+    (flet ((look-into (condition) (debug-if-wanted session condition))
+           (look-whose (condition)
+             (declare (ignore condition))
+             (setf whose (whose-code))))
+      (handler-case
+          (with-simple-restart (end-line "End the line.")
+            (call-complaining session
+                              (lambda ()
+                                (handler-bind ((error #'look-into)
+                                               (user-interrupt #'look-whose))
+                                  (call-open-to-interrupts function)))))
+        (user-interrupt () (interrupted session whose))))))

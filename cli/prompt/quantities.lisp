@@ -9,6 +9,7 @@
 (defparameter *quantities*
   '((angle     :angle  "0.5, pi/2 or 90 deg")
     (metres    :length "2.5, or 2.5 m")
+    (distance  :length "2.5, or 2.5 m")
     (speed     :speed  "0.5, or 0.5 m/tick")
     (ticks     :time   "20, or 20 ticks")
     (tick-span :time   "20, or 20 ticks"))

@@ -152,16 +152,24 @@ DISPLAY says so."
 (defun message-ink (message)
   (ink-of (if (others-p message) :others (message-kind message))))
 
-(defun write-painted (message console out)
-  "Write MESSAGE to OUT as CONSOLE is to show it."
-  (write-string (painted (visible (with-output-to-string (text) (write-message message text)))
+(defun placed-message-text (message account)
+  "Return what MESSAGE says; if it is an error in a script, with the place of the line under way."
+  (if (eq :error (message-kind message))
+      (placed-text account (message-text message))
+      (message-text message)))
+
+(defun write-painted (message console account out)
+  "Write MESSAGE, of what has ACCOUNT, to OUT as CONSOLE is to show it."
+  (write-string (painted (visible (with-output-to-string (text)
+                                    (write-message message text
+                                                   (placed-message-text message account))))
                          (message-ink message) console)
                 out))
 
 ;; As reading 197 says.
-(defun write-messages (messages console)
+(defun write-messages (messages console &optional account)
   (let ((text (with-output-to-string (out)
-                (dolist (message messages) (write-painted message console out)))))
+                (dolist (message messages) (write-painted message console account out)))))
     (if (and (unanswered-p console) (eq (message-kind (first messages)) :message))
         (write-after-prompt (fitted text console (console-prompt console)) console)
         (write-fresh (fitted text console) console))))
@@ -191,7 +199,7 @@ DISPLAY says so."
         (when (session-quiet-p session) (setf messages (remove-if #'others-p messages)))
         (when (and messages (not flush-all-errors*))
           (or (report-messages (session-account session) messages)
-              (write-messages messages console)))
+              (write-messages messages console (session-account session))))
         (restore-prompt console)
         (finish-output console)))))
 

@@ -17,13 +17,21 @@
           ((find robot robots :test #'same-name-p))
           (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world robots)))))
 
+(defun robot-asked-for (options)
+  "Return the name of the robot that OPTIONS ask for. Signals USAGE-ERROR if there is none."
+  (handler-case (first-robot options)
+    (bad-line (condition)
+      (reject-usage "~A --list lists the worlds and their robots." (bad-line-text condition)))))
+
 (defun run-headless (session robot-name seed)
   "Run the lines of SESSION, a batch, in a fresh world. Return the robot to go on with, or NIL."
   (setf (session-next-robot session) nil
         *prompt-robot* robot-name)
   (call-by-name (robots-beside robot-name))
-  (call-with-simulation (lambda () (run-session session)) (robots-beside robot-name)
-                        :seed seed :journal t :keep *forks-to-keep*)
+  ;; Whoever interrupts it is told whose code was under way.
+  (let ((*user-calls* (make-user-calls)))
+    (call-with-simulation (lambda () (run-session session)) (robots-beside robot-name)
+                          :seed seed :journal t :keep *forks-to-keep*))
   (session-next-robot session))
 
 (defun run-batch (session robot-name seed)
@@ -80,7 +88,7 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
 
 (defun run-prompt (options)
   "Do what OPTIONS say. Return the status to exit with."
-  (let ((robot-name (first-robot options))
+  (let ((robot-name (robot-asked-for options))
         (session (standard-session options)))
     ;; Threads of users' write objects, too.
     (when (option-value :json options)
@@ -155,12 +163,21 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
           ((search "Broken pipe" (own-text trouble)) (max 1 status))
           (t (give-reason trouble (max 1 status))))))
 
+(defun call-fitting (function console)
+  "Call FUNCTION. The tables that it prints fit the window of CONSOLE, if that is on a terminal."
+  (if (terminal-stream-p (console-stream console))
+      (call-on-page function (1- (window-size)))
+      (funcall function)))
+
 (defun run-process ()
   "Do what the arguments of this process say. Return the status to exit with."
   (let ((console (standard-output)))
     (setf *standard-output* console
           *trace-output* console)
-    (deliver console (call-for-status (lambda () (run-arguments (process-arguments)))))))
+    (deliver console
+             (call-for-status
+              (lambda ()
+                (call-fitting (lambda () (run-arguments (process-arguments))) console))))))
 
 (defun main ()
   "Run ./cli/ars-magna: do what the arguments of this process say, and end it. The argument --probe

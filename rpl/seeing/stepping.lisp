@@ -61,6 +61,12 @@ that is a leaf; NIL if it begins none, or one that has a step of its own.")
         (course-within course) task
         (course-until course) until))
 
+(document-restarts
+ 'step "In a plan that is being stepped: do this, and stop before the next expression."
+ 'next "In a plan that is being stepped: do all of this, and stop before the next expression of
+this task."
+ 'out "In a plan that is being stepped: finish what this is a part of, and stop after that.")
+
 (defun stop-at (course task frame form leaf-p)
   "Let somebody see TASK of COURSE before FORM at FRAME, and say how far it is to go."
   (restart-case

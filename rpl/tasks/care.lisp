@@ -59,6 +59,11 @@
 
 ;;; Calling.
 
+(document-restarts
+ 'fail-task "Let the plan's task whose code went wrong fail: other branches of the plan go on as
+after any failure."
+ 'leave-plan "End the plan without a message.")
+
 (defun leave-plan ()
   "In a plan's Lisp code: end the plan, and report nothing. Elsewhere return."
   (let ((restart (find-restart 'leave-plan)))

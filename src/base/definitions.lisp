@@ -88,6 +88,12 @@ define as functions, or is no name of a function."
 ;;; Restarts.
 
 (addition skip-definition skip-clause read-again)
+(document-restarts
+ 'skip-definition "Leave the definition with the mistake out. What had its name keeps it."
+ 'skip-clause "Leave the clause of a map that has the mistake out, and go on with the next."
+ 'read-again "Read the definition, or the clause, again from its file, after you have mended it
+there."
+ 'use-value "Use the value that you type instead: another clause, definition, name or value.")
 
 (defun read-value (what)
   "Ask the user for WHAT, a form; return a list of it."

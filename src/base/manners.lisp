@@ -16,6 +16,10 @@ stream, a thread, a lock. Restarts: SHARE-VALUE, both runs have the same one; LE
 fork has NIL instead; MAKE-NO-FORK."))
 
 (addition cannot-fork-value cannot-fork-place share-value leave-out-value make-no-fork)
+(document-restarts
+ 'share-value "Make the fork; both runs have the same object."
+ 'leave-out-value "Make the fork; it has NIL instead of the object."
+ 'make-no-fork "Make no fork. The function that was to make one returns NIL.")
 (document-functions
   cannot-fork-value "Return what cannot be copied."
   cannot-fork-place "Return where it was found: a text, such as the name of a plan's variable.")

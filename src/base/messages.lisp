@@ -124,11 +124,12 @@ line (reading 36)."
   "Return the items of MESSAGE as a string, without the marker of its kind."
   (with-output-to-string (stream) (write-items (message-items message) stream)))
 
-(defun write-message (message stream)
-  "Write MESSAGE and a new line to STREAM, marked *ERROR* -> or *WARNING* -> (manual E)."
+(defun write-message (message stream &optional (text (message-text message)))
+  "Write MESSAGE, which says TEXT, and a new line to STREAM, marked *ERROR* -> or *WARNING* ->
+\(manual E)."
   (format stream "~@[*~A* -> ~]~A~%"
           (ecase (message-kind message) (:error "ERROR") (:warning "WARNING") (:message nil))
-          (message-text message)))
+          text))
 
 (public error-display)
 (defun error-display (&optional (stream *standard-output*))

@@ -81,3 +81,21 @@ what belongs to a run is changed by functions that its journal notes."
 which have no place of their own for it."
   `(setf ,@(loop for (name text) on names-and-texts by #'cddr
                  append `((documentation ',name 'function) ,text))))
+
+;;; A restart has no place for its documentation in Lisp, so there is one here.
+
+(defvar *restarts* '() "Lists (name text): the restarts that are documented.")
+
+(defun document-restarts (&rest names-and-texts)
+  "Let TEXTS say what whoever chooses the restarts NAMES gets, alternating."
+  (loop for (name text) on names-and-texts by #'cddr
+        do (setf *restarts* (append (remove name *restarts* :key #'first)
+                                    (list (list name (one-line text)))))))
+
+(defun all-restarts ()
+  "Return a list of the names of the restarts that are documented."
+  (mapcar #'first *restarts*))
+
+(defun restart-documentation (name)
+  "Return what the restart NAME, a symbol, does, in words; NIL if it is not documented."
+  (second (find name *restarts* :key #'first)))

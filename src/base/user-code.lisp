@@ -112,6 +112,14 @@ list of items."
 
 ;;; Calling.
 
+(document-restarts
+ 'abort "Report the error as a message and leave your code, or end the plan or the trial that it is
+part of. The run goes on."
+ 'retry "Do again what went wrong: after you have mended your code, it goes on as if nothing had
+happened."
+ 'continue "Go on as if nothing had been wrong."
+ 'stop-simulator "Report the error, leave your code and stop the live simulator.")
+
 (define-constant +leave+ "Report it and leave " :test #'string=
   :documentation "How what the restart ABORT of a call of users' code says begins.")
 

@@ -57,7 +57,8 @@ on with, on as many cores and machines as there are. Names lparallel.")
            #:estimate-low #:estimate-high #:estimate-left-out #:estimate-texts
            #:summary-p #:summary-condition #:summary-texts #:summary-trials #:summary-failures
            #:summary-limits #:summary-errors #:summary-confidence #:summary-success #:summary-ticks
-           #:summary-measures #:summary-reasons #:summarize-results #:print-results)
+           #:summary-measures #:summary-reasons #:summarize-results #:print-results
+           #:call-on-page)
   ;; pictures, ways-picture
   (:export #:save-result-pictures #:save-ways-picture)
   ;; aside, replaying, failures

@@ -3,6 +3,8 @@
 (in-package :ars-magna.run)
 
 (addition damaged-simulation load-anyway)
+(document-restarts
+ 'load-anyway "Load the saved run although what is defined now is not what was defined then.")
 (define-condition damaged-simulation (damaged-file)
   ()
   (:report (lambda (condition stream)

@@ -3,6 +3,8 @@
 (in-package :ars-magna.run)
 
 (addition different-definitions replay-anyway)
+(document-restarts
+ 'replay-anyway "Replay the journal although what is defined now is not what was defined then.")
 (define-condition different-definitions (ars-magna-error)
   ((differences :initarg :differences :reader different-definitions-differences)
    (file :initarg :file :initform "journal" :reader different-definitions-file)

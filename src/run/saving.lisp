@@ -13,6 +13,8 @@
 ;;; What cannot be saved, and may be left out.
 
 (addition unsavable unsavable-parts save-without)
+(document-restarts
+ 'save-without "Save the run without what no file can hold; the error says what that is.")
 (define-condition unsavable (ars-magna-error)
   ((name  :initarg :name  :reader unsavable-name)
    (parts :initarg :parts :reader unsavable-parts))

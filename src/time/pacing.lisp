@@ -13,7 +13,7 @@
 (defparameter *hog-seconds* 0.5
   "For how many seconds a user's function, such as a continuation, may keep the simulator's thread
 before a warning names it; also how long STOP-SIMULATOR waits before it interrupts one. At least
-0.05.")
+0.05. Threads of the simulator read it, so set it with SETF: a LET does not reach them.")
 
 (defun hog-seconds ()
   "Return *HOG-SECONDS*, within bounds."

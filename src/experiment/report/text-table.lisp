@@ -2,7 +2,14 @@
 
 (in-package :ars-magna.experiment)
 
-(defconstant +page-width+ 100 "How many characters a line has at most.")
+(defconstant +page-width+ 100 "How many characters a line has at most, unless a window is narrower.")
+
+(defvar *page-width* +page-width+ "How many characters a line has at most.")
+
+(defun call-on-page (function &optional (width +page-width+))
+  "Call FUNCTION, which writes tables, for a page as wide as WIDTH characters, within reason."
+  (let ((*page-width* (max 60 (min width +page-width+))))
+    (funcall function)))
 
 ;;; Lines.
 
@@ -32,7 +39,7 @@ ends at a no-break space, which becomes a space, only if it cannot end at anothe
 (defun write-wrapped (text stream &key (first "") (indent (length first)))
   "Write TEXT to STREAM in lines that fit the page, the first one after FIRST, the others after
 INDENT spaces."
-  (loop for line in (wrapped-text text (- +page-width+ (max indent (length first))))
+  (loop for line in (wrapped-text text (- *page-width* (max indent (length first))))
         for start = first then (make-string indent :initial-element #\Space)
         do (format stream "~A~A~%" start line)))
 
@@ -61,7 +68,7 @@ are left as they are if WHOLE-P."
                                                      (+ 2 (text-column-width column))))))
     (loop with blocks = '() and block = '()
           for column in columns
-          do (when (and block (> (width (append key block (list column))) +page-width+))
+          do (when (and block (> (width (append key block (list column))) *page-width*))
                (push (append key block) blocks)
                (setf block '()))
              (setf block (append block (list column)))
