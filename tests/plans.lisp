@@ -195,3 +195,42 @@
   (with-messages
     (is (equal '(:gave-up) (nth-value 1 (run-errand-of 'ars-worlds:dot 'ball
                                                        '((:color world:violet)) 1 :clean t))))))
+
+(defun take-over (body continuation)
+  "Let the robot BODY, or the part of it that carries out a command, do something else. True if
+there is such."
+  (let ((camera (robot:robot-camera body 0)) (hand (robot:robot-hand body 0)))
+    (flet ((busy-p (part) (not (member (command:under-way part) '(nil command:camera-track)))))
+      (cond ((busy-p body) (command:robot-turn body 1/2 continuation) t)
+            ((busy-p camera) (command:camera-turn camera 1/10 continuation) t)
+            ((busy-p hand) (command:hand-ungrasp hand continuation) t)))))
+
+(defun errand-taken-over (moment seed)
+  "Take over, at the tick MOMENT, what carries out a command of an errand. If there is such, return
+what the errand's continuation has got three ticks later, and in the end, and what the continuation
+of the other command has got."
+  (let ((codes '()) (others '()))
+    (run:with-simulation (ars-worlds:dot :seed seed)
+      (ars-worlds:run-errand ars-worlds:dot '((:color world:red))
+                             (lambda (err robot) (declare (ignore robot)) (push err codes)))
+      (run:run-ticks moment)
+      (when (and (null codes)
+                 (take-over ars-worlds:dot (lambda (err &rest results)
+                                             (declare (ignore results))
+                                             (push err others))))
+        (run:run-ticks 3)
+        (let ((soon codes))
+          (run:run-ticks 1000)
+          (list soon codes others))))))
+
+(test errand.gives-no-commands-after-an-interrupt
+  (with-messages
+    (let ((runs (loop for moment from 1 to 150
+                      for run = (errand-taken-over moment (mod moment 7))
+                      when run collect run)))
+      (is (< 30 (length runs)) "~D" (length runs))
+      (loop for (soon codes others) in runs
+            do (is (equal '(:interrupt) soon))
+               (is (equal '(:interrupt) codes))
+               (is (= 1 (length others)))
+               (is (not (member :interrupt others)))))))

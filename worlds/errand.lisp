@@ -58,6 +58,13 @@ another command took a part over."
       (funcall next errand)
       (set-back errand err otherwise)))
 
+(defun unless-interrupted (errand err step)
+  "Call STEP, a function of no arguments, whatever came of a command; but if ERR says that somebody
+has taken a part over, ERRAND ends, and gives no more commands."
+  (if (eq err :interrupt)
+      (end-errand errand err)
+      (funcall step)))
+
 ;;; Finding.
 
 (defun find-target (errand)
@@ -101,18 +108,22 @@ another command took a part over."
   "Drive to what the camera tracks. When something is in the way, that may be near enough."
   (robot-goto-designator (errand-robot errand) (errand-camera errand)
     (continuation (err robot camera designator)
-      (free-camera errand
-                   (lambda (errand)
-                     (go-on errand err #'check-target #'find-target
-                            :goto-local :robot-blocked))))))
+      (unless-interrupted errand err
+        (lambda ()
+          (free-camera errand
+                       (lambda (errand)
+                         (go-on errand err #'check-target #'find-target
+                                :goto-local :robot-blocked))))))))
 
 (defun turn-aside (errand)
   "Leave what is here: turn aside and drive on for a bit, then look round again."
   (robot-turn (errand-robot errand) (if (evenp (errand-patience errand)) 1.3 -1.3)
     (continuation (err robot angle)
-      (robot-go-forward robot 2
-        (continuation (err robot)
-          (go-on errand err #'find-target #'find-target :robot-blocked))))))
+      (unless-interrupted errand err
+        (lambda ()
+          (robot-go-forward robot 2
+            (continuation (err robot)
+              (go-on errand err #'find-target #'find-target :robot-blocked))))))))
 
 ;;; Making sure. Colours are often misread: only what looks right three times is taken.
 
@@ -125,7 +136,8 @@ WANTED times; take the step NEXT with the last designator then, or else OTHERWIS
   (camera-get-object-designator (errand-camera errand) :local (errand-description errand)
     (continuation (err camera designator)
       (let ((wanted (if designator (- wanted 1) wanted)))
-        (cond ((zerop wanted) (funcall next errand designator))
+        (cond ((eq err :interrupt) (end-errand errand err))
+              ((zerop wanted) (funcall next errand designator))
               ((zerop looks) (set-back errand err otherwise))
               (t (look-closely-at errand (- looks 1) wanted next otherwise)))))))
 
@@ -140,11 +152,14 @@ WANTED times; take the step NEXT with the last designator then, or else OTHERWIS
   "Grasp DESIGNATOR, which the camera tracks. What is too heavy was perhaps not what is wanted."
   (hand-grasp-desig (errand-hand errand) (errand-camera errand) designator
     (continuation (err hand designator)
-      (free-camera errand
-                   (lambda (errand)
-                     (if (eq err :insufficient-strength)
-                         (leave-heavy errand)
-                         (go-on errand err #'open-for-target #'check-target :hand-grasping)))))))
+      (unless-interrupted errand err
+        (lambda ()
+          (free-camera errand
+                       (lambda (errand)
+                         (if (eq err :insufficient-strength)
+                             (leave-heavy errand)
+                             (go-on errand err #'open-for-target #'check-target
+                                    :hand-grasping)))))))))
 
 (defun leave-heavy (errand)
   "Look for something lighter, but not for ever."
@@ -170,11 +185,13 @@ WANTED times; take the step NEXT with the last designator then, or else OTHERWIS
   (hand-ungrasp (errand-hand errand)
     (continuation (err hand)
       (let ((lost (eq err :not-grasping)))
-        (hand-remove hand
-          (continuation (err hand)
-            (if lost
-                (set-back errand :not-grasping #'find-target)
-                (go-on errand err #'close-on-target #'close-on-target))))))))
+        (unless-interrupted errand err
+          (lambda ()
+            (hand-remove hand
+              (continuation (err hand)
+                (if (and lost (not (eq err :interrupt)))
+                    (set-back errand :not-grasping #'find-target)
+                    (go-on errand err #'close-on-target #'close-on-target))))))))))
 
 (defun close-on-target (errand)
   "Close the bin; it may jam."
