@@ -179,3 +179,24 @@ that look at the stack may leave some."
       (is (< 1 (length (kept-ticks))))
       (driver:end-plan :all)
       (awaiting (null (driver:plans))))))
+
+;;; Programs that are told of it.
+
+(test rewind.goes-on-wherever-a-continuation-throws
+  (run:with-simulation (ars-worlds:dot :seed 1 :keep t)
+    (command:robot-turn ars-worlds:dot 2 (lambda (&rest results)
+                                           (declare (ignore results))
+                                           (throw 'elsewhere :thrown)))
+    (run:run-ticks 4)
+    (is (eq :thrown (catch 'elsewhere (run:rewind 2))))
+    (run:run-ticks 1)
+    (is (= 3 (run:simulation-tick)))))
+
+(test rewind.tells-of-errors-in-continuations
+  (run:with-simulation (ars-worlds:dot :seed 1 :keep t)
+    (command:robot-turn ars-worlds:dot 2 (lambda (&rest results)
+                                           (declare (ignore results))
+                                           (error "of my own")))
+    (run:run-ticks 4)
+    (run:rewind 2)
+    (is (= 1 (count :error (base:take-messages) :key #'base:message-kind)))))

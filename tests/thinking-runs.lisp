@@ -221,3 +221,22 @@
         (is (equal mode (getf (run:journal-header (run:simulation-journal time:*simulation*))
                               :thinking))))
       (signals base:wrong-argument (run:simulator 'fitter :thinking :cheap)))))
+
+(test thinking.no-pulse-is-missed-with-a-small-budget
+  (dolist (budget '(1 2 5 20))
+    (run:with-simulation (ars-worlds:dot :thinking (list :charged :budget budget))
+      (let ((task (driver:begin-plan (rpl:interp-lambda ()
+                                       (driver:rpl-robot-turn 1/10)
+                                       (rpl:wait-for driver:robot-stopped*)))))
+        (run:run-ticks 200)
+        (is (eq :succeeded (rpl:task-state task)) "~D" budget)))))
+
+(test thinking.a-price-that-is-none-fails
+  (dolist (mode '(:free :charged))
+    (run:with-simulation (ars-worlds:dot :thinking mode)
+      (with-messages
+        (let ((task (driver:begin-plan (rpl:interp-lambda ()
+                                         (rpl:with-failure-handling ((t () (return :handled)))
+                                           (rpl:with-charge (-1) 1))))))
+          (run:run-ticks 3)
+          (is (eq :succeeded (rpl:task-state task)) "~S" mode))))))

@@ -121,3 +121,32 @@ the end, a list, and the errors about runs that are over."
   (is-told-once "is rewound by no tick" (lambda () (run:rewind 0)))
   (is-told-once "is forked" (lambda ()
                               (run:with-fork (:continuations t) (run:run-ticks 5)))))
+
+;;; Whoever takes the robot over ends it at once, also while a camera looks, or a speed is set.
+
+(defun going-stopped (begin tick)
+  "Return what the continuation of BEGIN, a function of it, has got 30 ticks after the robot was
+told to stop at TICK; NIL if it had ended by then."
+  (run:with-simulation (ars-worlds:marvin :seed 1)
+    (let ((codes '()))
+      (funcall begin (lambda (err robot) (declare (ignore robot)) (push err codes)))
+      (run:run-ticks tick)
+      (unless codes
+        (command:robot-stop ars-worlds:marvin)
+        (run:run-ticks 30)
+        (list codes (command:under-way ars-worlds:marvin))))))
+
+(test going.ends-when-the-robot-is-told-to-stop
+  (loop for tick from 0 to 140
+        do (is (equal '((:interrupt) nil)
+                      (going-stopped (lambda (continuation)
+                                       (ars-worlds:robot-go-to ars-worlds:marvin 109 24
+                                                               continuation))
+                                     tick))
+               "~D" tick))
+  (loop for tick from 0 to 4
+        do (is (equal '((:interrupt) nil)
+                      (going-stopped (lambda (continuation)
+                                       (ars-worlds:robot-go-distance ars-worlds:marvin 5
+                                                                     continuation))
+                                     tick)))))

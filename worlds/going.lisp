@@ -13,9 +13,31 @@
 (in-package :ars-worlds)
 (in-readtable :nisp)
 
-(defstruct (journey (:copier nil))
-  "Where a robot is to go, where it believes to be, and how much more trouble it puts up with."
+(defun asked-so-far (robot) (ars-magna.time:resource-asked robot))
+
+(defstruct (course (:constructor make-course (robot &aux (asked (asked-so-far robot))))
+                   (:copier nil))
+  "A robot that is given one command after the other, and how often it should have been asked for by
+now: if it was more often, somebody else has taken it over."
   (robot nil :type robot :read-only t)
+  (asked 0 :type integer))
+
+(defun own (course)
+  "Return the robot of COURSE, to which that is just about to give a command."
+  (incf (course-asked course))
+  (course-robot course))
+
+(defun taken-p (course)
+  "True if somebody else has taken the robot of COURSE over."
+  (/= (course-asked course) (asked-so-far (course-robot course))))
+
+(defun over-p (course err)
+  "True if COURSE is over, as its last command has ended with the error code ERR, or somebody else
+has taken its robot over."
+  (or (eq err :interrupt) (taken-p course)))
+
+(defstruct (journey (:include course) (:copier nil))
+  "Where a robot is to go, where it believes to be, and how much more trouble it puts up with."
   (me nil :type reckoning :read-only t)
   (goal '() :type list :read-only t)
   (tolerance 1 :type real :read-only t)
@@ -49,7 +71,7 @@ gets, in the end and once, an error code or NIL, and ROBOT. The codes: :NO-WAY, 
 PATIENCE troubles, and :INTERRUPT if another command took the robot or the camera over, or the run
 is over, also since it was rewound. Signals WRONG-ARGUMENT for a point that is nowhere near."
   (let ((me (begin-reckoning (or start (here robot)) robot)))
-    (go-on-journey (make-journey :robot robot :me me
+    (go-on-journey (make-journey :robot robot :asked (asked-so-far robot) :me me
                                  :goal (goal-near (reckoning-chart me) x y)
                                  :tolerance tolerance :patience patience
                                  :camera (widest-of robot) :continuation continuation))
@@ -61,8 +83,8 @@ is over, also since it was rewound. Signals WRONG-ARGUMENT for a point that is n
 
 (defun after-command (journey err next otherwise)
   "Go on with NEXT, a function of no arguments, if a command ended without ERR; with OTHERWISE if it
-ended with one, but not if somebody has interrupted it."
-  (cond ((eq err :interrupt) (end-journey journey err))
+ended with one, but not if somebody has interrupted it, or has taken the robot over."
+  (cond ((over-p journey err) (end-journey journey :interrupt))
         (err (funcall otherwise))
         (t (funcall next))))
 
@@ -82,7 +104,7 @@ ended with one, but not if somebody has interrupted it."
 
 (defun face-point (journey point next)
   "Turn the robot of JOURNEY to face POINT; go on with NEXT."
-  (robot-turn (journey-robot journey) (angle-towards (journey-me journey) point)
+  (robot-turn (own journey) (angle-towards (journey-me journey) point)
     (continuation (err robot angle) (after-command journey err next next))))
 
 (defun drive-to-point (journey point next)
@@ -91,21 +113,21 @@ ended with one, but not if somebody has interrupted it."
               (lambda ()
                 (drive-straight journey (distance-left (journey-me journey) point) next))))
 
-(defun drive-metres (robot metres top continuation)
-  "Let ROBOT drive METRES straight ahead, in whole ticks, at TOP metres per tick at most.
-CONTINUATION gets an error code or NIL, and ROBOT."
+(defun drive-metres (course metres top continuation)
+  "Let the robot of COURSE drive METRES straight ahead, in whole ticks, at TOP metres per tick at
+most. CONTINUATION gets an error code or NIL, and the robot."
   (let ((ticks (if (plusp top) (max 1 (ceiling metres top)) 1)))
-    (robot-set-speed robot (/ metres ticks)
+    (robot-set-speed (own course) (/ metres ticks)
       (continuation (err robot speed)
-        (if (eq err :interrupt)
-            (funcall continuation err robot)
-            (robot-go-forward robot ticks continuation))))))
+        (if (over-p course err)
+            (funcall continuation :interrupt robot)
+            (robot-go-forward (own course) ticks continuation))))))
 
 (defun drive-straight (journey distance next)
   "Let the robot of JOURNEY drive DISTANCE metres; take the step NEXT, a function of JOURNEY."
   (if (< distance .05)
       (funcall next journey)
-      (drive-metres (journey-robot journey) distance driving-speed*
+      (drive-metres journey distance driving-speed*
         (continuation (err robot)
           (after-command journey err
                          (lambda () (funcall next journey))
@@ -114,16 +136,17 @@ CONTINUATION gets an error code or NIL, and ROBOT."
 (defun robot-go-distance (robot metres continuation)
   "Let ROBOT drive METRES straight ahead, no faster than it would, and have its speed again
 afterwards. Returns at once. CONTINUATION gets, in the end, an error code of ROBOT-GO-FORWARD or
-NIL, and ROBOT. Signals WRONG-ARGUMENT unless METRES is more than 0 and at most a million."
+NIL, and ROBOT: :INTERRUPT if somebody else has taken the robot over, which then has the speed that
+it drove with. Signals WRONG-ARGUMENT unless METRES is more than 0 and at most a million."
   (unless (and (realp metres) (< 0 metres 1000001))
     (ars-magna.base:reject-argument 'robot-go-distance "the distance" metres
                                     "a number of metres, more than 0, at most a million"))
-  (let ((speed (robot-speed robot)))
-    (drive-metres robot metres (if (plusp speed) (min speed max-speed*) max-speed*)
+  (let ((course (make-course robot)) (speed (robot-speed robot)))
+    (drive-metres course metres (if (plusp speed) (min speed max-speed*) max-speed*)
       (continuation (err robot)
-        (if (eq err :interrupt)
-            (funcall continuation err robot)
-            (robot-set-speed robot speed
+        (if (over-p course err)
+            (funcall continuation :interrupt robot)
+            (robot-set-speed (own course) speed
               (continuation (no-err robot set) (funcall continuation err robot))))))))
 
 ;;; Trouble.
@@ -136,7 +159,7 @@ thing, round which it goes. Each third time it goes somewhere else first."
     (unless (correct-by-wall me) (bar-ahead me))
     (cond ((zerop (decf (journey-patience journey))) (end-journey journey :gave-up))
           ((zerop (mod (journey-patience journey) 3))
-           (robot-turn (journey-robot journey) (if (evenp (journey-patience journey)) 2.4 -2.4)
+           (robot-turn (own journey) (if (evenp (journey-patience journey)) 2.4 -2.4)
              (continuation (err robot angle)
                (after-command journey err
                               (lambda () (drive-straight journey 2 #'go-on-journey))
@@ -154,7 +177,7 @@ thing, round which it goes. Each third time it goes somewhere else first."
              (camera-get-all-place-designators (journey-camera journey) 'doorway
                (continuation (err camera designators)
                  (let ((doorway (nearest-ahead designators)))
-                   (if (and doorway (not (eq err :interrupt)))
+                   (if (and doorway (not (over-p journey err)))
                        (go-to-doorway journey doorway beyond)
                        (after-command journey err #'blindly #'blindly)))))))
     (if (journey-camera journey)
@@ -170,6 +193,7 @@ thing, round which it goes. Each third time it goes somewhere else first."
         ;; It is called again when the track ends.
         (unless begun
           (setf begun t)
+          (when (taken-p journey) (free-from-track journey doorway))
           (after-command journey err
                          (lambda () (follow-to-doorway journey doorway beyond))
                          (lambda () (note-obstacle journey))))))))
@@ -185,15 +209,15 @@ thing, round which it goes. Each third time it goes somewhere else first."
 
 (defun follow-to-doorway (journey doorway beyond)
   "Let the robot of JOURNEY go to the designator DOORWAY, which its camera tracks."
-  (robot-set-speed (journey-robot journey) driving-speed*
+  (robot-set-speed (own journey) driving-speed*
     (continuation (err robot speed)
       (flet ((follow () (go-to-tracked journey doorway beyond)))
-        (when (eq err :interrupt) (free-from-track journey doorway))
+        (when (over-p journey err) (free-from-track journey doorway))
         (after-command journey err #'follow #'follow)))))
 
 (defun go-to-tracked (journey doorway beyond)
   "Let the robot of JOURNEY, which has its speed, go to the designator DOORWAY."
-  (robot-goto-designator (journey-robot journey) (journey-camera journey)
+  (robot-goto-designator (own journey) (journey-camera journey)
     (continuation (err robot camera designator)
       (free-from-track journey doorway)
       (after-command journey err
@@ -206,10 +230,10 @@ thing, round which it goes. Each third time it goes somewhere else first."
 (defun leave-doorway (journey beyond)
   "Let the robot of JOURNEY correct its reckoning, if it senses a doorway, and drive on to BEYOND."
   (flet ((on () (drive-to-point journey beyond #'go-on-journey)))
-    (robot-place (journey-robot journey)
+    (robot-place (own journey)
       (continuation (err robot type)
         (let ((cell (doorway-nearby (journey-me journey))))
-          (if (and cell (eq type 'doorway))
+          (if (and cell (eq type 'doorway) (not (over-p journey err)))
               (take-place journey cell #'on)
               (after-command journey err #'on #'on)))))))
 
@@ -217,7 +241,7 @@ thing, round which it goes. Each third time it goes somewhere else first."
   "Let the robot of JOURNEY, which is in the doorway CELL, know that and how it is turned."
   (let ((me (journey-me journey)))
     (correct-by-cell me cell)
-    (robot-align-place (journey-robot journey)
+    (robot-align-place (own journey)
       (continuation (err robot angle)
         (after-command journey err
                        (lambda ()

@@ -23,14 +23,21 @@ SIMULATION."
 (define-argument-type 'distance (lambda (value) (and (realp value) (< 0 value 1000001)))
   "a number of metres, more than 0, at most a million")
 
+(defun tell-slowed (robot speed)
+  "Queue a message that a line GO was interrupted, and left ROBOT with another speed than SPEED."
+  (unless (= speed (robot-speed robot))
+    (warning-set (format nil "go: Interrupted. The speed is ~,2F now; SET-SPEED ~,2F sets what it ~
+                              was"
+                         (robot-speed robot) speed))))
+
 (define-line "GO" (session (distance distance "how far"))
     (:moving)
     "Drive DISTANCE metres straight ahead, no faster than the robot's speed. GO-FORWARD drives for a
 number of ticks."
-  (let ((errand (make-errand)))
+  (let ((errand (make-errand)) (speed (robot-speed (session-robot))))
     (robot-go-distance (session-robot) distance
                        (lambda (err robot)
-                         (declare (ignore err robot))
+                         (when (eq :interrupt err) (tell-slowed robot speed))
                          (setf (errand-done-p errand) t)))
     (push errand (session-errands session))))
 

@@ -103,8 +103,9 @@ once. Signals WRONG-ARGUMENT (ours; manual 1.2)."
           (body node (body-code body scope)))
   (:steps
    (begin
-    (next inside)
+    ;; A price that is none fails before there is a thought.
     (setf memory (begin-thought task (funcall span environment) (funcall alone environment)))
+    (next inside)
     (start-priced-branch body task environment))
    (inside
     (next thinking)

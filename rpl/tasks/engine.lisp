@@ -55,7 +55,9 @@ Return the task, which runs at the next reaction."
 
 ;;; Reacting. In a round every ready task gets its turn, until it waits, ends or has used its slice.
 ;;; Only then is the next post heard, and only when nothing is posted do those that have used their
-;;; slices get new ones. So a plan that never waits deafens nobody.
+;;; slices get new ones. So a plan that never waits deafens nobody. Where a tick has a budget, slices
+;;; are shares of that, and a plan may need several from a command to the wait for what comes of it:
+;;; there it is not slices that decide when somebody who has not waited yet is to hear.
 
 (defun run-ready (runner)
   "Run the ready tasks of RUNNER. Return :idle when none is ready that has not used its slice,
@@ -81,14 +83,27 @@ the end of a tick's budget has broken off goes on in the next tick: each task ge
       (setf (runner-broken-off-p runner) t))
     outcome))
 
+(defun may-hear-p (runner)
+  "True if RUNNER, whose round is over, is to hear what was posted before its tasks go on."
+  (or (null (runner-spent runner))
+      (null (runner-budget runner))
+      (not (runner-charged-p runner))
+      (>= (- (runner-steps runner) (runner-heard-at runner)) +thoughts+)))
+
+(defun hear-next (runner hear)
+  "Call HEAR if RUNNER may hear now. Return what it returns."
+  (declare (type function hear))
+  (when (may-hear-p runner)
+    (setf (runner-heard-at runner) (runner-steps runner))
+    (funcall hear runner)))
+
 (defun run-rounds (runner hear)
   "Run the ready tasks of RUNNER until none is ready; HEAR, a function, is called between rounds and
 returns true if it brought something new. Return :idle or :budget."
-  (declare (type function hear))
   (loop
     (let ((outcome (run-round runner)))
       (cond ((eq outcome :budget) (return :budget))
-            ((funcall hear runner))
+            ((hear-next runner hear))
             ((runner-spent runner) (release-spent runner))
             (t (return :idle))))))
 

@@ -13,6 +13,10 @@
   "How many steps a task may take before others, and what was posted meanwhile, get their turn; a
 tenth of the steps of a reaction if that is less.")
 
+(defconstant +thoughts+ 500
+  "Where steps have a budget of ticks, how many the tasks may take, all together, before what was
+posted meanwhile is heard although some of them have not waited yet.")
+
 (defparameter *runaway-limit* 1000000
   "How many steps a reaction without a budget takes before time passes all the same.")
 
@@ -59,6 +63,7 @@ as it needs. CLIENT is on whose behalf all this is."
   ;; How many steps count that are not among STEPS; less than 0 if some of those do not.
   (uncovered 0 :type integer)
   (broken-off-p nil :type boolean)
+  (heard-at 0 :type (unsigned-byte 62))
   (ticks-per-second 20 :type (real (0)))
   (dice nil :type (or null dice))
   (trace nil :type (or null chronicle))

@@ -292,5 +292,6 @@ if the robot's run is over."
         (arguments (if (some #'consp arguments)
                        (given (command-name command) "arguments" arguments)
                        arguments)))
+    (note-asked (occupied command resource))
     (post (make-operation command (occupied command resource) arguments continuation timeline)
           timeline)))

@@ -133,14 +133,17 @@ it, and the tick at which plans strayed on the way, or NIL."
     (end-simulation old reason)
     (setf (simulation-past old) nil)))
 
-(defun take-the-place (new old)
-  "Let NEW go on in the place of OLD, which this thread has in custody."
-  (check-not-over old 'rewind)
+(defun hand-over-errors (new old)
+  "Let NEW tell of the errors that came up when OLD ended, in users' code that was told so."
+  (dolist (message (take-messages (simulation-messages old)))
+    (when (eq :error (message-kind message))
+      (queue-message message (simulation-messages new)))))
+
+(defun succeed-to (new old from)
+  "Let NEW be, in all respects, what OLD, which had come to the tick FROM, was."
   (let ((resident-p (not (headless-p old)))
-        (current-p (or (eq old *simulation*) (eq old (global-value '*simulation*))))
-        (from (simulation-tick old)))
-    (hand-over-looks new old)
-    (end-rewound old new)
+        (current-p (or (eq old *simulation*) (eq old (global-value '*simulation*)))))
+    (hand-over-errors new old)
     (note-rewound from new)
     (when current-p (set-variables new old))
     (when resident-p (settle-in-map new))
@@ -149,15 +152,28 @@ it, and the tick at which plans strayed on the way, or NIL."
             (simulation-variables new) (simulation-variables old)
             (timeline-fork-p (simulation-timeline new)) nil))))
 
+(defun take-the-place (new old then)
+  "Let NEW go on in the place of OLD, which this thread has in custody; at last call THEN. Programs
+are told that OLD is over; wherever they throw, NEW goes on."
+  (check-not-over old 'rewind)
+  (let ((from (simulation-tick old)))
+    (hand-over-looks new old)
+    (in-any-case
+      (end-rewound old new)
+      (succeed-to new old from)
+      (funcall then))))
+
 (defun replace-run (new old)
   "Let NEW go on in the place of OLD, live if that is. Return NEW."
   (let ((live-p (live-p old)) (rate (simulation-rate old)) (paused-p (paused-p old)))
     (call-alone (simulation-timeline old)
                 (lambda ()
-                  (take-the-place new old)
-                  (when live-p
-                    (start-clock new :rate rate :paused-p paused-p
-                                     :real (eq :real (simulation-thinking new))))))
+                  (take-the-place
+                   new old
+                   (lambda ()
+                     (when live-p
+                       (start-clock new :rate rate :paused-p paused-p
+                                        :real (eq :real (simulation-thinking new))))))))
     new))
 
 ;;; What the journal says of it.

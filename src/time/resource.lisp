@@ -8,4 +8,10 @@ a resource of SCHEDULE too; these carry their pending event themselves, which is
   (:state
    (event nil t "the event or command that is pending on the resource, or NIL"))
   (:memory
-   (interruption nil t "what was interrupted last on the resource, or NIL")))
+   (interruption nil t "what was interrupted last on the resource, or NIL")
+   (asked 0 atomic-count "how often the resource was asked for: whoever gives it one command after
+the other can tell by that whether somebody else came between")))
+
+(defun note-asked (resource)
+  "Note that RESOURCE is asked for, if it is one that can tell."
+  (when (resource-p resource) (atomic-incf (resource-asked resource))))
