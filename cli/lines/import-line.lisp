@@ -12,7 +12,7 @@
   (destructuring-bind (&key width height cell free occupied unknown walls) report
     (format t "~(~A~): ~D by ~D cells of ~A m, ~D free, ~D occupied, ~D unknown, in ~D walls.~%"
             (map-name map) width height (amount-text cell) free occupied unknown walls)
-    (format t "For a robot there: (defrobot NAME (~(~A~) (~:[X Y~;~:*~{~,1F~^ ~}~])) 0), and then ~
+    (format t "For a robot there: (defrobot NAME (~(~A~) (~:[X Y~;~:*~{~,1F~^ ~}~]) 0)), and then ~
                WORLD ~2:*~(~A~).~%"
             (map-name map) (free-middle map))))
 

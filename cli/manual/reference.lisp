@@ -48,6 +48,11 @@
                               (format nil "<p class=\"from\">Used in ~A.</p>~%"
                                       (from-html example)))))))
 
+(defparameter *about-examples*
+  "An example is a part of the page that its link leads to. What it uses and Lisp does not know is
+defined there, further up."
+  "What a chapter says of its examples.")
+
 ;;; Entries and chapters.
 
 (defun entry-html (entry book)
@@ -86,9 +91,10 @@
   "Write the page of CHAPTER to OUT."
   (let ((entries (entries-in chapter book)))
     (write-frame out (chapter-title chapter)
-                 (format nil "<h1>~A</h1>~%<p>~A</p>~%~{~A~}"
+                 (format nil "<h1>~A</h1>~%<p>~A</p>~%<p>~A</p>~%~{~A~}"
                          (escaped (chapter-title chapter))
                          (escaped (chapter-introduction chapter))
+                         (escaped *about-examples*)
                          (loop for section in (sections-of entries)
                                collect (section-html
                                         section

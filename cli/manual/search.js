@@ -44,9 +44,17 @@
     results.appendChild(item);
   }
 
+  function showNothing() {
+    var item = document.createElement("li");
+    item.textContent = "Nothing has that in its name or first sentence.";
+    results.appendChild(item);
+  }
+
   input.addEventListener("input", function () {
+    var found = find(input.value);
     results.textContent = "";
-    find(input.value).forEach(show);
+    found.forEach(show);
+    if (!found.length && input.value.trim()) showNothing();
   });
   input.addEventListener("keydown", function (event) {
     var first = results.querySelector("a");

@@ -35,6 +35,7 @@ that."
                (show-answer console (visible line)))
               (t (unless (or line (session-batch-p session)) (fresh-line console))
                  (answered console))))
+      (clrhash (session-told session))
       (note-read (session-account session))
       line)))
 

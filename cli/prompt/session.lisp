@@ -28,6 +28,8 @@
   (echo-p nil :type boolean :read-only t)
   ;; What comes of the commands that plans and programs give is not shown.
   (quiet-p nil :type boolean)
+  ;; How often each error has been told since a line was read, by its text.
+  (told (make-hash-table :test 'equal) :type hash-table :read-only t)
   (lock (make-lock "session") :read-only t)
   ;; The simulation whose messages are shown as they arrive, and its observer if it is live.
   (simulation nil)
@@ -183,6 +185,27 @@ DISPLAY says so."
   (and (eq :error (message-kind message))
        (funcall *error-counts-p* message session)))
 
+;; What goes wrong in each tick, as in a kicker, is not to drown all else. A transcript has it all.
+(defun power-of-ten-p (number)
+  (or (= 1 number)
+      (and (zerop (mod number 10)) (power-of-ten-p (/ number 10)))))
+
+(defun told-often-p (message session)
+  "Count MESSAGE, if it is an error and somebody sits at SESSION. True if it is one of many alike
+that is not shown."
+  (and (eq :error (message-kind message))
+       (terminal-p session)
+       (let ((count (incf (gethash (message-text message) (session-told session) 0))))
+         (and (< 3 count) (not (power-of-ten-p count))))))
+
+(defun repetition-text (message session)
+  "Return what is to be said of how often SESSION has been told MESSAGE, which is shown, or NIL."
+  (let ((count (gethash (message-text message) (session-told session) 0)))
+    (when (and (eq :error (message-kind message)) (<= 3 count))
+      (format nil "That has come up ~D times; it is shown again after ~D. PAUSE stops time.~%"
+              count
+              (loop for next = 10 then (* 10 next) when (< count next) return next)))))
+
 (defvar *showing-p* nil
   "True while this thread shows messages; what the showing itself reports is left for later.")
 
@@ -197,9 +220,13 @@ DISPLAY says so."
         (incf (session-errors session)
               (count-if (lambda (message) (counts-p message session)) messages))
         (when (session-quiet-p session) (setf messages (remove-if #'others-p messages)))
+        (setf messages (remove-if (lambda (message) (told-often-p message session)) messages))
         (when (and messages (not flush-all-errors*))
           (or (report-messages (session-account session) messages)
-              (write-messages messages console (session-account session))))
+              (write-messages messages console (session-account session)))
+          (dolist (text (remove nil (mapcar (lambda (message) (repetition-text message session))
+                                            messages)))
+            (write-fresh (fitted text console) console)))
         (restore-prompt console)
         (finish-output console)))))
 

@@ -43,7 +43,8 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
         (reject-line "The line is longer than ~D bytes. Put what is in it into a file, ~
                       and (load \"FILE\")."
                      +longest-line-typed+))
-      (decoded octets))))
+      ;; Some editors begin files with a mark of the order of bytes.
+      (string-left-trim '(#.(code-char #xFEFF)) (decoded octets)))))
 
 (defun fill-line (stream)
   "Let STREAM have something left of a line, unless it is at its end."

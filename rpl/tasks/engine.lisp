@@ -55,9 +55,9 @@ Return the task, which runs at the next reaction."
 
 ;;; Reacting. In a round every ready task gets its turn, until it waits, ends or has used its slice.
 ;;; Only then is the next post heard, and only when nothing is posted do those that have used their
-;;; slices get new ones. So a plan that never waits deafens nobody. Where a tick has a budget, slices
-;;; are shares of that, and a plan may need several from a command to the wait for what comes of it:
-;;; there it is not slices that decide when somebody who has not waited yet is to hear.
+;;; slices get new ones. So a plan that never waits deafens nobody. Where a tick has a budget,
+;;; slices are shares of that, and a plan may need several from a command to the wait for what comes
+;;; of it: there it is not slices that decide when somebody who has not waited yet is to hear.
 
 (defun run-ready (runner)
   "Run the ready tasks of RUNNER. Return :idle when none is ready that has not used its slice,

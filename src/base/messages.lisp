@@ -52,6 +52,7 @@ that reports) after each message is queued."
     copy))
 
 (defun queue-message (message queue)
+  "Add MESSAGE to QUEUE, and let whoever listens to that know."
   (with-lock ((message-queue-lock queue))
     (push message (message-queue-newest-first queue))
     (incf (message-queue-count queue))

@@ -5,7 +5,8 @@
 they wait in; the pace of a live one. Knows nothing of worlds, robots and journals.")
   (:use :cl :ars-magna.base)
   ;; resource, event, agenda
-  (:export #:resource #:resource-event #:resource-interruption #:resource-asked #:note-asked #:event #:event-pending-p
+  (:export #:resource #:resource-event #:resource-interruption #:resource-asked #:note-asked
+           #:event #:event-pending-p
            #:event-resource #:event-time #:event-priority #:event-function #:event-interrupt
            #:agenda #:make-agenda #:agenda-tick #:agenda-pending #:queue-event
            #:queue-again #:+longest-delay+ #:cancel-event #:interrupt-event

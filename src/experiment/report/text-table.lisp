@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
-(defconstant +page-width+ 100 "How many characters a line has at most, unless a window is narrower.")
+(defconstant +page-width+ 100
+  "How many characters a line has at most, unless a window is narrower.")
 
 (defvar *page-width* +page-width+ "How many characters a line has at most.")
 
