@@ -156,3 +156,27 @@ if there is no fork. And how often somebody was asked."
             (is (= 4 (rpl:task-result task)))))
         (is (= 4 (run:simulation-tick fork)))
         (run:release-fork fork)))))
+
+;;; A user's method may fail.
+
+(defstruct grudge "What the method for it does not like.")
+
+(defmethod base:copy-plan-value ((value grudge) fork)
+  (declare (ignore fork))
+  (error "I will not."))
+
+(rpl:def-interp-proc bear-a-grudge ()
+  (let ((held (make-grudge)))
+    (rpl:wait-time 50)
+    held))
+
+(test forking.a-method-that-fails-is-named-with-its-value
+  (run:with-simulation (ars-worlds:dot)
+    (driver:begin-plan 'bear-a-grudge)
+    (run:run-ticks 2)
+    (let ((seen nil))
+      (handler-bind ((base:cannot-fork (lambda (condition)
+                                         (setf seen condition)
+                                         (invoke-restart 'base:share-value))))
+        (is-true (run:fork-simulation)))
+      (is (has-words-p (princ-to-string seen) "the variable held" "I will not")))))

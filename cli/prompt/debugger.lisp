@@ -159,21 +159,44 @@ user's."
 
 ;;; How a program waits.
 
+(defun call-debugging (session function)
+  "Call FUNCTION, which reads lines for what has broken in this thread. What breaks elsewhere
+meanwhile comes after that."
+  (let ((before (session-debugging-p session)))
+    (setf (session-debugging-p session) t)
+    (unwind-protect (funcall function)
+      (setf (session-debugging-p session) before)
+      (when (and (session-breaks session) (not before) (not (session-over-p session)))
+        (tell-break session (first (session-breaks session)))))))
+
 (defun debug-here (session breakage)
   "Read lines for BREAKAGE, of this thread, until one says how to go on."
   (tell-break session breakage)
   (flet ((read-lines ()
            (loop until (session-over-p session)
                  do (call-guarded session (lambda () (read-debug-line session breakage))))))
-    (if (session-visit session)
-        (call-aside #'read-lines)
-        (read-lines)))
+    (call-debugging session (lambda ()
+                              (if (session-visit session)
+                                  (call-aside #'read-lines)
+                                  (read-lines)))))
   (invoke-restart 'end-line))
+
+(defun announce-break (session breakage)
+  "Tell of BREAKAGE, of another thread than the one of SESSION: all, if it can be answered now."
+  (if (session-debugging-p session)
+      (let ((console (session-console session)))
+        (write-fresh (fitted (format nil "*BREAK* -> ~A (in ~A). It waits until this one here is ~
+                                          answered.~%"
+                                     (break-words (breakage-condition breakage))
+                                     (whereabouts session breakage))
+                             console)
+                     console))
+      (tell-break session breakage)))
 
 (defun debug-elsewhere (session breakage)
   "Do what the thread of SESSION orders for BREAKAGE, until that is to go on."
   (push breakage (session-breaks session))
-  (unwind-protect (progn (tell-break session breakage)
+  (unwind-protect (progn (announce-break session breakage)
                          (loop
                            (wait-on-semaphore (breakage-ordered breakage))
                            (funcall (breakage-order breakage))

@@ -43,6 +43,8 @@
   ;; The thread that reads, and what has entered the debugger in others, newest first.
   (thread nil)
   (breaks '() :type list)
+  ;; True while it reads lines for what has entered the debugger in its own thread.
+  (debugging-p nil :type boolean)
   ;; That of the last plan, if it failed, and the plan's name, in a list.
   (failure nil)
   ;; What has been issued and may not have ended, and whether Lisp may have issued more.

@@ -99,6 +99,20 @@ not be complete before they have returned."
                            :displaced-to (forked base copier) :displaced-index-offset offset)
                copier)))
 
+(defun copy-as-told (value copier)
+  "Return what COPY-PLAN-VALUE returns for VALUE, unless who asks for the copy has decided. An error
+in a user's method is CANNOT-FORK."
+  (let ((decision (assoc value (copier-option copier :decisions) :test #'eq)))
+    (flet ((blame (condition)
+             (unless (typep condition 'ars-magna-error)
+               (error 'cannot-fork :value value :place (found-in value copier)
+                                   :trouble (brief-text condition)))))
+      (declare (dynamic-extent #'blame))
+      (if decision
+          (cdr decision)
+          (handler-bind ((error #'blame))
+            (copy-plan-value value copier))))))
+
 (defun begin-copy (value copier)
   "Return what COPIER, which does not know VALUE yet, is to have for it."
   (declare #.*hot*)
@@ -113,14 +127,14 @@ not be complete before they have returned."
                           (ecase (manner-way manner)
                             (:copy (copy-slots value copier manner))
                             (:share value)
-                            (:method (note-copy value (copy-plan-value value copier) copier))
+                            (:method (note-copy value (copy-as-told value copier) copier))
                             (:ask (ask-about value copier)))))
       (function (if (closure-p value) (note (copy-closure value)) (copy-function value copier)))
       (simple-vector (if (zerop (length value)) value (note (copy-seq value))))
       (array (cond ((array-displacement value) (copy-displaced value copier))
                    ((eq t (array-element-type value)) (note (like-array value)))
                    (t (note-copy value (like-array value) copier))))
-      (t (cond ((not (cell-p value)) (note-copy value (copy-plan-value value copier) copier))
+      (t (cond ((not (cell-p value)) (note-copy value (copy-as-told value copier) copier))
                ;; So that who leaves it later is told, in a fork too, that it is gone.
                ((exit-cell-p value) value)
                (t (note (make-cell (cell-value value)))))))))

@@ -5,12 +5,17 @@
 (addition cannot-fork)
 (define-condition cannot-fork (ars-magna-error)
   ((value :initarg :value :reader cannot-fork-value)
-   (place :initarg :place :initform nil :reader cannot-fork-place))
+   (place :initarg :place :initform nil :reader cannot-fork-place)
+   (trouble :initarg :trouble :initform nil :reader cannot-fork-trouble))
   (:report (lambda (condition stream)
-             (format stream "~A cannot be copied for a fork~@[; it was found in ~A~]. Share it, ~
-                             leave it out, or define a method of COPY-PLAN-VALUE for it."
+             (format stream "~A cannot be copied for a fork~@[; it was found in ~A~]. ~:[Share it, ~
+                             leave it out, or define a method of COPY-PLAN-VALUE for it~;The ~
+                             method of COPY-PLAN-VALUE for it failed: ~:*~A. Mend that, share it, ~
+                             or leave it out~]."
                      (safe-text (cannot-fork-value condition) :length 200)
-                     (cannot-fork-place condition))))
+                     (cannot-fork-place condition)
+                     (and (cannot-fork-trouble condition)
+                          (string-right-trim "." (cannot-fork-trouble condition))))))
   (:documentation "A fork was asked for, and something in the run is part of the world outside: a
 stream, a thread, a lock. Restarts: SHARE-VALUE, both runs have the same one; LEAVE-OUT-VALUE, the
 fork has NIL instead; MAKE-NO-FORK."))

@@ -187,9 +187,10 @@ Each run has its own state of a fluent and a valve, also of one that a global va
 of a fork finds that of the fork. WITH-FORK binds the robots' names; any other global variable is
 the same for all. To change things, or command robots, of the run around a fork from inside of that
 is MISUSE: COUNTERPART says what they are there. A live run is forked between two ticks. Observers
-stay with the original. Signals MISUSE inside a tick, in which no continuation runs, and inside a
-plan's own step, and CANNOT-FORK for what is part of the world outside, with restarts; MAKE-NO-FORK
-returns NIL."
+stay with the original. What plans and programs of a live run roll by CL:RANDOM comes from their
+thread, and a fork rolls anew; all else of it goes on as the original will. Signals MISUSE inside a
+tick, in which no continuation runs, and inside a plan's own step, and CANNOT-FORK for what is part
+of the world outside, with restarts; MAKE-NO-FORK returns NIL."
   (multiple-value-bind (simulation options) (fork-arguments arguments)
     (check-fork-options options)
     (check-not-over simulation *fork-asker*)
