@@ -150,3 +150,14 @@ told to stop at TICK; NIL if it had ended by then."
                                        (ars-worlds:robot-go-distance ars-worlds:marvin 5
                                                                      continuation))
                                      tick)))))
+
+(test going.refuses-what-it-cannot-use
+  (run:with-simulation (ars-worlds:marvin)
+    (loop for (robot x y . options) in `((rex 3 3) (,ars-worlds:marvin "a" 3)
+                                         (,ars-worlds:marvin 3 nil)
+                                         (,ars-worlds:marvin 3 3 :start (4))
+                                         (,ars-worlds:marvin 3 3 :tolerance "x")
+                                         (,ars-worlds:marvin 3 3 :patience 0))
+          do (signals base:wrong-argument
+               (apply #'ars-worlds:robot-go-to robot x y #'list options)))
+    (signals base:wrong-argument (ars-worlds:robot-go-distance 'rex 3 #'list))))

@@ -63,13 +63,34 @@ has taken its robot over."
                                               (chart-map chart))))
     (as-list point)))
 
+(defun pose-p (value)
+  "True if VALUE is a list (x y heading) of numbers."
+  (and (listp value) (eql 3 (list-length value)) (every #'realp value)))
+
+(defun check-going (robot x y start tolerance patience)
+  "Signal WRONG-ARGUMENT about the first of these that ROBOT-GO-TO cannot use."
+  (loop for (fine-p name value expected)
+          in (list (list (typep robot 'robot) "robot" robot "a robot")
+                   (list (realp x) "x" x "a number of metres from the left")
+                   (list (realp y) "y" y "a number of metres from the top")
+                   (list (or (null start) (pose-p start)) ":start" start
+                         "a list (x y heading) of numbers, or NIL")
+                   (list (and (realp tolerance) (<= 0 tolerance)) ":tolerance" tolerance
+                         "a number of metres, from 0")
+                   (list (and (integerp patience) (plusp patience)) ":patience" patience
+                         "a whole number, from 1"))
+        unless fine-p
+          do (ars-magna.base:reject-argument 'robot-go-to name value expected)))
+
 (defun robot-go-to (robot x y continuation &key start (tolerance 1) (patience 40))
   "Let ROBOT go to the point (X,Y) of its map, or the nearest that is free, as near as TOLERANCE
 metres, through doorways and round obstacles: by its odometer, its place sense and a camera. START
 is where it is, a list (x y heading); by default it finds that out. Returns at once. CONTINUATION
 gets, in the end and once, an error code or NIL, and ROBOT. The codes: :NO-WAY, :GAVE-UP after
 PATIENCE troubles, and :INTERRUPT if another command took the robot or the camera over, or the run
-is over, also since it was rewound. Signals WRONG-ARGUMENT for a point that is nowhere near."
+is over, also since it was rewound. Signals WRONG-ARGUMENT for a point that is nowhere near a free
+one, and for arguments that are none."
+  (check-going robot x y start tolerance patience)
   (let ((me (begin-reckoning (or start (here robot)) robot)))
     (go-on-journey (make-journey :robot robot :asked (asked-so-far robot) :me me
                                  :goal (goal-near (reckoning-chart me) x y)
@@ -138,6 +159,8 @@ most. CONTINUATION gets an error code or NIL, and the robot."
 afterwards. Returns at once. CONTINUATION gets, in the end, an error code of ROBOT-GO-FORWARD or
 NIL, and ROBOT: :INTERRUPT if somebody else has taken the robot over, which then has the speed that
 it drove with. Signals WRONG-ARGUMENT unless METRES is more than 0 and at most a million."
+  (unless (typep robot 'robot)
+    (ars-magna.base:reject-argument 'robot-go-distance "the robot" robot "a robot"))
   (unless (and (realp metres) (< 0 metres 1000001))
     (ars-magna.base:reject-argument 'robot-go-distance "the distance" metres
                                     "a number of metres, more than 0, at most a million"))

@@ -88,6 +88,14 @@
         (format nil "~A~@[ ~A~]" (error-code-meaning keyword) (error-code-remedy keyword))
         (format nil "~@[~A.~]" (and (stringp (error-code-text code)) (error-code-text code))))))
 
+(defun codes-of-all ()
+  "Return the error codes that any command may end with."
+  '(:interrupt))
+
+(defun code-of-all-words (keyword)
+  (format nil "~A ~A Told to the continuation of any command."
+          (error-code-meaning keyword) (error-code-remedy keyword)))
+
 ;;; Restarts, which a debugger offers.
 
 (defun restart-words (name)
@@ -167,6 +175,7 @@ far as they are documented; but for parameters."
     ("robot" all-blueprints blueprint-name robot-words)
     ("experiment" all-experiments experiment-name experiment-text)
     ("error code" codes-and-commands code-name code-words)
+    ("error code" codes-of-all identity code-of-all-words)
     ("restart" all-restarts identity restart-words)
     (lisp-title lisp-names identity lisp-words write-lisp-topic))
   "Lists (title lister name words [writer]): what there is of each kind, what one is called, what is
