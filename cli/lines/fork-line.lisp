@@ -57,7 +57,7 @@
         (format (session-console session) "~&Back from the fork. ~A~%"
                 (time-text session *simulation*))))))
 
-(define-line "FORK" (session (seed :token "OFF, or an integer from which all its chance is to come"
+(define-line "FORK" (session (seed :off "OFF, or an integer from which all its chance is to come"
                                    :optional))
     (:running)
     "Go on in a copy of the run, plans and all, which goes the way that the run would, or with SEED

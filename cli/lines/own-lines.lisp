@@ -46,7 +46,7 @@ another."
         ((string-equal word "off") nil)
         (t (reject-line "~A does not know ~A. It is ~A ON or ~A OFF." name word name name))))
 
-(define-line "ECHO" (session (setting :token "on or off" :optional))
+(define-line "ECHO" (session (setting :switch "on or off" :optional))
     (:general)
     "Show what comes of the commands that plans and programs give to the robot, or, with OFF,
 only what comes of your own; say which, if SETTING is left out."

@@ -174,7 +174,7 @@ pauses at the next one; if that does not come, and he does so again, it is left.
                (lambda () (format t "Out of the trial~@[, in ~(~A~)~].~%"
                                   (and *simulation* (simulation-name *simulation*))))))
 
-(define-line "TRIAL" (session (name :token "the name of an experiment, or OFF" :optional)
+(define-line "TRIAL" (session (name :experiment "the name of an experiment, or OFF" :optional)
                               (condition :token "the number of a condition, or a part of its name"
                                          :optional)
                               (number count "the number of the trial" :optional)

@@ -43,6 +43,18 @@ cannot be told. May signal BAD-LINE, as when there is no robot.")
   (declare (ignore session typed))
   (mapcar #'parameter-name (all-parameters)))
 
+(defmethod choices ((type (eql :switch)) session typed)
+  (declare (ignore session typed))
+  '(on off))
+
+(defmethod choices ((type (eql :off)) session typed)
+  (declare (ignore session typed))
+  '(off))
+
+(defmethod choices ((type (eql :experiment)) session typed)
+  (declare (ignore session typed))
+  (append (mapcar #'experiment-name (all-experiments)) '(off)))
+
 ;;; Worlds and robots.
 
 (defmethod choices ((type (eql :world)) session typed)
