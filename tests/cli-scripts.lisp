@@ -182,3 +182,11 @@ written."
           (is (eql 0 status))
           (is (equal (page-block-lines (car (last (blocks-of-kind "text")))) (lines-of text))))
         (skip "There is no python3: nobody talks to the prompt."))))
+
+(test scripts.place-errors-of-commands-too
+  (let ((lines (run-script (joined '("turn 1" "place-desig 0 attic")))))
+    (is-true (has-words-p (second lines) "*ERROR* -> SCRIPT, line 2:" "ATTIC is not a place type")
+             "~A" lines)))
+
+(test scripts.may-begin-with-a-mark-of-the-order-of-bytes
+  (is (= 0 (nth-value 1 (run-script (format nil "~Cturn 1" (code-char #xFEFF)))))))

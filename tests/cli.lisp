@@ -342,3 +342,32 @@ of lines, and the number of errors."
     :close-stream
     (is (equal '("BAT") (mapcar #'symbol-name
                                 (cli::world-robots-called (uiop:native-namestring path)))))))
+
+;;; Aliases, restarts, errors that repeat.
+
+(test alias.leads-to-a-command
+  (loop for (line . words) in '(("alias zig zig" "would stand for itself")
+                                ("alias zig zork" "There is no command ZORK"))
+        do (let ((cli::*aliases* '()))
+             (multiple-value-bind (lines errors) (type-batch line)
+               (is (= 1 errors))
+               (is-true (apply #'has-words-p (first lines) words))
+               (is (null cli::*aliases*))))))
+
+(test help.knows-restarts-and-what-codes-mean
+  (loop for (name . words) in '(("skip-definition" "SKIP-DEFINITION, restart" "invoke-restart")
+                                ("save-without" "SAVE-WITHOUT, restart")
+                                ("interrupt" "INTERRUPT, error code" "Something newer")
+                                (":bin-jammed" "BIN-JAMMED, error code" "Close it again"))
+        do (multiple-value-bind (lines errors) (type-batch (format nil "help ~A" name))
+             (is (= 0 errors))
+             (is-true (apply #'has-words-p (base:one-line (joined lines)) words) "~A" lines))))
+
+(test messages.that-repeat-are-told-less-and-less-often
+  (let ((session (cli:make-session :input (make-string-input-stream "")
+                                   :output (make-broadcast-stream))))
+    (flet ((told-p (count)
+             (setf (gethash "again" (cli::session-told session)) (1- count))
+             (not (cli::repeated-often-p "again" session))))
+      (is (equal '(1 2 3 10 100 1000)
+                 (loop for count from 1 to 1001 when (told-p count) collect count))))))

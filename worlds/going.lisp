@@ -154,16 +154,17 @@ most. CONTINUATION gets an error code or NIL, and the robot."
                          (lambda () (funcall next journey))
                          (lambda () (note-obstacle journey)))))))
 
+(ars-magna.base:define-argument-type 'distance
+  (lambda (value) (and (realp value) (< 0 value) (<= value 1000000)))
+  "a number of metres, more than 0, at most a million")
+
 (defun robot-go-distance (robot metres continuation)
   "Let ROBOT drive METRES straight ahead, no faster than it would, and have its speed again
 afterwards. Returns at once. CONTINUATION gets, in the end, an error code of ROBOT-GO-FORWARD or
 NIL, and ROBOT: :INTERRUPT if somebody else has taken the robot over, which then has the speed that
 it drove with. Signals WRONG-ARGUMENT unless METRES is more than 0 and at most a million."
-  (unless (typep robot 'robot)
-    (ars-magna.base:reject-argument 'robot-go-distance "the robot" robot "a robot"))
-  (unless (and (realp metres) (< 0 metres 1000001))
-    (ars-magna.base:reject-argument 'robot-go-distance "the distance" metres
-                                    "a number of metres, more than 0, at most a million"))
+  (ars-magna.base:check-of-type 'robot-go-distance "the robot" robot 'robot)
+  (ars-magna.base:check-of-type 'robot-go-distance "the distance" metres 'distance)
   (let ((course (make-course robot)) (speed (robot-speed robot)))
     (drive-metres course metres (if (plusp speed) (min speed max-speed*) max-speed*)
       (continuation (err robot)

@@ -19,10 +19,6 @@ SIMULATION."
                          robot))
     (t (error-set (format nil "go-to: Interrupted on the way to ~A ~A" x y)))))
 
-;; What ROBOT-GO-DISTANCE takes.
-(define-argument-type 'distance (lambda (value) (and (realp value) (< 0 value 1000001)))
-  "a number of metres, more than 0, at most a million")
-
 (defun tell-slowed (robot speed)
   "Queue a message that a line GO was interrupted, and left ROBOT with another speed than SPEED."
   (unless (= speed (robot-speed robot))

@@ -192,13 +192,22 @@ DISPLAY says so."
   (or (= 1 number)
       (and (zerop (mod number 10)) (power-of-ten-p (/ number 10)))))
 
+(defun room-to-count (session)
+  "Return the table of what SESSION has been told, with room for one more."
+  (let ((told (session-told session)))
+    (when (< *message-limit* (hash-table-count told)) (clrhash told))
+    told))
+
+(defun repeated-often-p (text session)
+  "Count TEXT, which SESSION is told. True if it is one of many alike that is not shown."
+  (let ((count (incf (gethash text (room-to-count session) 0))))
+    (and (< 3 count) (not (power-of-ten-p count)))))
+
 (defun told-often-p (message session)
-  "Count MESSAGE, if it is an error and somebody sits at SESSION. True if it is one of many alike
-that is not shown."
+  "True if MESSAGE is an error that somebody who sits at SESSION has been told often."
   (and (eq :error (message-kind message))
        (terminal-p session)
-       (let ((count (incf (gethash (message-text message) (session-told session) 0))))
-         (and (< 3 count) (not (power-of-ten-p count))))))
+       (repeated-often-p (message-text message) session)))
 
 (defun repetition-text (message session)
   "Return what is to be said of how often SESSION has been told MESSAGE, which is shown, or NIL."

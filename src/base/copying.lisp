@@ -102,7 +102,7 @@ not be complete before they have returned."
 (defun copy-as-told (value copier)
   "Return what COPY-PLAN-VALUE returns for VALUE, unless who asks for the copy has decided. An error
 in a user's method is CANNOT-FORK."
-  (let ((decision (assoc value (copier-option copier :decisions) :test #'eq)))
+  (let ((decision (decision-about value copier)))
     (flet ((blame (condition)
              (unless (typep condition 'ars-magna-error)
                (error 'cannot-fork :value value :place (found-in value copier)

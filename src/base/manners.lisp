@@ -36,10 +36,14 @@ says, or else in what kind of object."
     (or (and place-of (funcall place-of value))
         (and (copier-holder copier) (safe-text (copier-holder copier) :length 200)))))
 
+(defun decision-about (value copier)
+  "Return a cons of VALUE and what the fork is to have for it, if COPIER was told that; else NIL."
+  (assoc value (copier-option copier :decisions) :test #'eq))
+
 (defun ask-about (value copier)
   "Return what the fork is to have for VALUE as the option :DECISIONS, an alist, says. Signals
 CANNOT-FORK."
-  (let ((decision (assoc value (copier-option copier :decisions) :test #'eq)))
+  (let ((decision (decision-about value copier)))
     (if decision
         (cdr decision)
         (error 'cannot-fork :value value :place (found-in value copier)))))
