@@ -208,7 +208,7 @@
                  (:file "tiny") (:file "doorways") (:file "plans-reckoning")
                  (:file "plans-moving") (:file "plans-looking") (:file "plans-handling")
                  (:file "plans-errands") (:file "trials") (:file "plans-searching")
-                 (:file "errand") (:file "going") (:file "experiments") (:file "choosing")))))
+                 (:file "course") (:file "errand") (:file "going") (:file "experiments") (:file "choosing")))))
 
 ;;; Loaded by worlds/figures.
 (defsystem "ars-magna/figures"

@@ -124,17 +124,31 @@ the end, a list, and the errors about runs that are over."
 
 ;;; Whoever takes the robot over ends it at once, also while a camera looks, or a speed is set.
 
+(defun told-to-stop (robot begin tick)
+  "Return what the continuation of BEGIN, a function of it, has got 30 ticks after ROBOT was told to
+stop at TICK, and what that then does; NIL if it had ended by then."
+  (let ((codes '()))
+    (funcall begin (lambda (err robot) (declare (ignore robot)) (push err codes)))
+    (run:run-ticks tick)
+    (unless codes
+      (command:robot-stop robot)
+      (run:run-ticks 30)
+      (list codes (command:under-way robot)))))
+
 (defun going-stopped (begin tick)
-  "Return what the continuation of BEGIN, a function of it, has got 30 ticks after the robot was
-told to stop at TICK; NIL if it had ended by then."
   (run:with-simulation (ars-worlds:marvin :seed 1)
-    (let ((codes '()))
-      (funcall begin (lambda (err robot) (declare (ignore robot)) (push err codes)))
-      (run:run-ticks tick)
-      (unless codes
-        (command:robot-stop ars-worlds:marvin)
-        (run:run-ticks 30)
-        (list codes (command:under-way ars-worlds:marvin))))))
+    (told-to-stop ars-worlds:marvin begin tick)))
+
+(test errands.end-when-the-robot-is-told-to-stop
+  (loop for tick from 0 to 60
+        do (is (equal '((:interrupt) nil)
+                      (run:with-simulation (ars-worlds:dot :seed 1)
+                        (told-to-stop ars-worlds:dot
+                                      (lambda (continuation)
+                                        (ars-worlds:run-errand ars-worlds:dot '((:color red))
+                                                               continuation))
+                                      tick)))
+               "~D" tick)))
 
 (test going.ends-when-the-robot-is-told-to-stop
   (loop for tick from 0 to 140

@@ -12,9 +12,8 @@
 (in-package :ars-worlds)
 (in-readtable :nisp)
 
-(defstruct (errand (:copier nil))
+(defstruct (errand (:include course) (:copier nil))
   "What an errand is about, and how many more setbacks it puts up with."
-  (robot nil :type robot :read-only t)
   (camera nil :read-only t)
   (hand nil :read-only t)
   (bin nil :read-only t)
@@ -30,8 +29,9 @@
 the parts are given by index. Returns at once. CONTINUATION gets, in the end, an error code or NIL,
 and ROBOT. The codes: :GAVE-UP after too many setbacks, :INSUFFICIENT-STRENGTH after three things
 that were too heavy, :INSUFFICIENT-CAPACITY (the hand then still holds the thing), and :INTERRUPT if
-another command took a part over."
-  (find-target (make-errand :robot robot :description description :continuation continuation
+another command took a part over, or was given to the robot."
+  (find-target (make-errand :robot robot :asked (asked-so-far robot)
+                            :description description :continuation continuation
                             :camera (robot-camera robot camera)
                             :hand (robot-hand robot hand)
                             :bin (robot-storage-bin robot bin)))
@@ -48,21 +48,21 @@ another command took a part over."
 (defun set-back (errand err step)
   "Take STEP, a function of ERRAND, after the setback ERR, as long as there is patience left."
   (cond ((errand-over errand) nil)
-        ((eq err :interrupt) (end-errand errand err))
+        ((over-p errand err) (end-errand errand :interrupt))
         ((zerop (decf (errand-patience errand))) (end-errand errand :gave-up))
         (t (funcall step errand))))
 
 (defun go-on (errand err next otherwise &rest harmless)
   "Take the step NEXT of ERRAND if ERR is NIL or one of HARMLESS, else the step OTHERWISE."
-  (if (member err (cons nil harmless))
+  (if (and (member err (cons nil harmless)) (not (over-p errand err)))
       (funcall next errand)
       (set-back errand err otherwise)))
 
 (defun unless-interrupted (errand err step)
   "Call STEP, a function of no arguments, whatever came of a command; but if ERR says that somebody
 has taken a part over, ERRAND ends, and gives no more commands."
-  (if (eq err :interrupt)
-      (end-errand errand err)
+  (if (over-p errand err)
+      (end-errand errand :interrupt)
       (funcall step)))
 
 ;;; Finding.
@@ -71,7 +71,8 @@ has taken a part over, ERRAND ends, and gives no more commands."
   "Look where the camera points, and go to what is found; else look elsewhere."
   (camera-get-object-designator (errand-camera errand) :non-local (errand-description errand)
     (continuation (err camera designator)
-      (cond (designator (track-target errand designator))
+      (cond ((over-p errand err) (end-errand errand :interrupt))
+            (designator (track-target errand designator))
             ((eq err :already-tracking) (free-camera errand #'find-target))
             (t (set-back errand err #'look-elsewhere))))))
 
@@ -106,7 +107,7 @@ has taken a part over, ERRAND ends, and gives no more commands."
 
 (defun go-to-target (errand)
   "Drive to what the camera tracks. When something is in the way, that may be near enough."
-  (robot-goto-designator (errand-robot errand) (errand-camera errand)
+  (robot-goto-designator (own errand) (errand-camera errand)
     (continuation (err robot camera designator)
       (unless-interrupted errand err
         (lambda ()
@@ -117,11 +118,11 @@ has taken a part over, ERRAND ends, and gives no more commands."
 
 (defun turn-aside (errand)
   "Leave what is here: turn aside and drive on for a bit, then look round again."
-  (robot-turn (errand-robot errand) (if (evenp (errand-patience errand)) 1.3 -1.3)
+  (robot-turn (own errand) (if (evenp (errand-patience errand)) 1.3 -1.3)
     (continuation (err robot angle)
       (unless-interrupted errand err
         (lambda ()
-          (robot-go-forward robot 2
+          (robot-go-forward (own errand) 2
             (continuation (err robot)
               (go-on errand err #'find-target #'find-target :robot-blocked))))))))
 
@@ -136,7 +137,7 @@ WANTED times; take the step NEXT with the last designator then, or else OTHERWIS
   (camera-get-object-designator (errand-camera errand) :local (errand-description errand)
     (continuation (err camera designator)
       (let ((wanted (if designator (- wanted 1) wanted)))
-        (cond ((eq err :interrupt) (end-errand errand err))
+        (cond ((over-p errand err) (end-errand errand :interrupt))
               ((zerop wanted) (funcall next errand designator))
               ((zerop looks) (set-back errand err otherwise))
               (t (look-closely-at errand (- looks 1) wanted next otherwise)))))))
@@ -176,7 +177,7 @@ WANTED times; take the step NEXT with the last designator then, or else OTHERWIS
   "Put the hand into the bin. It may bump; without room there is nothing to be done."
   (hand-insert-bin (errand-hand errand) (errand-bin errand)
     (continuation (err hand bin)
-      (if (eq err :insufficient-capacity)
+      (if (and (eq err :insufficient-capacity) (not (over-p errand err)))
           (end-errand errand err)
           (go-on errand err #'drop-target #'open-for-target)))))
 

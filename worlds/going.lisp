@@ -13,29 +13,6 @@
 (in-package :ars-worlds)
 (in-readtable :nisp)
 
-(defun asked-so-far (robot) (ars-magna.time:resource-asked robot))
-
-(defstruct (course (:constructor make-course (robot &aux (asked (asked-so-far robot))))
-                   (:copier nil))
-  "A robot that is given one command after the other, and how often it should have been asked for by
-now: if it was more often, somebody else has taken it over."
-  (robot nil :type robot :read-only t)
-  (asked 0 :type integer))
-
-(defun own (course)
-  "Return the robot of COURSE, to which that is just about to give a command."
-  (incf (course-asked course))
-  (course-robot course))
-
-(defun taken-p (course)
-  "True if somebody else has taken the robot of COURSE over."
-  (/= (course-asked course) (asked-so-far (course-robot course))))
-
-(defun over-p (course err)
-  "True if COURSE is over, as its last command has ended with the error code ERR, or somebody else
-has taken its robot over."
-  (or (eq err :interrupt) (taken-p course)))
-
 (defstruct (journey (:include course) (:copier nil))
   "Where a robot is to go, where it believes to be, and how much more trouble it puts up with."
   (me nil :type reckoning :read-only t)
