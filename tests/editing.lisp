@@ -68,6 +68,13 @@ name in *KEY-CODES*."
   (types-p ("at the end") "at the end")
   (types-p () #\D))
 
+(test editing.draws-once-what-comes-at-once
+  "Where a terminal pastes without saying so, what is pasted is not drawn letter by letter."
+  (multiple-value-bind (console out) (terminal-console)
+    (let ((text (make-string 5000 :initial-element #\x)))
+      (is (string= text (read-line (typed-text-for (keyboard-for (list text :enter)) console))))
+      (is (< (length (get-output-stream-string out)) 20000)))))
+
 (test editing.moves
   (types-p ("xabc") "abc" #\A "x" :enter)
   (types-p ("xabcy") "abc" :home "x" :end "y" :enter)

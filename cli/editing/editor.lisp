@@ -10,8 +10,8 @@
 (defclass edited-text (typed-text)
   ((console :initarg :console :reader edited-console)
    (history :initarg :history :initform (make-history) :reader edited-history)
-   ;; Octets that were handed over before their time, and lines that were pasted.
-   (ahead :initform "" :accessor edited-ahead)
+   ;; Octets that were handed over before their time, in a list, and lines that were pasted.
+   (ahead :initform '() :accessor edited-ahead)
    (lines :initform '() :accessor edited-lines)
    (killed :initform "" :accessor edited-killed)
    ;; The entries of the history before the one that is shown, and those after it, the nearest
@@ -37,36 +37,37 @@ and have again what he has typed before. The line is shown on CONSOLE."))
 
 (defun next-octet (stream)
   "Return the next octet of STREAM, as a character, or NIL at the end."
-  (let ((ahead (edited-ahead stream)))
-    (cond ((string/= "" ahead)
-           (setf (edited-ahead stream) (subseq ahead 1))
-           (char ahead 0))
-          (t (await-octets stream)
-             (handler-case (read-char (typed-octets stream) nil)
-               (stream-error () nil))))))
+  (cond ((edited-ahead stream) (pop (edited-ahead stream)))
+        (t (await-octets stream)
+           (handler-case (read-char (typed-octets stream) nil)
+             (stream-error () nil)))))
 
 (defun octet-reader (stream)
   "Return a function that returns the next octet of STREAM, or is given one to return first."
   (lambda (&optional octet)
     (if octet
-        (progn (setf (edited-ahead stream) (uiop:strcat octet (edited-ahead stream))) nil)
+        (progn (push octet (edited-ahead stream)) nil)
         (next-octet stream))))
 
-(defun octets-at-hand (stream)
-  "Return the octets that STREAM has without waiting."
-  (with-output-to-string (out)
-    (write-string (shiftf (edited-ahead stream) "") out)
-    (loop for char = (handler-case (read-char-no-hang (typed-octets stream) nil)
-                       (stream-error () nil))
-          while char do (write-char char out))))
+(defun octets-come (stream)
+  "Return a list of the octets that STREAM's terminal has handed over by now."
+  (loop for char = (handler-case (read-char-no-hang (typed-octets stream) nil)
+                     (stream-error () nil))
+        while char collect char))
+
+(defun octets-at-hand-p (stream)
+  "True if STREAM has octets without waiting."
+  (and (or (edited-ahead stream)
+           (setf (edited-ahead stream) (octets-come stream)))
+       t))
 
 (defparameter *control-c* (code-char 3))
 
 (defun look-ahead (stream)
   "Take what has been typed after the line that has ended. Control C in it is for that line."
-  (let* ((octets (octets-at-hand stream))
+  (let* ((octets (append (edited-ahead stream) (octets-come stream)))
          (interrupt (position *control-c* octets :from-end t)))
-    (setf (edited-ahead stream) (subseq octets (if interrupt (1+ interrupt) 0)))
+    (setf (edited-ahead stream) (nthcdr (if interrupt (1+ interrupt) 0) octets))
     (when interrupt (heed-interrupt))))
 
 (defun tell-pastes-apart (console on)
@@ -214,12 +215,24 @@ and have again what he has typed before. The line is shown on CONSOLE."))
       (when (console-line console) (end-line console))
       (hand-over-keys :interrupts t))))
 
+(defun press-text (stream text)
+  "Insert TEXT, and what else has been typed by now: so much at once, as where a terminal pastes
+without saying so, is drawn once. Return a text, or :EOF, if the line has ended by that."
+  (let ((texts (list text)) (next :none))
+    (loop while (and (eq next :none) (octets-at-hand-p stream))
+          do (let ((key (read-key (octet-reader stream))))
+               (if (stringp key) (push key texts) (setf next key))))
+    (insert-typed stream (format nil "~{~A~}" (reverse texts)))
+    (unless (eq next :none) (press stream next))))
+
 (defun edit-line (stream)
   "Let a line be typed. Return it, which has newlines in it if several were pasted; :EOF at the end
 of the input."
   (prog1 (call-editing (lambda ()
                          (loop for key = (read-key (octet-reader stream))
-                               for end = (press stream key)
+                               for end = (if (stringp key)
+                                             (press-text stream key)
+                                             (press stream key))
                                until end
                                finally (return end)))
                        stream)
@@ -244,8 +257,8 @@ of the input."
 (defmethod typed-ahead-p ((stream edited-text))
   (or (line-left-p stream)
       (and (edited-lines stream) t)
-      (string/= "" (edited-ahead stream))))
+      (and (edited-ahead stream) t)))
 
 (defmethod stream-clear-input :after ((stream edited-text))
   (setf (edited-lines stream) '()
-        (edited-ahead stream) ""))
+        (edited-ahead stream) '()))
