@@ -283,10 +283,10 @@
                  (:file "definition-entries") (:file "symbol-entries") (:file "book")
                  (:file "linking") (:file "frame") (:file "reference") (:file "writing")))))
 
-;;; Loaded by tests/clim.lisp, after the package of the tests, where McCLIM is found.
+;;; Loaded after the tests where McCLIM is found: see load-tests in cli/build.lisp.
 (defsystem "ars-magna/clim-tests"
   :description "What the window claims."
-  :depends-on ("ars-magna/clim" "fiveam")
+  :depends-on ("ars-magna/tests" "ars-magna/clim" "fiveam")
   :components ((:module "tests" :components ((:file "clim-window")))))
 
 (defsystem "ars-magna/tests"
