@@ -92,7 +92,9 @@ as it needs. CLIENT is on whose behalf all this is."
 
 (defmethod copy-plan-value ((runner plan-runner) fork)
   (if (home-forked-p runner fork)
-      (copy-slots runner fork)
+      (let ((copy (copy-slots runner fork)))
+        (setf (home-born copy) (next-token))
+        copy)
       runner))
 
 (defun runner-note (runner key)
