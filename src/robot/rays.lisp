@@ -5,8 +5,8 @@
 ;;; A ray passes from cell to cell (grid-walk.lisp); a fan is a number of evenly spaced rays, turned
 ;;; into each other by one rotation instead of a sine and a cosine each. Nothing is allocated but
 ;;; a list of the cells that were found. Each is found once: while a scan lasts, the flags of the
-;;; cells found carry the mark +SEEN+, so that cost depends on what is seen, neither on the size
-;;; of the map nor on what exists in it.
+;;; cells found carry the mark +SEEN+ instead of +OCCUPIED+, so that they are passed like empty
+;;; ones, and cost depends on what is seen, neither on the size of the map nor on what exists in it.
 
 (define-constant +seen+ 128
   :documentation "The flag of a cell that the scan under way has found; clear between scans.")
@@ -58,9 +58,20 @@ before BODY runs for the direction before, so that the processor divides while B
                         ,next-per-y (/ (nonzero ,next-y)))
                   ,@body)))))
 
-;;; A scan is what costs most of a robot's day, so it has a walk of its own, which meets the same
-;;; cells as WALK-GRID does and takes two thirds of the time: what all rays of a fan have in common
-;;; is computed once, cells that nobody waits for cost one test, and each axis has its own code.
+;;; Scans are most of what a robot that looks costs, so they have a walk of their own, which meets
+;;; the same cells as WALK-GRID. What the rays of a fan have in common is computed once, cells that
+;;; nobody waits for cost one test, each axis has its own code. 75 x 75, 10 things: 10.8 -> 12.4 M
+;;; rays/s, and 13.1 without REACH; 1000 x 1000 rooms, 100,000 things: 15 -> 20.
+
+(declaim (inline begin-axis))
+(defun begin-axis (back per stride behind ahead left-behind left-ahead)
+  "Return how the index changes where a ray crosses borders of one axis, at what distance it does
+so first, and how often it may, going BACK or not, with a distance PER border. The rest is how far
+the borders behind and ahead are, and how many of each."
+  (declare (type double-float per behind ahead) (type grid-size stride left-behind left-ahead))
+  (if back
+      (values (- stride) (* per behind) left-behind)
+      (values stride (* per ahead) left-ahead)))
 
 (declaim (inline walk-fan))
 (defun walk-fan (visit stops flags width height x y angle fan count reach)
@@ -76,19 +87,16 @@ If REACH is NIL, a constant, all that is left to end them is VISIT."
          (most (or reach 0))
          (left-behind-x (min most cell-x)) (left-ahead-x (min most (- width cell-x 1)))
          (left-behind-y (min most cell-y)) (left-ahead-y (min most (- height cell-y 1))))
-    (do-fan (dx dy signed-x signed-y) (angle fan count)
+    (do-fan (dx dy inverse-x inverse-y) (angle fan count)
       (let ((index (+ cell-x (* cell-y width)))
-            (per-x (abs signed-x)) (per-y (abs signed-y)))
+            (per-x (abs inverse-x)) (per-y (abs inverse-y)))
         (declare (type cell-index index) (type double-float per-x per-y))
         (multiple-value-bind (step-x at-x left-x)
-            (if (minusp signed-x)
-                (values -1 (* per-x behind-x) left-behind-x)
-                (values 1 (* per-x ahead-x) left-ahead-x))
+            (begin-axis (minusp inverse-x) per-x 1 behind-x ahead-x left-behind-x left-ahead-x)
           (declare (type index-step step-x) (type double-float at-x) (type grid-size left-x))
           (multiple-value-bind (step-y at-y left-y)
-              (if (minusp signed-y)
-                  (values (- width) (* per-y behind-y) left-behind-y)
-                  (values width (* per-y ahead-y) left-ahead-y))
+              (begin-axis (minusp inverse-y) per-y width behind-y ahead-y
+                          left-behind-y left-ahead-y)
             (declare (type index-step step-y) (type double-float at-y) (type grid-size left-y))
             (macrolet ((enter-next (at per step left)
                          `(let ((next (+ index ,step)))
