@@ -20,8 +20,8 @@
   "True if any line from (X,Y) ends at a wall of MAP."
   (declare (type double-float x y))
   (and (map-enclosed map)
-       (<= 1d0 x) (< x (1- (map-width map)))
-       (<= 1d0 y) (< y (1- (map-height map)))))
+       (<= 1d0 x) (< x (double (1- (map-width map))))
+       (<= 1d0 y) (< y (double (1- (map-height map))))))
 
 (defun unmark-seen (flags cells)
   (declare #.*hot* (type flag-vector flags) (type list cells))
