@@ -201,10 +201,13 @@ large group, memory is read ahead if the first that runs moves its thing."
 (defun run-group (group dice tick)
   (refresh-rate group dice)
   (let ((end (group-count group)))
-    (in-any-case
-      (run-row group end dice tick)
-      (progn (decf (group-skip group) end)
-             (when (group-dead group) (bury-dead group))))))
+    (flet ((end-row ()
+             (decf (group-skip group) end)
+             (when (group-dead group) (bury-dead group))))
+      (if (< (group-skip group) end)
+          (in-any-case (run-row group end dice tick) (end-row))
+          ;; As in most ticks.
+          (end-row)))))
 
 (defun run-due-kicker (attachment world)
   "Run ATTACHMENT of a thing in WORLD, as RUN-KICKER has asked for."
