@@ -76,15 +76,24 @@
   (and (typep object 'structure-object)
        (kind-called (type-of object))))
 
+(defun based-on-p (kind base)
+  "True if KIND is or includes the kind called BASE."
+  (loop for each = kind then (kind-parent each)
+        while each
+          thereis (eq base (kind-name each))))
+
 (defun all-kinds (&optional base)
   "Return a list of all kinds, in order of definition; with BASE, the name of one, of those that
 are or include it."
-  (remove-if-not (lambda (kind)
-                   (or (null base)
-                       (loop for each = kind then (kind-parent each)
-                             while each
-                               thereis (eq base (kind-name each)))))
+  (remove-if-not (lambda (kind) (or (null base) (based-on-p kind base)))
                  (all-object-kinds)))
+
+(defun find-kind-name (name base)
+  "Return the name of the first kind, of those that are or include the one called BASE, that is
+called as NAME, a symbol or string; NIL if none is."
+  (loop for kind in (registry-objects *object-kinds*)
+        when (and (same-name-p name (kind-name kind)) (based-on-p kind base))
+          return (kind-name kind)))
 
 ;;; Defining.
 

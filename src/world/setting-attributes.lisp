@@ -5,9 +5,10 @@
 (defun change-attributes (thing descriptor)
   "Give THING the attributes in DESCRIPTOR and make caches and flags agree."
   (setf (thing-attributes thing) (merge-descriptors descriptor (thing-attributes thing)))
-  (refresh-physics thing)
-  (when (eq (thing-location thing) :floor)
-    (refresh-cell-flags (thing-world thing) (thing-index thing))))
+  (when (some #'physical-p (mapcar #'first descriptor))
+    (refresh-physics thing)
+    (when (eq (thing-location thing) :floor)
+      (refresh-cell-flags (thing-world thing) (thing-index thing)))))
 
 (defun normal-descriptor (operator descriptor)
   "Return the object descriptor DESCRIPTOR with keywords as names, a copy. Signals WRONG-ARGUMENT."
