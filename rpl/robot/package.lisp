@@ -7,8 +7,8 @@
                 #:world-map #:*world* #:remaining-capacity)
   (:import-from :ars-magna.time
                 #:*simulation* #:seconds-now #:current-simulation #:asking #:live-p
-                #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget #:timeline-tick
-                #:check-not-secluded
+                #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
+                #:timeline-tick #:check-not-secluded
                 #:wake-owner #:begin-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
                 #:hog-seconds)
   (:import-from :ars-magna.run

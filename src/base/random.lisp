@@ -59,8 +59,7 @@
   (fill-if-marked words)
   (funcall renew words))
 
-(sb-int:encapsulate (find-symbol "RANDOM-MT19937-UPDATE" "SB-KERNEL")
-                    'fill-and-renew #'fill-and-renew)
+(wrap-function (find-symbol "RANDOM-MT19937-UPDATE" "SB-KERNEL") #'fill-and-renew)
 
 (defun seeded-lisps-dice (seed)
   "Return a random state for CL:RANDOM that depends on the integer SEED only."
