@@ -238,7 +238,7 @@ their packages."
 
 ;; Whatever a plan asks for, in whatever task, is asked for by the plan as a whole.
 (defmethod asker-note ((task task))
-  (list "the plan " (first (task-path task))))
+  (list "the plan " (task-label (task-top task))))
 
 (defmethod print-object ((task task) stream)
   (print-unreadable-object (task stream :type t)

@@ -224,8 +224,10 @@ among those, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 
 (defun parts-of-kind (robot kind)
   "Return a vector of the parts of ROBOT of the kind called KIND."
-  (coerce (loop for part in (robot-parts robot)
-                when (same-name-p kind (type-of part)) collect part)
+  (coerce (loop for parts in (list (robot-cameras robot) (robot-hands robot) (robot-bins robot)
+                                   (robot-sensors robot))
+                append (loop for part across parts
+                             when (same-name-p kind (type-of part)) collect part))
           'simple-vector))
 
 ;;; Parts are called by their numbers (manual E).
