@@ -8,8 +8,8 @@
 (defun thread-wanted-p (interface)
   "True if plans of INTERFACE are to react in a thread of their own."
   (let ((simulation (interface-simulation interface)))
-    (and (live-p simulation)
-         (timeline-real-p (simulation-timeline simulation)))))
+    (and (timeline-real-p (simulation-timeline simulation))
+         (live-p simulation))))
 
 (defun charge-as-told (interface)
   "Let thinking cost the plans of INTERFACE what it costs in its run now."

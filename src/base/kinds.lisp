@@ -88,12 +88,23 @@ are or include it."
   (remove-if-not (lambda (kind) (or (null base) (based-on-p kind base)))
                  (all-object-kinds)))
 
+(defun look-up-kind-name (name base kinds)
+  (loop for kind in kinds
+        when (and (same-name-p name (kind-name kind)) (based-on-p kind base))
+          return (kind-name kind)))
+
 (defun find-kind-name (name base)
   "Return the name of the first kind, of those that are or include the one called BASE, that is
 called as NAME, a symbol or string; NIL if none is."
-  (loop for kind in (registry-objects *object-kinds*)
-        when (and (same-name-p name (kind-name kind)) (based-on-p kind base))
-          return (kind-name kind)))
+  (let ((kinds (registry-objects *object-kinds*)))
+    (if (symbolp name)
+        ;; Commands of plans ask this of each argument. What was found holds until a kind is defined.
+        (let ((known (get name 'known-kind-name)))
+          (unless (and known (eq base (first known)) (eq kinds (second known)))
+            (setf known (list base kinds (look-up-kind-name name base kinds))
+                  (get name 'known-kind-name) known))
+          (third known))
+        (look-up-kind-name name base kinds))))
 
 ;;; Defining.
 
