@@ -224,9 +224,10 @@ their packages."
 
 (defun task-label (task)
   "Return a short text that says which task TASK is."
-  (if (task-name task)
-      (string-downcase (safe-text (task-name task) :escape nil))
-      (form-text (node-form (task-node task)) 40)))
+  (let ((name (task-name task)))
+    (cond ((null name) (form-text (node-form (task-node task)) 40))
+          ((and (symbolp name) (< (length (symbol-name name)) 100)) (string-downcase name))
+          (t (string-downcase (safe-text name :escape nil))))))
 
 (addition task-path)
 (defun task-path (task)

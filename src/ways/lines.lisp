@@ -16,15 +16,16 @@
   "Return what a metre costs in the half cell (I J) of CELLS; it is half as wide and high as one.
 NARROW is true of a line that only needs free cells."
   (declare (type amounts cells) (type (integer 0 40000) columns) (type halves i j))
-  (flet ((cell (i j)
-           (aref cells (the node (+ 1 (ash i -1) (* columns (1+ (ash j -1))))))))
-    (declare (inline cell))
-    (cond (narrow (cell i j))
-          ((>= (max (cell (1- i) (1- j)) (cell (1- i) (1+ j))
-                    (cell (1+ i) (1- j)) (cell (1+ i) (1+ j)))
-               +barred+)
-           +barred+)
-          (t (cell i j)))))
+  (flet ((cell (column row) (aref cells (the node (+ 1 column row))))
+         (row (j) (* columns (1+ (ash j -1)))))
+    (declare (inline cell row))
+    (or (unless narrow
+          (let ((left (ash (1- i) -1)) (right (ash (1+ i) -1))
+                (above (row (1- j))) (below (row (1+ j))))
+            (when (or (>= (cell left above) +barred+) (>= (cell left below) +barred+)
+                      (>= (cell right above) +barred+) (>= (cell right below) +barred+))
+              +barred+)))
+        (cell (ash i -1) (row j)))))
 
 (defun line-cost (cells columns x y end-x end-y limit leaving)
   "Return what the straight line from (X,Y) to (END-X,END-Y) costs; +BARRED+ if it is not free, or
