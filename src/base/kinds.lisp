@@ -98,7 +98,7 @@ are or include it."
 called as NAME, a symbol or string; NIL if none is."
   (let ((kinds (registry-objects *object-kinds*)))
     (if (symbolp name)
-        ;; Commands of plans ask this of each argument. What was found holds until a kind is defined.
+        ;; Plans' commands ask this of each argument. What was found holds until a kind is defined.
         (let ((known (get name 'known-kind-name)))
           (unless (and known (eq base (first known)) (eq kinds (second known)))
             (setf known (list base kinds (look-up-kind-name name base kinds))
