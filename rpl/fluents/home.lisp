@@ -59,18 +59,22 @@ NIL.")
   (swap-if (home-holder home) (current-thread) nil))
 
 (defun call-having (home take function)
-  "Call FUNCTION in HOME, and leave that, if TAKE, called with it, returns true. True if so. An
-interrupt may come at any point."
+  "Call FUNCTION in HOME, and leave that, if TAKE, called with it, returns true. Return the values,
+or else NIL. An interrupt may come at any point."
   (declare (type function take function))
   (unwind-protect
        (when (funcall take home)
-         (let ((*runner* home) (*homes* (cons home *homes*)))
+         (let* ((homes (cons home *homes*)) (*runner* home) (*homes* homes))
+           (declare (dynamic-extent homes))
            (when (home-left-p home) (funcall (home-repairer home) home))
            (setf (home-left-p home) t)
-           (funcall function)
-           (setf (home-left-p home) nil)
-           t))
+           (multiple-value-prog1 (funcall function)
+             (setf (home-left-p home) nil))))
     (leave-home home)))
+
+(defun in-use-p (home)
+  "True if a thread has HOME, or has left it in the middle of something."
+  (or (home-left-p home) (home-holder home)))
 
 (defun wait-for-home (home)
   (loop until (take-home home) do (yield-thread))
@@ -82,10 +86,7 @@ interrupt may come at any point."
   (cond ((eq home *runner*) (funcall function))
         ((member home *homes* :test #'eq)
          (let ((*runner* home)) (funcall function)))
-        (t (let ((values '()))
-             (call-having home #'wait-for-home
-                          (lambda () (setf values (multiple-value-list (funcall function)))))
-             (values-list values)))))
+        (t (call-having home #'wait-for-home function))))
 
 (defmacro at-home ((home) &body body)
   "Run BODY as CALL-AT-HOME would a function."

@@ -28,7 +28,7 @@ no plan.")
   (:export #:*runner* #:*home-in-use* #:*on-outside-change* #:home #:home-closed-p #:home-born
            #:home-on-post
            #:home-attended-p #:home-on-change #:home-wrapper #:home-backlog #:at-home
-           #:call-at-home #:post #:next-entry #:posted-p)
+           #:call-at-home #:in-use-p #:post #:next-entry #:posted-p)
   ;; known
   (:export #:declare-fluent-variable #:known-fluent-variable-p #:known-vector-variable-p
            #:one-fluent #:truth-value)

@@ -8,7 +8,7 @@
   (:import-from :ars-magna.time
                 #:*simulation* #:seconds-now #:current-simulation #:asking #:live-p
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
-                #:check-not-secluded
+                #:timeline-tick #:check-not-secluded
                 #:wake-owner #:begin-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
                 #:hog-seconds)
   (:import-from :ars-magna.run
@@ -31,7 +31,7 @@
                 #:apply-settings #:*home-in-use* #:*runner* #:post-call #:react-to-all
                 #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers
                 #:next-wake-time #:needs-tick-p #:set-charges #:make-plan-runner #:start-plan
-                #:stop-plan #:plan-runner
+                #:rest-in-tick #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:plan-runner-steps #:current-task #:task #:task-p
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-cleaning #:form-text

@@ -223,7 +223,8 @@ have used their slice."
 
 (defun any-ready-p (runner)
   "True if a task of RUNNER could go on now."
-  (or (some (lambda (ring) (plusp (ring-count ring))) (runner-rings runner))
+  (or (and (plusp (logandc2 (runner-mask runner) +interrupt+))
+           (some (lambda (ring) (plusp (ring-count ring))) (runner-rings runner)))
       (some (lambda (task) (eq (task-state task) :ready)) (runner-spent runner))))
 
 (defun alone-p (task)

@@ -76,15 +76,35 @@
   (and (typep object 'structure-object)
        (kind-called (type-of object))))
 
+(defun based-on-p (kind base)
+  "True if KIND is or includes the kind called BASE."
+  (loop for each = kind then (kind-parent each)
+        while each
+          thereis (eq base (kind-name each))))
+
 (defun all-kinds (&optional base)
   "Return a list of all kinds, in order of definition; with BASE, the name of one, of those that
 are or include it."
-  (remove-if-not (lambda (kind)
-                   (or (null base)
-                       (loop for each = kind then (kind-parent each)
-                             while each
-                               thereis (eq base (kind-name each)))))
+  (remove-if-not (lambda (kind) (or (null base) (based-on-p kind base)))
                  (all-object-kinds)))
+
+(defun look-up-kind-name (name base kinds)
+  (loop for kind in kinds
+        when (and (same-name-p name (kind-name kind)) (based-on-p kind base))
+          return (kind-name kind)))
+
+(defun find-kind-name (name base)
+  "Return the name of the first kind, of those that are or include the one called BASE, that is
+called as NAME, a symbol or string; NIL if none is."
+  (let ((kinds (registry-objects *object-kinds*)))
+    (if (symbolp name)
+        ;; Plans' commands ask this of each argument. What was found holds until a kind is defined.
+        (let ((known (get name 'known-kind-name)))
+          (unless (and known (eq base (first known)) (eq kinds (second known)))
+            (setf known (list base kinds (look-up-kind-name name base kinds))
+                  (get name 'known-kind-name) known))
+          (third known))
+        (look-up-kind-name name base kinds))))
 
 ;;; Defining.
 

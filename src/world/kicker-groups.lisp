@@ -201,10 +201,21 @@ large group, memory is read ahead if the first that runs moves its thing."
 (defun run-group (group dice tick)
   (refresh-rate group dice)
   (let ((end (group-count group)))
-    (in-any-case
-      (run-row group end dice tick)
-      (progn (decf (group-skip group) end)
-             (when (group-dead group) (bury-dead group))))))
+    (flet ((end-row ()
+             (decf (group-skip group) end)
+             (when (group-dead group) (bury-dead group))))
+      (in-any-case (run-row group end dice tick) (end-row)))))
+
+(declaim (inline skip-group))
+(defun skip-group (group)
+  "Note that a tick has passed for GROUP, if no trial in it succeeds, as in most ticks. True if so."
+  (declare (type group group))
+  (let ((left (- (group-skip group) (group-count group))))
+    (when (and (>= left 0)
+               (null (group-dead group))
+               (eql (group-quantum group) tick-quantum*))
+      (setf (group-skip group) left)
+      t)))
 
 (defun run-due-kicker (attachment world)
   "Run ATTACHMENT of a thing in WORLD, as RUN-KICKER has asked for."
@@ -226,7 +237,8 @@ Return nothing."
       (unless (= (world-kicker-generation world) *kicker-generation*) (regroup-kickers world))
       (let ((tick (incf (world-kicker-tick world))))
         (flet ((run-due (attachment) (run-due-kicker attachment world))
-               (run-chance (group) (run-group group dice (if due tick 0))))
+               (run-chance (group)
+                 (unless (skip-group group) (run-group group dice (if due tick 0)))))
           (declare (dynamic-extent #'run-due #'run-chance))
           (in-any-case
             (call-each #'run-due due)

@@ -96,6 +96,10 @@ false, always can."
             (warn-of-definition "~@[~A: ~]~A" (clause-place type) text)
             (warning-set text))))))
 
+(defun physical-p (key)
+  "True if a cached slot of things goes by the attribute KEY; see REFRESH-PHYSICS."
+  (member key '(:obsmove :obsview :closed :size :weight :capacity :substance) :test #'eq))
+
 (defun refresh-physics (thing)
   "Make the cached slots of THING agree with its attributes."
   (flet ((number-of (key)
@@ -121,9 +125,8 @@ which is SET-ATTRIBUTE (manual 5.3). A list is the thing's own: do not alter it,
 
 (defun merge-descriptors (new old)
   "Return the object descriptor OLD with what NEW says instead; order as in OLD, then as in NEW."
-  (append (loop for (key value) in old
-                collect (list key (let ((other (assoc key new :test #'eq)))
-                                    (if other (second other) value))))
+  (append (loop for entry in old
+                collect (or (assoc (first entry) new :test #'eq) entry))
           (remove-if (lambda (entry) (assoc (first entry) old :test #'eq)) new)))
 
 ;;; Containment.
