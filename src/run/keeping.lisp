@@ -28,7 +28,7 @@ can go back; T for a usual number, NIL for none. The prompt sets it to T.")
   (let* ((world (simulation-world simulation)) (map (world-map world)))
     (+ 50000
        (* 9 (map-width map) (map-height map))
-       (* 500 (length (world-things world))))))
+       (* 500 (world-rank-count world)))))
 
 (defun room-for-forks (simulation past)
   "Return how many forks SIMULATION, of PAST, may keep."

@@ -7,10 +7,6 @@
 ;;; attachment was copied to by its thing. What has been destroyed or taken off has no rank: it is
 ;;; copied like anything else, if somebody still has it.
 
-(defun ranked-things (world)
-  "Return a simple vector of the things of WORLD by rank."
-  (coerce (world-things world) 'simple-vector))
-
 (declaim (inline twin-by-rank))
 (defun twin-by-rank (thing old new)
   "Return what THING was copied to, if it is one of the vector OLD, that were copied to NEW."
@@ -81,39 +77,33 @@
             (mapcar (lambda (attachment) (copy-attachment attachment twin copier))
                     (thing-kickers thing))))))
 
-(defun copy-cells (world old new)
-  "Return a copy of the cells of WORLD, with those NEW in them that its things OLD were copied to."
-  (declare #.*hot* (type simple-vector old new))
-  (let* ((cells (world-cells world))
-         (copy (make-array (length cells) :initial-element nil)))
-    (loop for thing across old
-          do (when (and thing (eq :floor (thing-location (the thing thing))))
-               (let ((index (thing-index thing)))
-                 (unless (svref copy index)
-                   (setf (svref copy index)
-                         (loop for other of-type thing in (svref cells index)
-                               collect (svref new (thing-rank other))))))))
-    copy))
+(defun copy-stock (stock things copier)
+  "Return a copy of STOCK that has THINGS, copies of its own."
+  (let ((copy (make-stock)))
+    (setf (stock-things copy) (settled things copier)
+          (stock-count copy) (stock-count stock)
+          (stock-firsts copy) (settled (copy-seq (stock-firsts stock)) copier)
+          (stock-nexts copy) (settled (copy-seq (stock-nexts stock)) copier)
+          (stock-marks copy) (settled (copy-seq (stock-marks stock)) copier))
+    (settled copy copier)))
 
 (defun copy-things (world copy copier)
   "Let COPY, a copy of WORLD, have copies of its things and kickers."
   (declare #.*hot*)
-  (let* ((old (ranked-things world))
+  (let* ((stock (world-stock world)) (count (stock-count stock))
+         (old (stock-things stock))
          (new (make-array (length old) :initial-element nil)))
     (declare (type simple-vector old new))
-    (dotimes (rank (length old))
+    (dotimes (rank count)
       (when (svref old rank)
         (setf (svref new rank) (copy-structure (the thing (svref old rank))))))
     (setf (copier-objects copier) (cons old new))
-    (dotimes (rank (length old))
+    (dotimes (rank count)
       (when (svref old rank)
         (complete-thing (svref old rank) (svref new rank) copy old new copier)))
     (loop for group in (world-kicker-groups world)
           do (seat-others group (forked group copier) copier))
-    (setf (world-things copy) (settled (make-array (length new) :adjustable t :initial-contents new
-                                                                :fill-pointer t)
-                                       copier)
-          (world-cells copy) (settled (copy-cells world old new) copier))))
+    (setf (world-stock copy) (copy-stock stock new copier))))
 
 ;; One of another run stays what it is.
 (defmethod copy-plan-value ((world world) fork)

@@ -7,6 +7,7 @@
   (setf (thing-attributes thing) (merge-descriptors descriptor (thing-attributes thing)))
   (refresh-physics thing)
   (when (eq (thing-location thing) :floor)
+    (set-mark thing (world-stock (thing-world thing)))
     (refresh-cell-flags (thing-world thing) (thing-index thing))))
 
 (defun normal-descriptor (operator descriptor)
