@@ -28,7 +28,8 @@
 
 (defstruct (origin (:constructor make-origin ()) (:copier nil))
   "What is printed as the origin of trouble: the attachment that ran when it came."
-  (attachment nil :type (or null attachment)))
+  ;; Of no type that would have to be looked for in it, far away, each time one runs.
+  (attachment nil :type t))
 
 (defmethod reference ((group group))
   (list :group (group-probability group)))

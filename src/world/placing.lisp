@@ -26,6 +26,7 @@
   (setf (aref (stock-marks stock) (thing-rank thing)) (thing-flags thing)))
 
 (defun take-from-floor (thing)
+  (declare #.*hot* (type thing thing))
   (let ((world (thing-world thing)) (index (thing-index thing)))
     (take-from-cell (thing-rank thing) index (world-stock world))
     (refresh-cell-flags world index)))
@@ -38,6 +39,7 @@
           (logior (aref flags index) (aref (stock-marks (world-stock world)) rank)))))
 
 (defun put-on-floor (thing x y)
+  (declare #.*hot* (type thing thing) (type double-float x y))
   (setf (thing-x thing) x (thing-y thing) y (thing-location thing) :floor)
   (let* ((world (thing-world thing)) (stock (world-stock world)) (index (thing-index thing)))
     (set-mark thing stock)
