@@ -48,7 +48,7 @@
                  (:file "built-in-places") (:file "walls") (:file "map-cache")
                  (:file "location") (:file "thing") (:file "stock")
                  (:file "world") (:file "access")
-                 (:file "kickers") (:file "reading-ahead") (:file "kicker-groups")
+                 (:file "kickers") (:file "reading-ahead") (:file "gaps") (:file "kicker-groups")
                  (:file "attaching") (:file "placing") (:file "setting-attributes")
                  (:file "recipes") (:file "undeclared") (:file "forking") (:file "residents")
                  (:file "new-thing") (:file "kicking") (:file "defmap") (:file "check")

@@ -7,7 +7,8 @@
 ;;; as briefly as for one if it knows where they are. So short loops that only read go ahead of many
 ;;; moves, one for each step of that chain. What they find decides nothing.
 
-(define-constant +batch+ 64 :documentation "For how many moves memory is read at once.")
+;; The more the better, as each loop ends with waiting, as long as a processor has room for it all.
+(define-constant +batch+ 512 :documentation "For how many moves memory is read at once.")
 
 (deftype batch () '(simple-vector #.+batch+))
 (deftype batch-count () '(integer 0 #.+batch+))
