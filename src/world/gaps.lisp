@@ -17,8 +17,8 @@
     (truncate (the (double-float 0d0 #.(expt 2d0 40))
                    (min #.(expt 2d0 40) (* scale (log u)))))))
 
-;;; To know which trials will succeed, dice are rolled before their time. What a roll comes to depends
-;;; on the state of the dice alone: so whoever finds them in that state need not reckon it again.
+;;; To know which trials will succeed, dice are rolled before their time. What they come to depends
+;;; on their state alone: so whoever finds them in that state need not reckon it again.
 
 (deftype gaps () '(simple-array (unsigned-byte 62) (#.+batch+)))
 

@@ -63,6 +63,8 @@
            #:world-dice #:world-dice-set #:world-move-watchers #:*world* #:current-world
            #:make-world #:reset-world #:seed-world #:world-has-kickers-p #:things-at
            #:find-thing #:find-things #:do-things #:world-live-count)
+  ;; forking
+  (:export #:octets-of-copy)
   ;; recipes
   (:export #:recipe #:make-recipe)
   ;; placing
