@@ -299,7 +299,7 @@
   ((:module "tests" :serial t
     :components ((:file "package") (:file "base") (:file "base-doors") (:file "geometry")
                  (:file "nisp") (:file "world") (:file "world-caches") (:file "world-places")
-                 (:file "world-things") (:file "world-kickers") (:file "ways")
+                 (:file "world-things") (:file "world-kickers") (:file "world-large") (:file "ways")
                  (:file "ways-users") (:file "floors") (:file "floors-uses")
                  (:file "floors-hostile") (:file "time") (:file "robot")
                  (:file "moving") (:file "random-driver") (:file "random-restarts")
