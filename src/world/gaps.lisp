@@ -33,10 +33,12 @@ dice in STATE."
   (state 0 :type (unsigned-byte 64)))
 (declaim-final outlook)
 
+;; Inline, so that SCALE is not boxed.
+(declaim (inline foresee))
 (defun foresee (outlook index end scale dice)
   "Let OUTLOOK know what DRAW-GAP will return next for SCALE and DICE, as far as trials before END
 are concerned if the next that succeeds has INDEX. Return the index of the first after them."
-  (declare #.*hot* (type outlook outlook) (type (unsigned-byte 50) index end)
+  (declare (type outlook outlook) (type (unsigned-byte 50) index end)
            (type double-float scale) (type dice dice))
   (let ((dice (copy-dice dice)) (gaps (outlook-gaps outlook)) (count 0))
     (declare (dynamic-extent dice) (type batch-count count))
