@@ -13,7 +13,8 @@
 ;;; From that follow the readers' documentation, RESET, DIGEST-STATE, forks and the inspection of an
 ;;; object. Other objects in a slot are referred to, unless the slot is marked as a :PART: then they
 ;;; belong to the object, and are reset, digested and shown with it. What is in a slot marked as
-;;; :SHARED is replaced and never altered: forks have the same.
+;;; :SHARED is replaced and never altered: forks have the same. Slots marked as :NEAR stand first in
+;;; memory, beside each other: what is read of many objects, one after the other, belongs there.
 
 (defstruct (kind-slot (:constructor make-kind-slot
                           (name role type text part-p shared-p initial reader writer))
@@ -147,6 +148,12 @@ slot...)."
                                    (and (member :part options) t)
                                    (and (member :shared options) t)))))
 
+(defun slots-by-place (groups)
+  "Return the slots in GROUPS, lists (role slot...), in the order in which they stand in memory."
+  (stable-sort (loop for (nil . slots) in groups append slots)
+               (lambda (one other)
+                 (and (member :near (nthcdr 4 one)) (not (member :near (nthcdr 4 other)))))))
+
 (defun check-kind-name (name include documentation)
   (unless (and (symbolp name) name (symbol-package name) (not (keywordp name)))
     (reject-clause-of-kind name name "a symbol of a package as the name of the kind"))
@@ -160,9 +167,9 @@ slot...)."
   "Signal MALFORMED-DEFINITION unless SLOT of the kind NAME makes sense beside KNOWN, other names."
   (unless (and (proper-list-p slot) (<= 4 (length slot))
                (symbolp (first slot)) (first slot)
-               (stringp (fourth slot)) (subsetp (nthcdr 4 slot) '(:part :shared)))
+               (stringp (fourth slot)) (subsetp (nthcdr 4 slot) '(:part :shared :near)))
     (reject-clause-of-kind name slot
-                           "(name default type \"what it is\" [:part] [:shared])"))
+                           "(name default type \"what it is\" [:part] [:shared] [:near])"))
   (when (member (first slot) known :test #'same-name-p)
     (reject-clause-of-kind name slot "a name that no other slot has, also of what is included")))
 
@@ -207,7 +214,7 @@ with, says."
   "Define a structure and say what each of its slots is. NAME-AND-OPTIONS is its name, or (name
 [:include kind] [:constructor constructor]), as in DEFSTRUCT. GROUPS are lists (role slot...), a
 slot is (name default type \"what it is\"), and behind that :PART if what is in it belongs to the
-object, :SHARED if it is never altered. The roles are
+object, :SHARED if it is never altered, :NEAR if it is to stand beside others. The roles are
   :fixed    how the object was made;
   :state    what decides the future, or what programs are told of it;
   :memory   what is shown to people and decides nothing;
@@ -232,7 +239,7 @@ MALFORMED-DEFINITION."
                               `(:constructor ,constructor))
                          (:copier nil))
          ,documentation
-         ,@(loop for (nil slot default type) in slots
+         ,@(loop for (slot default type) in (slots-by-place groups)
                  collect `(,slot ,default :type ,type)))
        (register-kind ',name ',include (list ,@(slot-forms name conc slots)) ,conc)
        (defmethod describe-object ((object ,name) stream)

@@ -23,7 +23,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:read-file-into-string #:starts-with-subseq #:define-constant #:proper-list-p
            #:parse-ordinary-lambda-list)
   ;; policy
-  (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:cell-index
+  (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:make-room #:cell-index
            #:surely #:tick-count #:document-functions
            #:document-restarts #:all-restarts #:restart-documentation)
   ;; public

@@ -112,11 +112,11 @@ meet within REACH columns and rows."
 (defun things-in-cells (cells camera local)
   "Return the things on the floor of CELLS that are within the reach of CAMERA's robot, or if not
 LOCAL the others (reading 131)."
-  (let* ((robot (camera-robot camera)) (things (world-cells (robot-world robot))))
-    (loop for index in cells
-          append (loop for thing in (svref things index)
-                       when (eq local (within-reach-p robot (thing-x thing) (thing-y thing)))
-                         collect thing))))
+  (let* ((robot (camera-robot camera)) (world (robot-world robot)) (things '()))
+    (dolist (index cells (nreverse things))
+      (do-cell (thing index world)
+        (when (eq local (within-reach-p robot (thing-x thing) (thing-y thing)))
+          (push thing things))))))
 
 (defun things-faced (camera cells)
   "Return the things within reach in other cells than CELLS that CAMERA looks straight at."

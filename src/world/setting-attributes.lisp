@@ -8,6 +8,7 @@
   (when (some #'physical-p (mapcar #'first descriptor))
     (refresh-physics thing)
     (when (eq (thing-location thing) :floor)
+      (set-mark thing (world-stock (thing-world thing)))
       (refresh-cell-flags (thing-world thing) (thing-index thing)))))
 
 (defun checked-entry (operator name value)
