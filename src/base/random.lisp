@@ -35,16 +35,14 @@
 (define-constant +mark+ #(#x6C617A79 #x64696365 #x2E2E2E2E) :test #'equalp
   :documentation "What stands behind the first of words that are still to be filled.")
 
-(defun reseed (state seed)
-  "Let the random state STATE be what SEEDED-LISPS-DICE returns for SEED, an integer."
-  (let ((words (funcall *words-of-state* state)))
-    (declare (type words words))
-    (setf (aref words +place-of-place+) +all-read+
-          (aref words +first-word+) (short-seed (ldb (byte 64 0) seed)))
-    (loop for mark of-type (unsigned-byte 32) across +mark+
-          for index from (1+ +first-word+)
-          do (setf (aref words index) mark))
-    state))
+(defun mark-seeded (words seed)
+  "Let WORDS, of a random state, be filled from SEED when somebody asks for new ones."
+  (declare (type words words))
+  (setf (aref words +place-of-place+) +all-read+
+        (aref words +first-word+) seed)
+  (loop for mark of-type (unsigned-byte 32) across +mark+
+        for index from (1+ +first-word+)
+        do (setf (aref words index) mark)))
 
 (defun fill-if-marked (words)
   "Fill the WORDS of a random state if they bear the mark."
@@ -60,6 +58,21 @@
   (funcall renew words))
 
 (wrap-function (find-symbol "RANDOM-MT19937-UPDATE" "SB-KERNEL") #'fill-and-renew)
+
+(defun seeding-waits-p ()
+  "True if this SBCL asks for new words in such a way that they can be filled by then."
+  (let ((state (make-random-state nil)))
+    (mark-seeded (funcall *words-of-state* state) 1992)
+    (= (random (expt 2 64) state) (random (expt 2 64) (sb-ext:seed-random-state 1992)))))
+
+(defparameter *seeding-waits-p* (seeding-waits-p) "Whether seeding may wait for the first roll.")
+
+(defun reseed (state seed)
+  "Let the random state STATE be what SEEDED-LISPS-DICE returns for SEED, an integer."
+  (let ((words (funcall *words-of-state* state)))
+    (mark-seeded words (short-seed (ldb (byte 64 0) seed)))
+    (unless *seeding-waits-p* (fill-if-marked words))
+    state))
 
 (defun seeded-lisps-dice (seed)
   "Return a random state for CL:RANDOM that depends on the integer SEED only."
