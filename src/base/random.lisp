@@ -61,9 +61,12 @@
 
 (defun seeding-waits-p ()
   "True if this SBCL asks for new words in such a way that they can be filled by then."
-  (let ((state (make-random-state nil)))
-    (mark-seeded (funcall *words-of-state* state) 1992)
-    (= (random (expt 2 64) state) (random (expt 2 64) (sb-ext:seed-random-state 1992)))))
+  (flet ((state (filled-p)
+           (let* ((state (make-random-state nil)) (words (funcall *words-of-state* state)))
+             (mark-seeded words 1992)
+             (when filled-p (fill-if-marked words))
+             state)))
+    (= (random (expt 2 64) (state nil)) (random (expt 2 64) (state t)))))
 
 (defparameter *seeding-waits-p* (seeding-waits-p) "Whether seeding may wait for the first roll.")
 
