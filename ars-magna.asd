@@ -39,7 +39,7 @@
    (:module "src/nisp" :serial t
     :components ((:file "package") (:file "control") (:file "typed-lists") (:file "binding")
                  (:file "types") (:file "slots") (:file "values") (:file "matching")
-                 (:file "reader") (:file "readtable") (:file "loading")))
+                 (:file "reader") (:file "readtable") (:file "loading") (:file "libraries")))
    (:module "src/world" :serial t
     :components ((:file "package") (:file "clauses") (:file "attributes")
                  (:file "asked-values") (:file "built-in-attributes") (:file "substances")
@@ -370,7 +370,7 @@
                  (:file "readme") (:file "rpl-readme")
                  (:file "experiments-readme") (:file "tutorial") (:file "ways-readme")
                  (:file "floors-readme")
-                 (:file "our-manual") (:file "examples")
+                 (:file "libraries") (:file "our-manual") (:file "examples")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
                  (:file "experiments-tables") (:file "experiments-fingerprints")
                  (:file "thinking-experiments")
