@@ -16,6 +16,9 @@
                 ((simulation-over simulation) (simulation-over simulation))
                 ((not (live-p simulation)) "headless")
                 ((paused-p simulation) "paused")
+                ((idle-p simulation)
+                 (format nil "idle: ~A once there is something to do"
+                         (rate-text (simulation-rate simulation))))
                 (t (rate-text (simulation-rate simulation))))))
 
 (defun pause-now (simulation)
@@ -64,7 +67,8 @@
 
 (define-line "RATE" (session (x :rate "a number of ticks per second, or free" :optional))
     (:running)
-    "Set the pace of a live simulator; show what it is, and how many ticks have passed."
+    "Set the pace of a live simulator; show what it is, and how many ticks have passed. While it is
+idle, none pass: nothing moves by itself in its world, and nobody has asked for anything."
   (let ((simulation (current-simulation)))
     (when x
       (if (session-visit session)

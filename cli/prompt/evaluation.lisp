@@ -12,7 +12,7 @@
 
 (defun read-more (session text)
   "Return TEXT with the next line of SESSION after it."
-  (let ((line (read-input session "     > " text)))
+  (let ((line (read-input session +going-on+ text)))
     (unless line (reject-line "The form is not complete: ~A" (one-line text)))
     (format nil "~A~%~A" text line)))
 

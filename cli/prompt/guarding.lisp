@@ -18,18 +18,24 @@
       (regain-room condition)
       (complain session (condition-text condition)))))
 
-(defun command-going-on ()
-  "Return the robot that the prompt commands, and the name of the command that it carries out; NIL
-if it carries out none."
-  (let* ((robot (and *simulation* (null (simulation-over *simulation*)) (session-robot)))
-         (event (and robot (at-work-p robot) (resource-event robot))))
+(defun command-carried-out (robot)
+  "Return the name of the command that ROBOT carries out, or NIL."
+  (let ((event (and (at-work-p robot) (resource-event robot))))
     (and (typep event 'operation)
-         (values robot (string-upcase (command-prompt-name (operation-command event)))))))
+         (string-upcase (command-prompt-name (operation-command event))))))
+
+(defun command-going-on (session)
+  "Return the robot that SESSION commands, and the name of the line or command that it carries out;
+NIL if it carries out none."
+  (let* ((robot (and *simulation* (null (simulation-over *simulation*)) (session-robot)))
+         (name (and robot (or (some #'errand-name (errands-under-way session))
+                              (command-carried-out robot)))))
+    (and name (values robot name))))
 
 (defun what-goes-on (session)
   "Return sentences that say what goes on in the simulator, though the line of SESSION does not,
 and how it can be ended; if nothing does, how the prompt is left. In a trial, nothing goes on."
-  (multiple-value-bind (robot command) (command-going-on)
+  (multiple-value-bind (robot command) (command-going-on session)
     (let ((plans-p (notevery #'plan-ending-p (plans))))
       (cond ((session-visit session) "")
             ((or robot plans-p)

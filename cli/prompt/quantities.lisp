@@ -18,7 +18,7 @@
 (defparameter *units*
   `((:angle  "an angle"             (1 "rad" "radian" "radians" "rad/tick")
                                     (,(/ pi 180) "deg" "degree" "degrees" "°" "deg/tick" "°/tick")
-                                    (,(* 2 pi) "turn" "turns"))
+                                    (,(* 2 pi) "turn" "turns") (,pi "pi"))
     (:length "a length"             (1 "m" "metre" "metres" "meter" "meters" "cell" "cells")
                                     (1/100 "cm"))
     (:speed  "a speed"              (1 "m/tick" "cell/tick" "cells/tick") (1/100 "cm/tick"))
