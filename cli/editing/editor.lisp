@@ -31,9 +31,10 @@ and have again what he has typed before. The line is shown on CONSOLE."))
 
 (defun await-octets (stream)
   "Wait until STREAM has octets, or is at its end."
-  (loop until (octets-within-p (typed-octets stream) (if *while-typing* 0.05 0.25))
-        do (redraw-if-resized (edited-console stream))
-           (when *while-typing* (funcall *while-typing*))))
+  (when (typep (typed-octets stream) 'descriptor-stream)
+    (loop until (octets-within-p (typed-octets stream) (if *while-typing* 0.05 0.25))
+          do (redraw-if-resized (edited-console stream))
+             (when *while-typing* (funcall *while-typing*)))))
 
 (defun next-octet (stream)
   "Return the next octet of STREAM, as a character, or NIL at the end."

@@ -17,8 +17,7 @@
                 ((not (live-p simulation)) "headless")
                 ((paused-p simulation) "paused")
                 ((idle-p simulation)
-                 (format nil "idle: ~A once there is something to do"
-                         (rate-text (simulation-rate simulation))))
+                 (format nil "idle, else ~A" (rate-text (simulation-rate simulation))))
                 (t (rate-text (simulation-rate simulation))))))
 
 (defun pause-now (simulation)
@@ -49,7 +48,7 @@
     (await (lambda () (>= (simulation-tick simulation) goal)))
     (format t "Tick ~D.~%" (simulation-tick simulation))))
 
-(define-line "STEP" (session (n tick-span "how many; 1 if left out" :optional))
+(define-line "STEP" (session (n steps "how many; 1 if left out" :optional))
     (:running)
     "Let N ticks pass; a live simulator is paused after them."
   (if (session-visit session)
@@ -92,7 +91,7 @@ idle, none pass: nothing moves by itself in its world, and nobody has asked for 
 (defun parameter-text (parameter)
   (let ((value (parameter-value parameter))
         (default (parameter-default parameter)))
-    (format nil "~26A ~8A ~A~:[ (default ~A)~;~]" (parameter-name parameter)
+    (format nil "~30A ~8A ~A~:[ (default ~A)~;~]" (parameter-name parameter)
             (setting-text value) (parameter-unit parameter)
             (value-equal value default) (setting-text default))))
 

@@ -107,7 +107,7 @@ NIL, or a key is pressed, or there is something else to be answered."
                        on.~]"
                       (live-p simulation)))))
 
-(define-line "WATCH" (session (what :rest "how many ticks, then what MAP takes" :optional))
+(define-line "WATCH" (session (what :map-words "how many ticks, then what MAP takes" :optional))
     (:seeing)
     "Show the map again and again while time passes, in place on a terminal, where a key or
 Control-C ends it: for as many ticks as the number that comes first says, or until nothing happens

@@ -11,12 +11,23 @@
              (not (typep condition '(or ars-magna-error storage-condition))))
     (invoke-debugger condition)))
 
+(defun shipped-name (condition)
+  "Return what the function is called that the worlds have under the name that CONDITION says is
+that of no function, or NIL."
+  (let ((name (and (typep condition 'undefined-function) (cell-error-name condition))))
+    (when (and name (symbolp name))
+      (multiple-value-bind (symbol status) (find-symbol (symbol-name name) :ars-worlds)
+        (and (eq :external status)
+             (fboundp symbol)
+             (format nil "ARS-WORLDS:~A" symbol))))))
+
 (defun call-complaining (session function)
   "Call FUNCTION; complain of what goes wrong in it."
   (handler-case (funcall function)
     ((or error storage-condition) (condition)
       (regain-room condition)
-      (complain session (condition-text condition)))))
+      (complain session (format nil "~A~@[ There is ~A.~]" (condition-text condition)
+                                (shipped-name condition))))))
 
 (defun command-carried-out (robot)
   "Return the name of the command that ROBOT carries out, or NIL."

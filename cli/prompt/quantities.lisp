@@ -12,7 +12,8 @@
     (distance  :length "2.5, or 2.5 m")
     (speed     :speed  "0.5, or 0.5 m/tick")
     (ticks     :time   "20, or 20 ticks")
-    (tick-span :time   "20, or 20 ticks"))
+    (tick-span :time   "20, or 20 ticks")
+    (steps     :time   "20, or 20 ticks"))
   "Lists (argument-type dimension examples).")
 
 (defparameter *units*
