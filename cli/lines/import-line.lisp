@@ -10,7 +10,8 @@
 (defun tell-imported (map report)
   "Say what MAP is like, of which REPORT is what IMPORT-MAP reports, and what can be done with it."
   (destructuring-bind (&key width height cell free occupied unknown walls) report
-    (format t "~(~A~): ~D by ~D cells of ~A m~:[~;, each a metre here~], ~D free, ~D occupied, ~D unknown, in ~D walls.~%"
+    (format t "~(~A~): ~D by ~D cells of ~A m~:[~;, each a metre here~], ~D free, ~D occupied, ~
+               ~D unknown, in ~D walls.~%"
             (map-name map) width height (amount-text cell) (/= 1 cell) free occupied unknown walls)
     (format t "For a robot there: (defrobot NAME (~(~A~) (~:[X Y~;~:*~{~,1F~^ ~}~]) 0)), and then ~
                WORLD ~2:*~(~A~).~%"

@@ -58,7 +58,8 @@
   "Show which trial the prompt is in, and how far that has come."
   (say-here session "~@(~A~).~%~A" (visit-name visit) (time-text session *simulation*))
   (when (visit-changed visit)
-    (say-here session "Since tick ~D it is not the experiment's run any more." (visit-changed visit))))
+    (say-here session "Since tick ~D it is not the experiment's run any more."
+              (visit-changed visit))))
 
 ;;; Its end.
 
@@ -71,21 +72,21 @@
 (defun write-result (session visit result)
   "Show what came of the trial of VISIT."
   (say-here session "The trial is over at tick ~D: ~A~@[ (~A)~].~@[ ~A.~]" (result-ticks result)
-       (result-outcome result)
-       (and (string/= "" (result-reason result)) (result-reason result))
-       (let ((text (measures-text visit result))) (and (string/= "" text) text)))
+            (result-outcome result)
+            (and (string/= "" (result-reason result)) (result-reason result))
+            (let ((text (measures-text visit result))) (and (string/= "" text) text)))
   (when (string/= "" (result-error result))
     (say-here session "Its error: ~A" (complaint-text (result-error result))))
   (when (visit-changed visit)
     (say-here session "It is not what the experiment says: since tick ~D the run was another."
-         (visit-changed visit))))
+              (visit-changed visit))))
 
 (defun write-comparison (session visit result parts row)
   "Show in what RESULT differs from ROW, that of the trial of VISIT."
   (let ((differences (row-differences (visit-experiment visit) result parts row
                                       (visit-directory visit))))
     (say-here session "~:[It is as in its row.~;~:*It differs from its row: ~{~A~^; ~}.~]"
-         differences)))
+              differences)))
 
 (defun stay (session visit result parts row)
   "Read lines of SESSION where the trial of VISIT has ended, with RESULT, until one leads out."
@@ -166,11 +167,11 @@ pauses at the next one; if that does not come, and he does so again, it is left.
   "Let SESSION go into VISIT, from wherever it is."
   (call-outside session
                 (lambda ()
-                  (say-here session "~@(~A~): seed ~D, at most ~D ticks. STEP and RESUME let time pass, ~
-                                TRIAL OFF leads out."
-                       (visit-name visit)
-                       (trial-seed (visit-experiment visit) (visit-trial visit))
-                       (experiment-limit (visit-experiment visit)))
+                  (say-here session "~@(~A~): seed ~D, at most ~D ticks. STEP and RESUME let time ~
+                                     pass, TRIAL OFF leads out."
+                            (visit-name visit)
+                            (trial-seed (visit-experiment visit) (visit-trial visit))
+                            (experiment-limit (visit-experiment visit)))
                   (unless (watched-p session) (setf (visit-rate visit) :free))
                   (funcall (call-with-others-paused (lambda () (enter-visit session visit)))))))
 

@@ -10,8 +10,9 @@
   "Queue a message that the way to POINT, a text, is given up, as another run goes on in the place
 of SIMULATION."
   (let ((*message-queue* (simulation-messages (latest simulation))))
-    (warning-set (format nil "go-to: The run was rewound on the way to ~A, and the robot goes there ~
-                              no more. Say it again if it is to." point))))
+    (warning-set (format nil "go-to: The run was rewound on the way to ~A, and the robot goes ~
+                              there no more. Say it again if it is to."
+                         point))))
 
 (defun tell-failed-way (control point &rest arguments)
   "Queue an error message: that a GO-TO has not come to POINT, a text."

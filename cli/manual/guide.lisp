@@ -143,7 +143,8 @@ HTML of its Markdown, its headings with anchors."
 
 (defun usage-markdown ()
   "Return the Markdown of the page of what --help prints."
-  (format nil "# Options of the command~%~%What `--help` prints.~%~%~:{## ~A~%~%```text~%~A~%```~%~%~}"
+  (format nil "# Options of the command~%~%What `--help` prints.~%~%~
+               ~:{## ~A~%~%```text~%~A~%```~%~%~}"
           (loop for (command file) in *usages*
                 collect (list command
                               (file-text (project-path (format nil "cli/shell/~A" file)))))))

@@ -5,8 +5,8 @@
 (defparameter *own-files* '("style.css" "search.js")
   "The files beside this one that go with the pages as they are.")
 
-;;; What the search looks through: names, first sentences, headings, and for each word in the text of
-;;; the guide the sections that it stands in.
+;;; What the search looks through: names, first sentences, headings, and the words below the
+;;; headings of the guide.
 
 (defun index-row (name kind address text &optional (words ""))
   (format nil "[~{~A~^,~}]" (mapcar #'javascript-string (list name kind address text words))))

@@ -69,7 +69,7 @@ what Lisp says of a full stack, of which users are told."
 
 (defun call-staying (function)
   "Call FUNCTION, in which what ends this Lisp, such as (sb-ext:exit), is an error."
-  (call-refusing-exits function "EXIT would end the simulator in the middle of a line. QUIT leaves."))
+  (call-refusing-exits function "EXIT would end the simulator amid a line. QUIT leaves."))
 
 (defun read-form (session text &optional (start 0))
   "Return the form in TEXT at START, reading on in SESSION while it is incomplete; where it ends;

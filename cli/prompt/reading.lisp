@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.cli)
 
-;;; Somebody may paste what a page shows, prompts and all. They are taken off; what stands after one
-;;; may also be a message of the robot's, such as "robot-turn: Robot turned 1.00": its first word ends
-;;; with a colon. Other answers cannot be told from lines.
+;;; Somebody may paste what a page shows, prompts and all. They are taken off. What stands after one
+;;; may also be a message of the robot's, such as "robot-turn: Robot turned 1.00": its first word
+;;; ends with a colon. Other answers cannot be told from lines.
 
 (defparameter *labels* '("Robot>" "Break>") "What prompts look like.")
 

@@ -5,8 +5,9 @@
 ;;; The line stands below all that is written meanwhile: it is wiped out before something is
 ;;; written, and drawn again after that. It has as many rows as the window is wide for; of more
 ;;; rows than the window has, those around the cursor are drawn. A window that becomes narrower
-;;; breaks rows anew, as we do; so rows that go on in the next one are not ended by a newline. It may
-;;; push the first of them out at its top: so the line is drawn again when the window has changed.
+;;; breaks rows anew, as we do; so rows that go on in the next one are not ended by a newline. It
+;;; may push the first of them out at its top: so the line is drawn again when the window has
+;;; changed.
 
 (defstruct (drawn-line (:copier nil))
   "A line that is being typed. It stands on the screen if SHOWN is true: as the list of label, text

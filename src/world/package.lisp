@@ -66,7 +66,8 @@
   ;; recipes
   (:export #:recipe #:make-recipe)
   ;; placing
-  (:export #:note-unknown-substance #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing
+  (:export #:note-unknown-substance)
+  (:export #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing
            #:destroyed-thing)
   ;; undeclared
   (:export #:note-strange-name #:warn-of-slips #:value-like)
