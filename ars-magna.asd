@@ -103,7 +103,8 @@
                  (:file "world-display") (:file "details") (:file "displays")
                  (:file "text-view") (:file "text-glyphs") (:file "text-layers")
                  (:file "text-sheet") (:file "text-legend") (:file "text-map")
-                 (:file "picture") (:file "way-picture") (:file "animation") (:file "opening")))
+                 (:file "picture") (:file "way-picture") (:file "moments") (:static-file "film.js")
+                 (:static-file "film.css") (:file "film") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
     :components ((:file "package") (:file "realm") (:file "home") (:file "fluent") (:file "network")
                  (:file "known") (:file "propagation") (:file "views") (:file "repair")
@@ -156,7 +157,8 @@
                  (:file "survival-chart") (:file "rows") (:file "difference-chart")
                  (:file "measure-chart") (:file "drawing-chart") (:file "saving")))
    (:module "src/trails" :serial t
-    :components ((:file "package") (:file "trails") (:file "trajectory") (:file "picture")))
+    :components ((:file "package") (:file "trails") (:file "trajectory") (:file "picture")
+                 (:file "run-picture")))
    (:module "rpl/projecting" :serial t
     :components ((:file "package") (:file "rollout") (:file "projection") (:file "question")
                  (:file "running") (:file "believing") (:file "rolling-out") (:file "answering")
@@ -243,9 +245,9 @@
                    (:file "status-data") (:file "status-lines") (:file "map-lines")
                    (:file "running-lines") (:file "watch-line") (:file "world-lines")
                    (:file "plan-lines") (:file "plan-views") (:file "manipulate-line")
-                   (:file "help") (:file "subjects") (:file "topics")
-                   (:file "help-lines")
-                   (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")
+                   (:file "help") (:file "subjects") (:file "topics") (:file "help-lines")
+                   (:file "rewind-line") (:file "picture-lines") (:file "film-line")
+                   (:file "trial-lines")
                    (:file "fork-line") (:file "import-line")
                    (:file "export-line")))
      (:module "shell" :serial t
@@ -284,10 +286,10 @@
                  (:file "definition-entries") (:file "symbol-entries") (:file "book")
                  (:file "linking") (:file "frame") (:file "reference") (:file "writing")))))
 
-;;; Loaded by tests/clim.lisp, after the package of the tests, where McCLIM is found.
+;;; Loaded after the tests where McCLIM is found: see load-tests in cli/build.lisp.
 (defsystem "ars-magna/clim-tests"
   :description "What the window claims."
-  :depends-on ("ars-magna/clim" "fiveam")
+  :depends-on ("ars-magna/tests" "ars-magna/clim" "fiveam")
   :components ((:module "tests" :components ((:file "clim-window")))))
 
 (defsystem "ars-magna/tests"
@@ -325,7 +327,7 @@
                  (:file "rpl-text") (:file "rpl-text-places") (:file "rpl-examples-robot")
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
                  (:file "worlds-searching")
-                 (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
+                 (:file "display") (:file "display-files") (:file "films") (:file "plots") (:file "plots-text")
                  (:file "clim") (:file "cli") (:file "text-maps") (:file "cli-quantities")
                  (:file "editing") (:file "editing-screens") (:file "completing")
                  (:file "ways-going") (:file "cli-plans") (:file "cli-colour")

@@ -16,7 +16,8 @@
   "Where changes are heard. HOLDER is the thread that has it, ON-POST is called after each post.
 ATTENDED-P says whether a thread is there that will hear what is posted. LEFT-P is true while a
 thread has it, and afterwards if that has left it in the middle of something: then REPAIRER is
-called with it before anything else is done. CLOSED-P says that it hears nothing any more.
+called with it before anything else is done. CLOSED-P says that it hears nothing any more. BORN is a
+token, given when it was made.
 For whoever keeps a trace, ON-CHANGE is called with
 :SET or :PULSE, a base fluent and its value, before anybody hears of that, and WRAPPER with each
 entry: it returns what is posted instead."
@@ -28,6 +29,7 @@ entry: it returns what is posted instead."
   (attended-p (constantly nil) :type function)
   (left-p nil :type boolean)
   (closed-p nil :type boolean)
+  (born (next-token) :type (integer 0))
   (repairer #'identity :type function)
   (on-change nil :type (or null function))
   (wrapper nil :type (or null function)))
@@ -122,6 +124,7 @@ interrupt may come at any point."
   home-on-post "Return the function that is called after each post, in the posting thread."
   make-backlog "Return an empty backlog, which grows as needed."
   home-attended-p "Return the function that says whether a thread will hear what is posted."
+  home-born "Return a number that is greater for homes that were made later. Can be set."
   home-closed-p "True if the home hears nothing any more. Can be set."
   home-on-change "Return the function that is told of changes, or NIL. Can be set."
   home-wrapper "Return the function that is given what is posted, or NIL. Can be set."

@@ -41,7 +41,7 @@
                 #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks* #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p #:*realm*
                 #:give-back-all #:+root+
-                #:realm-source #:leave-realm #:source-realm #:at-home #:entity #:here
+                #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:here
                 #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
                 #:reasons #:decide #:withdraw #:task-frame #:entity-realm #:entity-like
                 #:*on-outside-change* #:note-word #:task-now)

@@ -24,7 +24,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:parse-ordinary-lambda-list)
   ;; policy
   (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:cell-index
-           #:tick-count #:document-functions
+           #:surely #:tick-count #:document-functions
            #:document-restarts #:all-restarts #:restart-documentation)
   ;; public
   (:export #:public #:addition #:settable #:settable-p #:addition-p #:public-symbols #:*marking-p*)

@@ -26,6 +26,11 @@
   "The index of a grid cell: maps have at most 2^30 cells."
   '(unsigned-byte 30))
 
+;; For what has been checked already, but in a way that the compiler does not see through.
+(defmacro surely (type form)
+  "Return the value of FORM, of which the compiler may believe that it is of TYPE."
+  `(sb-ext:truly-the ,type ,form))
+
 (deftype tick-count ()
   "A moment or a span of simulated time, in ticks."
   '(unsigned-byte 61))

@@ -26,7 +26,8 @@
   ;; map
   (:export #:map #:map-p #:map-name #:map-width #:map-height #:map-frame #:map-flags
            #:map-parameters #:map-substances #:map-substance-types #:map-places #:map-directions
-           #:map-place-types #:map-least-parameter #:map-greatest-parameter #:map-things
+           #:map-place-types #:map-least-parameter #:map-greatest-parameter #:map-enclosed
+           #:map-things
            #:map-resident-world #:map-resident #:map-attribute-names #:map-package #:map-replaced
            #:map-form
            #:map-index #:point-index #:find-map #:all-maps #:map-cell #:wall-at-p
