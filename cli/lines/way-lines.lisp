@@ -35,8 +35,9 @@ of SIMULATION."
 
 (define-line "GO" (session (distance distance "how far"))
     (:moving)
-    "Drive DISTANCE metres straight ahead, no faster than the robot's speed. GO-FORWARD drives for a
-number of ticks."
+    "Drive DISTANCE metres straight ahead, no faster than the robot's speed, which must not be 0. If
+that is interrupted, the robot keeps the speed that it drove with. GO-FORWARD drives for a number of
+ticks."
   (let ((errand (make-errand :name "GO")) (speed (robot-speed (session-robot))))
     (robot-go-distance (session-robot) distance
                        (lambda (err robot)

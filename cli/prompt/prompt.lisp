@@ -30,7 +30,9 @@ tell somebody who sits there."
   (let ((errands (session-errands session)) (inbox (requests-waiting)))
     (do-next session text)
     (when (and (terminal-p session) (waits-for-time-p session errands inbox))
-      (write-fresh (format nil "Time stands still. RESUME lets it go on, STEP 10 for 10 ticks.~%")
+      (write-fresh (fitted (format nil "Time stands still. RESUME lets it go on, STEP 10 for 10 ~
+                                        ticks.~%")
+                           (session-console session))
                    (session-console session)))))
 
 (defun next-line (session)

@@ -41,11 +41,14 @@
         while next))
 
 (defun greet (session)
-  (let ((simulation (current-simulation)))
-    (format (session-console session)
-            "ARS MAGNA: ~A in ~A, seed ~D, ~A.~%HELP lists the commands, QUIT leaves.~%"
-            (session-robot) (simulation-name simulation) (simulation-seed simulation)
-            (rate-text (simulation-rate simulation)))))
+  (let ((simulation (current-simulation)) (console (session-console session)))
+    (write-string (fitted (format nil "ARS MAGNA: ~A in ~A, seed ~D, ~A.~%~
+                                       HELP lists the commands, QUIT leaves.~%"
+                                  (session-robot) (simulation-name simulation)
+                                  (simulation-seed simulation)
+                                  (rate-text (simulation-rate simulation)))
+                          console)
+                  console)))
 
 (defun run-live (session robot-name options)
   "Run the lines of SESSION in the live world of ROBOT-NAME."
