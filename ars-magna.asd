@@ -39,7 +39,7 @@
    (:module "src/nisp" :serial t
     :components ((:file "package") (:file "control") (:file "typed-lists") (:file "binding")
                  (:file "types") (:file "slots") (:file "values") (:file "matching")
-                 (:file "reader") (:file "readtable") (:file "loading")))
+                 (:file "reader") (:file "readtable") (:file "loading") (:file "libraries")))
    (:module "src/world" :serial t
     :components ((:file "package") (:file "clauses") (:file "attributes")
                  (:file "asked-values") (:file "built-in-attributes") (:file "substances")
@@ -246,8 +246,9 @@
                    (:file "status-data") (:file "status-lines") (:file "map-lines")
                    (:file "running-lines") (:file "watch-line") (:file "world-lines")
                    (:file "plan-lines") (:file "plan-views") (:file "manipulate-line")
-                   (:file "help") (:file "topics") (:file "help-lines")
-                   (:file "rewind-line") (:file "picture-lines") (:file "film-line") (:file "trial-lines")
+                   (:file "help") (:file "subjects") (:file "topics") (:file "help-lines")
+                   (:file "rewind-line") (:file "picture-lines") (:file "film-line")
+                   (:file "trial-lines")
                    (:file "fork-line") (:file "import-line")
                    (:file "export-line")))
      (:module "shell" :serial t
@@ -373,7 +374,7 @@
                  (:file "readme") (:file "rpl-readme")
                  (:file "experiments-readme") (:file "tutorial") (:file "ways-readme")
                  (:file "floors-readme")
-                 (:file "our-manual") (:file "examples")
+                 (:file "libraries") (:file "our-manual") (:file "examples")
                  (:file "tests-readme") (:file "architecture") (:file "experiments")
                  (:file "experiments-tables") (:file "experiments-fingerprints")
                  (:file "thinking-experiments")

@@ -175,3 +175,72 @@
   (is-true (has-words-p (complaint "robot dot") "another world" "WORLD tiny dot" "over"))
   (let ((text (joined (type-live '("pause" "step 3" "robot dot" "status" "rate" "quit")))))
     (is-true (has-words-p text "another world" "Tick 3"))))
+
+;;; What is asked for and has no name in the simulator.
+
+(test help.tells-of-keys-units-and-scripts
+  (loop for (subject . words) in '(("keys" "control-R" "Tab") ("history" "XDG_STATE_HOME")
+                                   ("units" "90 deg") ("scripts" "--json")
+                                   ("numeric" "DEFATTRIBUTE"))
+        do (is-true (apply #'has-words-p (joined (type-batch (format nil "help ~A" subject))) words)
+                    "~A" subject)))
+
+(test help.says-how-a-name-is-typed
+  (is-true (has-words-p (joined (type-batch "help robot-go-to")) "(ars-worlds:robot-go-to robot"))
+  (is-true (has-words-p (joined (type-batch "help robot-turn")) "(robot-turn robot"))
+  (is-true (has-words-p (complaint "(robot-go-to 1 2 3 nil)") "ARS-WORLDS:ROBOT-GO-TO"))
+  (is-true (has-words-p (complaint "(no-such-function)") "NO-SUCH-FUNCTION is undefined")))
+
+(test help.knows-what-other-systems-bring
+  (dolist (name '("is-success-rate" "repeat-trial" "pass-probability"))
+    (is-true (has-words-p (joined (type-batch (format nil "help ~A" name))) name "rate")
+             "~A" name)))
+
+;;; What is pasted from a page.
+
+(test pasted.prompts-are-passed-over
+  (is (equal (type-batch "angle 1" "turn 1")
+             (type-batch "Robot> angle 1" "  Robot> Robot> turn 1")))
+  (is-true (answers-p '("3") '("Robot> (+ 1" "     > 2)"))))
+
+(test pasted.messages-are-passed-over
+  (is (null (type-batch "Robot> robot-turn: Robot turned 1.57" "Robot>" "Break> ")))
+  (is-true (has-words-p (complaint "robot-turn: Robot turned 1.57") "There is no command"))
+  (is-true (has-words-p (complaint "Robot> frobnicate") "There is no command FROBNICATE")))
+
+;;; Mistakes.
+
+(test exits.do-not-end-the-session
+  (dolist (form '("(sb-ext:exit)" "(sb-ext:quit)" "(sb-ext:exit :abort t)"))
+    (is (equal '("3") (rest (type-batch form "(+ 1 2)"))) "~A" form)
+    (is-true (has-words-p (complaint form) "QUIT leaves") "~A" form)))
+
+(test mistakes.name-what-would-do
+  (is-true (has-words-p (complaint "step 0") "from 1 to 1e9"))
+  (is-true (has-words-p (complaint "plan travel-to") "given no arguments" "PLAN TRAVEL-TO me"))
+  (is-true (has-words-p (first (type-batch "obj-desig 0 non-local ((:substance banana))"))
+                        "No substance is called banana"))
+  (is-true (has-words-p (joined (type-batch "help set-speed")) "from 0 to max-speed*"))
+  (is-true (has-words-p (joined (type-batch "help clean-simulation")) "DISCRETE-NOISE-FACTOR*")))
+
+(test mistakes.show-a-text-that-is-there-twice
+  "Those who show a report may have asked Lisp to mark what is the same."
+  (let ((known (list "looks=1" "looks=2")))
+    (is (string= "There is no level called looks=4. Did you mean looks=1? Known: looks=1, looks=2."
+                 (handler-case (base:reject-name "level" 'looks=4 known)
+                   (base:unknown-name (condition)
+                     (let ((*print-circle* t)) (princ-to-string condition))))))))
+
+(test points.are-written-as-they-are-typed
+  (is (equal "go-to: Robot is near 8 8.5, as it believes"
+             (car (last (type-batch "go-to 8 8.5"))))))
+
+(test echo.hushes-what-go-to-does-on-the-way
+  (is (equal '("go-to: Robot is near 8 8.5, as it believes")
+             (rest (type-batch "echo off" "go-to 8 8.5")))))
+
+;;; Time that stands still.
+
+(test time.is-idle-while-nothing-can-happen
+  (let ((lines (type-live '("(clean-simulation)" "rate" "status" "watch 5" "quit"))))
+    (is (= 3 (count-if (lambda (line) (search "idle, else" line)) lines)) "~A" lines)))

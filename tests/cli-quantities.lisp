@@ -41,3 +41,11 @@
   (let ((lines (type-batch "go 500 m" "status")))
     (is-true (find "blocked" lines :test #'search))
     (is-true (member "Speed:             0.80" lines :test #'string=))))
+
+(test go.needs-a-speed
+  (let ((lines (type-batch "set-speed 0" "go 3" "status")))
+    (is-true (find "its speed is 0" lines :test #'search))
+    (is-true (member "Speed:             0.00" lines :test #'string=))))
+
+(test quantities.have-pi-as-a-unit
+  (is (equal (type-batch "angle 2 pi" "status") (type-batch "angle 1 turn" "status"))))

@@ -113,7 +113,7 @@ written."
     (loop for object in (rest objects)
           for words in '(("\"message\"" "\"kind\":\"message\"" "Robot turned" "\"line\":3")
                          ("\"done\"" "\"line\":3" "\"text\":\"turn 90 deg\"" "\"ok\":true")
-                         ("\"output\"" "\"text\":\"3\"")
+                         ("\"value\"" "\"text\":\"3\"")
                          ("\"done\"" "\"line\":4" "\"ok\":true")
                          ("\"message\"" "\"kind\":\"error\"" "\"text\":\"There is no" "\"line\":6")
                          ("\"done\"" "\"line\":6" "\"ok\":false")
@@ -190,3 +190,28 @@ written."
 
 (test scripts.may-begin-with-a-mark-of-the-order-of-bytes
   (is (= 0 (nth-value 1 (run-script (format nil "~Cturn 1" (code-char #xFEFF)))))))
+
+(test scripts.leave-errors-on-the-way-to-who-goes
+  "Of GO-TO only its own end counts."
+  (flet ((came (text)
+           (multiple-value-list (run-script text "--seed" "2" "--stop"))))
+    (destructuring-bind (lines status errors)
+        (came (format nil "go-to 9 9~%go-to 2 9~%(+ 1 2)"))
+      (declare (ignore errors))
+      (is-true (find "Robot is blocked" lines :test #'search))
+      (is (equal "3" (car (last lines))))
+      (is (= 0 status)))
+    (is (= 1 (second (came (format nil "go-to 500 500~%")))))))
+
+(test scripts.may-come-last
+  (uiop:with-temporary-file (:pathname path :stream stream :type "ars")
+    (write-string "(+ 1 2)" stream)
+    :close-stream
+    (is (equal '("3") (call-as-process (list "--world" "tiny" (uiop:native-namestring path)))))
+    (is (= 2 (nth-value 1 (call-as-process '("--world" "tiny" "no-such-script")))))))
+
+(test json.tells-values-from-text
+  (is-true (has-words-p (joined (objects-of-script "(progn (print 1) (values 2 \"three\"))"))
+                        "{\"type\":\"output\",\"text\":\"1 \"}"
+                        "{\"type\":\"value\",\"text\":\"2\"}"
+                        "{\"type\":\"value\",\"text\":\"\\\"three\\\"\"}")))

@@ -157,3 +157,7 @@
 (test completing.knows-the-words-of-lines
   (completes ("echo o" "echo off" "echo on") ("fork " "fork off")
              ("trial choosing-by-" "trial choosing-by-rollouts")))
+
+(test completing.knows-the-words-of-maps
+  (completes ("map " "map belief" "map cones" "map legend" "map way")
+             ("map 5 co" "map 5 cones") ("watch 5 way b" "watch 5 way belief")))

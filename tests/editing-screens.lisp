@@ -224,6 +224,12 @@ KEYS have been pressed at Robot>."
     (is (equal (format nil "~Aone~%two" red)
                (cli::broken-text (format nil "~Aone two" red) 10)))))
 
+(test screen.breaks-what-follows-a-label
+  "As in STATUS; a table is left as it is."
+  (is (equal (format nil "Time:     Tick 0,~%idle, else")
+             (cli::broken-text "Time:     Tick 0, idle, else" 18)))
+  (is (equal "a: one  two  three four" (cli::broken-text "a: one  two  three four" 12))))
+
 (test screen.of-no-terminal-is-as-it-was-written
   "Nothing is broken, or moved, where nobody edits lines."
   (let* ((out (make-string-output-stream))

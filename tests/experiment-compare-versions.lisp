@@ -32,8 +32,9 @@
     (is (equal '(100 80 80 98)
                (mapcar #'experiment:contrast-same (experiment:comparison-contrasts comparison))))
     (is (mentions-p text "plan=a noise=0: dir 1 and dir 0 are the same in all 100 trials"))
-    (is (mentions-p text (format nil "noise=1: dir 1 succeeds less often than dir 0: p < .001 as ~
-                                      one of 12 tests, 80 % against 100 %")))
+    (is (mentions-p (base:one-line text)
+                    (format nil "noise=1: dir 1 succeeds less often than dir 0: p < .001 as ~
+                                 one of 12 tests, 80 % against 100 %")))
     (is (mentions-p text "plan=b noise=0: dir 1 succeeds more often than dir 0: p < .001"))
     (is (mentions-p text "over all: No difference in success between dir 1 and dir 0 can be"))))
 

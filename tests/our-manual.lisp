@@ -164,3 +164,22 @@ what is there."
     (base:with-own-definitions ()
       (eval '(world:defsubstance custard 7))
       (is (equal names (mapcar #'manual:entry-name (manual:all-entries)))))))
+
+;;; What the search finds.
+
+(defun search-rows (directory)
+  "Return the rows of the index of what the search in DIRECTORY looks through, in lower case."
+  (remove-if-not (lambda (line) (begins-with-p "[" line))
+                 (mapcar #'string-downcase
+                         (file-lines (merge-pathnames "search-index.js" directory)))))
+
+(test our-manual.is-searched-for-words-in-the-guide
+  (with-manual (directory)
+    (let ((rows (search-rows directory)))
+      (dolist (words '("json" "slurm" "degrees" "exit status" "--seed" "control-r" "line editing"
+                       "completion" "no_color" "xdg_cache_home" "#t" "!>" "--trials"))
+        (is-true (some (lambda (row)
+                         (every (lambda (word) (search word row)) (uiop:split-string words)))
+                       rows)
+                 "~A is not found" words))
+      (is (< (reduce #'+ rows :key #'length) 500000)))))

@@ -212,3 +212,14 @@ stop at TICK, and what that then does; NIL if it had ended by then."
           do (signals base:wrong-argument
                (apply #'ars-worlds:robot-go-to robot x y #'list options)))
     (signals base:wrong-argument (ars-worlds:robot-go-distance 'rex 3 #'list))))
+
+(test going.so-far-needs-a-speed
+  (run:with-simulation (ars-worlds:marvin)
+    (let ((told '()))
+      (command:robot-set-speed ars-worlds:marvin 0)
+      (run:run-ticks 3)
+      (ars-worlds:robot-go-distance ars-worlds:marvin 5 (lambda (err robot)
+                                                          (declare (ignore robot))
+                                                          (push err told)))
+      (run:run-ticks 20)
+      (is (equal '(:not-moving) told)))))

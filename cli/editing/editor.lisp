@@ -31,9 +31,10 @@ and have again what he has typed before. The line is shown on CONSOLE."))
 
 (defun await-octets (stream)
   "Wait until STREAM has octets, or is at its end."
-  (when *while-typing*
-    (loop until (octets-within-p (typed-octets stream) 0.05)
-          do (funcall *while-typing*))))
+  (when (typep (typed-octets stream) 'descriptor-stream)
+    (loop until (octets-within-p (typed-octets stream) (if *while-typing* 0.05 0.25))
+          do (redraw-if-resized (edited-console stream))
+             (when *while-typing* (funcall *while-typing*)))))
 
 (defun next-octet (stream)
   "Return the next octet of STREAM, as a character, or NIL at the end."
@@ -225,6 +226,12 @@ without saying so, is drawn once. Return a text, or :EOF, if the line has ended 
     (insert-typed stream (format nil "~{~A~}" (reverse texts)))
     (unless (eq next :none) (press stream next))))
 
+(defun stand-as-first-line (stream)
+  "Let no more of what was typed stand on the screen than its first line. The others are shown when
+they are read."
+  (let* ((text (typed-text-of stream)) (end (position #\Newline text)))
+    (when end (change-to stream (subseq text 0 end) end))))
+
 (defun edit-line (stream)
   "Let a line be typed. Return it, which has newlines in it if several were pasted; :EOF at the end
 of the input."
@@ -234,7 +241,8 @@ of the input."
                                              (press-text stream key)
                                              (press stream key))
                                until end
-                               finally (return end)))
+                               finally (stand-as-first-line stream)
+                                       (return end)))
                        stream)
     (look-ahead stream)))
 

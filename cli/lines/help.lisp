@@ -27,7 +27,8 @@
   (terpri)
   (write-filled "MENU-CAMERA, MENU-HAND and MENU-BIN list the commands of those parts, PLAN lists
 the plans, HELP name tells more of a command, a plan, or whatever has a name; APROPOS word searches.
-The beginning of a command's name will do. A line in parentheses is Lisp." 0))
+The beginning of a command's name will do. A line in parentheses is Lisp. HELP KEYS tells how a line
+is edited. What has left the screen is still in your terminal's memory: scroll up." 0))
 
 (defun slot-help (slot)
   "Return what HELP says of SLOT."

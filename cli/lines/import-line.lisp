@@ -10,8 +10,9 @@
 (defun tell-imported (map report)
   "Say what MAP is like, of which REPORT is what IMPORT-MAP reports, and what can be done with it."
   (destructuring-bind (&key width height cell free occupied unknown walls) report
-    (format t "~(~A~): ~D by ~D cells of ~A m, ~D free, ~D occupied, ~D unknown, in ~D walls.~%"
-            (map-name map) width height (amount-text cell) free occupied unknown walls)
+    (format t "~(~A~): ~D by ~D cells of ~A m~:[~;, each a metre here~], ~D free, ~D occupied, ~
+               ~D unknown, in ~D walls.~%"
+            (map-name map) width height (amount-text cell) (/= 1 cell) free occupied unknown walls)
     (format t "For a robot there: (defrobot NAME (~(~A~) (~:[X Y~;~:*~{~,1F~^ ~}~]) 0)), and then ~
                WORLD ~2:*~(~A~).~%"
             (map-name map) (free-middle map))))
@@ -19,5 +20,6 @@
 (define-line "IMPORT" (session (file :file "a YAML file, as ROS's map_server keeps them"))
     (:seeing)
     "Make a map of the occupancy grid in FILE, and of the image that it names. The map is called
-like FILE."
+like FILE. In the simulator a cell is a metre wide, whatever it was on the floor: GO 5 m drives
+through five."
   (multiple-value-call #'tell-imported (import-map file)))

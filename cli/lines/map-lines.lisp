@@ -76,8 +76,13 @@ LINES-BELOW lines."
                                     :paint (and (console-colored-p console) #'paint)
                                     options)))))))
 
-(define-line "MAP" (session (what :rest "a radius or LEFT TOP RIGHT BOTTOM; CONES WAY BELIEF LEGEND"
-                                   :optional))
+(defmethod choices ((type (eql :map-words)) session typed)
+  (declare (ignore session typed))
+  (mapcar #'string-downcase *map-words*))
+
+(define-line "MAP" (session (what :map-words
+                                  "a radius or LEFT TOP RIGHT BOTTOM; CONES WAY BELIEF LEGEND"
+                                  :optional))
     (:seeing)
     "Show the world as characters: all of it, what is within a radius of the robot, or a region.
 CONES shows what the robot's cameras have in view, WAY where it went, BELIEF where it believes

@@ -109,14 +109,10 @@ package; NIL if there is none."
   (handler-bind ((error (lambda (condition)
                           (close-errand errand)
                           (when (typep condition 'program-error)
-                            (reject-line "~A It is: PLAN ~A." (sentence condition)
-                                         (plan-usage plan))))))
+                            (reject-line "~A was given ~:[no arguments~;~:*~{~S~^ ~}~]. It is: ~
+                                          PLAN ~A."
+                                         (procedure-name plan) arguments (plan-usage plan))))))
     (setf (plan-errand-task errand) (apply #'begin-plan plan arguments))))
-
-(defun sentence (condition)
-  "Return what CONDITION says, as a sentence."
-  (let ((text (string-right-trim "." (one-line (condition-text condition)))))
-    (format nil "~@(~A~)~A." (char text 0) (subseq text 1))))
 
 (defun send-plan (session plan arguments)
   "Start PLAN, a plan procedure, with ARGUMENTS as an errand of SESSION."

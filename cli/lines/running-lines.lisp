@@ -16,6 +16,8 @@
                 ((simulation-over simulation) (simulation-over simulation))
                 ((not (live-p simulation)) "headless")
                 ((paused-p simulation) "paused")
+                ((idle-p simulation)
+                 (format nil "idle, else ~A" (rate-text (simulation-rate simulation))))
                 (t (rate-text (simulation-rate simulation))))))
 
 (defun pause-now (simulation)
@@ -46,7 +48,7 @@
     (await (lambda () (>= (simulation-tick simulation) goal)))
     (format t "Tick ~D.~%" (simulation-tick simulation))))
 
-(define-line "STEP" (session (n tick-span "how many; 1 if left out" :optional))
+(define-line "STEP" (session (n steps "how many; 1 if left out" :optional))
     (:running)
     "Let N ticks pass; a live simulator is paused after them."
   (if (session-visit session)
@@ -64,7 +66,8 @@
 
 (define-line "RATE" (session (x :rate "a number of ticks per second, or free" :optional))
     (:running)
-    "Set the pace of a live simulator; show what it is, and how many ticks have passed."
+    "Set the pace of a live simulator; show what it is, and how many ticks have passed. While it is
+idle, none pass: nothing moves by itself in its world, and nobody has asked for anything."
   (let ((simulation (current-simulation)))
     (when x
       (if (session-visit session)
@@ -88,7 +91,7 @@
 (defun parameter-text (parameter)
   (let ((value (parameter-value parameter))
         (default (parameter-default parameter)))
-    (format nil "~26A ~8A ~A~:[ (default ~A)~;~]" (parameter-name parameter)
+    (format nil "~30A ~8A ~A~:[ (default ~A)~;~]" (parameter-name parameter)
             (setting-text value) (parameter-unit parameter)
             (value-equal value default) (setting-text default))))
 

@@ -64,14 +64,23 @@
   (format t "Designators:~%")
   (mapc #'write-designator (getf status :designators)))
 
+(defun write-standstill (session simulation)
+  "Say that SIMULATION, in which SESSION is, is live, but no ticks pass now, if that is so."
+  (when (and (live-p simulation)
+             (or (paused-p simulation) (idle-p simulation))
+             (null (session-visit session)))
+    (format t "~19A~A~%" "Time:" (time-text session simulation))))
+
 (define-line "STATUS" (session)
     (:seeing)
     "Show the robot: position, last change of position, real and estimated, heading, speed, turning
 speed, the views of its cameras, the place it sensed last, whose commands it and its parts carry
 out, whose was interrupted last by whose, what thinking costs unless that is as usual, its
-designators. In Lisp: (status)."
+designators; and that no ticks pass, if so. In Lisp: (status)."
   (let ((robot (session-robot)))
-    (still (or (report-status session robot) (write-status (status robot))))))
+    (still (or (report-status session robot)
+               (progn (write-status (status robot))
+                      (write-standstill session (current-simulation)))))))
 
 (defun where-text (thing)
   (let ((location (thing-location thing)))

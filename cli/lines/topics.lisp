@@ -101,6 +101,18 @@
 (defun restart-words (name)
   (format nil "~A In Lisp: (invoke-restart '~(~A~))." (restart-documentation name) name))
 
+;;; What is brought by a system of its own.
+
+(defparameter *names-elsewhere*
+  '("IS-SUCCESS-RATE" "PASS-PROBABILITY" "REPEAT-TRIAL")
+  "What the system ars-magna/fiveam defines.")
+
+(defun names-elsewhere ()
+  (unless (find-package :ars-fiveam) *names-elsewhere*))
+
+(defun elsewhere-words (name)
+  (format nil "ARS-FIVEAM:~A comes with (asdf:load-system \"ars-magna/fiveam\"), for tests." name))
+
 ;;; Names of Lisp.
 
 (defun documented-p (symbol)
@@ -110,7 +122,7 @@
   "Return a list of the names that users have of the simulator and the worlds, and of their own, as
 far as they are documented; but for parameters."
   (let ((names '()))
-    (dolist (package '(:ars :nisp :ars-worlds))
+    (dolist (package (remove-if-not #'find-package '(:ars :nisp :ars-worlds :ars-fiveam)))
       (do-external-symbols (symbol package) (pushnew symbol names :test #'string=)))
     (do-symbols (symbol (user-package))
       (when (eq (user-package) (symbol-package symbol)) (pushnew symbol names :test #'string=)))
@@ -133,10 +145,17 @@ far as they are documented; but for parameters."
                                    when text collect text)
                              :test #'string=)))
 
+(defun typed-name (symbol)
+  "Return how SYMBOL is typed at the prompt: with its package, if ARS-USER has another of its name,
+or none."
+  (if (eq symbol (find-symbol (symbol-name symbol) (user-package)))
+      (symbol-name symbol)
+      (format nil "~A:~A" (package-name (symbol-package symbol)) symbol)))
+
 (defun call-text (symbol)
   "Return how the function or macro SYMBOL is called."
   (let ((*package* (or (symbol-package symbol) *package*)) (*print-pretty* nil))
-    (format nil "(~(~A~{ ~S~}~))" symbol
+    (format nil "(~(~A~{ ~S~}~))" (typed-name symbol)
             (ldiff (lambda-list-of symbol) (member '&aux (lambda-list-of symbol))))))
 
 (defun write-lisp-topic (symbol)
@@ -177,6 +196,8 @@ far as they are documented; but for parameters."
     ("error code" codes-and-commands code-name code-words)
     ("error code" codes-of-all identity code-of-all-words)
     ("restart" all-restarts identity restart-words)
+    ("subject" all-subjects subject-name subject-words)
+    ("name of a library" names-elsewhere identity elsewhere-words)
     (lisp-title lisp-names identity lisp-words write-lisp-topic))
   "Lists (title lister name words [writer]): what there is of each kind, what one is called, what is
 said of it, and how HELP writes that. The title may be a function.")

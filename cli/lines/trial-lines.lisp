@@ -50,11 +50,16 @@
           (experiment-name (visit-experiment visit))
           (condition-name (visit-condition visit))))
 
+(defun say-here (session control &rest arguments)
+  "Write a line formatted from CONTROL and ARGUMENTS, as it fits the window of SESSION."
+  (format t "~&~A~%" (fitted (apply #'format nil control arguments) (session-console session))))
+
 (defun write-visit (session visit)
   "Show which trial the prompt is in, and how far that has come."
-  (format t "~@(~A~).~%~A~%" (visit-name visit) (time-text session *simulation*))
+  (say-here session "~@(~A~).~%~A" (visit-name visit) (time-text session *simulation*))
   (when (visit-changed visit)
-    (format t "Since tick ~D it is not the experiment's run any more.~%" (visit-changed visit))))
+    (say-here session "Since tick ~D it is not the experiment's run any more."
+              (visit-changed visit))))
 
 ;;; Its end.
 
@@ -64,24 +69,24 @@
                 collect (list name (case value ((t) "yes") ((nil) "no") (:none "none")
                                      (t (format-briefly nil "~A" value)))))))
 
-(defun write-result (visit result)
+(defun write-result (session visit result)
   "Show what came of the trial of VISIT."
-  (format t "~&The trial is over at tick ~D: ~A~@[ (~A)~].~@[ ~A.~]~%" (result-ticks result)
-          (result-outcome result)
-          (and (string/= "" (result-reason result)) (result-reason result))
-          (let ((text (measures-text visit result))) (and (string/= "" text) text)))
+  (say-here session "The trial is over at tick ~D: ~A~@[ (~A)~].~@[ ~A.~]" (result-ticks result)
+            (result-outcome result)
+            (and (string/= "" (result-reason result)) (result-reason result))
+            (let ((text (measures-text visit result))) (and (string/= "" text) text)))
   (when (string/= "" (result-error result))
-    (format t "Its error: ~A~%" (complaint-text (result-error result))))
+    (say-here session "Its error: ~A" (complaint-text (result-error result))))
   (when (visit-changed visit)
-    (format t "It is not what the experiment says: since tick ~D the run was another.~%"
-            (visit-changed visit))))
+    (say-here session "It is not what the experiment says: since tick ~D the run was another."
+              (visit-changed visit))))
 
-(defun write-comparison (visit result parts row)
+(defun write-comparison (session visit result parts row)
   "Show in what RESULT differs from ROW, that of the trial of VISIT."
   (let ((differences (row-differences (visit-experiment visit) result parts row
                                       (visit-directory visit))))
-    (format t "~:[It is as in its row.~;~:*It differs from its row: ~{~A~^; ~}.~]~%"
-            differences)))
+    (say-here session "~:[It is as in its row.~;~:*It differs from its row: ~{~A~^; ~}.~]"
+              differences)))
 
 (defun stay (session visit result parts row)
   "Read lines of SESSION where the trial of VISIT has ended, with RESULT, until one leads out."
@@ -89,8 +94,8 @@
   (pause-visit visit)
   (call-aside (lambda ()
                 (show-messages session)
-                (write-result visit result)
-                (when row (write-comparison visit result parts row))))
+                (write-result session visit result)
+                (when row (write-comparison session visit result parts row))))
   (loop (visit-line session visit)))
 
 ;;; Going there, and out again.
@@ -99,8 +104,10 @@
   "Let VISIT pause at its next tick, and what has been interrupted go on by RESTART."
   (pause-visit visit)
   (setf (visit-interrupted-p visit) t)
-  (format (session-console session)
-          "~&Interrupted: the trial pauses at its next tick. Control-C leaves it.~%")
+  (write-fresh (fitted (format nil "Interrupted: the trial pauses at its next tick. Control-C ~
+                                    leaves it.~%")
+                       (session-console session))
+               (session-console session))
   (finish-output (session-console session))
   (invoke-restart restart))
 
@@ -160,11 +167,11 @@ pauses at the next one; if that does not come, and he does so again, it is left.
   "Let SESSION go into VISIT, from wherever it is."
   (call-outside session
                 (lambda ()
-                  (format t "~@(~A~): seed ~D, at most ~D ticks. STEP and RESUME let time pass, ~
-                             TRIAL OFF leads out.~%"
-                          (visit-name visit)
-                          (trial-seed (visit-experiment visit) (visit-trial visit))
-                          (experiment-limit (visit-experiment visit)))
+                  (say-here session "~@(~A~): seed ~D, at most ~D ticks. STEP and RESUME let time ~
+                                     pass, TRIAL OFF leads out."
+                            (visit-name visit)
+                            (trial-seed (visit-experiment visit) (visit-trial visit))
+                            (experiment-limit (visit-experiment visit)))
                   (unless (watched-p session) (setf (visit-rate visit) :free))
                   (funcall (call-with-others-paused (lambda () (enter-visit session visit)))))))
 

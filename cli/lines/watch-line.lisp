@@ -15,21 +15,29 @@
        (null (session-visit session))
        (not (paused-p simulation))))
 
+(defun idle-here-p (session simulation)
+  "True if no ticks of SIMULATION, in which SESSION is, pass by themselves until somebody asks for
+something."
+  (and (time-passes-p session simulation) (idle-p simulation)))
+
 (defun pass-tick (session simulation)
-  "Let a tick of SIMULATION pass, or wait until one has passed."
+  "Let a tick of SIMULATION pass, or wait until one has passed, or none will."
   (let ((goal (1+ (simulation-tick simulation))))
     (unless (time-passes-p session simulation) (step-ticks 1 simulation))
-    (await (lambda () (>= (simulation-tick simulation) goal)))))
+    (await (lambda ()
+             (or (>= (simulation-tick simulation) goal)
+                 (idle-here-p session simulation))))))
 
 ;;; One after the other.
 
 (defun print-maps (session simulation count options)
-  "Print a map for each of COUNT ticks."
+  "Print a map for each of COUNT ticks; of one in which nothing happens any more, say so."
   (loop repeat count
-        until (simulation-over simulation)
+        until (or (simulation-over simulation) (idle-here-p session simulation))
         do (pass-tick session simulation)
            (format t "Tick ~D.~%~A" (simulation-tick simulation) (map-text session options))
-           (finish-output)))
+           (finish-output))
+  (when (idle-here-p session simulation) (format t "~A~%" (time-text session simulation))))
 
 ;;; In place.
 
@@ -55,12 +63,13 @@
         (/ 1d0 (if (and (realp rate) (plusp rate)) rate +usual-rate+)))))
 
 (defun watch-screen (session simulation count options)
-  "Show maps of SIMULATION in place until COUNT ticks have passed, if that is not NIL, or a key is
-pressed, or there is something else to be answered."
+  "Show maps of SIMULATION in place until COUNT ticks have passed, or no more will, if COUNT is not
+NIL, or a key is pressed, or there is something else to be answered."
   (loop with end = (and count (+ (simulation-tick simulation) count))
         with console = (session-console session)
         do (write-at-once (over-screen (frame session simulation options)) console)
-        until (or (and end (>= (simulation-tick simulation) end))
+        until (or (and end (or (>= (simulation-tick simulation) end)
+                               (idle-here-p session simulation)))
                   (simulation-over simulation)
                   (session-breaks session)
                   (typed-within-p (session-input session) (frame-seconds session simulation)))
@@ -98,11 +107,11 @@ pressed, or there is something else to be answered."
                        on.~]"
                       (live-p simulation)))))
 
-(define-line "WATCH" (session (what :rest "how many ticks, then what MAP takes" :optional))
+(define-line "WATCH" (session (what :map-words "how many ticks, then what MAP takes" :optional))
     (:seeing)
     "Show the map again and again while time passes, in place on a terminal, where a key or
-Control-C ends it: for as many ticks as the number that comes first says. Where time stands still,
-these ticks pass. What follows that number is as for MAP."
+Control-C ends it: for as many ticks as the number that comes first says, or until nothing happens
+any more. Where time stands still, these ticks pass. What follows that number is as for MAP."
   (check-run)
   (multiple-value-bind (count rest) (take-count what)
     (let ((simulation (current-simulation)) (options (map-options rest)))

@@ -2,22 +2,29 @@
 
 (in-package :ars-magna.cli)
 
-(defun tell-rewound (x y simulation)
-  "Queue a message that the way to (X,Y) is given up, as another run goes on in the place of
-SIMULATION."
-  (let ((*message-queue* (simulation-messages (latest simulation))))
-    (warning-set (format nil "go-to: The run was rewound on the way to ~A ~A, and the robot goes ~
-                              there no more. Say it again if it is to." x y))))
+(defun point-text (x y)
+  "Return the point (X,Y) as it is typed."
+  (format nil "~A ~A" (amount-text x) (amount-text y)))
 
-(defun tell-arrival (err robot x y)
-  "Queue a message about ROBOT, which was to go to (X,Y): ERR is an error code, or NIL."
+(defun tell-rewound (point simulation)
+  "Queue a message that the way to POINT, a text, is given up, as another run goes on in the place
+of SIMULATION."
+  (let ((*message-queue* (simulation-messages (latest simulation))))
+    (warning-set (format nil "go-to: The run was rewound on the way to ~A, and the robot goes ~
+                              there no more. Say it again if it is to."
+                         point))))
+
+(defun tell-failed-way (control point &rest arguments)
+  "Queue an error message: that a GO-TO has not come to POINT, a text."
+  (error-set (make-verdict (format nil "go-to: ~?" control (cons point arguments)))))
+
+(defun tell-arrival (err robot point)
+  "Queue a message about ROBOT, which was to go to POINT, a text: ERR is an error code, or NIL."
   (case err
-    ((nil) (message-set (format nil "go-to: Robot is near ~A ~A, as it believes" x y)))
-    (:no-way (error-set (format nil "go-to: There is no way to ~A ~A for " x y) robot))
-    (:gave-up (error-set (format nil "go-to: Something was in the way to ~A ~A too often for "
-                                 x y)
-                         robot))
-    (t (error-set (format nil "go-to: Interrupted on the way to ~A ~A" x y)))))
+    ((nil) (message-set (format nil "go-to: Robot is near ~A, as it believes" point)))
+    (:no-way (tell-failed-way "There is no way to ~A for ~A" point robot))
+    (:gave-up (tell-failed-way "Something was in the way to ~A too often for ~A" point robot))
+    (t (tell-failed-way "Interrupted on the way to ~A" point))))
 
 (defun tell-slowed (robot speed)
   "Queue a message that a line GO was interrupted, and left ROBOT with another speed than SPEED."
@@ -28,9 +35,10 @@ SIMULATION."
 
 (define-line "GO" (session (distance distance "how far"))
     (:moving)
-    "Drive DISTANCE metres straight ahead, no faster than the robot's speed. GO-FORWARD drives for a
-number of ticks."
-  (let ((errand (make-errand)) (speed (robot-speed (session-robot))))
+    "Drive DISTANCE metres straight ahead, no faster than the robot's speed, which must not be 0. If
+that is interrupted, the robot keeps the speed that it drove with. GO-FORWARD drives for a number of
+ticks."
+  (let ((errand (make-errand :name "GO")) (speed (robot-speed (session-robot))))
     (robot-go-distance (session-robot) distance
                        (lambda (err robot)
                          (when (eq :interrupt err) (tell-slowed robot speed))
@@ -40,11 +48,15 @@ number of ticks."
 (define-line "GO-TO" (session (x metres "metres from the left") (y metres "metres from the top"))
     (:moving)
     "Let the robot find its way to X, Y, through doorways and round obstacles."
-  (let ((errand (make-errand)) (simulation (current-simulation)))
-    (robot-go-to (session-robot) x y
-                 (lambda (err robot)
-                   (if (eq simulation (latest simulation))
-                       (tell-arrival err robot x y)
-                       (tell-rewound x y simulation))
-                   (setf (errand-done-p errand) t)))
+  (let ((errand (make-errand :name "GO-TO" :verdict-p t))
+        (simulation (current-simulation))
+        (point (point-text x y)))
+    (let ((*asker* "GO-TO"))
+      (robot-go-to (session-robot) x y
+                   (lambda (err robot)
+                     (let ((*asker* +asker+) (*told-of* +asker+))
+                       (if (eq simulation (latest simulation))
+                           (tell-arrival err robot point)
+                           (tell-rewound point simulation)))
+                     (setf (errand-done-p errand) t))))
     (push errand (session-errands session))))

@@ -19,6 +19,7 @@ HTML of its Markdown, its headings with anchors."
     ("worlds/tutorial/README.md" "tutorial.html" "Tutorial" :learning)
     ("worlds/README.md" "worlds.html" "The shipped worlds" :guide)
     ("cli/README.md" "prompt.html" "The prompt" :guide)
+    ("cli/shell/usage.txt" "options.html" "Options of the command" :guide)
     ("worlds/examples/README.md" "shipped-examples.html" "The shipped worlds by example" :examples)
     ("worlds/plan-examples/README.md" "shipped-plan-examples.html" "The shipped plans by example"
      :examples)
@@ -113,6 +114,17 @@ HTML of its Markdown, its headings with anchors."
           collect (list (heading-level token) (attribute-value "id" token)
                         (text-of (element-at rest)))))
 
+(defun sections (tokens)
+  "Return lists (id text words) for the headings in TOKENS, in order: WORDS is the text below."
+  (loop for rest on tokens
+        for token = (first rest)
+        when (and (heading-level token) (attribute-value "id" token))
+          collect (let* ((heading (element-at rest))
+                         (below (nthcdr (length heading) rest)))
+                    (list (attribute-value "id" token)
+                          (text-of heading)
+                          (text-of (subseq below 0 (position-if #'heading-level below)))))))
+
 (defun mark-readings (tokens)
   "Return TOKENS, of the page of readings, with an id where each reading begins, as reading-12."
   (loop for (token next) on tokens
@@ -122,9 +134,30 @@ HTML of its Markdown, its headings with anchors."
                     (with-attribute "id" (format nil "reading-~D" number) token)
                     token)))
 
+;;; The texts of usage make a page together.
+
+(defparameter *usages*
+  '(("ars-magna" "usage.txt") ("ars-magna experiment" "usage-experiment.txt")
+    ("ars-magna merge" "usage-merge.txt") ("ars-magna compare" "usage-compare.txt"))
+  "Lists (command file): what --help prints.")
+
+(defun usage-markdown ()
+  "Return the Markdown of the page of what --help prints."
+  (format nil "# Options of the command~%~%What `--help` prints.~%~%~
+               ~:{## ~A~%~%```text~%~A~%```~%~%~}"
+          (loop for (command file) in *usages*
+                collect (list command
+                              (file-text (project-path (format nil "cli/shell/~A" file)))))))
+
+(defun markdown-of (source)
+  "Return the Markdown of the page that the file SOURCE of the project stands for."
+  (if (string= source "cli/shell/usage.txt")
+      (usage-markdown)
+      (file-text (project-path source))))
+
 (defun read-page (source)
   "Return the page of the guide whose Markdown is in the file SOURCE of the project."
-  (let* ((tokens (with-anchors (html-tokens (markdown-html (file-text (project-path source))))))
+  (let* ((tokens (with-anchors (html-tokens (markdown-html (markdown-of source)))))
          (first (find 1 (headings tokens) :key #'first)))
     (make-page :source source :file (file-for source)
                :title (or (second (known-page source)) (third first) source)

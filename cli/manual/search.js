@@ -1,4 +1,4 @@
-// search.js -- finds entries and headings by what is typed. Pages can be read without it.
+// search.js -- finds entries, headings and sections by what is typed. Pages can be read without it.
 
 (function () {
   "use strict";
@@ -6,18 +6,20 @@
   var input = document.createElement("input");
   var results = document.createElement("ol");
   input.type = "search";
-  input.placeholder = "Search names, headings, sentences (press /)";
+  input.placeholder = "Search names, headings, text (press /)";
   input.setAttribute("aria-label", "Search");
   place.appendChild(input);
   place.appendChild(results);
 
-  // The lower, the better; -1 is no match. Rows are [name, kind, address, sentence].
+  // The lower, the better; -1 is no match. Rows are [name, kind, address, sentence, words below].
   function rank(row, words) {
     var name = row[0].toLowerCase(), all = (row[0] + " " + row[3]).toLowerCase(), whole = words.join(" ");
+    var below = all + " " + row[4];
     if (name === whole) return 0;
     if (name.indexOf(whole) === 0) return 1;
     if (words.every(function (word) { return name.indexOf(word) >= 0; })) return 2;
     if (words.every(function (word) { return all.indexOf(word) >= 0; })) return 3;
+    if (words.every(function (word) { return below.indexOf(word) >= 0; })) return 4;
     return -1;
   }
 
@@ -46,7 +48,7 @@
 
   function showNothing() {
     var item = document.createElement("li");
-    item.textContent = "Nothing has that in its name or first sentence.";
+    item.textContent = "Nothing has that in its name, first sentence or section.";
     results.appendChild(item);
   }
 

@@ -73,6 +73,8 @@ method, DATUM is the argument.")
 ;;; The prompt's own types.
 
 (define-argument-type 'count #'whole-p "a whole number, from 0 to 1e9")
+(define-argument-type 'steps (lambda (value) (whole-p value 1))
+  "a whole number of ticks, from 1 to 1e9")
 
 ;;; Reading.
 
@@ -139,7 +141,7 @@ and goes on to the end of TEXT if there is no second one."
 
 (deftype rest-type ()
   "The types of arguments that are all that is left of a line."
-  '(member :rest :line :form))
+  '(member :rest :line :form :map-words))
 
 (defun token-value (type token)
   "Return what TOKEN stands for as an argument of TYPE: a file's name has the home directory for ~."

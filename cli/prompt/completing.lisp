@@ -186,6 +186,7 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
       (case type
         (:line (line-completions session text start))
         (:form (lisp-completions session text (length text)))
+        (:map-words (word-completions text (choices type session text)))
         (:specification (specification-completions text (length text)))
         (t (let* ((typed (subseq text start))
                   (quoted-p (starts-with-subseq "\"" typed))
@@ -194,6 +195,11 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
                            (matching begun (append (unit-choices before text start)
                                                    (and type (choices type session begun))))
                            quoted-p)))))))
+
+(defun word-completions (text words)
+  "Complete the last word of TEXT to one of WORDS, of which any number may be given."
+  (let ((start (1+ (or (position-if #'blank-p text :from-end t) -1))))
+    (as-arguments start (matching (subseq text start) words) nil)))
 
 (defun line-meant (name)
   "Return the line command that NAME or the alias NAME means. Signals BAD-LINE."

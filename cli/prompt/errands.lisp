@@ -13,9 +13,13 @@
 (defparameter *endless-commands* '("HAND-TRACK")
   "Commands that are not expected to complete.")
 
-(defstruct (errand (:constructor make-errand ()) (:copier nil))
-  "A command, or a plan, that the prompt has issued."
-  (done-p nil))
+(defstruct (errand (:constructor make-errand (&key name verdict-p)) (:copier nil))
+  "A command, or a plan, that the prompt has issued. NAME is what the line is called that gives
+several commands one after the other, or NIL; if VERDICT-P is true, that recovers from their errors,
+and says itself how it has ended."
+  (done-p nil)
+  (name nil :type (or null string) :read-only t)
+  (verdict-p nil :read-only t))
 
 ;; It is the prompt's, whatever of a run leads to it.
 (define-shared errand)
@@ -69,7 +73,12 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
 
 (defun await-errands (session)
   "Wait until all that SESSION has issued is done."
-  (mapc #'await-errand (reverse (shiftf (session-errands session) '()))))
+  (unwind-protect (mapc #'await-errand (reverse (session-errands session)))
+    (setf (session-errands session) '())))
+
+(defun errands-under-way (session)
+  "Return what SESSION has issued and has not ended, newest first."
+  (remove-if #'errand-done-p (session-errands session)))
 
 ;;; Lisp may have issued commands too.
 

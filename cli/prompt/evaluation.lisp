@@ -12,7 +12,7 @@
 
 (defun read-more (session text)
   "Return TEXT with the next line of SESSION after it."
-  (let ((line (read-input session "     > " text)))
+  (let ((line (read-input session +going-on+ text)))
     (unless line (reject-line "The form is not complete: ~A" (one-line text)))
     (format nil "~A~%~A" text line)))
 
@@ -35,11 +35,13 @@ together, are messages."
   (call-quietly (lambda () (call-as-unit function))))
 
 (defun write-but-diagnostics (text stream)
-  "Write the lines of TEXT to STREAM, but not those that begin with a semicolon: the compiler's."
+  "Write the lines of TEXT to STREAM, but not those that begin with a semicolon, the compiler's, nor
+what Lisp says of a full stack, of which users are told."
   (with-input-from-string (in text)
     (loop for line = (read-line in nil)
           while line
-          unless (or (string= line "") (char= #\; (char line 0)))
+          unless (or (string= line "") (char= #\; (char line 0))
+                     (starts-with-subseq "Control stack guard page" line))
             do (format stream "~&~A~%" line))))
 
 (defun eval-quietly (form)
@@ -50,17 +52,24 @@ together, are messages."
                       (call-quietly (lambda () (eval (with-own-name form)))))
       (write-but-diagnostics (get-output-stream-string diagnostics) *standard-output*))))
 
-(defun write-value (value)
+(defun value-line (value)
+  "Return how VALUE is printed."
   (let ((*print-circle* (or *print-circle* (not (tree-p value)))))
-    (format t "~S~%" (if (readtablep value) (readtable-name value) value))))
+    (format nil "~S" (if (readtablep value) (readtable-name value) value))))
 
 (defun evaluate (session form)
   "Evaluate FORM and print its values, each on a line."
   (setf (session-lisp-p session) t)
-  (let ((values (multiple-value-list (call-telling-doubts (lambda () (eval-quietly form))))))
+  (let ((values (multiple-value-list
+                 (call-telling-doubts (lambda () (call-staying (lambda () (eval-quietly form))))))))
     (shiftf *** ** * (first values))
-    (when values (fresh-line))
-    (mapc #'write-value values)))
+    (unless (report-values (session-account session) (mapcar #'value-line values))
+      (when values (fresh-line))
+      (format t "~{~A~%~}" (mapcar #'value-line values)))))
+
+(defun call-staying (function)
+  "Call FUNCTION, in which what ends this Lisp, such as (sb-ext:exit), is an error."
+  (call-refusing-exits function "EXIT would end the simulator amid a line. QUIT leaves."))
 
 (defun read-form (session text &optional (start 0))
   "Return the form in TEXT at START, reading on in SESSION while it is incomplete; where it ends;

@@ -11,25 +11,42 @@
              (not (typep condition '(or ars-magna-error storage-condition))))
     (invoke-debugger condition)))
 
+(defun shipped-name (condition)
+  "Return what the function is called that the worlds have under the name that CONDITION says is
+that of no function, or NIL."
+  (let ((name (and (typep condition 'undefined-function) (cell-error-name condition))))
+    (when (and name (symbolp name))
+      (multiple-value-bind (symbol status) (find-symbol (symbol-name name) :ars-worlds)
+        (and (eq :external status)
+             (fboundp symbol)
+             (format nil "ARS-WORLDS:~A" symbol))))))
+
 (defun call-complaining (session function)
   "Call FUNCTION; complain of what goes wrong in it."
   (handler-case (funcall function)
     ((or error storage-condition) (condition)
       (regain-room condition)
-      (complain session (condition-text condition)))))
+      (complain session (format nil "~A~@[ There is ~A.~]" (condition-text condition)
+                                (shipped-name condition))))))
 
-(defun command-going-on ()
-  "Return the robot that the prompt commands, and the name of the command that it carries out; NIL
-if it carries out none."
-  (let* ((robot (and *simulation* (null (simulation-over *simulation*)) (session-robot)))
-         (event (and robot (at-work-p robot) (resource-event robot))))
+(defun command-carried-out (robot)
+  "Return the name of the command that ROBOT carries out, or NIL."
+  (let ((event (and (at-work-p robot) (resource-event robot))))
     (and (typep event 'operation)
-         (values robot (string-upcase (command-prompt-name (operation-command event)))))))
+         (string-upcase (command-prompt-name (operation-command event))))))
+
+(defun command-going-on (session)
+  "Return the robot that SESSION commands, and the name of the line or command that it carries out;
+NIL if it carries out none."
+  (let* ((robot (and *simulation* (null (simulation-over *simulation*)) (session-robot)))
+         (name (and robot (or (some #'errand-name (errands-under-way session))
+                              (command-carried-out robot)))))
+    (and name (values robot name))))
 
 (defun what-goes-on (session)
   "Return sentences that say what goes on in the simulator, though the line of SESSION does not,
 and how it can be ended; if nothing does, how the prompt is left. In a trial, nothing goes on."
-  (multiple-value-bind (robot command) (command-going-on)
+  (multiple-value-bind (robot command) (command-going-on session)
     (let ((plans-p (notevery #'plan-ending-p (plans))))
       (cond ((session-visit session) "")
             ((or robot plans-p)

@@ -10,9 +10,9 @@
 ;;; plan does not count those, only the plan's own failure: see VERDICT.
 
 (defstruct (plan-errand (:include errand) (:copier nil)
-                        (:constructor make-plan-errand (name session simulation)))
+                        (:constructor make-plan-errand (plan session simulation)))
   "A plan that the prompt has started. STUCK says what keeps it from ever going on, or is NIL."
-  (name nil :type symbol :read-only t)
+  (plan nil :type symbol :read-only t)
   (session nil :type session :read-only t)
   (simulation nil :read-only t)
   (task nil)
@@ -40,7 +40,7 @@
 (defun errand-of-p (errand task)
   (if (plan-errand-task errand)
       (eq task (plan-errand-task errand))
-      (eq (task-name task) (plan-errand-name errand))))
+      (eq (task-name task) (plan-errand-plan errand))))
 
 (defun errand-of (task)
   "Return the errand whose plan TASK is, or NIL."
@@ -84,7 +84,7 @@
 
 (defun tell-failure (errand control &rest arguments)
   "Queue an error message that begins with the name of the plan of ERRAND."
-  (error-set (make-verdict (format nil "~(~A~) ~?" (plan-errand-name errand) control arguments))))
+  (error-set (make-verdict (format nil "~(~A~) ~?" (plan-errand-plan errand) control arguments))))
 
 (defmacro with-messages-to ((errand) &body body)
   "Run BODY, whose messages are of the simulation of ERRAND."
@@ -97,22 +97,25 @@
          (find session *plan-errands* :key #'plan-errand-session))))
 
 (defun error-counts-p (message session)
-  "True if SESSION counts the error MESSAGE. Those of a trial are the trial's."
+  "True if SESSION counts the error MESSAGE. Those of a trial are the trial's, and those of commands
+that a plan, or GO-TO, gives are its own."
   (and (null (session-visit session))
        (or (verdict-p (first (message-items message)))
-           (not (waiting-for-plan-p session)))))
+           (not (or (waiting-for-plan-p session)
+                    (and (others-p message)
+                         (some #'errand-verdict-p (errands-under-way session))))))))
 
 (setf *error-counts-p* 'error-counts-p)
 
 (defun tell-end (errand)
   "Queue a message that says how the plan of ERRAND has ended."
-  (let ((name (string-downcase (plan-errand-name errand)))
+  (let ((name (string-downcase (plan-errand-plan errand)))
         (result (task-result (plan-errand-task errand))))
     (with-messages-to (errand)
       (case (task-state (plan-errand-task errand))
         (:succeeded (message-set name " succeeded: " (user-text #'safe-text result)))
         (:failed (setf (session-failure (plan-errand-session errand))
-                       (list result (plan-errand-name errand)))
+                       (list result (plan-errand-plan errand)))
                  (tell-failure errand "failed: ~A. PLANS tells more."
                                (string-right-trim "." (user-text #'reason-text result))))
         (t (message-set name " was stopped."))))))
@@ -124,7 +127,7 @@
       (if (session-patient-p (plan-errand-session errand))
           (tell-failure errand "is in a deadlock: it ~A, which nothing can bring about; it was ~
                                 stopped." stuck)
-          (warning-set (string-downcase (plan-errand-name errand)) " " stuck
+          (warning-set (string-downcase (plan-errand-plan errand)) " " stuck
                        ", which neither the robot nor time will bring about, but you may. "
                        "STOP-PLAN ends it.")))))
 
@@ -189,7 +192,7 @@ answer to the last such question."
 (defun start-watching-plan (errand)
   (let ((runner (plan-runner-now)))
     (start-thread (lambda () (watch-plan errand runner))
-                  (format nil "prompt's watch of ~A" (plan-errand-name errand)))))
+                  (format nil "prompt's watch of ~A" (plan-errand-plan errand)))))
 
 ;;; Headless.
 
@@ -208,7 +211,7 @@ answer to the last such question."
       (close-errand errand)
       (unless finished-p
         (reject-line "~(~A~) has not ended within ~D ticks; it goes on."
-                     (plan-errand-name errand) *patience*)))))
+                     (plan-errand-plan errand) *patience*)))))
 
 (defmethod await-errand ((errand plan-errand))
   (cond ((live-p (plan-errand-simulation errand))

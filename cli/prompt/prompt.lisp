@@ -9,6 +9,32 @@
         (debug-line session breakage text)
         (run-text session text))))
 
+(defun waits-for-time-p (session errands inbox)
+  "True if something has been asked for that waits for time to pass, which stands still, since
+SESSION had ERRANDS, and the simulation INBOX."
+  (and *simulation*
+       (live-p *simulation*)
+       (paused-p *simulation*)
+       (null (session-visit session))
+       (not (and (eq errands (session-errands session)) (eq inbox (requests-waiting))))
+       (requests-waiting)
+       t))
+
+(defun requests-waiting ()
+  "Return what waits for the next tick of the current simulation, a list."
+  (and *simulation* (timeline-inbox (timeline-of *simulation*))))
+
+(defun do-telling-of-time (session text)
+  "Do what TEXT, a line of SESSION, says. If it asks for what cannot begin, since time stands still,
+tell somebody who sits there."
+  (let ((errands (session-errands session)) (inbox (requests-waiting)))
+    (do-next session text)
+    (when (and (terminal-p session) (waits-for-time-p session errands inbox))
+      (write-fresh (fitted (format nil "Time stands still. RESUME lets it go on, STEP 10 for 10 ~
+                                        ticks.~%")
+                           (session-console session))
+                   (session-console session)))))
+
 (defun next-line (session)
   "Read a line of SESSION and do what it says; at the end of input, let the session be over."
   (follow-simulation session)
@@ -18,7 +44,7 @@
     (cond (text
            (note-line-begun (session-account session) (if (comment-p text) nil text)
                             (session-errors session))
-           (do-next session text))
+           (do-telling-of-time session text))
           (t (setf (session-over-p session) t)))))
 
 (defun stopped-p (session)

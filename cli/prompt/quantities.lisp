@@ -12,13 +12,14 @@
     (distance  :length "2.5, or 2.5 m")
     (speed     :speed  "0.5, or 0.5 m/tick")
     (ticks     :time   "20, or 20 ticks")
-    (tick-span :time   "20, or 20 ticks"))
+    (tick-span :time   "20, or 20 ticks")
+    (steps     :time   "20, or 20 ticks"))
   "Lists (argument-type dimension examples).")
 
 (defparameter *units*
   `((:angle  "an angle"             (1 "rad" "radian" "radians" "rad/tick")
                                     (,(/ pi 180) "deg" "degree" "degrees" "°" "deg/tick" "°/tick")
-                                    (,(* 2 pi) "turn" "turns"))
+                                    (,(* 2 pi) "turn" "turns") (,pi "pi"))
     (:length "a length"             (1 "m" "metre" "metres" "meter" "meters" "cell" "cells")
                                     (1/100 "cm"))
     (:speed  "a speed"              (1 "m/tick" "cell/tick" "cells/tick") (1/100 "cm/tick"))

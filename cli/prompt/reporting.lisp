@@ -52,6 +52,11 @@ reports by objects. True if it is."
     (dolist (message messages t)
       (report-message account (message-kind message) (message-text message)))))
 
+(defun report-values (account texts)
+  "Report TEXTS, of the values of a form of Lisp. True if ACCOUNT is of what reports by objects."
+  (when (reports-p account)
+    (dolist (text texts t) (report-object account "value" :text text))))
+
 (defun placed-text (account text)
   "Return TEXT, of what goes wrong in a line, after the place of that line if it is of a script."
   (if (and account (account-file account) (account-text account))

@@ -41,11 +41,14 @@
         while next))
 
 (defun greet (session)
-  (let ((simulation (current-simulation)))
-    (format (session-console session)
-            "ARS MAGNA: ~A in ~A, seed ~D, ~A.~%HELP lists the commands, QUIT leaves.~%"
-            (session-robot) (simulation-name simulation) (simulation-seed simulation)
-            (rate-text (simulation-rate simulation)))))
+  (let ((simulation (current-simulation)) (console (session-console session)))
+    (write-string (fitted (format nil "ARS MAGNA: ~A in ~A, seed ~D, ~A.~%~
+                                       HELP lists the commands, QUIT leaves.~%"
+                                  (session-robot) (simulation-name simulation)
+                                  (simulation-seed simulation)
+                                  (rate-text (simulation-rate simulation)))
+                          console)
+                  console)))
 
 (defun run-live (session robot-name options)
   "Run the lines of SESSION in the live world of ROBOT-NAME."
@@ -114,6 +117,17 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
        (or (string= argument "-")
            (and (not (option-p argument)) (script-path argument)))))
 
+(defun script-last-p (arguments)
+  "True if the last of ARGUMENTS, of which the first is an option, is a script, and no option's
+value."
+  (and (option-p (or (first arguments) ""))
+       (script-p (first (last arguments)))
+       (ignore-errors (parse-options (butlast arguments)) t)))
+
+(defun run-script-with (script arguments)
+  "Run SCRIPT with the options in ARGUMENTS. Return the status to exit with."
+  (run-options (list* (list :script script) (parse-options arguments))))
+
 (defun usage-wanted-p (arguments)
   (intersection arguments '("--help" "-h") :test #'string=))
 
@@ -127,8 +141,9 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
         ((equal arguments '("--version"))
          (format t "ARS MAGNA ~A~%" *version*)
          0)
-        ((script-p (first arguments))
-         (run-options (list* (list :script (first arguments)) (parse-options (rest arguments)))))
+        ((script-p (first arguments)) (run-script-with (first arguments) (rest arguments)))
+        ((script-last-p arguments)
+         (run-script-with (first (last arguments)) (butlast arguments)))
         ((and arguments (not (option-p (first arguments))))
          (run-command-called (first arguments) (rest arguments)))
         (t (run-options (parse-options arguments)))))

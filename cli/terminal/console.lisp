@@ -151,6 +151,14 @@ goes on where the last has ended."
     (draw console stream)
     (finish-output stream)))
 
+(defun redraw-if-resized (console)
+  "Draw the line that is being typed again if the window is not as wide as when it was drawn."
+  (let ((line (console-line console)))
+    (when (and line
+               (drawn-line-columns line)
+               (/= (drawn-line-columns line) (values (funcall (console-window console)))))
+      (change-line console (constantly nil)))))
+
 (defun hide-line (console)
   "Take the line that is being typed off the screen, until something is shown."
   (with-console (stream console)

@@ -5,7 +5,9 @@
 ;;; The line stands below all that is written meanwhile: it is wiped out before something is
 ;;; written, and drawn again after that. It has as many rows as the window is wide for; of more
 ;;; rows than the window has, those around the cursor are drawn. A window that becomes narrower
-;;; breaks rows anew, as we do; so rows that go on in the next one are not ended by a newline.
+;;; breaks rows anew, as we do; so rows that go on in the next one are not ended by a newline. It
+;;; may push the first of them out at its top: so the line is drawn again when the window has
+;;; changed.
 
 (defstruct (drawn-line (:copier nil))
   "A line that is being typed. It stands on the screen if SHOWN is true: as the list of label, text
@@ -16,8 +18,9 @@ and point that it was drawn from."
   ;; Where in the text the cursor is.
   (point 0 :type (integer 0))
   (shown nil :type list)
-  ;; The column of the cursor when it was drawn last.
-  (column 0 :type (integer 0)))
+  ;; The column of the cursor when it was drawn last, and how many the window had.
+  (column 0 :type (integer 0))
+  (columns nil :type (or null (integer 0))))
 
 ;;; Rows.
 
@@ -92,7 +95,8 @@ HEIGHT."
     (multiple-value-bind (rows row column) (rows-to-show label text point columns height)
       (write-rows rows stream)
       (format stream "~A~C~A" (cursor-up (- (length rows) row 1)) #\Return (cursor-right column))
-      (setf (drawn-line-column line) column))
+      (setf (drawn-line-column line) column
+            (drawn-line-columns line) columns))
     (setf (drawn-line-shown line) (list label text point))))
 
 (defun wipe-line (line stream columns height)

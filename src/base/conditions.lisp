@@ -4,6 +4,9 @@
 
 ;;; A misused library signals one of these. A robot that fails in a task does not: it
 ;;; reports an error code through its command's continuation (manual 3.1.1).
+;;;
+;;; Who shows a report may have circles marked. What is in it is abridged and has none, but may have
+;;; a text twice, which is to stand there twice.
 
 (addition ars-magna-error)
 (define-condition ars-magna-error (error)
@@ -17,12 +20,13 @@
    (value    :initarg :value    :reader wrong-argument-value)
    (expected :initarg :expected :reader wrong-argument-expected))
   (:report (lambda (condition stream)
-             (format stream "~(~A~): ~(~A~) is ~S; give ~A."
-                     (wrong-argument-operator condition)
-                     (wrong-argument-name condition)
-                     (let ((value (wrong-argument-value condition)))
-                       (if (pathnamep value) (shown-name value) (abridged value)))
-                     (wrong-argument-expected condition))))
+             (let ((*print-circle* nil))
+               (format stream "~(~A~): ~(~A~) is ~S; give ~A."
+                       (wrong-argument-operator condition)
+                       (wrong-argument-name condition)
+                       (let ((value (wrong-argument-value condition)))
+                         (if (pathnamep value) (shown-name value) (abridged value)))
+                       (wrong-argument-expected condition)))))
   (:documentation "A function was called with an argument that it cannot use."))
 
 (defun reject-argument (operator name value expected)
@@ -44,7 +48,7 @@
    (expected   :initarg :expected   :reader malformed-definition-expected)
    (place      :initarg :place      :initform nil :reader malformed-definition-place))
   (:report (lambda (condition stream)
-             (let ((*print-case* :downcase))
+             (let ((*print-case* :downcase) (*print-circle* nil))
                (format stream "~A~@[ (~A)~]: cannot use the clause~%  ~S~%Expected ~A"
                        (malformed-definition-definition condition)
                        (malformed-definition-place condition)
@@ -102,14 +106,15 @@ author meant."
              (with-accessors ((kind unknown-name-kind) (name unknown-name-name)
                               (nearest unknown-name-nearest) (known unknown-name-known))
                  condition
-               (format stream "There is no ~A called ~A.~@[ Did you mean ~A?~]~
-                               ~@[ Known: ~{~A~^, ~}.~]"
-                       kind
-                       (if (symbolp name)
-                           (abridged-text (plain-name name))
-                           (prin1-to-string (abridged name)))
-                       (and nearest (plain-name nearest))
-                       (names-to-show known)))))
+               (let ((*print-circle* nil))
+                 (format stream "There is no ~A called ~A.~@[ Did you mean ~A?~]~
+                                 ~@[ Known: ~{~A~^, ~}.~]"
+                         kind
+                         (if (symbolp name)
+                             (abridged-text (plain-name name))
+                             (prin1-to-string (abridged name)))
+                         (and nearest (plain-name nearest))
+                         (names-to-show known))))))
   (:documentation "A name was given that nothing of that kind has."))
 
 (addition misuse)

@@ -127,8 +127,10 @@ octets that are no text in UTF-8."
     (let ((parent (uiop:pathname-parent-directory-pathname path)))
       (unless (equal parent path) (make-directories parent)))
     (handler-case (sb-posix:mkdir (string-right-trim "/" (native-name path)) #o777)
-      (sb-posix:syscall-error (condition)
-        (unless (uiop:directory-exists-p path) (error condition))))))
+      (sb-posix:syscall-error ()
+        (unless (uiop:directory-exists-p path)
+          (error "~A cannot be made; give the name of a directory that can be"
+                 (native-name path)))))))
 
 (defun make-new-directory (path)
   "Make the directory PATH, in one that is there. True if nothing of that name was there before."

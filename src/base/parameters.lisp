@@ -128,8 +128,10 @@ WRONG-ARGUMENT if the new value is of the wrong type or out of range."
 (public clean-simulation)
 (defun clean-simulation ()
   "Remove all noise and error: set every noise parameter to its noiseless value and
-NO-SENSOR-ERROR* to T. Delays and limits stay. A second call changes nothing. Returns nothing
-(manual, chapter 4). See reading 117."
+NO-SENSOR-ERROR* to T. DISCRETE-NOISE-FACTOR*, CONTINUOUS-NOISE-FACTOR* and
+STANDARD-MATCH-THRESHOLD* stay as they are: while NO-SENSOR-ERROR* is true they make no error.
+Delays and limits stay. A second call changes nothing. Returns nothing (manual, chapter 4). See
+reading 117."
   (unless *noise-before-cleaning*
     (setf *noise-before-cleaning*
           (loop for parameter in (registry-objects *parameters*)

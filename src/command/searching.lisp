@@ -108,7 +108,15 @@ NIL (reading 69)."
 
 ;;; Things.
 
+(defun note-unknown-substances (specification)
+  "Tell of substances that are wanted in SPECIFICATION and that there are not."
+  (loop for (key value) in specification
+        when (eq key :substance)
+          do (dolist (choice (ensure-list value))
+               (when (and choice (symbolp choice)) (note-unknown-substance choice)))))
+
 (defun search-for-things (operation camera type specification all)
+  (note-unknown-substances specification)
   (if (camera-tracking camera)
       (fail-with operation :already-tracking)
       (funcall (if all #'designate-all #'designate-first)

@@ -14,7 +14,7 @@ them (reading 91)."
 
 ;; As reading 94 says.
 (define-command robot-set-speed (operation (robot robot)
-                                 (speed speed "the new speed"))
+                                 (speed speed "the new speed, from 0 to max-speed*"))
     ((speed "the speed set"))
     ((:family :moving) (:section "3.5")
      (:errors (:negative-speed "Speed cannot be negative. Set to 0")
@@ -30,7 +30,8 @@ them (reading 91)."
             speed)))
 
 (define-command robot-set-turn-angle (operation (robot robot)
-                                      (angle angle "the new turn angle, radians per tick"))
+                                      (angle angle
+                                       "the new turn angle, min-turn-angle* to max-turn-angle*"))
     ((turn-angle "the turn angle set"))
     ((:family :moving) (:section "3.5")
      (:errors (:too-low-turn-angle (lambda (operation)

@@ -58,13 +58,19 @@ CODE."))
   (when (track-operation track)
     (track-ended (track-operation track) code (track-designator track))))
 
+(defun track-asker (track)
+  "Return a note of who asked for TRACK, or NIL if that is not known."
+  (let ((operation (track-operation track)))
+    (and (typep operation 'request) (request-asker operation))))
+
 (defun stop-track (camera code warning)
   "End the track of CAMERA and nothing else. Return its designator, or NIL if it had no track.
 See reading 161."
   (let ((track (camera-tracking camera)))
     (when track
       (setf (camera-tracking camera) nil)
-      (when warning (warning-set warning))
+      (when warning
+        (let ((*told-of* (track-asker track))) (warning-set warning)))
       (if (eq code :interrupt)
           (tell-track-ended track code)
           (push (cons track code) (robot-ended-tracks (camera-robot camera))))
@@ -84,9 +90,10 @@ so unless SILENTLY."
 (defun end-track (camera code &optional warning)
   "End the track of CAMERA, if it has one, with the error CODE, and queue WARNING, a string. If it
 is lost and no other camera tracks the designator, that is dropped."
-  (let ((designator (stop-track camera code warning)))
+  (let* ((track (camera-tracking camera))
+         (designator (stop-track camera code warning)))
     (when (and designator (not (eq code :interrupt)) (not (tracked-p designator)))
-      (drop-designator designator))))
+      (let ((*told-of* (track-asker track))) (drop-designator designator)))))
 
 (defun lose-track (camera)
   (end-track camera :lost-track

@@ -69,6 +69,7 @@
   ;; recipes
   (:export #:recipe #:make-recipe)
   ;; placing
+  (:export #:note-unknown-substance)
   (:export #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing
            #:destroyed-thing)
   ;; undeclared
