@@ -20,11 +20,12 @@
 
 (defun trajectory-row (robot tick)
   "Return the texts of the row for ROBOT in TICK."
-  (append (list (number-as-text tick) (string-downcase (robot-name robot)))
-          (mapcar #'number-as-text
-                  (list* (robot-x robot) (robot-y robot) (robot-angle robot)
-                         (multiple-value-list (odometer-estimate (robot-main-odometer robot)))))
-          (list (things-held robot) (format nil "~@[~(~A~)~]" (robot-last-place robot)))))
+  (printing-plainly ()
+    (append (list (number-as-text tick) (string-downcase (robot-name robot)))
+            (mapcar #'number-as-text
+                    (list* (robot-x robot) (robot-y robot) (robot-angle robot)
+                           (multiple-value-list (odometer-estimate (robot-main-odometer robot)))))
+            (list (things-held robot) (format nil "~@[~(~A~)~]" (robot-last-place robot))))))
 
 (defun write-rows (simulation names out)
   "Write to OUT a row for each robot of SIMULATION, or of those that NAMES, a list, mean."
