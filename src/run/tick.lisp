@@ -82,7 +82,8 @@ have been begun."
 (defun let-all-participants-act (simulation)
   (let ((*tick-dice* nil))
     (call-each (lambda (participant)
-                 (call-user-code #'participant-after-tick "a participant" participant simulation))
+                 (call-user-code #'participant-after-tick (participant-origin participant)
+                                 participant simulation))
                (simulation-participants simulation))))
 
 (defun let-participants-act (simulation)
