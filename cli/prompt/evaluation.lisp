@@ -16,23 +16,44 @@
     (unless line (reject-line "The form is not complete: ~A" (one-line text)))
     (format nil "~A~%~A" text line)))
 
+(defvar *undefined* '()
+  "Lists (name kind) of what the compiler has found undefined in the forms at hand, newest first.")
+
+(defun note-undefined (condition)
+  "Note the name that CONDITION says is not defined, and tell nothing yet. NIL if it says something
+else."
+  (multiple-value-bind (name kind) (undefined-name condition)
+    (when name
+      (pushnew (list name kind) *undefined* :test #'equal)
+      (muffle-warning condition))))
+
+(defun tell-undefined (file)
+  "Tell what of *UNDEFINED* is not defined yet, in the forms of FILE, or typed if that is NIL."
+  (loop for (name kind) in (reverse *undefined*)
+        when (still-undefined-p name kind)
+          do (warning-set (format nil "~@[~A: ~]The ~(~A~) ~(~A~) is not defined."
+                                  file kind (safe-text name)))))
+
 (defun quiet-warning (condition)
   "Keep the compiler from telling users at length what they will be told in a moment. Doubts about
 definitions are messages like others."
   (typecase condition
     (definition-warning (warning-set (one-line (princ-to-string condition)))
                         (muffle-warning condition))
-    ((or style-warning compiler-note) (muffle-warning condition))))
+    (t (note-undefined condition)
+       (when (typep condition '(or style-warning compiler-note)) (muffle-warning condition)))))
 
 (defun call-quietly (function)
   (handler-bind ((warning #'quiet-warning)
                  (compiler-note #'muffle-warning))
     (funcall function)))
 
-(defun call-telling-doubts (function)
-  "Call FUNCTION and return its values. What is doubtful in the forms that it evaluates, taken
-together, are messages."
-  (call-quietly (lambda () (call-as-unit function))))
+(defun call-telling-doubts (function &optional file)
+  "Call FUNCTION and return its values. What is doubtful in the forms that it evaluates, of FILE or
+typed, taken together, are messages."
+  (let ((*undefined* '()))
+    (multiple-value-prog1 (call-quietly (lambda () (call-as-unit function)))
+      (tell-undefined file))))
 
 (defun write-but-diagnostics (text stream)
   "Write the lines of TEXT to STREAM, but not those that begin with a semicolon: the compiler's."
