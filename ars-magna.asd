@@ -235,7 +235,7 @@
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "reporting") (:file "session") (:file "line")
                    (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")
-                   (:file "robot-lines") (:file "finding")
+                   (:file "comments") (:file "robot-lines") (:file "finding")
                    (:file "evaluation") (:file "carrying-out") (:file "guarding")
                    (:file "plans") (:file "loading") (:file "worlds") (:file "choices")
                    (:file "debugger") (:file "completing") (:file "prompt") (:file "visits")))

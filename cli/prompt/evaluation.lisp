@@ -48,12 +48,17 @@ definitions are messages like others."
                  (compiler-note #'muffle-warning))
     (funcall function)))
 
-(defun call-telling-doubts (function &optional file)
-  "Call FUNCTION and return its values. What is doubtful in the forms that it evaluates, of FILE or
-typed, taken together, are messages."
+(defun call-telling-undefined (function &optional file)
+  "Call FUNCTION and return its values. What the forms that it evaluates, of FILE or typed, use and
+nobody has defined at its end are messages."
   (let ((*undefined* '()))
-    (multiple-value-prog1 (call-quietly (lambda () (call-as-unit function)))
+    (multiple-value-prog1 (funcall function)
       (tell-undefined file))))
+
+(defun call-telling-doubts (function)
+  "Call FUNCTION and return its values. What is doubtful in the forms that it evaluates, taken
+together, are messages."
+  (call-quietly (lambda () (call-as-unit function))))
 
 (defun write-but-diagnostics (text stream)
   "Write the lines of TEXT to STREAM, but not those that begin with a semicolon: the compiler's."
@@ -98,11 +103,15 @@ and TEXT with what was read."
       (reject-line "There is a parenthesis too many: ~A~:[~;  What is before it has been done.~]"
                    (one-line (subseq text start)) (plusp position)))))
 
-(defun evaluate-text (session text)
-  "Evaluate the forms in TEXT, reading on in SESSION while the last of them is incomplete."
+(defun evaluate-forms (session text)
   (loop with position = 0
         with form
+        do (setf (values text position) (skip-comments session text position))
         until (blank-from-p text position)
         do (check-parenthesis text position)
            (setf (values form position text) (read-form session text position))
            (evaluate session form)))
+
+(defun evaluate-text (session text)
+  "Evaluate the forms in TEXT, reading on in SESSION while the last of them is incomplete."
+  (call-telling-undefined (lambda () (evaluate-forms session text))))
