@@ -70,7 +70,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:undefined-name #:still-undefined-p)
   ;; compiling
   (:export #:show-lambda-list #:nested-p #:keep-place #:in-source-p #:call-at-place #:at-end-of-unit
-           #:call-as-unit)
+           #:call-as-unit #:wrap-function)
   ;; abridging
   (:export #:abridged #:unqualified-text #:+more+)
   ;; conditions
