@@ -44,6 +44,14 @@ ALL is true, also the whole stack of each, its variables, and the valves: see PR
   (declare (ignore runner))
   (asking (robot) (failure-sentences robot)))
 
+(defmethod reasons ((name symbol) runner)
+  (if name
+      (reasons (find-robot name) runner)
+      (call-next-method)))
+
+(defmethod reasons ((name string) runner)
+  (reasons (find-robot name) runner))
+
 (defmethod reasons ((part part) runner)
   (declare (ignore runner))
   (asking (part) (failure-sentences part)))

@@ -236,8 +236,8 @@ SOURCE is the file that it is from, :OWN of what is the simulator's, or NIL of w
                       (if (users-p entry) (source-file (entry-source entry)) :own))))
 
 (defun usual-name (registry)
-  "Return what users call the kind of REGISTRY."
-  (or (first (registry-synonyms registry)) (registry-kind registry)))
+  "Return what users call the kind of REGISTRY, a string."
+  (string-downcase (or (first (registry-synonyms registry)) (registry-kind registry))))
 
 (defun forget-value (variable)
   "Let VARIABLE have no value at top level: what a headless run has bound it to here, it keeps."
