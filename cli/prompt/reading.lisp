@@ -40,7 +40,7 @@ that."
       line)))
 
 (defun comment-p (text)
-  "True if there is nothing to do in TEXT: it is blank, or a comment after ; or #, but none after #|,
+  "True if there is nothing to do in TEXT: it is blank, or a comment after ; or #, but not after #|,
 which may end in it."
   (let ((start (position-if-not #'blank-p text)))
     (or (null start)
