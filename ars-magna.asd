@@ -47,8 +47,9 @@
                  (:file "map") (:file "grid-walk") (:file "match-forms") (:file "place-types")
                  (:file "places") (:file "trying-places") (:file "def-place-type")
                  (:file "built-in-places") (:file "walls") (:file "map-cache")
-                 (:file "location") (:file "thing") (:file "world") (:file "access")
-                 (:file "kickers") (:file "reading-ahead") (:file "kicker-groups")
+                 (:file "location") (:file "thing") (:file "stock")
+                 (:file "world") (:file "access")
+                 (:file "kickers") (:file "reading-ahead") (:file "gaps") (:file "kicker-groups")
                  (:file "attaching") (:file "placing") (:file "setting-attributes")
                  (:file "recipes") (:file "undeclared") (:file "forking") (:file "residents")
                  (:file "new-thing") (:file "kicking") (:file "defmap") (:file "check")
@@ -104,7 +105,8 @@
                  (:file "world-display") (:file "details") (:file "displays")
                  (:file "text-view") (:file "text-glyphs") (:file "text-layers")
                  (:file "text-sheet") (:file "text-legend") (:file "text-map")
-                 (:file "picture") (:file "way-picture") (:file "animation") (:file "opening")))
+                 (:file "picture") (:file "way-picture") (:file "moments") (:static-file "film.js")
+                 (:static-file "film.css") (:file "film") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
     :components ((:file "package") (:file "realm") (:file "home") (:file "fluent") (:file "network")
                  (:file "known") (:file "propagation") (:file "views") (:file "repair")
@@ -157,7 +159,8 @@
                  (:file "survival-chart") (:file "rows") (:file "difference-chart")
                  (:file "measure-chart") (:file "drawing-chart") (:file "saving")))
    (:module "src/trails" :serial t
-    :components ((:file "package") (:file "trails") (:file "trajectory") (:file "picture")))
+    :components ((:file "package") (:file "trails") (:file "trajectory") (:file "picture")
+                 (:file "run-picture")))
    (:module "rpl/projecting" :serial t
     :components ((:file "package") (:file "rollout") (:file "projection") (:file "question")
                  (:file "running") (:file "believing") (:file "rolling-out") (:file "answering")
@@ -245,7 +248,7 @@
                    (:file "running-lines") (:file "watch-line") (:file "world-lines")
                    (:file "plan-lines") (:file "plan-views") (:file "manipulate-line")
                    (:file "help") (:file "topics") (:file "help-lines")
-                   (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")
+                   (:file "rewind-line") (:file "picture-lines") (:file "film-line") (:file "trial-lines")
                    (:file "fork-line") (:file "import-line")
                    (:file "export-line")))
      (:module "shell" :serial t
@@ -299,7 +302,7 @@
   ((:module "tests" :serial t
     :components ((:file "package") (:file "base") (:file "base-doors") (:file "geometry")
                  (:file "nisp") (:file "world") (:file "world-caches") (:file "world-places")
-                 (:file "world-things") (:file "world-kickers") (:file "ways")
+                 (:file "world-things") (:file "world-kickers") (:file "world-large") (:file "ways")
                  (:file "ways-users") (:file "floors") (:file "floors-uses")
                  (:file "floors-hostile") (:file "time") (:file "robot")
                  (:file "moving") (:file "random-driver") (:file "random-restarts")
@@ -325,7 +328,7 @@
                  (:file "rpl-text") (:file "rpl-text-places") (:file "rpl-examples-robot")
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
                  (:file "worlds-searching")
-                 (:file "display") (:file "display-files") (:file "plots") (:file "plots-text")
+                 (:file "display") (:file "display-files") (:file "films") (:file "plots") (:file "plots-text")
                  (:file "clim") (:file "cli") (:file "text-maps") (:file "cli-quantities")
                  (:file "editing") (:file "editing-screens") (:file "completing")
                  (:file "ways-going") (:file "cli-plans") (:file "cli-colour")

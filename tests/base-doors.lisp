@@ -125,6 +125,14 @@
         (is-false (base:make-new-directory path))
         (uiop:delete-empty-directory path)))))
 
+(test room.is-there-when-it-was-made
+  (let ((octets (floor (sb-ext:bytes-consed-between-gcs) 2)))
+    (base:make-room octets)
+    (let ((epoch sb-kernel::*gc-epoch*)
+          (made (loop repeat (floor octets 200000) collect (make-string 25000))))
+      (is (plusp (length made)))
+      (is (eq epoch sb-kernel::*gc-epoch*)))))
+
 ;;; Who waits leaves the terminal to a debugger. What SBCL says of that goes nowhere.
 
 (defun nowhere ()

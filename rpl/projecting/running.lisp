@@ -48,8 +48,8 @@ how it has ended, with which result, at no cost, and OPTION."
 
 (defun go-to-end (question interface begin over)
   "Call BEGIN, which returns the task whose end counts or NIL, and let ticks of the current
-simulation pass until what QUESTION is about has ended, or OVER, which is called after each, says how
-it ends. Return how it has ended, with which result, at what cost, and the option whose function
+simulation pass until what QUESTION is about has ended, or OVER, which is called after each, says
+how it ends. Return how it has ended, with which result, at what cost, and the option whose function
 broke it off, if any."
   (handler-case
       (let* ((last (+ (simulation-tick) (option question :horizon)))

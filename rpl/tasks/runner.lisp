@@ -92,7 +92,9 @@ as it needs. CLIENT is on whose behalf all this is."
 
 (defmethod copy-plan-value ((runner plan-runner) fork)
   (if (home-forked-p runner fork)
-      (copy-slots runner fork)
+      (let ((copy (copy-slots runner fork)))
+        (setf (home-born copy) (next-token))
+        copy)
       runner))
 
 (defun runner-note (runner key)
@@ -221,7 +223,8 @@ have used their slice."
 
 (defun any-ready-p (runner)
   "True if a task of RUNNER could go on now."
-  (or (some (lambda (ring) (plusp (ring-count ring))) (runner-rings runner))
+  (or (and (plusp (logandc2 (runner-mask runner) +interrupt+))
+           (some (lambda (ring) (plusp (ring-count ring))) (runner-rings runner)))
       (some (lambda (task) (eq (task-state task) :ready)) (runner-spent runner))))
 
 (defun alone-p (task)

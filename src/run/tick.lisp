@@ -81,10 +81,11 @@ have been begun."
 
 (defun let-all-participants-act (simulation)
   (let ((*tick-dice* nil))
-    (call-each (lambda (participant)
-                 (call-user-code #'participant-after-tick (participant-origin participant)
-                                 participant simulation))
-               (simulation-participants simulation))))
+    (flet ((act (participant)
+             (call-user-code #'participant-after-tick (participant-origin participant)
+                             participant simulation)))
+      (declare (dynamic-extent #'act))
+      (call-each #'act (simulation-participants simulation)))))
 
 (defun let-participants-act (simulation)
   (when (simulation-participants simulation) (let-all-participants-act simulation)))
