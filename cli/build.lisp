@@ -29,6 +29,9 @@
 (defun project-fasls ()
   (uiop:subpathname *cache* "project/"))
 
+(defun library-fasls ()
+  (uiop:subpathname *cache* "libraries/"))
+
 (defun configure ()
   "Let ASDF find the project here, put compiled files into the cache, and stay as it is."
   (mapc #'asdf:register-immutable-system '("asdf" "uiop"))
@@ -39,7 +42,7 @@
      `(:output-translations
        (,(merge-pathnames "**/*.*" *root*)
         ,(merge-pathnames "**/*.*" (project-fasls)))
-       (t (,(uiop:subpathname *cache* "libraries/") :implementation))
+       (t (,(library-fasls) :implementation))
        :ignore-inherited-configuration))))
 
 (configure)
@@ -65,6 +68,11 @@
    :test #'string=))
 
 ;;; Compiling.
+
+(defun forget (fasls)
+  "Delete the directory FASLS, of compiled files, if they are ours."
+  (when *cache*
+    (uiop:delete-directory-tree fasls :validate t :if-does-not-exist :ignore)))
 
 (defun note-trouble (condition)
   (format t "~&*** ~A~@[ in ~A~]: ~A~%" (type-of condition)
@@ -92,13 +100,20 @@ defined twice, that a package has grown since it was defined."
     count))
 
 (defun give-up ()
-  (when *cache*
-    (uiop:delete-directory-tree (project-fasls) :validate t :if-does-not-exist :ignore))
+  (forget (project-fasls))
   (uiop:quit 1))
+
+(defun load-libraries (names)
+  "Compile and load the libraries called NAMES; anew, if what was compiled of them is damaged."
+  (handler-case (mapc #'asdf:load-system names)
+    (error (condition)
+      (note-trouble condition)
+      (forget (library-fasls))
+      (mapc #'asdf:load-system names))))
 
 (defun load-strictly (system)
   "Compile and load SYSTEM; a warning in any file of the project is an error."
-  (mapc #'asdf:load-system (libraries system))
+  (load-libraries (libraries system))
   (let ((uiop:*compile-file-warnings-behaviour* :error)
         (uiop:*compile-file-failure-behaviour* :error))
     (unless (zerop (count-troubles (lambda () (asdf:load-system system))))

@@ -154,7 +154,7 @@ compile() {  # LOG LISP-FORM: evaluate the form of build.lisp; show its troubles
     forget_halves
     forget_changed || say "what has changed cannot be told; is $cache full?"
     plain_sbcl --load "$root/cli/build.lisp" --eval "$2" >"$1" 2>&1 && return
-    grep -v -e '^; compil' -e '^; wrote' -e '^$' "$1" | tail -n 60 >&2
+    grep -a -v -e '^; compil' -e '^; wrote' -e '^$' "$1" | tail -n 60 >&2
     say "that did not compile; all of it is in $1"
     return 1
 }

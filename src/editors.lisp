@@ -1,4 +1,4 @@
-;;;; editors.lisp -- what SLIME's and SLY's inspectors show of our objects; neither is needed.
+;;;; editors.lisp -- what inspectors show of our objects: SLIME's, SLY's and Lisp's own.
 
 (in-package :ars-magna.faces)
 
@@ -52,3 +52,18 @@ that were found."
                       (if (known-object-p object) (window-of object) (call-next-method))))))
 
 (join-editors)
+
+;;; INSPECT, Lisp's own, shows slots as they print. Those of a map would fill many screens.
+
+(defun inspect-briefly (inspect object)
+  "Call INSPECT, Lisp's function, with OBJECT, and let it show long arrays and lists in part."
+  (let ((*print-length* (or *print-length* 10))
+        (*print-level* (or *print-level* 2))
+        (*print-lines* (or *print-lines* 2)))
+    (funcall inspect object)))
+
+(wrap-function 'inspect
+               (lambda (inspect object)
+                 (if (known-object-p object)
+                     (inspect-briefly inspect object)
+                     (funcall inspect object))))

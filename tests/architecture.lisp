@@ -135,7 +135,7 @@ project's systems has been loaded.")
 (defun unit-of (name)
   "Return what has one door: NAME's package, or NAME itself if it is in one of many ideas."
   (if (find (package-part name)
-            '("sb-ext" "sb-sys" "sb-kernel" "sb-vm" "sb-c" "sb-int" "sb-posix")
+            '("sb-ext" "sb-sys" "sb-kernel" "sb-vm" "sb-c" "sb-int" "sb-posix" "sb-thread")
             :test #'string=)
       name
       (package-part name)))

@@ -153,6 +153,16 @@
              (is (member `(:value ,(robot:robot-world skater)) window :test #'equal))))
          (is (equal '(5) (funcall inspect 5)) "of what is not ours they show what they would")))))
 
+(test inspect.shows-big-objects-in-part
+  (flet ((said (object)
+           (with-output-to-string (*standard-output*)
+             (with-input-from-string (*standard-input* (format nil "q~%")) (inspect object)))))
+    (let ((map (said (world:find-map 'ars-worlds:watson))))
+      (is (< (length map) 3000))
+      (is-true (has-words-p map "WIDTH: 40" "FLAGS: #(1 1 1" "...)")))
+    (is (= 30 (count #\z (said (make-list 30 :initial-element "z"))))
+        "what is not ours is shown as ever")))
+
 ;;; Trajectories.
 
 (defun saved-trajectory (&rest arguments)
@@ -181,6 +191,11 @@
   (with-skater (:journal t)
     (signals base:unknown-name (saved-trajectory :robots 'nobody))
     (signals base:wrong-argument (saved-trajectory :every 0))
+    (handler-case (saved-trajectory :until 3)
+      (base:wrong-argument (condition)
+        (is (search "save-trajectory: until is 3; give a tick of the journal, from 0 to 0"
+                    (princ-to-string condition))))
+      (:no-error (rows) (is (null rows))))
     (dolist (name '("" "*.csv" "/" 5 nil))
       (signals base:wrong-argument (trails:save-trajectory name)))
     (dolist (name '("/no/such/directory/run.csv" "/dev/null"))

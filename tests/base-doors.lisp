@@ -132,3 +132,20 @@
           (made (loop repeat (floor octets 200000) collect (make-string 25000))))
       (is (plusp (length made)))
       (is (eq epoch sb-kernel::*gc-epoch*)))))
+
+;;; Who waits leaves the terminal to a debugger. What SBCL says of that goes nowhere.
+
+(defun nowhere ()
+  (make-two-way-stream (make-concatenated-stream) (make-broadcast-stream)))
+
+(test waiting.leaves-the-terminal-to-who-needs-it
+  (let* ((left (base:make-semaphore "left")) (*query-io* (nowhere))
+         (thread (base:start-thread (lambda ()
+                                      (let ((*query-io* (nowhere)))
+                                        (sb-thread::get-foreground)
+                                        (sb-thread:release-foreground)
+                                        (base:signal-semaphore left)))
+                                    "needs the terminal")))
+    (is-true (base:wait-patiently left 60))
+    (base:join-thread thread)
+    (is-false (base:wait-patiently left 0.01))))

@@ -21,7 +21,8 @@ output, its status, and what it writes to the error output."
          (base:*message-queue* (base:make-message-queue))
          (cli::*prompt-robot* nil)
          (status (let ((*standard-output* (cli::make-console output)) (*error-output* errors))
-                   (handler-case (let ((*trace-output* *trace-output*))
+                   (handler-case (let ((*trace-output* *trace-output*)
+                                       (*debug-io* *debug-io*) (*terminal-io* *terminal-io*))
                                    (cli::run-arguments arguments))
                      (cli::usage-error (condition)
                        (format errors "~A" condition)
@@ -52,6 +53,41 @@ written."
     (is (string= "3" (second lines)))
     (is-true (has-words-p (third lines) "*ERROR* -> SCRIPT, line 6: There is no command"))
     (is-true (has-words-p (fourth lines) "robot-turn: Robot turned"))))
+
+(test scripts.have-comments-over-lines
+  (multiple-value-bind (lines status)
+      (run-script "#| One, #| and another in it,
+go 99 |# over
+frobnicate |# (+ 1 2) #| behind a form
+frobnicate |# (+ 2 2) ; #| none
+(list 1 #| in a form
+ |# 2) #| |#
+turn 0 #| behind a line
+frobnicate
+|#
+(length \"#| no\")
+frobnicate")
+    (is (= 1 status))
+    (is (equal '("3" "4" "(1 2)") (subseq lines 0 3)))
+    (is-true (has-words-p (fourth lines) "Robot turned"))
+    (is (string= "5" (fifth lines)))
+    (is (= 6 (length lines)) "~A" lines)
+    (is-true (has-words-p (sixth lines) "line 11: There is no command")))
+  (is-true (has-words-p (first (run-script (format nil "turn 0~%#| no end~%turn 1") "--stop"))
+                        "Robot turned"))
+  (is-true (has-words-p (second (run-script (format nil "turn 0~%#| no end~%turn 1")))
+                        "line 2: The comment" "does not end")))
+
+(test scripts.tell-what-is-not-defined
+  (let ((lines (run-script "(defun ars-user::double-of (x) (* x yy (half-of x)))
+(defun ars-user::even-p (n) (if (= n 0) t (odd-p (- n 1)))) (defun odd-p (n) (not (even-p n)))
+(defun ars-user::half-of (x) (/ x 2))
+(null (setf zz 3))
+(half-of 8)")))
+    (is (equal '("The function half-of is not defined." "The variable yy is not defined.")
+               (loop for line in lines
+                     when (search "*WARNING* -> " line) collect (subseq line 13)))
+        "~A" lines)))
 
 (test scripts.end-with-a-status
   (flet ((status (text &rest options) (nth-value 1 (apply #'run-script text options))))
@@ -100,6 +136,9 @@ written."
   "Also what is traced and timed."
   (dolist (line (objects-of-script "(time (+ 1 2))
 (format *trace-output* \"traced~%\")
+(format *debug-io* \"debugged~%\")
+(format *terminal-io* \"typed~%\")
+(sb-debug:print-backtrace :count 3)
 (defun ars-user::traced (x) x)
 (trace ars-user::traced)
 (ars-user::traced 1)

@@ -260,6 +260,28 @@
       (define-hop 7)
       (is (equal '(7 ()) (size-after-a-tick))))))
 
+(defun users-function (x) x)
+
+(test names.of-plans-are-no-functions-unsaid
+  (with-own-definitions
+    (flet ((define () (eval '(rpl:def-interp-proc users-function (x) x))))
+      (unwind-protect
+           (progn
+             (is (search "users-function was a function of Lisp's"
+                         (first (warnings-of #'define))))
+             (is (null (warnings-of #'define)) "it is a plan's by now"))
+        (base:undefine 'plan 'users-function)
+        (setf (fdefinition 'users-function) (lambda (x) x))))))
+
+(test names.of-constants-are-no-variables-of-maps
+  (with-own-definitions
+    (is (search "is a constant or the like, and stays so: the map is to be called by its name"
+                (first (warnings-of (lambda ()
+                                      (eval '(world:defmap +ars-test-limit+ (5 5))))))))
+    (is (= 5 +ars-test-limit+))
+    (is (null (warnings-of (lambda () (eval '(world:defmap room (5 5))))))
+        "of Common Lisp's names the README says so")))
+
 (test names.of-plans-must-be-free
   (let ((text (complaint-about '(rpl:def-interp-proc open (x) x))))
     (is (search "(:shadow #:open)" text)))

@@ -253,6 +253,23 @@ one."
                    (is (same-cells-p map back))
                    (is (equal (world:map-frame map) (world:map-frame back)))))))))
 
+(test export.writes-what-import-reads
+  "Whatever frame a map has, and whatever the file is called; but for names that no line can hold."
+  (with-own-definitions
+    (call-in-directory
+     (lambda (directory)
+       (loop for (name . frame) in '(("plain.yaml" 1f-6 1d-31 -1d-300 4.9d-324)
+                                     ("~.yaml" 2d-9 1d9 -1d9 .1f0) ("~x 'y' #z.yml" 1d9 1/3 0 0))
+             for file = (base:native-path (concatenate 'string (base:native-name directory) name))
+             do (eval `(world:defmap framed (3 2 :frame ,frame) (wall (0 0) (2 0) slate 1)))
+                (ars:export-map 'framed file)
+                (is (equal (mapcar #'base:double frame)
+                           (world:map-frame (ars:import-map file :name 'back)))
+                    "~A ~A" name frame))
+       (signals base:wrong-argument
+         (ars:export-map 'framed (format nil "~Atwo~%lines.yaml" (base:native-name directory))))
+       (is (null (directory (merge-pathnames "two*.*" directory))))))))
+
 (test export.takes-any-map
   (with-own-definitions
     (eval '(world:defmap plain-room (6 5) (rect (0 0) (5 4) slate 1) (circle (2 2) 1 wood 3)))

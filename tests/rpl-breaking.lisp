@@ -176,3 +176,25 @@ atom."
       (base:call-user-code (lambda () (is-false (base:debugger-p))) "a test"))
     (base:with-debugger-hook ((lambda (condition hook) (declare (ignore condition hook))))
       (base:call-user-code (lambda () (is-true (base:debugger-p))) "a test"))))
+
+;;; Restarts.
+
+(defun restarts-of-plan (form)
+  "Return the texts of the restarts that are offered when the plan of FORM signals an error."
+  (let ((base:*break-on-user-error* t) (texts '()))
+    (flet ((note (condition hook)
+             (declare (ignore hook))
+             (setf texts (mapcar #'princ-to-string (compute-restarts condition)))
+             (invoke-restart 'rpl:leave-plan)))
+      (run:with-simulation (ars-worlds:dot)
+        (base:with-debugger-hook (#'note)
+          (driver:run-plan (rpl:make-plan form)))))
+    texts))
+
+(test restarts.name-the-plan-and-offer-each-thing-once
+  (dolist (form '((rpl:seq (rpl:wait-time 1) (car 'x)) (rpl:seq (car 'x)) (+ 1 (car 'x))))
+    (let ((texts (restarts-of-plan form)))
+      (is (= 1 (count-if (lambda (text) (eql 0 (search "Do (" text))) texts)) "~A" texts)
+      (is-false (find-if (lambda (text) (search "participant" text)) texts))))
+  (is (member "Try the plans of DOT again." (restarts-of-plan '(rpl:seq (rpl:wait-time 1) (car 'x)))
+              :test #'string=)))

@@ -55,6 +55,11 @@
 (defun why-said (&rest arguments)
   (with-output-to-string (out) (apply #'rpl:why (append arguments (list :stream out)))))
 
+(test why.takes-names-of-robots
+  (with-skater ()
+    (dolist (name '(skater "skater")) (is (string= (why-said skater) (why-said name))))
+    (signals base:unknown-name (why-said 'nobody-called-so))))
+
 (test why.tells-of-the-command-that-failed-last
   (with-skater ()
     (is-true (has-words-p (why-said) "No command" "SKATER" "has failed"))

@@ -155,6 +155,13 @@ and have again what he has typed before. The line is shown on CONSOLE."))
   (change-line (edited-console stream) (constantly nil))
   nil)
 
+(define-action (:control-\\) (stream)
+  "End this process at once."
+  (hide-line (edited-console stream))
+  (tell-pastes-apart (edited-console stream) nil)
+  (quit-by-signal)
+  nil)
+
 ;;; The history.
 
 (defun enter-history (stream)

@@ -38,4 +38,5 @@
   "Report how ROBOT is, whose world stands still, if SESSION reports by objects. True if it does."
   (let ((account (session-account session)))
     (when (reports-p account)
-      (apply #'report-object account "status" (object-for-json (status robot))))))
+      (apply #'report-object account "status"
+             (object-for-json (printing-plainly () (status robot)))))))

@@ -144,7 +144,10 @@ user's."
   (flet ((says-p (word) (string-equal word (split-line text))))
     (cond ((comment-p text))
           ((lisp-p text) (let ((form (read-form session text)))
-                           (order session breakage (lambda () (evaluate session form)))))
+                           (order session breakage
+                                  (lambda ()
+                                    (call-telling-undefined
+                                     (lambda () (evaluate session form)))))))
           ((says-p "quit") (setf (session-over-p session) t))
           ((says-p "backtrace") (order session breakage #'write-backtrace))
           (t (let ((restart (restart-called (split-line text) breakage)))

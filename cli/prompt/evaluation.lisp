@@ -16,18 +16,44 @@
     (unless line (reject-line "The form is not complete: ~A" (one-line text)))
     (format nil "~A~%~A" text line)))
 
+(defvar *undefined* '()
+  "Lists (name kind) of what the compiler has found undefined in the forms at hand, newest first.")
+
+(defun note-undefined (condition)
+  "Note the name that CONDITION says is not defined, and tell nothing yet. NIL if it says something
+else."
+  (multiple-value-bind (name kind) (undefined-name condition)
+    (when name
+      (pushnew (list name kind) *undefined* :test #'equal)
+      (muffle-warning condition))))
+
+(defun tell-undefined (file)
+  "Tell what of *UNDEFINED* is not defined yet, in the forms of FILE, or typed if that is NIL."
+  (loop for (name kind) in (reverse *undefined*)
+        when (still-undefined-p name kind)
+          do (warning-set (format nil "~@[~A: ~]The ~(~A~) ~(~A~) is not defined."
+                                  file kind (safe-text name)))))
+
 (defun quiet-warning (condition)
   "Keep the compiler from telling users at length what they will be told in a moment. Doubts about
 definitions are messages like others."
   (typecase condition
     (definition-warning (warning-set (one-line (princ-to-string condition)))
                         (muffle-warning condition))
-    ((or style-warning compiler-note) (muffle-warning condition))))
+    (t (note-undefined condition)
+       (when (typep condition '(or style-warning compiler-note)) (muffle-warning condition)))))
 
 (defun call-quietly (function)
   (handler-bind ((warning #'quiet-warning)
                  (compiler-note #'muffle-warning))
     (funcall function)))
+
+(defun call-telling-undefined (function &optional file)
+  "Call FUNCTION and return its values. What the forms that it evaluates, of FILE or typed, use and
+nobody has defined at its end are messages."
+  (let ((*undefined* '()))
+    (multiple-value-prog1 (funcall function)
+      (tell-undefined file))))
 
 (defun call-telling-doubts (function)
   "Call FUNCTION and return its values. What is doubtful in the forms that it evaluates, taken
@@ -86,11 +112,15 @@ and TEXT with what was read."
       (reject-line "There is a parenthesis too many: ~A~:[~;  What is before it has been done.~]"
                    (one-line (subseq text start)) (plusp position)))))
 
-(defun evaluate-text (session text)
-  "Evaluate the forms in TEXT, reading on in SESSION while the last of them is incomplete."
+(defun evaluate-forms (session text)
   (loop with position = 0
         with form
+        do (setf (values text position) (skip-comments session text position))
         until (blank-from-p text position)
         do (check-parenthesis text position)
            (setf (values form position text) (read-form session text position))
            (evaluate session form)))
+
+(defun evaluate-text (session text)
+  "Evaluate the forms in TEXT, reading on in SESSION while the last of them is incomplete."
+  (call-telling-undefined (lambda () (evaluate-forms session text))))

@@ -39,7 +39,9 @@
   "Do as LOAD does with the Lisp file at PATH. Signals FILE-TROUBLE."
   ;; Whoever is told why a file has been left needs no word of the compiler's that it has been.
   (let ((*error-output* (make-broadcast-stream)))
-    (call-telling-doubts (lambda () (load-each-form path)))))
+    (call-telling-undefined (lambda ()
+                              (call-telling-doubts (lambda () (load-each-form path))))
+                            (native-name path))))
 
 (defun load-each-form (path)
   (let* ((text (file-text path))

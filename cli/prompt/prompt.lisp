@@ -35,6 +35,11 @@ tell somebody who sits there."
                            (session-console session))
                    (session-console session)))))
 
+(defun begin-line-of (session text)
+  "Note that TEXT, which SESSION has read last, is about to be done."
+  (note-line-begun (session-account session) (if (comment-p text) nil text)
+                   (session-errors session)))
+
 (defun next-line (session)
   "Read a line of SESSION and do what it says; at the end of input, let the session be over."
   (follow-simulation session)
@@ -42,9 +47,10 @@ tell somebody who sits there."
   (let ((text (unless (stopped-p session)
                 (read-input session (if (session-breaks session) "Break> " "Robot> ")))))
     (cond (text
-           (note-line-begun (session-account session) (if (comment-p text) nil text)
-                            (session-errors session))
-           (do-telling-of-time session text))
+           (begin-line-of session text)
+           (let ((rest (without-blocks session text)))
+             (unless (eq rest text) (begin-line-of session rest))
+             (do-telling-of-time session rest)))
           (t (setf (session-over-p session) t)))))
 
 (defun stopped-p (session)

@@ -72,9 +72,12 @@ that."
       line)))
 
 (defun comment-p (text)
-  "True if there is nothing to do in TEXT: it is blank, or a comment after ; or #."
+  "True if there is nothing to do in TEXT: it is blank, or a comment after ; or #, but not after #|,
+which may end in it."
   (let ((start (position-if-not #'blank-p text)))
-    (or (null start) (find (char text start) ";#"))))
+    (or (null start)
+        (and (find (char text start) ";#")
+             (not (block-at-p text start))))))
 
 ;; As reading 205 says.
 (defun lisp-p (text)

@@ -89,14 +89,20 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
         (run-batch session robot-name (option-value :seed options 0))
         (run-live session robot-name options))))
 
+(defun write-all-as-objects (session)
+  "Let all that Lisp writes, also in threads of users', become objects of SESSION."
+  (let* ((console (session-console session))
+         (both (make-two-way-stream (session-input session) console)))
+    (setf *standard-output* console
+          *trace-output* console
+          *debug-io* both
+          *terminal-io* both)))
+
 (defun run-prompt (options)
   "Do what OPTIONS say. Return the status to exit with."
   (let ((robot-name (robot-asked-for options))
         (session (standard-session options)))
-    ;; Threads of users' write objects, too.
-    (when (option-value :json options)
-      (setf *standard-output* (session-console session)
-            *trace-output* (session-console session)))
+    (when (option-value :json options) (write-all-as-objects session))
     (report-beginning session robot-name options)
     (call-typing (lambda () (run-in-world session robot-name options)) (session-input session))
     (report-end session

@@ -49,6 +49,11 @@ told to go on."
   (sb-posix:kill 0 sb-posix:sigtstp)
   (hand-over-keys))
 
+(defun quit-by-signal ()
+  "End this process as control \\ does where no keys are handed over."
+  (restore-manner)
+  (sb-posix:kill (process-number) sb-posix:sigquit))
+
 ;;; How large the window is.
 
 (defconstant +ask-for-size+ (if (uiop:featurep :linux) #x5413 #x40087468)

@@ -102,8 +102,9 @@ values of THEN, another function, which is not interrupted."
 ;;; told NOHUP.)
 
 (defun die-of-termination ()
-  "Let this process end at once when it is told to terminate."
-  (sb-sys:enable-interrupt sb-unix:sigterm :default))
+  "Let this process end at once when it is told to terminate, as by control \\."
+  (sb-sys:enable-interrupt sb-unix:sigterm :default)
+  (sb-sys:enable-interrupt sb-unix:sigquit :default))
 
 (defun die-of-interrupts ()
   "Let control C end this process at once, as when its memory is being saved."

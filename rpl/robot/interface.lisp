@@ -33,6 +33,7 @@ SAVE-PLAN-TIMELINE.")
    (eras '() list "which tasks are of which era, the newest first; see handles.lisp")
    (warned '() list "what was said of takeovers, and at which tick"))
   (:link
+   (origin '() list "how messages call the plans, kept so that no tick makes it anew")
    (ender nil (or null function) "what the robot calls when its run is over")
    (closing-p nil boolean "the interface is to end")
    (closed-p nil boolean "the interface has ended")

@@ -17,8 +17,8 @@
                 #:simulation-seed #:simulation-agenda #:simulation-thread
                 #:simulation-timeline #:simulation-robots #:robot-simulation
                 #:*simulation-variables* #:*simulator-hooks* #:add-participant
-                #:remove-participant #:participant-after-tick #:participant-busy-p
-                #:participant-reseed #:participant-digest #:participant-end
+                #:remove-participant #:participant-after-tick #:participant-origin
+                #:participant-busy-p #:participant-reseed #:participant-digest #:participant-end
                 #:participant-copy #:participant-at-rest #:check-forkable
                 #:call-as-participant-makes-way #:participant-unsavable
                 #:fork-simulation #:refuse-fork

@@ -69,6 +69,10 @@ True if so. Most ticks are like that."
   (with-plans (interface)
     (unless (tasks-of interface) (react-fully interface))))
 
+(defmethod participant-origin ((interface interface))
+  (or (interface-origin interface)
+      (setf (interface-origin interface) (list "the plans of " (interface-robot interface)))))
+
 ;; If plans have a thread only that lets them react: one may be waiting for the owner to answer it.
 (defmethod participant-after-tick ((interface interface) simulation)
   (cond ((thread-of interface)

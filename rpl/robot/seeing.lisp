@@ -44,6 +44,17 @@ ALL is true, also the whole stack of each, its variables, and the valves: see PR
   (declare (ignore runner))
   (asking (robot) (failure-sentences robot)))
 
+;; Where a runner says whose tasks are meant, no robot is.
+(defmethod reasons ((name symbol) runner)
+  (if (or runner (null name))
+      (call-next-method)
+      (reasons (find-robot name) nil)))
+
+(defmethod reasons ((name string) runner)
+  (if runner
+      (call-next-method)
+      (reasons (find-robot name) nil)))
+
 (defmethod reasons ((part part) runner)
   (declare (ignore runner))
   (asking (part) (failure-sentences part)))

@@ -37,7 +37,7 @@ NIL if that was aborted."
       (return-from react-in-thread (leave-to-ticks interface)))
     ;; Looked at first: what is to end the plans is heard in this reaction.
     (let* ((closing-p (interface-closing-p interface))
-           (outcome (call-user-code #'react-fully "running plans" interface)))
+           (outcome (call-user-code #'react-fully (participant-origin interface) interface)))
       (cond ((and (tasks-of interface) (not closing-p)) outcome)
             (t (setf (interface-thread interface) nil)
                :over)))))

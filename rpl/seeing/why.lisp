@@ -215,8 +215,8 @@ not NIL, has the tasks that are meant.")
   (:method (subject runner)
     (declare (ignore runner))
     (reject-argument 'why 'subject subject
-                     "a robot or a part of one, for the command that failed last; a task, or its
-number; or nothing")))
+                     (format nil "a robot, its name or a part of one, for the command that failed ~
+                                  last; a task, or its number; or nothing"))))
 
 (defun task-reasons (which runner)
   (multiple-value-bind (trace number) (trace-to-read which runner)
@@ -234,12 +234,13 @@ number; or nothing")))
 (addition why)
 (defun why (&rest arguments)
   "Write in sentences, to :STREAM (*STANDARD-OUTPUT*), why something is as it is. Return nothing.
-\(why) and (why ROBOT), or a part of one, tell of the command that failed or was interrupted last:
-what was asked for, when and by whom, which error code came of it, what that means and what to try.
+\(why) and (why ROBOT), or the name or a part of one, tell of the command that failed or was
+interrupted last: what was asked for, when and by whom, which error code came of it, what that means
+and what to try.
 \(why TASK), or the number of one, tells from the trace what brought a task of a plan, over or not,
 where it is: what happened to it, the last first, which fluent woke it and who had set that, and how
 it and those that it is part of were started; :RUNNER says whose, of several. Signals MISUSE if no
-trace was kept: see *TRACE-PLANS*; and WRONG-ARGUMENT."
+trace was kept: see *TRACE-PLANS*; UNKNOWN-NAME and WRONG-ARGUMENT."
   (multiple-value-bind (subject options)
       (if (keywordp (first arguments))
           (values nil arguments)

@@ -63,9 +63,12 @@
   (finish-output *query-io*)
   (list (evaluate-form (read *query-io*))))
 
+(defvar *in-leaf-p* nil
+  "True while a leaf offers restarts: the step that it is part of has nothing to add.")
+
 (defun call-leaf-offering (leaf environment)
   "Return what LEAF returns in ENVIRONMENT, with the restarts RETRY and USE-VALUE."
-  (let ((text (form-text (node-form leaf))))
+  (let ((text (form-text (node-form leaf))) (*in-leaf-p* t))
     (loop
       (restart-case (return (funcall (leaf-function leaf) environment))
         (retry ()

@@ -118,11 +118,20 @@ LAMBDA-LIST."
           (procedure-most procedure) (shape-most shape)
           (procedure-keys-p procedure) (not (eq :none (shape-keys shape))))))
 
+(defun warn-if-function (procedure)
+  "Warn if PROCEDURE, which is about to be defined, takes its name from a function of Lisp's."
+  (let ((name (procedure-name procedure)))
+    (when (and (fboundp name) (not (eq (fdefinition name) (procedure-stub procedure))))
+      (warn-of-definition "~(~A~) was ~:[a function~;a macro~] of Lisp's, which the plan procedure ~
+                           replaces; call one of the two otherwise."
+                          name (macro-function name)))))
+
 (defun install-procedure (name lambda-list documentation entry body stub
                           &optional source text)
   "Make NAME a plan procedure, as TEXT, from SOURCE, defines it. Calls from now on, also in running
 plans, mean this one."
   (let ((procedure (ensure-procedure name)))
+    (warn-if-function procedure)
     (declare-procedure name lambda-list)
     (set-lambda-list procedure lambda-list)
     (show-lambda-list name lambda-list stub)

@@ -34,6 +34,9 @@
     (loop
       (restart-case (return (funcall function))
         (retry ()
+          :test (lambda (condition)
+                  (declare (ignore condition))
+                  (not *in-leaf-p*))
           :report (lambda (stream)
                     (format stream "Do ~A again."
                             (form-text (current-form (frame-node frame) frame))))

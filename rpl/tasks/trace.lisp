@@ -196,6 +196,7 @@ each in a list with its own FILL."
   "Write TRACE, a vector of trace entries, to DESTINATION, a stream or the path of a file that is
 written anew: a line with tick, event, task number and expression for each."
   (etypecase destination
-    (stream (loop for entry across trace do (write-trace-entry entry destination)))
+    (stream (printing-plainly ()
+              (loop for entry across trace do (write-trace-entry entry destination))))
     ((or string pathname)
      (write-file-anew (lambda (out) (write-trace trace out)) destination "the trace"))))

@@ -54,6 +54,14 @@ whether somebody is there to talk to the debugger. If nobody is, it is not to re
      (declare (dynamic-extent #'body))
      (call-answering-debugger #'body ,answer)))
 
+(defun yield-foreground ()
+  "If another thread wants to enter Lisp's own debugger, for which this one, which waits, would have
+to leave it the terminal, do so, until it has left the debugger."
+  (let ((threads (interactive-threads)))
+    (when (and (eq (first threads) sb-thread:*current-thread*) (rest threads))
+      (sb-thread:release-foreground)
+      (get-foreground))))
+
 (defun debugger-hook ()
   "Return the function that is called instead of Lisp's debugger, with a condition and itself, in
 whatever thread that has not bound one; or NIL. Can be set. By the name DEBUGGER-DISABLED-HOOK one

@@ -84,12 +84,13 @@ the name is illegible."
 (defun call-replacing-file (function file &key (external-format :utf-8))
   "Call FUNCTION with a stream to a new file of UTF-8, which takes the place of FILE at one stroke
 when FUNCTION has returned; if that or anything else fails, FILE is as it was. Return its truename.
-In the EXTERNAL-FORMAT :LATIN-1 each character that is written is an octet."
+What FUNCTION writes does not follow the printer's variables. In the EXTERNAL-FORMAT :LATIN-1 each
+character that is written is an octet."
   (let ((path (new-file-for file)))
     (uiop:with-temporary-file (:stream out :pathname new :external-format external-format
                                :directory (uiop:pathname-directory-pathname path)
                                :prefix "ars-magna" :type :unspecific)
-      (funcall function out)
+      (printing-plainly () (funcall function out))
       :close-stream
       (replace-file path new))
     (truename path)))

@@ -10,6 +10,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
                 #:read-file-into-string #:starts-with-subseq #:ends-with
                 #:ends-with-subseq #:define-constant #:proper-list-p
                 #:parse-ordinary-lambda-list)
+  ;; For debuggers.lisp alone.
+  (:import-from :sb-thread #:get-foreground #:interactive-threads)
   ;; For closures.lisp alone.
   (:import-from :sb-eval
                 #:env-p #:env-parent #:env-vars #:env-funs #:make-interpreted-function
@@ -46,6 +48,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:call-as-from-file #:date-of-file
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
+  ;; printing
+  (:export #:call-printing-plainly #:printing-plainly)
   ;; files, processes
   (:export #:native-name #:native-path #:path-called #:existing-path #:missing-directory
            #:replace-file #:plain-file-p
@@ -62,9 +66,11 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:function-arguments #:lisps-own-p
            #:extended-environment #:evaluate-form #:form-behind-comma #:walk-form
            #:bound-in-walk-p)
+  ;; undefined
+  (:export #:undefined-name #:still-undefined-p)
   ;; compiling
   (:export #:show-lambda-list #:nested-p #:keep-place #:in-source-p #:call-at-place #:at-end-of-unit
-           #:call-as-unit)
+           #:call-as-unit #:wrap-function)
   ;; abridging
   (:export #:abridged #:unqualified-text #:+more+)
   ;; conditions
@@ -78,14 +84,14 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; threads
   (:export #:make-lock #:with-lock #:call-if-free #:make-weak #:weak-value
            #:make-semaphore #:signal-semaphore #:wait-on-semaphore
-           #:*while-waiting* #:wait-a-while
+           #:*while-waiting* #:wait-a-while #:wait-patiently
            #:start-thread #:join-thread #:interrupt-thread #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; interrupts, debuggers
   (:export #:time-limit #:deferring-interrupts #:allowing-interrupts
            #:call-holding-interrupts #:call-open-to-interrupts
            #:regain-room #:debugger-p #:answering-debugger #:calls-under-way
-           #:debugger-hook #:with-debugger-hook)
+           #:debugger-hook #:with-debugger-hook #:yield-foreground)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:reading-trouble
            #:text-of-condition #:one-line-text #:hundredths #:editors-output)

@@ -179,15 +179,19 @@ or last. Of several that are called the same the newest comes last, for those wh
   "True if the variable NAME has a value at top level that something else would lose."
   (ignore-errors (global-value name)))
 
+(defun warn-without-variable (control name kind)
+  "Warn, as CONTROL says of NAME, that a definition of KIND called so has no variable."
+  (warn-of-definition "~@?: the ~A is to be called by its name, '~(~A~)." control name kind name))
+
 (defun free-variable (name kind)
   "Return NAME if it can be a variable, and is not in use, for a definition of KIND, called so; else
-NIL, with a warning in the latter case."
-  (when (variable-name-p name)
-    (if (variable-in-use-p name)
-        (warn-of-definition "The variable ~(~A~) already has a value: the ~A is to be called by ~
-                             its name, '~(~A~)."
-                            name kind name)
-        name)))
+NIL, with a warning unless NAME is a symbol of Common Lisp's, say, or ours."
+  (cond ((not (variable-name-p name))
+         (when (users-symbol-p name)
+           (warn-without-variable "~(~A~) is a constant or the like, and stays so" name kind)))
+        ((variable-in-use-p name)
+         (warn-without-variable "The variable ~(~A~) already has a value" name kind))
+        (t name)))
 
 (defun say-if-replaced (old new registry)
   "Warn that the entry NEW replaces OLD if OLD was defined in another file."
@@ -235,8 +239,8 @@ SOURCE is the file that it is from, :OWN of what is the simulator's, or NIL of w
                       (if (users-p entry) (source-file (entry-source entry)) :own))))
 
 (defun usual-name (registry)
-  "Return what users call the kind of REGISTRY."
-  (or (first (registry-synonyms registry)) (registry-kind registry)))
+  "Return what users call the kind of REGISTRY, a string."
+  (string-downcase (or (first (registry-synonyms registry)) (registry-kind registry))))
 
 (defun forget-value (variable)
   "Let VARIABLE have no value at top level: what a headless run has bound it to here, it keeps."

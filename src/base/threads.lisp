@@ -40,8 +40,16 @@ holds that."
 
 (defun wait-a-while (semaphore seconds)
   "Wait on SEMAPHORE for SECONDS at most, as one of many times; true if that succeeded."
+  (yield-foreground)
   (funcall *while-waiting*)
   (wait-on-semaphore semaphore seconds))
+
+(defun wait-patiently (semaphore seconds)
+  "Wait on SEMAPHORE for SECONDS in all, again and again as WAIT-A-WHILE does; true if that
+succeeded. What others need this thread for meanwhile does not count."
+  (loop for left = seconds then (- left 0.2)
+        thereis (wait-a-while semaphore (min left 0.2))
+        while (< 0.2 left)))
 
 (defun start-thread (function name)
   "Call FUNCTION in a new thread called NAME; return the thread."

@@ -12,6 +12,13 @@
           ((not (member (variable-kind name) '(nil :special)))
            "is a symbol macro or a global variable"))))
 
+(defun users-symbol-p (name)
+  "True if the symbol NAME is in a package whose names users may define."
+  (let ((package (symbol-package name)))
+    (and package
+         (not (keywordp name))
+         (not (package-locked-p package)))))
+
 (defun variable-name-p (name)
   "True if the symbol NAME can become a special variable: constants cannot, nor what belongs to a
 locked package, such as Common Lisp's or ours."

@@ -170,8 +170,10 @@ snapshot of WORLD, makes it cheaper."
     (make-snapshot :tick (world-tick world)
                    :map (world-map world)
                    :things (images-on-floor world (if previous (snapshot-things previous) #()))
-                   :robots (loop for robot in (world-robots world)
-                                 collect (image-of-robot robot history)))))
+                   ;; Some of what an image has is text.
+                   :robots (printing-plainly ()
+                             (loop for robot in (world-robots world)
+                                   collect (image-of-robot robot history))))))
 
 (defun snapshot-of (robot)
   "Return a snapshot of the world of ROBOT, from whatever thread."

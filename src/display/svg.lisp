@@ -21,7 +21,7 @@
 (defun write-natural (integer stream)
   (if (< integer 4096)
       (write-string (the simple-string (svref *numerals* integer)) stream)
-      (let ((*print-base* 10) (*print-radix* nil)) (princ integer stream))))
+      (printing-plainly () (princ integer stream))))
 
 (defun write-hundredths (hundredths stream)
   "Write HUNDREDTHS / 100 with as few decimals as are needed."
@@ -265,9 +265,10 @@ in pixels, as two values."
   (let* ((width 0) (height 0)
          (body (with-output-to-string (scratch)
                  (setf (values width height)
-                       (funcall function (make-instance 'svg-canvas :stream scratch
-                                                                    :color-p color-p))))))
-    (write-document body width height stream font)))
+                       (printing-plainly ()
+                         (funcall function (make-instance 'svg-canvas :stream scratch
+                                                                      :color-p color-p)))))))
+    (printing-plainly () (write-document body width height stream font))))
 
 (defmacro with-svg ((canvas stream &rest options) &body body)
   "Run BODY, which draws on CANVAS and returns its width and height in pixels, as two values, then

@@ -3,7 +3,8 @@
 (in-package :ars-magna.floors)
 
 (defconstant +longest-decimal+ 60 "How many characters a number has at most.")
-(defconstant +largest-exponent+ 30 "How large the exponent of a number is at most.")
+(defconstant +largest-exponent+ 330
+  "How large the exponent of a number is at most: no double-float's is larger.")
 
 (defun digits-end (text start)
   "Return where the decimal digits that begin in TEXT at START end."

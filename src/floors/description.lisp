@@ -51,6 +51,13 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
     (unless (and number (<= least number most)) (reject-entry file entry expected))
     number))
 
+(defun resolution-in (file entry)
+  "Return how many metres a pixel is wide, as ENTRY has it: what the frame of a map may have."
+  (let ((expected "how many metres a pixel is wide, more than 1e-9 and at most 1e9"))
+    (let ((number (number-in file entry 0 1000000000 expected)))
+      (unless (< 1d-9 (double number)) (reject-entry file entry expected))
+      number)))
+
 (defun threshold-in (file entry)
   (number-in file entry 0 1 "a probability from 0 to 1"))
 
@@ -105,8 +112,7 @@ above and below which probability a pixel is OCCUPIED or FREE; and the MODE."
       (check-thresholds file free occupied (entry "free_thresh"))
       (make-description
        :file file
-       :resolution (number-in file (entry "resolution") 1/1000000 1000000
-                              "how many metres a pixel is wide, from 0.000001 to 1000000")
+       :resolution (resolution-in file (entry "resolution"))
        :origin (origin-in file (entry "origin"))
        :negated-p (truth-in file (entry "negate"))
        :free free :occupied occupied

@@ -56,6 +56,14 @@
   (let ((name (native-name path)))
     (subseq name (1+ (or (position #\/ name :from-end t) -1)))))
 
+(defun image-name (path)
+  "Return how a description beside it calls the image PATH."
+  (let ((name (bare-name path)))
+    ;; Who reads it might take ~ for a home directory.
+    (if (char= #\~ (char name 0))
+        (concatenate 'string "./" name)
+        name)))
+
 (defun write-description (map image out)
   "Write the description of MAP, whose IMAGE is called so, to OUT."
   (destructuring-bind (size &rest origin) (map-frame map)
@@ -71,6 +79,15 @@
                               that you may write"
                     (reason-of condition)))))
 
+(defun check-description-name (file path)
+  "Signal WRONG-ARGUMENT unless FILE, of EXPORT-MAP, whose PATH this is, is called as it must be."
+  (unless (member (pathname-type path) '("yaml" "yml") :test #'equalp)
+    (reject-argument 'export-map 'file file
+                     "a name that ends in .yaml; the image goes beside it"))
+  (unless (every #'graphic-char-p (bare-name path))
+    (reject-argument 'export-map 'file file
+                     "a name without line ends and the like, which cannot stand in the file")))
+
 (addition export-map)
 (defun export-map (map file &key unknown)
   "Write the walls of MAP, a map or its name, as an occupancy grid for ROS's map_server: the YAML
@@ -81,12 +98,10 @@ what nobody knows. Substances and things are not written. Files of these names a
 the truenames of both. Signals UNUSABLE-FLOOR, WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
   (let ((map (map-from 'export-map map)) (path (file-called file)))
-    (unless (member (pathname-type path) '("yaml" "yml") :test #'equalp)
-      (reject-argument 'export-map 'file file
-                       "a name that ends in .yaml; the image goes beside it"))
+    (check-description-name file path)
     (let* ((grid (map-grid map unknown))
            (image (make-pathname :type "pgm" :defaults path))
            (written (write-floor-file image :latin-1 (lambda (out) (write-image grid out)))))
       (values (write-floor-file path :utf-8
-                                (lambda (out) (write-description map (bare-name image) out)))
+                                (lambda (out) (write-description map (image-name image) out)))
               written))))

@@ -59,7 +59,7 @@ nothing is left. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9
       (asking (simulation)
         (add-observer #'look simulation)
         (look simulation))
-      (unwind-protect (and (wait-on-semaphore idle seconds) t)
+      (unwind-protect (and (wait-patiently idle seconds) t)
         (asking (simulation) (remove-observer #'look simulation))))))
 
 ;;; Which robot is meant.

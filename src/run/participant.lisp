@@ -12,6 +12,12 @@
     (declare (ignore participant simulation))
     (values)))
 
+(defgeneric participant-origin (participant)
+  (:documentation "Return how messages and restarts call PARTICIPANT, as for CALL-USER-CODE.")
+  (:method (participant)
+    (declare (ignore participant))
+    "what takes part in the run"))
+
 (defgeneric participant-busy-p (participant simulation)
   (:documentation "True if PARTICIPANT needs the ticks of SIMULATION to go on.")
   (:method (participant simulation)

@@ -82,7 +82,8 @@ have been begun."
 (defun let-all-participants-act (simulation)
   (let ((*tick-dice* nil))
     (flet ((act (participant)
-             (call-user-code #'participant-after-tick "a participant" participant simulation)))
+             (call-user-code #'participant-after-tick (participant-origin participant)
+                             participant simulation)))
       (declare (dynamic-extent #'act))
       (call-each #'act (simulation-participants simulation)))))
 

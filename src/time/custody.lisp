@@ -91,5 +91,6 @@ for it while it waits for them."
 (defun wait-for-other (semaphore &optional (seconds 0.2))
   "Wait for SEMAPHORE for a moment, of SECONDS at most. True if it came."
   (answer-meanwhile)
+  (yield-foreground)
   ;; Who has a world in custody must look often who asks for that.
   (wait-on-semaphore semaphore (if *held* (min seconds 0.002) seconds)))

@@ -6,7 +6,7 @@
   (:import-from :ars-magna.time #:current-simulation #:asking)
   (:import-from :ars-magna.run
                 #:simulation-robots #:simulation-tick #:call-with-replay #:journal-meant
-                #:journal-header #:simulation-world)
+                #:journal-header #:journal-end #:simulation-world)
   (:import-from :ars-magna.robot
                 #:robot-x #:robot-y #:robot-angle #:robot-name #:robot-hands #:robot-last-place
                 #:robot-main-odometer #:odometer-estimate #:find-blueprint #:blueprint-name

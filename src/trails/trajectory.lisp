@@ -20,11 +20,12 @@
 
 (defun trajectory-row (robot tick)
   "Return the texts of the row for ROBOT in TICK."
-  (append (list (number-as-text tick) (string-downcase (robot-name robot)))
-          (mapcar #'number-as-text
-                  (list* (robot-x robot) (robot-y robot) (robot-angle robot)
-                         (multiple-value-list (odometer-estimate (robot-main-odometer robot)))))
-          (list (things-held robot) (format nil "~@[~(~A~)~]" (robot-last-place robot)))))
+  (printing-plainly ()
+    (append (list (number-as-text tick) (string-downcase (robot-name robot)))
+            (mapcar #'number-as-text
+                    (list* (robot-x robot) (robot-y robot) (robot-angle robot)
+                           (multiple-value-list (odometer-estimate (robot-main-odometer robot)))))
+            (list (things-held robot) (format nil "~@[~(~A~)~]" (robot-last-place robot))))))
 
 (defun write-rows (simulation names out)
   "Write to OUT a row for each robot of SIMULATION, or of those that NAMES, a list, mean."
@@ -42,13 +43,16 @@
                                 (when (zerop (mod (simulation-tick simulation) every))
                                   (write-rows simulation names out)))))
 
-(defun check-trajectory (file every robots journal)
+(defun check-trajectory (file every until robots journal)
   (check-argument save-trajectory file
                   (and (typep file '(or string pathname)) (not (wild-pathname-p file))
                        (pathname-name file))
                   "the name of a file, such as \"run.csv\"; before each * ? and [ in it write \\\\")
   (check-argument save-trajectory every (whole-p every 1)
                   "a whole number of ticks, from 1 to 1e9")
+  (check-argument save-trajectory until
+                  (typep until `(or null (integer 0 ,(journal-end journal))))
+                  (format nil "a tick of the journal, from 0 to ~D, or NIL" (journal-end journal)))
   (let ((known (mapcar (lambda (robot) (blueprint-name (find-blueprint robot)))
                        (getf (journal-header journal) :robots))))
     (dolist (name robots)
@@ -66,7 +70,7 @@ sensed last. The run is repeated for that. Return the file's truename. Signals W
 UNKNOWN-NAME, MISUSE if there is no journal or FILE cannot be written, when what was there is as
 before, and what REPLAY does."
   (let ((journal (journal-meant journal)) (robots (ensure-list robots)))
-    (check-trajectory file every robots journal)
+    (check-trajectory file every until robots journal)
     (let ((text (with-output-to-string (out)
                   (write-trajectory journal out every until robots))))
       (handler-case (call-replacing-file (lambda (out) (write-string text out)) file)

@@ -21,12 +21,23 @@
 
 (define-registry substance "substance" :object-p substance-p)
 
+;; The first substances are defined below, where what is compiled is not yet there.
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defun reject-parameter (name parameter)
+    (reject-clause (title "defsubstance" name) parameter
+                   "a number as the parameter of the substance, from -1e15 to 1e15"))
+
+  (defun check-parameter-form (name form)
+    "Signal MALFORMED-DEFINITION if FORM, for the parameter of NAME, is no number at first sight."
+    (when (and (atom form)
+               (or (not (symbolp form)) (null form) (keywordp form))
+               (not (quantity-p form)))
+      (reject-parameter name form))))
+
 (defun define-substance (name parameter)
   "Define or redefine the substance NAME with PARAMETER; what DEFSUBSTANCE expands to. Return
 NAME."
-  (unless (quantity-p parameter)
-    (reject-clause (format nil "defsubstance ~(~A~)" name) parameter
-                   "a number as the parameter of the substance, from -1e15 to 1e15"))
+  (unless (quantity-p parameter) (reject-parameter name parameter))
   (register *substances* name (make-substance name (double parameter)))
   name)
 
@@ -41,6 +52,7 @@ Return the name."
                        (unless (and name (symbolp name) (not (keywordp name)))
                          (reject-clause "defsubstance" name
                                         "a symbol as the name of the substance"))
+                       (check-parameter-form name parameter)
                        (unless (typep documentation '(or null string))
                          (reject-clause (title "defsubstance" name) documentation
                                         "a string as the documentation"))

@@ -9,12 +9,8 @@
 
 (defun call-in-peace (function package)
   "Call FUNCTION with the reader and the printer as they are in each trial, in PACKAGE."
-  (let ((*package* package)
-        (*readtable* (global-value '*readtable*)) (*read-default-float-format* 'single-float)
-        (*read-base* 10) (*print-base* 10) (*print-radix* nil) (*print-case* :upcase)
-        (*print-pretty* nil) (*print-readably* nil) (*print-escape* t) (*print-circle* nil)
-        (*print-length* nil) (*print-level* nil) (*print-array* t) (*print-gensym* t))
-    (funcall function)))
+  (let ((*package* package) (*readtable* (global-value '*readtable*)) (*read-base* 10))
+    (call-printing-plainly function)))
 
 (defun call-plainly (function)
   "Call FUNCTION with the reader and the printer as they are in each trial."

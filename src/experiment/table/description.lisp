@@ -7,9 +7,9 @@
 
 (defun form-text (form package)
   "Return FORM as its author, in PACKAGE, would write it."
-  (let ((*package* package) (*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 90)
-        (*print-length* nil) (*print-level* nil) (*print-circle* nil) (*print-readably* nil))
-    (prin1-to-string form)))
+  (printing-plainly ()
+    (let ((*package* package) (*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 90))
+      (prin1-to-string form))))
 
 (defun experiment-file (experiment)
   "Return the name of the file that EXPERIMENT is from, or NIL."
