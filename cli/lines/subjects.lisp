@@ -10,7 +10,7 @@ before and after; control-Y brings back what was deleted so. Up and down bring b
 before, in earlier sessions too (HISTORY); control-R searches them for what is typed next. Tab
 completes; twice, it lists what there is. Control-L clears the screen. Control-C clears the line,
 or ends what is under way. Control-D in an empty line leaves. Control-Z goes back to the shell; fg
-there comes here again.")
+there comes here again. Control-\\ ends the program at once.")
     ("HISTORY" "What was typed at a terminal is kept in ~/.local/state/ars-magna/history, or under
 $XDG_STATE_HOME: the last thousand lines. Up and control-R bring them back. Remove the file, and
 they are forgotten.")
