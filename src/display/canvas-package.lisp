@@ -7,6 +7,9 @@
   ;; colours
   (:export #:color #:black* #:white* #:grey* #:red* #:green* #:blue* #:violet* #:lightred*
            #:lightgreen* #:lightblue* #:lightviolet* #:shade #:color-called)
+  ;; contrast
+  (:export #:+least-contrast+ #:primaries #:color-of-primaries #:luminance #:contrast #:ink-on
+           #:tinted)
   ;; gcontext
   (:export #:gcontext #:gcontext-p #:create-gcontext #:gcontext-foreground
            #:gcontext-background #:gcontext-line-width #:gcontext-line-style
