@@ -80,20 +80,13 @@
 
 ;;; Things, by what they are called and look like.
 
-(defun kind-of-image (image)
-  (list (thing-image-name image) (thing-image-color image) (thing-shape image)
-        (thing-image-container-p image) (thing-image-obsview-p image)))
-
 (defun thing-kinds (snapshot)
-  "Return lists of the images of things of a kind, by their names."
-  (let ((kinds '()))
+  "Return lists of the images of things that are called the same, by their names."
+  (let ((kinds (make-hash-table :test 'cl:equal)))
     (loop for image across (snapshot-things snapshot)
-          for kind = (kind-of-image image)
-          for known = (assoc kind kinds :test #'cl:equal)
-          do (if known
-                 (push image (rest known))
-                 (push (list kind image) kinds)))
-    (mapcar #'rest (stable-sort (reverse kinds) #'string< :key #'caar))))
+          do (push image (gethash (thing-image-name image) kinds)))
+    (sort (loop for images being the hash-values of kinds collect (reverse images))
+          #'string< :key (lambda (images) (thing-image-name (first images))))))
 
 (defun sample-half (image)
   "Return half the width of the sample of the thing, in pixels."
@@ -119,11 +112,11 @@
                      (draw-thing-sample canvas (apply #'make-thing-image :color white* options)
                                         x y 5))))))
     (and in-color*
-         (append (plain "in the way" (lambda (image) (eq :square (thing-shape image))) :obsmove-p t)
-                 (plain "not in the way" (lambda (image) (eq :round (thing-shape image))))
+         (append (plain "blocks the way" (lambda (image) (eq :square (thing-shape image))) :obsmove-p t)
+                 (plain "lets one pass" (lambda (image) (eq :round (thing-shape image))))
                  (plain "moves by itself" #'thing-image-moving-p :moving-p t)
-                 (plain "holds things" #'thing-image-container-p :container-p t)
-                 (plain "hides what is behind" #'thing-image-obsview-p :obsview-p t)))))
+                 (plain "container" #'thing-image-container-p :container-p t)
+                 (plain "blocks the view" #'thing-image-obsview-p :obsview-p t)))))
 
 ;;; Lines.
 
@@ -163,7 +156,7 @@
 
 ;;; The whole.
 
-(define-constant +entry-limit+ 60 :documentation "How many entries a legend has at most.")
+(define-constant +entry-limit+ 80 :documentation "How many entries a legend has at most.")
 
 (defun legend-entries (snapshot layers)
   "Return the entries of the legend of a picture of SNAPSHOT with LAYERS."

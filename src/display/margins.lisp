@@ -12,9 +12,9 @@
 (define-constant +usual-scale+ 8 :documentation "What GRAPHICS-SCALE* is until a user sets it.")
 
 (defstruct (arrangement (:copier nil))
-  "Where the map begins, how much room there is to its right and below, and the legend: its ENTRIES in
-COLUMNS of ROWS, each WIDE pixels, beside the map or BELOW-P."
-  (left 0) (top 0) (right 0) (bottom 0) (entries '()) (columns 0) (rows 0) (wide 0) (below-p nil))
+  "Where the map begins, how much room there is to its right and below, and the legend: COLUMNS, lists
+of entries, beside the map or BELOW-P, and how high it is."
+  (left 0) (top 0) (right 0) (bottom 0) (columns '()) (high 0) (below-p nil))
 
 (defun room-for (layers)
   "Return how much room there is left of, above, right of and below the map for LAYERS without legend."
@@ -26,28 +26,36 @@ COLUMNS of ROWS, each WIDE pixels, beside the map or BELOW-P."
               (if (shown-p :scale-bar) 28 8))
         '(0 0 0 0))))
 
-(defun entry-width (entries)
-  "Return how wide a column of ENTRIES is, in pixels."
-  (+ 36 (loop for entry in entries maximize (words-width (entry-text entry)))))
+(defun columns-of (entries rows)
+  "Return ENTRIES as a list of lists of no more than ROWS of them."
+  (loop while entries
+        collect (loop repeat rows while entries collect (pop entries))))
+
+(defun column-width (column)
+  "Return how wide COLUMN, a list of entries, is, in pixels."
+  (+ 36 (loop for entry in column maximize (words-width (entry-text entry)))))
+
+(defun columns-width (columns)
+  (reduce #'+ (mapcar #'column-width columns)))
 
 (defun legend-beside (entries room)
   "Return the arrangement with a legend of ENTRIES to the right of the map. ROOM is as ROOM-FOR has it."
   (destructuring-bind (left top right bottom) room
-    (let* ((wide (entry-width entries))
-           (columns (ceiling (* (length entries) +line-height+) (- +highest+ top bottom)))
-           (rows (ceiling (length entries) columns)))
-      (make-arrangement :left left :top top :right (+ right (* columns wide)) :bottom bottom
-                        :entries entries :columns columns :rows rows :wide wide))))
+    (let ((columns (columns-of entries (floor (- +highest+ top bottom) +line-height+))))
+      (make-arrangement :left left :top top :right (+ right (columns-width columns))
+                        :bottom bottom :columns columns
+                        :high (* +line-height+ (length (first columns)))))))
 
 (defun legend-below (entries room)
   "Return the arrangement with a legend of ENTRIES below the map."
   (destructuring-bind (left top right bottom) room
-    (let* ((wide (entry-width entries))
-           (columns (max 1 (floor (- +widest+ left right) wide)))
-           (rows (ceiling (length entries) columns)))
-      (make-arrangement :left left :top top :right right
-                        :bottom (+ bottom 8 (* rows +line-height+))
-                        :entries entries :columns columns :rows rows :wide wide :below-p t))))
+    (loop for rows from 1
+          for columns = (columns-of entries rows)
+          when (or (null (rest columns))
+                   (<= (columns-width columns) (- +widest+ left right)))
+            return (let ((high (* rows +line-height+)))
+                     (make-arrangement :left left :top top :right right :below-p t
+                                       :bottom (+ bottom 8 high) :columns columns :high high)))))
 
 (defun fitting-scale (map arrangement)
   "Return how many pixels a cell of MAP has for the picture not to be too large."
@@ -96,14 +104,16 @@ suits the map of SNAPSHOT."
             do (draw-segments canvas draw-gcontext* (list -6 y -2 y))
                (draw-text canvas (- -8 (words-width text)) (+ y 4) text)))))
 
+(defun round-numbers (limit)
+  "Return 1, 2, 5, 10 and so on up to LIMIT."
+  (loop for unit = 1 then (* 10 unit)
+        while (<= unit limit)
+        append (remove-if (lambda (number) (< limit number)) (list unit (* 2 unit) (* 5 unit)))))
+
 (defun bar-metres (map)
-  "Return how many metres a scale bar is long: 1, 2, 5, 10 and so on."
-  (max 1 (loop for unit = 1 then (* 10 unit)
-               for fitting = (loop for factor in '(1 2 5)
-                                   when (<= (to-pixels (* factor unit))
-                                            (min 140 (to-pixels (map-width map))))
-                                     maximize (* factor unit))
-               while fitting maximize fitting)))
+  "Return how many metres a scale bar is long."
+  (or (first (last (round-numbers (min (map-width map) (/ 140 graphics-scale*)))))
+      1))
 
 (defun draw-scale-bar (canvas map y)
   (let* ((metres (bar-metres map)) (x (to-pixels metres)))
@@ -111,15 +121,18 @@ suits the map of SNAPSHOT."
       (draw-segments canvas draw-gcontext* (list 0 y x y 0 (- y 4) 0 (+ y 4) x (- y 4) x (+ y 4))))
     (draw-text canvas (+ x 8) (+ y 4) (format nil "~D m" metres))))
 
+(defun draw-entry (canvas entry x y)
+  "Draw ENTRY, its upper left corner at X, Y."
+  (let ((middle (+ y (/ +line-height+ 2))))
+    (funcall (entry-sample entry) canvas (+ x 8) middle)
+    (draw-text canvas (+ x 22) (+ middle 4) (entry-text entry))))
+
 (defun draw-legend (canvas arrangement x y)
   "Draw the legend of ARRANGEMENT, its upper left corner at X, Y."
-  (let ((rows (arrangement-rows arrangement)) (wide (arrangement-wide arrangement)))
-    (loop for entry in (arrangement-entries arrangement) for number from 0
-          do (multiple-value-bind (column row) (floor number rows)
-               (let ((left (+ x (* column wide)))
-                     (middle (+ y (* row +line-height+) (/ +line-height+ 2))))
-                 (funcall (entry-sample entry) canvas (+ left 8) middle)
-                 (draw-text canvas (+ left 22) (+ middle 4) (entry-text entry)))))))
+  (dolist (column (arrangement-columns arrangement))
+    (loop for entry in column for row from 0
+          do (draw-entry canvas entry x (+ y (* row +line-height+))))
+    (incf x (column-width column))))
 
 (defun draw-margins (canvas snapshot layers arrangement)
   (let* ((map (snapshot-map snapshot))
@@ -132,7 +145,7 @@ suits the map of SNAPSHOT."
         (draw-map-title canvas snapshot (- 16 (arrangement-top arrangement))))
       (when (shown-p :coordinates) (draw-coordinates canvas map))
       (when (shown-p :scale-bar) (draw-scale-bar canvas map (+ height 14)))
-      (when (arrangement-entries arrangement)
+      (when (arrangement-columns arrangement)
         (if (arrangement-below-p arrangement)
             (draw-legend canvas arrangement 0 (+ height (if (shown-p :scale-bar) 32 8)))
             (draw-legend canvas arrangement (+ width 14) 0))))))
@@ -144,6 +157,10 @@ suits the map of SNAPSHOT."
     (with-origin (canvas left top)
       (draw-margins canvas snapshot layers arrangement)
       (draw-world canvas snapshot :layers layers))
-    (values (+ left (to-pixels (map-width map)) (arrangement-right arrangement))
+    (values (+ left (max (to-pixels (map-width map))
+                         (if (arrangement-below-p arrangement)
+                             (columns-width (arrangement-columns arrangement))
+                             0))
+               (arrangement-right arrangement))
             (max (+ top (to-pixels (map-height map)) (arrangement-bottom arrangement))
-                 (+ top (* +line-height+ (arrangement-rows arrangement)) 8)))))
+                 (if (arrangement-below-p arrangement) 0 (+ top (arrangement-high arrangement) 8))))))

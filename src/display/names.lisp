@@ -2,11 +2,12 @@
 
 (in-package :ars-magna.display)
 
-;;; A box is a list (left top right bottom) in pixels. A name is written where its box meets no thing,
-;;; robot or name and no wall; if there is no such place near, across walls, on a white plate; if
-;;; that does not do either, not at all. Robots come first, then large things.
+;;; A box is a list (left top right bottom) in pixels. A name is written near by where its box meets no
+;;; wall, thing, robot or other name, and rather no mark of a place; if there is no such room, not at
+;;; all. Robots come first, then large things.
 
-(define-constant +name-height+ 12 :documentation "How high a name is, in pixels.")
+(define-constant +name-size+ 10 :documentation "How high the font of names is, in pixels.")
+(define-constant +name-height+ 11 :documentation "How high the box of a name is, in pixels.")
 
 (defun overlap-p (a b)
   (and (< (first a) (third b)) (< (first b) (third a))
@@ -34,31 +35,39 @@ first."
     (and (<= 0 left) (<= 0 top)
          (<= right (to-pixels (map-width map))) (<= bottom (to-pixels (map-height map))))))
 
-(defun on-wall-p (map box)
-  "True if BOX, which is on MAP, meets a wall."
+(defun cells-below (map box function)
+  "True if FUNCTION, of the index of a cell, is true for one of the cells of MAP that BOX, which is on
+it, meets."
   (destructuring-bind (left top right bottom) box
-    (flet ((cell (pixels) (floor pixels graphics-scale*)))
-      (loop for row from (cell top) to (min (cell (1- bottom)) (1- (map-height map)))
-              thereis (loop for column from (cell left) to (min (cell (1- right)) (1- (map-width map)))
-                              thereis (logtest +wall+
-                                               (aref (map-flags map)
-                                                     (+ column (* row (map-width map))))))))))
+    (flet ((cell (pixels limit) (min (floor pixels graphics-scale*) (1- limit))))
+      (let ((width (map-width map)) (height (map-height map)))
+        (loop for row from (cell top height) to (cell (- bottom 1/100) height)
+                thereis (loop for column from (cell left width) to (cell (- right 1/100) width)
+                                thereis (funcall function (+ column (* row width)))))))))
+
+(defun on-wall-p (map box)
+  (cells-below map box (lambda (index) (logtest +wall+ (aref (map-flags map) index)))))
+
+(defun on-place-p (map box)
+  (cells-below map box (lambda (index) (plusp (aref (map-places map) index)))))
 
 (defun best-box (map boxes taken)
-  "Return the first of BOXES that is on MAP and meets none of TAKEN, and rather no wall; or NIL."
+  "Return the first of BOXES that is on MAP and meets no wall and none of TAKEN, and rather no place;
+or NIL."
   (let ((free (remove-if-not (lambda (box)
                                (and (on-map-p map box)
-                                    (notany (lambda (other) (overlap-p box other)) taken)))
+                                    (notany (lambda (other) (overlap-p box other)) taken)
+                                    (not (on-wall-p map box))))
                              boxes)))
-    (or (find-if-not (lambda (box) (on-wall-p map box)) free)
+    (or (find-if-not (lambda (box) (on-place-p map box)) free)
         (first free))))
 
 (defun named-spots (snapshot)
-  "Return lists (name x y half subject) of what has a name on the map, in order of importance."
+  "Return lists (name x y half) of what has a name on the map, in order of importance."
   (append (loop for robot in (snapshot-robots snapshot)
                 collect (list (string-downcase (robot-image-name robot))
                               (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
-                              (robot-radius)))
+                              (* 8/5 (robot-radius))))
           (loop for image in (stable-sort (coerce (snapshot-things snapshot) 'list) #'>
                                           :key #'thing-image-size)
                 collect (list (thing-image-name image)
@@ -68,19 +77,19 @@ first."
 (defun thing-image-name (image)
   (string-downcase (thing-name (thing-image-thing image))))
 
-(defun write-name (canvas map name box)
-  (let ((x (+ 1 (first box))) (y (- (fourth box) 2)))
-    (with-color black*
-      (if (on-wall-p map box)
-          (draw-text-on-plate canvas x y name)
-          (draw-text canvas x y name)))))
+(defun write-name (canvas name box)
+  (with-color black*
+    (draw-words canvas draw-gcontext* (+ 1 (first box)) (- (fourth box) 2) name
+                :size +name-size+)))
 
 (defun draw-names (canvas snapshot)
   "Write the names of robots and things where there is room."
   (let* ((map (snapshot-map snapshot)) (spots (named-spots snapshot))
+         (per-character (character-width canvas +name-size+))
          (taken (loop for (nil x y half) in spots collect (box-around x y half))))
     (loop for (name x y half) in spots
-          for box = (best-box map (name-boxes x y half (+ 2 (words-width name))) taken)
+          for width = (+ 2 (* per-character (length name)))
+          for box = (best-box map (name-boxes x y half width) taken)
           when box
             do (push box taken)
-               (write-name canvas map name box))))
+               (write-name canvas name box))))

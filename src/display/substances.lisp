@@ -15,7 +15,7 @@
   :test #'cl:equal
   :documentation "The hues of these colours; grey has none.")
 
-(define-constant +tint-strength+ 0.4d0 :documentation "How much of its hue a wall has.")
+(define-constant +tint-strength+ 0.22d0 :documentation "How much of its hue a wall has.")
 
 (defun substance-ink (name)
   "Return the colour of the substance called NAME, or NIL."

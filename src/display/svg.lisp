@@ -237,6 +237,9 @@
   (write-svg canvas "</text>
 "))
 
+(defmethod character-width ((canvas svg-canvas) size)
+  (* 61/100 size))
+
 (defmethod call-with-opacity (function (canvas svg-canvas) opacity)
   (write-svg canvas "<g opacity=\"" opacity "\">
 ")
