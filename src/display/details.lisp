@@ -73,11 +73,12 @@ that their widths are in proportion.")
 
 (defun draw-hollow (canvas x y width)
   "Draw a frame in the current colour, with an outline that is seen on white whatever that is."
-  (let ((height (1- +object-height+)))
-    (when (< 5 width)
-      (with-lines (:width 2)
-        (draw-rectangle canvas draw-gcontext* (+ x 3/2) (+ y 3/2) (- width 4) (- height 3))))
-    (with-color black* (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) height))))
+  (let ((height (1- +object-height+)) (pen (if (< width 7) 1 2)))
+    (with-color black* (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) height))
+    (when (and in-color* (<= 4 width))
+      (with-lines (:width pen)
+        (draw-rectangle canvas draw-gcontext* (+ x 1/2 (/ pen 2)) (+ y 1/2 (/ pen 2))
+                        (- width 2 pen) (- height 1 pen))))))
 
 (defun draw-solid (canvas x y width)
   (draw-rectangle canvas draw-gcontext* x y width +object-height+ t)

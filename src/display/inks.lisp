@@ -44,7 +44,7 @@
     (draw-rectangle canvas draw-gcontext* (- x 1) (- y 10) (+ 2 (words-width text)) 13 t))
   (draw-text canvas x y text))
 
-;;; The inks of layers: dark enough for the marks of all built-in places.
+;;; The inks of layers: so dark that what is too light for the halo is light enough for them.
 
 (define-constant +layer-inks+
     '(:wedges #x7A1030 :tracks #x8A1010 :designators #x0C3C78 :odometer #x4A1A80 :reach #x5A3A00)

@@ -146,7 +146,7 @@
                         (draw-segments canvas draw-gcontext* (list (- x 8) y (+ x 7) y)))))))
 
 (defun ray-entries (snapshot layers)
-  (when (and (member :rays layers)
+  (when (and in-color* (member :rays layers)
              (some (lambda (robot) (some #'camera-image-look (robot-image-cameras robot)))
                    (snapshot-robots snapshot)))
     (list (sample-of (canvas x y) "read: low to high"

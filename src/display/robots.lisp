@@ -8,9 +8,13 @@
   "Return the radius of the ring that a robot is drawn as, in pixels."
   (max 6 (* 7/8 graphics-scale*)))
 
+(define-constant +robot-inks+ '(#x10018C #x0A5018 #x5C0086 #x600C0C)
+  :test #'cl:equal
+  :documentation "The colours of the robots of a world, in turn.")
+
 (defun robot-color (position)
-  "Return the colour, dark, of the robot at POSITION among its world's."
-  (svref (svref (vector blue* green* violet* red*) (mod position 4)) 7))
+  "Return the colour of the robot at POSITION among its world's."
+  (nth (mod position (length +robot-inks+)) +robot-inks+))
 
 (defun draw-arrowhead (canvas x y radius angle)
   (draw-lines canvas draw-gcontext*
@@ -21,7 +25,7 @@
               :fill-p t))
 
 (defun draw-camera-line (canvas x y radius angle)
-  (inked ((svref red* 6) :width 2)
+  (inked ((layer-ink :tracks) :width 2)
     (draw-segments canvas draw-gcontext*
                    (append (around x y angle radius) (around x y angle (* 8/5 radius))))))
 

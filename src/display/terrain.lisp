@@ -161,7 +161,8 @@ of items, says whose it is (reading 214)."
     (flet ((lines (from to function)
              (loop for at from (* step (ceiling from step)) to to by step
                    append (funcall function (to-pixels at)))))
-      (with-color +grid-ink+
+      (with-gcontext (draw-gcontext* :foreground (if in-color* +grid-ink+ black*) :dashes '(1 3)
+                                     :line-style (if in-color* :solid :dash))
         (draw-segments canvas draw-gcontext*
                        (let ((left (to-pixels (window-left window)))
                              (top (to-pixels (window-top window)))

@@ -11,10 +11,14 @@
 (define-constant +least-width+ 6 :documentation "How wide a thing is drawn at least, in pixels.")
 
 (defun half-width (image)
-  "Return half the width of the thing on the map, in pixels: its area grows with its size."
-  (* 1/2 (max +least-width+
-              (* graphics-scale* +largest-thing+
-                 (sqrt (/ (clamp (thing-image-size image) 0 +largest-size+) +largest-size+))))))
+  "Return half the width of the thing on the map, in pixels: its area grows with its size. Without
+colours all have the same."
+  (if in-color*
+      (* 1/2 (max +least-width+
+                  (* graphics-scale* +largest-thing+
+                     (sqrt (/ (clamp (thing-image-size image) 0 +largest-size+)
+                              +largest-size+)))))
+      (* 3/8 graphics-scale*)))
 
 ;;; Shapes. What moves by itself has a point.
 
