@@ -328,7 +328,7 @@
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
                  (:file "worlds-searching")
                  (:file "svg-reading") (:file "display") (:file "display-files") (:file "palette")
-                 (:file "pictures") (:file "plots") (:file "plots-text")
+                 (:file "pictures") (:file "display-details") (:file "plots") (:file "plots-text")
                  (:file "clim") (:file "cli") (:file "text-maps") (:file "cli-quantities")
                  (:file "editing") (:file "editing-screens") (:file "completing")
                  (:file "ways-going") (:file "cli-plans") (:file "cli-colour")

@@ -19,8 +19,8 @@
   :cameras ((1 3) (2 5)) :hands (10 5) :bins (9 9))
 
 (defun picture (&rest options)
-  "Return a picture as OPTIONS have it: unless they say otherwise, of 8 pixels to a cell, and without
-what is ours around the map."
+  "Return a picture as OPTIONS have it: unless they say otherwise, of 8 pixels to a cell, and
+without what is ours around the map."
   (apply #'svg-picture guide (append options '(:scale 8 :layers (:places)))))
 
 (defun shows-p (text &rest options)
@@ -72,8 +72,8 @@ what is ours around the map."
     (round (* 50 (+ (* .2126 red) (* .7152 green) (* .0722 blue))))))
 
 (test manual-b.walls-are-grey-by-their-parameter
-  "B: in colour, walls are in shades of grey, which denote different substance parameters. (They have a
-tint of their substance, which is ours.)"
+  "B: in colour, walls are in shades of grey, which denote different substance parameters. (They
+have a tint of their substance, which is ours.)"
   (eval '(defmap greys (6 6) (wall (0 0) (0 0) stone 10) (wall (2 0) (2 0) wood 10)
           (wall (4 0) (4 0) stone 20) (wall (0 4) (0 4) stone 90)))
   (eval '(defrobot greyer (greys (3.5 3.5) 0)))

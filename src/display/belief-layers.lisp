@@ -19,8 +19,8 @@
       (draw-circle canvas (first target) (second target) (max 4 (* 1/2 graphics-scale*)) nil))))
 
 (defun draw-designator-on-map (canvas robot designator)
-  "Draw a cross with the number of DESIGNATOR where ROBOT believes it to be, and a line from there to
-what it denotes."
+  "Draw a cross with the number of DESIGNATOR where ROBOT believes it to be, and a line from there
+to what it denotes."
   (destructuring-bind (x y) (believed-place robot designator)
     (let ((true-x (designator-image-x designator)) (true-y (designator-image-y designator))
           (color (layer-ink :designators)))
@@ -44,8 +44,8 @@ what it denotes."
           collect (+ (odometer-image-y odometer) (* sin dx) (* cos dy)))))
 
 (defun draw-odometer (canvas odometer)
-  "Draw where ODOMETER puts its robot: the box that contains its position, and from the middle of that
-the bounds of its heading."
+  "Draw where ODOMETER puts its robot: the box that contains its position, and from the middle of
+that the bounds of its heading."
   (let* ((x (odometer-image-x odometer)) (y (odometer-image-y odometer))
          (heading (odometer-image-heading odometer))
          (half (* 1/2 (odometer-image-spread odometer))))

@@ -25,7 +25,7 @@
            #:draw-segments #:draw-point #:draw-points #:draw-glyph #:draw-glyphs
            #:draw-image-glyph #:draw-image-glyphs #:clear-area)
   ;; text
-  (:export #:+text-font+ #:text-width #:paint-text #:character-width #:draw-words #:call-with-opacity
-           #:with-opacity)
+  (:export #:+text-font+ #:text-width #:paint-text #:character-width #:draw-words
+           #:call-with-opacity #:with-opacity)
   ;; svg
   (:export #:svg-canvas #:svg-stream #:call-with-svg #:with-svg #:write-svg #:number-text))

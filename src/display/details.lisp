@@ -92,9 +92,11 @@ that their widths are in proportion.")
     (with-color (thing-image-color image)
       (if solid-p (draw-solid canvas x y width) (draw-hollow canvas x y width)))
     (when (thing-image-obsview-p image)
-      (with-gcontext (draw-gcontext* :foreground (cond ((not solid-p) black*)
-                                                       (in-color* (ink-on (thing-image-color image)))
-                                                       (t white*)))
+      (with-gcontext (draw-gcontext* :foreground (if solid-p
+                                                     (ink-on (if in-color*
+                                                                 (thing-image-color image)
+                                                                 black*))
+                                                     black*))
         (draw-segments canvas draw-gcontext* (list x y right bottom x bottom right y))))))
 
 (defun draw-object (canvas image x y width)

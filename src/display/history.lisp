@@ -54,8 +54,8 @@
 
 (declaim (inline ray-end))
 (defun ray-end (map opaque-p x y angle)
-  "Return, as two values, where what a camera at X, Y can see of MAP in direction ANGLE ends. OPAQUE-P
-is a function of the index of a cell."
+  "Return, as two values, where what a camera at X, Y can see of MAP in direction ANGLE ends.
+OPAQUE-P is a function of the index of a cell."
   (declare (type function opaque-p))
   (let* ((dx (cos angle)) (dy (sin angle))
          (end (walk-grid (lambda (index at column)

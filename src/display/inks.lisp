@@ -13,7 +13,8 @@
       (funcall function))))
 
 (defmacro inked ((color &key (width 1) (style :solid)) &body body)
-  "Run BODY, which draws lines, twice: for a halo, and then in COLOR, a dark one, WIDTH pixels wide."
+  "Run BODY, which draws lines, twice: for a halo, and then in COLOR, a dark one, WIDTH pixels
+wide."
   `(call-inked (lambda () ,@body) ,color ,width ,style))
 
 (defun to-pixels (metres) (* metres graphics-scale*))

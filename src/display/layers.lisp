@@ -67,9 +67,9 @@
 (defvar *picture-layers* (default-layers))
 
 (setf (documentation '*picture-layers* 'variable)
-      (format nil "A list of what pictures of the world show besides walls, things and robots, unless ~
-                   their :LAYERS say otherwise: some of the following. By default those with a ~
-                   star.~2%~:{  ~S~:[~; *~] -- ~A: ~A~%~}~%Rays and trails are known from ~
+      (format nil "A list of what pictures of the world show besides walls, things and robots, ~
+                   unless their :LAYERS say otherwise: some of the following. By default those ~
+                   with a star.~2%~:{  ~S~:[~; *~] -- ~A: ~A~%~}~%Rays and trails are known from ~
                    KEEP-HISTORY on."
               (loop for (name nil default-p title sentence) in +layers+
                     collect (list name default-p title sentence))))

@@ -112,7 +112,8 @@
                      (draw-thing-sample canvas (apply #'make-thing-image :color white* options)
                                         x y 5))))))
     (and in-color*
-         (append (plain "blocks the way" (lambda (image) (eq :square (thing-shape image))) :obsmove-p t)
+         (append (plain "blocks the way" (lambda (image) (eq :square (thing-shape image)))
+                        :obsmove-p t)
                  (plain "lets one pass" (lambda (image) (eq :round (thing-shape image))))
                  (plain "moves by itself" #'thing-image-moving-p :moving-p t)
                  (plain "container" #'thing-image-container-p :container-p t)

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.display)
 
-;;; A picture is an arrangement of the map and of what is around it. Where nobody says how many pixels
-;;; a cell has, there are as many as make the picture no larger than +WIDEST+ by +HIGHEST+.
+;;; A picture is an arrangement of the map and of what is around it. Where nobody says how many
+;;; pixels a cell has, there are as many as make the picture no larger than +WIDEST+ by +HIGHEST+.
 
 (define-constant +widest+ 900 :documentation "How wide a picture of a world should be, in pixels.")
 (define-constant +highest+ 700 :documentation "How high a picture of a world should be, in pixels.")
@@ -12,12 +12,13 @@
 (define-constant +usual-scale+ 8 :documentation "What GRAPHICS-SCALE* is until a user sets it.")
 
 (defstruct (arrangement (:copier nil))
-  "Where the map begins, how much room there is to its right and below, and the legend: COLUMNS, lists
-of entries, beside the map or BELOW-P, and how high it is."
+  "Where the map begins, how much room there is to its right and below, and the legend: COLUMNS,
+lists of entries, beside the map or BELOW-P, and how high it is."
   (left 0) (top 0) (right 0) (bottom 0) (columns '()) (high 0) (below-p nil))
 
 (defun room-for (layers)
-  "Return how much room there is left of, above, right of and below the map for LAYERS without legend."
+  "Return how much room there is left of, above, right of and below the map for LAYERS without
+legend."
   (flet ((shown-p (layer) (member layer layers)))
     (if (intersection layers (layers-of-kind :margin))
         (list (if (shown-p :coordinates) 36 8)
@@ -39,7 +40,8 @@ of entries, beside the map or BELOW-P, and how high it is."
   (reduce #'+ (mapcar #'column-width columns)))
 
 (defun legend-beside (entries room)
-  "Return the arrangement with a legend of ENTRIES to the right of the map. ROOM is as ROOM-FOR has it."
+  "Return the arrangement with a legend of ENTRIES to the right of the map. ROOM is as ROOM-FOR has
+it."
   (destructuring-bind (left top right bottom) room
     (let ((columns (columns-of entries (floor (- +highest+ top bottom) +line-height+))))
       (make-arrangement :left left :top top :right (+ right (columns-width columns))
@@ -163,4 +165,6 @@ suits the map of SNAPSHOT."
                              0))
                (arrangement-right arrangement))
             (max (+ top (to-pixels (map-height map)) (arrangement-bottom arrangement))
-                 (if (arrangement-below-p arrangement) 0 (+ top (arrangement-high arrangement) 8))))))
+                 (if (arrangement-below-p arrangement)
+                     0
+                     (+ top (arrangement-high arrangement) 8))))))

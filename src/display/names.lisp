@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.display)
 
-;;; A box is a list (left top right bottom) in pixels. A name is written near by where its box meets no
-;;; wall, thing, robot or other name, and rather no mark of a place; if there is no such room, not at
-;;; all. Robots come first, then large things.
+;;; A box is a list (left top right bottom) in pixels. A name is written near by where its box meets
+;;; no wall, thing, robot or other name, and rather no mark of a place; if there is no such room,
+;;; not at all. Robots come first, then large things.
 
 (define-constant +name-size+ 10 :documentation "How high the font of names is, in pixels.")
 (define-constant +name-height+ 11 :documentation "How high the box of a name is, in pixels.")
@@ -36,8 +36,8 @@ first."
          (<= right (to-pixels (map-width map))) (<= bottom (to-pixels (map-height map))))))
 
 (defun cells-below (map box function)
-  "True if FUNCTION, of the index of a cell, is true for one of the cells of MAP that BOX, which is on
-it, meets."
+  "True if FUNCTION, of the index of a cell, is true for one of the cells of MAP that BOX, which is
+on it, meets."
   (destructuring-bind (left top right bottom) box
     (flet ((cell (pixels limit) (min (floor pixels graphics-scale*) (1- limit))))
       (let ((width (map-width map)) (height (map-height map)))
@@ -52,8 +52,8 @@ it, meets."
   (cells-below map box (lambda (index) (plusp (aref (map-places map) index)))))
 
 (defun best-box (map boxes taken)
-  "Return the first of BOXES that is on MAP and meets no wall and none of TAKEN, and rather no place;
-or NIL."
+  "Return the first of BOXES that is on MAP and meets no wall and none of TAKEN, and rather no
+place; or NIL."
   (let ((free (remove-if-not (lambda (box)
                                (and (on-map-p map box)
                                     (notany (lambda (other) (overlap-p box other)) taken)

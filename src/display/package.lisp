@@ -18,7 +18,8 @@
   ;; subjects, contents
   (:export #:describe-subject #:snapshot-content #:display-content)
   ;; layers
-  (:export #:*picture-layers* #:+picture-layers+ #:layer-title #:layer-documentation #:layers-of-kind)
+  (:export #:*picture-layers* #:+picture-layers+ #:layer-title #:layer-documentation
+           #:layers-of-kind)
   ;; terrain, world-display, margins, displays
   (:export #:draw-terrain #:draw-movers #:draw-world #:draw-framed-world #:suitable-scale
            #:draw-display #:display-title #:+displays+)

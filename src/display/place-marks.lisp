@@ -3,8 +3,8 @@
 (in-package :ars-magna.display)
 
 ;;; Each is a :graphics function as a user would write it. A circle denotes a convex corner, a dot a
-;;; concave one or a beak, a square a doorway; on a display with colours over a tint, in a dark shade
-;;; of the same hue, so that the tint need not be told from others.
+;;; concave one or a beak, a square a doorway; on a display with colours over a tint, in a dark
+;;; shade of the same hue, so that the tint need not be told from others.
 
 (defun fill-cell (canvas x y color)
   "Tint the cell, if there are colours."

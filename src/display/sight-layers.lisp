@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.display)
 
-;;; Fields of view end at walls and at things that obstruct view. They are found when they are drawn,
-;;; from the snapshot alone.
+;;; Fields of view end at walls and at things that obstruct view. They are found when they are
+;;; drawn, from the snapshot alone.
 
 (define-constant +sight-spacing+ 0.015d0
   :documentation "How far apart the lines are that find where a field of view ends, in radians.")
@@ -18,7 +18,8 @@
       (or (logtest +wall+ (aref flags index)) (and hidden (member index hidden) t)))))
 
 (defun sight-edge (map opaque-p x y first width)
-  "Return points, x y ..., in metres, at which sight from X, Y ends, from the angle FIRST over WIDTH."
+  "Return points, x y ..., in metres, at which sight from X, Y ends, from the angle FIRST over
+WIDTH."
   (let ((count (max 2 (ceiling width +sight-spacing+))))
     (loop for ray to count
           append (multiple-value-list

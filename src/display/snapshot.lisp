@@ -15,8 +15,8 @@
 (define-image snapshot "What a world looks like at one moment."
   (tick 0) (map nil) (things #()) (robots '()))
 
-(define-image thing-image "What a snapshot knows of a thing; COLOR is that of the display. It is MOVING-P
-if it has kickers."
+(define-image thing-image "What a snapshot knows of a thing; COLOR is that of the display. It is
+MOVING-P if it has kickers."
   (thing nil) (x 0d0) (y 0d0) (location nil) (attributes '()) (color 0) (size 0d0)
   (obsmove-p nil) (obsview-p nil) (container-p nil) (moving-p nil) (draw-function nil))
 
@@ -26,9 +26,10 @@ if it has kickers."
   (cameras '()) (hands '()) (bins '())
   (designators '()) (odometer nil) (trail '()))
 
-(define-image camera-image "What a snapshot knows of a camera; ANGLE is relative to the robot. Its last VIEW
-was taken VIEW-AGE ticks ago."
-  (index 0) (angle 0d0) (field-of-view 1d0) (view '()) (view-age 0) (track nil) (location nil) (look nil))
+(define-image camera-image "What a snapshot knows of a camera; ANGLE is relative to the robot. Its
+last VIEW was taken VIEW-AGE ticks ago."
+  (index 0) (angle 0d0) (field-of-view 1d0) (view '()) (view-age 0) (track nil)
+  (location nil) (look nil))
 
 (define-image hand-image "What a snapshot knows of a hand."
   (index 0) (strength 0d0) (contents nil) (location nil))

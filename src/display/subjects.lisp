@@ -11,8 +11,8 @@
   (format nil "Designator ~D" (designator-image-number image)))
 
 (defun angle-text (angle)
-  "Return ANGLE, in radians, as text: in degrees, more than -180 and no more than 180, and in radians as
-it is, which are never reduced (reading 50) and so may tell of several turns."
+  "Return ANGLE, in radians, as text: in degrees, more than -180 and no more than 180, and in
+radians as it is, which are never reduced (reading 50) and so may tell of several turns."
   (let ((degrees (- 180 (mod (- 180 (round (* angle (/ 180 pi)))) 360))))
     (format nil "~D deg (~,2F rad~:[~; in all~])" degrees (hundredths angle)
             (< (+ pi 0.01d0) (abs angle)))))

@@ -42,8 +42,8 @@ default a canvas uses its one font, to the right.")
                     y string))))
 
 (defgeneric character-width (canvas size)
-  (:documentation "Return how wide a character is that DRAW-WORDS draws on CANVAS in a font SIZE pixels
-high, in pixels, if all are alike: by default as in a canvas's one font.")
+  (:documentation "Return how wide a character is that DRAW-WORDS draws on CANVAS in a font SIZE
+pixels high, in pixels, if all are alike: by default as in a canvas's one font.")
   (:method (canvas size)
     (declare (ignore canvas size))
     +character-width+))

@@ -27,9 +27,9 @@
 (defun save-way-picture (map ways file &key scale)
   "Save in FILE, replacing it, a picture of MAP, a map or the name of one, and of WAYS in it: a
 list of ways, each a list of PTs or of lists (x y), as FIND-WAY returns it. SCALE is how many
-pixels there are to a cell; without it, as SAVE-PICTURE has it. FILE is SVG or, where the program rsvg-convert is installed, PNG, as
-its name ends. Return its truename. Signals WRONG-ARGUMENT, UNKNOWN-NAME, and MISUSE without that
-program."
+pixels there are to a cell; without it, as SAVE-PICTURE has it. FILE is SVG or, where the program
+rsvg-convert is installed, PNG, as its name ends. Return its truename. Signals WRONG-ARGUMENT,
+UNKNOWN-NAME, and MISUSE without that program."
   (check-argument save-way-picture ways (ways-p ways)
                   "a list of ways, each a list of PTs or of lists (x y)")
   (check-scale 'save-way-picture scale)

@@ -43,7 +43,7 @@
     (draw-labels canvas snapshot layers)))
 
 (defun draw-world (canvas snapshot &key (layers *picture-layers*))
-  "Draw the map of SNAPSHOT on CANVAS, GRAPHICS-SCALE* pixels to a metre, with what LAYERS lists that
-lies on it (manual B)."
+  "Draw the map of SNAPSHOT on CANVAS, GRAPHICS-SCALE* pixels to a metre, with what LAYERS lists
+that lies on it (manual B)."
   (draw-terrain canvas (snapshot-map snapshot) :layers layers)
   (draw-movers canvas snapshot layers))
