@@ -59,8 +59,8 @@
 
 (test palette.the-measure-would-find-colours-that-are-alike
   "Red, green, blue and violet as they come to mind, with their tints, are not told apart in grey."
-  (is (> 3 (least-difference '(#xDF3127 #x26AE34 #x3155E2 #x9B48D5
-                               #xF1B7C5 #xA9E1B5 #xB4CFF0 #xD6BAF0)))))
+  (is (> 3 (least-difference '(#xDF3127 #x24AE34 #x3155E2 #x9B48D5
+                               #xF1B8C4 #xA9E1B6 #xB5CFF1 #xD7BBF1)))))
 
 (test palette.colours-mean-what-the-manual-says
   "Manual B: convex corners are pink, concave ones light pink, doorways light blue, beaks violet."
@@ -137,6 +137,9 @@
       (is (null (remove-if (lambda (below) (or (seen-p ink below) (seen-p canvas:white* below)))
                            backgrounds))
           "~6,'0X" ink))))
+
+(test contrast.names-are-seen-on-floor-and-marks
+  (is (apply #'seen-p canvas:black* canvas:white* *place-tints*)))
 
 (test contrast.rays-grid-and-frames-are-seen-where-they-lie
   "Rays lie on floor and marks, the grid on the floor, coordinates and frames beside the map."

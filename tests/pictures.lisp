@@ -147,6 +147,21 @@
 
 ;;; Around the map.
 
+(test margins.of-a-view-lie-at-its-edges
+  "A view of 160 x 120 pixels that begins at (80,40), 16 pixels to a metre."
+  (let* ((map (world::small-map 40 30 (constantly nil)))
+         (elements (elements (format nil "~{~A~}"
+                                     (drawing (canvas)
+                                       (let ((canvas:graphics-scale* 16))
+                                         (display:draw-view-margins
+                                          canvas map '(:coordinates :scale-bar)
+                                          80 40 160 120))))))
+         (texts (remove :text elements :key #'first :test-not #'eq)))
+    (is (equal '("5" "10" "5" "5 m") (mapcar (lambda (text) (of-element text :text)) texts)))
+    (dolist (text texts)
+      (is (<= 76 (of-element text :x) 240))
+      (is (<= 40 (of-element text :y) 160)))))
+
 (defun words-in-picture (robot &rest options)
   (mapcar (lambda (text) (of-element text :text))
           (drawn-with :text (apply #'display:svg-picture robot options))))

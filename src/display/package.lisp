@@ -22,6 +22,7 @@
            #:layers-of-kind)
   ;; terrain, world-display, margins, displays
   (:export #:draw-terrain #:draw-movers #:draw-world #:draw-framed-world #:suitable-scale
+           #:draw-view-margins
            #:draw-display #:display-title #:+displays+)
   ;; picture, animation
   (:export #:picture-scale)
