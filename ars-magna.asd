@@ -46,8 +46,9 @@
                  (:file "map") (:file "grid-walk") (:file "match-forms") (:file "place-types")
                  (:file "places") (:file "trying-places") (:file "def-place-type")
                  (:file "built-in-places") (:file "walls") (:file "map-cache")
-                 (:file "location") (:file "thing") (:file "world") (:file "access")
-                 (:file "kickers") (:file "reading-ahead") (:file "kicker-groups")
+                 (:file "location") (:file "thing") (:file "stock")
+                 (:file "world") (:file "access")
+                 (:file "kickers") (:file "reading-ahead") (:file "gaps") (:file "kicker-groups")
                  (:file "attaching") (:file "placing") (:file "setting-attributes")
                  (:file "recipes") (:file "undeclared") (:file "forking") (:file "residents")
                  (:file "new-thing") (:file "kicking") (:file "defmap") (:file "check")
@@ -106,7 +107,8 @@
                  (:file "view-margins") (:file "details") (:file "displays")
                  (:file "text-view") (:file "text-glyphs") (:file "text-layers")
                  (:file "text-sheet") (:file "text-legend") (:file "text-map")
-                 (:file "picture") (:file "way-picture") (:file "animation") (:file "opening")))
+                 (:file "picture") (:file "way-picture") (:file "moments") (:static-file "film.js")
+                 (:static-file "film.css") (:file "film") (:file "animation") (:file "opening")))
    (:module "rpl/fluents" :serial t
     :components ((:file "package") (:file "realm") (:file "home") (:file "fluent") (:file "network")
                  (:file "known") (:file "propagation") (:file "views") (:file "repair")
@@ -159,7 +161,8 @@
                  (:file "survival-chart") (:file "rows") (:file "difference-chart")
                  (:file "measure-chart") (:file "drawing-chart") (:file "saving")))
    (:module "src/trails" :serial t
-    :components ((:file "package") (:file "trails") (:file "trajectory") (:file "picture")))
+    :components ((:file "package") (:file "trails") (:file "trajectory") (:file "picture")
+                 (:file "run-picture")))
    (:module "rpl/projecting" :serial t
     :components ((:file "package") (:file "rollout") (:file "projection") (:file "question")
                  (:file "running") (:file "believing") (:file "rolling-out") (:file "answering")
@@ -247,7 +250,7 @@
                    (:file "running-lines") (:file "watch-line") (:file "world-lines")
                    (:file "plan-lines") (:file "plan-views") (:file "manipulate-line")
                    (:file "help") (:file "topics") (:file "help-lines")
-                   (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")
+                   (:file "rewind-line") (:file "picture-lines") (:file "film-line") (:file "trial-lines")
                    (:file "fork-line") (:file "import-line")
                    (:file "export-line")))
      (:module "shell" :serial t
@@ -286,10 +289,10 @@
                  (:file "definition-entries") (:file "symbol-entries") (:file "book")
                  (:file "linking") (:file "frame") (:file "reference") (:file "writing")))))
 
-;;; Loaded by tests/clim.lisp, after the package of the tests, where McCLIM is found.
+;;; Loaded after the tests where McCLIM is found: see load-tests in cli/build.lisp.
 (defsystem "ars-magna/clim-tests"
   :description "What the window claims."
-  :depends-on ("ars-magna/clim" "fiveam")
+  :depends-on ("ars-magna/tests" "ars-magna/clim" "fiveam")
   :components ((:module "tests" :components ((:file "clim-window")))))
 
 (defsystem "ars-magna/tests"
@@ -301,7 +304,7 @@
   ((:module "tests" :serial t
     :components ((:file "package") (:file "base") (:file "base-doors") (:file "geometry")
                  (:file "nisp") (:file "world") (:file "world-caches") (:file "world-places")
-                 (:file "world-things") (:file "world-kickers") (:file "ways")
+                 (:file "world-things") (:file "world-kickers") (:file "world-large") (:file "ways")
                  (:file "ways-users") (:file "floors") (:file "floors-uses")
                  (:file "floors-hostile") (:file "time") (:file "robot")
                  (:file "moving") (:file "random-driver") (:file "random-restarts")
@@ -327,8 +330,9 @@
                  (:file "rpl-text") (:file "rpl-text-places") (:file "rpl-examples-robot")
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
                  (:file "worlds-searching")
-                 (:file "svg-reading") (:file "display") (:file "display-files") (:file "palette")
-                 (:file "pictures") (:file "display-details") (:file "plots") (:file "plots-text")
+                 (:file "svg-reading") (:file "display") (:file "display-files")
+                 (:file "palette") (:file "pictures") (:file "display-details") (:file "films")
+                 (:file "plots") (:file "plots-text")
                  (:file "clim") (:file "cli") (:file "text-maps") (:file "cli-quantities")
                  (:file "editing") (:file "editing-screens") (:file "completing")
                  (:file "ways-going") (:file "cli-plans") (:file "cli-colour")

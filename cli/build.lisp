@@ -9,7 +9,7 @@
 (defpackage :ars-magna.build
   (:documentation "Compiling, saving the prompt's core, running the tests.")
   (:use :cl)
-  (:export #:print-missing-libraries #:load-strictly #:save-prompt #:run-tests
+  (:export #:print-missing-libraries #:load-strictly #:load-tests #:save-prompt #:run-tests
            #:record-sessions #:write-manual))
 
 (in-package :ars-magna.build)
@@ -99,10 +99,16 @@ defined twice, that a package has grown since it was defined."
 (defun load-strictly (system)
   "Compile and load SYSTEM; a warning in any file of the project is an error."
   (mapc #'asdf:load-system (libraries system))
-  (setf uiop:*compile-file-warnings-behaviour* :error
-        uiop:*compile-file-failure-behaviour* :error)
-  (unless (zerop (count-troubles (lambda () (asdf:load-system system))))
-    (give-up)))
+  (let ((uiop:*compile-file-warnings-behaviour* :error)
+        (uiop:*compile-file-failure-behaviour* :error))
+    (unless (zerop (count-troubles (lambda () (asdf:load-system system))))
+      (give-up))))
+
+(defun load-tests ()
+  "Compile and load the tests, and those of the window where there is what it needs."
+  (load-strictly "ars-magna/tests")
+  (unless (some #'missing-p (libraries "ars-magna/clim-tests"))
+    (load-strictly "ars-magna/clim-tests")))
 
 ;;; The prompt.
 
@@ -129,7 +135,7 @@ that fails."
 (defun run-tests (suites &optional seed)
   "Run the suites so named, or all, shuffled if there is a SEED; end this Lisp, with status 1 if a
 check fails."
-  (load-strictly "ars-magna/tests")
+  (load-tests)
   (uiop:quit (if (uiop:symbol-call :ars-magna.tests :run-from-shell suites seed) 0 1)))
 
 (defun record-sessions (names)

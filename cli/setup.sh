@@ -128,7 +128,7 @@ with_lock() {  # COMMAND...
 
 source_sums() {  # DIRECTORY...: a check sum of each source there, and its name.
     ( cd "$root" && find ars-magna.asd "$@" \( -name '*.lisp' -o -name '*.asd' \
-                -o -name 'usage*.txt' -o -name 'spread-*.sh' \) -exec cksum {} + |
+                -o -name 'usage*.txt' -o -name 'spread-*.sh' -o -name '*.js' -o -name '*.css' \) -exec cksum {} + |
           LC_ALL=C sort -k 3 )
 }
 
@@ -140,7 +140,7 @@ forget_changed() {
     [ -f "$known" ] || : >"$known"
     LC_ALL=C sort "$known.new" >"$known.left" && LC_ALL=C sort "$known" >"$known.right" &&
         LC_ALL=C comm -23 "$known.left" "$known.right" |
-            while read -r _ _ file; do rm -f "$cache/project/${file%.lisp}.fasl"; done
+            while read -r _ _ file; do rm -f "$cache/project/${file%.*}.fasl"; done
     rm -f "$known.left" "$known.right"
     mv -f "$known.new" "$known"
 }

@@ -100,8 +100,7 @@
   '("src/base/policy.lisp" "src/base/floats.lisp" "src/base/globals.lisp" "src/base/atomic.lisp"
     "src/base/packages.lisp" "src/base/environments.lisp" "src/base/interrupts.lisp"
     "src/base/debuggers.lisp" "src/base/exits.lisp" "src/base/files.lisp" "src/base/tables.lisp"
-    "src/base/random.lisp" "src/base/processes.lisp" "src/base/weak.lisp"
-    "cli/shell/executable.lisp")
+    "src/base/processes.lisp" "src/base/weak.lisp" "cli/shell/executable.lisp")
   "The files that may name SB-EXT.")
 
 (defparameter *before-the-doors*

@@ -124,3 +124,11 @@
         (is-true (base:make-new-directory path))
         (is-false (base:make-new-directory path))
         (uiop:delete-empty-directory path)))))
+
+(test room.is-there-when-it-was-made
+  (let ((octets (floor (sb-ext:bytes-consed-between-gcs) 2)))
+    (base:make-room octets)
+    (let ((epoch sb-kernel::*gc-epoch*)
+          (made (loop repeat (floor octets 200000) collect (make-string 25000))))
+      (is (plusp (length made)))
+      (is (eq epoch sb-kernel::*gc-epoch*)))))

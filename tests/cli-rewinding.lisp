@@ -18,6 +18,12 @@
                           "turned 0.30"))
     (is (equal '("0.0" "0.3") (list (nth 3 lines) (nth 5 lines))))))
 
+(test rewind.waits-for-no-plan-that-nobody-waited-for
+  (let ((lines (type-batch "(def-interp-proc drone () (loop (wait-time 1)))" "(keep-forks)"
+                           "(begin-plan 'drone)" "step 5" "rewind 2" "(simulation-tick)")))
+    (is-true (has-words-p (joined lines) "Plans under way: drone"))
+    (is (equal "3" (car (last lines))))))
+
 (test rewind.live-plans-are-watched-again
   "Of the plan of the run that is over nothing is told."
   (let ((text (let ((run:*forks-to-keep* t))

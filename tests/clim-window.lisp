@@ -26,7 +26,7 @@
 
 (defun pane (window name) (clim:find-pane-named window name))
 
-(defun said (window)
+(defun said-in (window)
   (format nil "~{~A~%~}" (window::latest-lines (window::window-transcript window) 100)))
 
 (test window.has-a-pane-for-each-display-and-for-commands
@@ -62,7 +62,7 @@
       (window::click pane :left 84 12)
       (dolist (part '("BOX#1 at 3.50, 4.50" ":color red" "Cell 10, 4: doorway"
                       "Cell 10, 1: a wall of wood, parameter 50.0"))
-        (is (mentions-p (said window) part))))))
+        (is (mentions-p (said-in window) part))))))
 
 (defun press (pane button)
   (clim:handle-event pane (make-instance 'clim:pointer-button-press-event
@@ -214,14 +214,14 @@
       (let ((*default-pathname-defaults* (uiop:temporary-directory)))
         (window::com-save-svg)
         (let ((file (merge-pathnames "studio-robot-000000.svg")))
-          (is (mentions-p (said window) "studio-robot-000000.svg"))
+          (is (mentions-p (said-in window) "studio-robot-000000.svg"))
           (is (mentions-p (uiop:read-file-string file) "Robot designators"))
           (delete-file file))))))
 
 (test window.trouble-in-a-command-is-said
   (in-window (window robot)
     (window::call-guarded-command window "Save" (lambda () (base:reject-use "no paper")))
-    (is (mentions-p (said window) "*ERROR* -> Save: no paper"))))
+    (is (mentions-p (said-in window) "*ERROR* -> Save: no paper"))))
 
 (test window.a-line-with-arguments-waits-for-them
   (in-window (window robot)

@@ -72,7 +72,8 @@ name in *KEY-CODES*."
   "Where a terminal pastes without saying so, what is pasted is not drawn letter by letter."
   (multiple-value-bind (console out) (terminal-console)
     (let ((text (make-string 5000 :initial-element #\x)))
-      (is (string= text (read-line (typed-text-for (keyboard-for (list text :enter)) console))))
+      (is (string= text (read-line (typed-text-for (keyboard-for (list text :enter) :at-hand t)
+                                                   console))))
       (is (< (length (get-output-stream-string out)) 20000)))))
 
 (test editing.moves

@@ -160,3 +160,46 @@ their fluents as they are there."
           (is (equal '((:first 6) (:second 6)) (run:with-fork () (run:with-fork () (outcome 2)))))
           (is (eq first (rpl:valve-owner *door*)))
           (is (equal '((:first 5) (:second 5)) (outcome 1))))))))
+
+;;; Plans may begin when the fork has been made.
+
+(defvar *tally* nil "A fluent that code gets at by a global variable.")
+
+(rpl:def-interp-proc count-to-nine ()
+  "Wait for a network that does not come true; count beside that."
+  (rpl:par (rpl:wait-for (> *tally* 1000))
+           (nisp:loop (rpl:wait-time 1)
+             (rpl:set-value *tally* (+ 1 (rpl:fluent-value *tally*))))))
+
+(defun tallies-apart (prepare)
+  "Call PREPARE, fork, begin a plan that changes a global fluent; return what that is in both runs."
+  (let ((*tally* (rpl:create-fluent 'tally 0)))
+    (funcall prepare)
+    (let ((fork (run:fork-simulation)))
+      (driver:rpl-init-robot (first (run:simulation-robots time:*simulation*)))
+      (driver:begin-plan 'count-to-nine)
+      (run:run-ticks 9)
+      (prog1 (list (rpl:fluent-value *tally*)
+                   (run:call-in-fork fork (lambda () (rpl:fluent-value *tally*))))
+        (run:release-fork fork)))))
+
+(test fluents.of-a-fork-are-its-own-though-plans-begin-later
+  (run:with-simulation (rover :seed 1)
+    (is (equal '(8 0) (tallies-apart (constantly nil)))))
+  ;; Where another robot has plans by then.
+  (run:with-simulation ((keeper helper) :seed 1)
+    (is (equal '(8 0) (tallies-apart (lambda ()
+                                       (driver:rpl-init-robot helper)
+                                       (driver:begin-plan 'heed-gong *tally*)
+                                       (run:run-ticks 2)))))))
+
+(test rewind.to-the-beginning-gives-global-fluents-the-values-of-then
+  (let ((*tally* (rpl:create-fluent 'tally 0)))
+    (run:with-simulation (rover :seed 1 :keep t)
+      (driver:begin-plan 'count-to-nine)
+      (run:run-ticks 9)
+      (loop repeat 3
+            do (is (= 8 (rpl:fluent-value *tally*)))
+               (run:rewind 7)
+               (is (= 1 (rpl:fluent-value *tally*)))
+               (run:run-ticks 7)))))

@@ -53,6 +53,27 @@
     (is (equal first (let ((*random-state* (make-random-state t))) (what-comes 4))))
     (is (not (equal first (what-comes 5))))))
 
+(defun numbers-of (state)
+  "Return the next 2,000 numbers of the random state STATE, of some sorts."
+  (loop repeat 500
+        collect (random 1000 state)
+        collect (random 1d0 state)
+        collect (random 1.0 state)
+        collect (random (expt 10 30) state)))
+
+(test random.is-what-sbcl-says-for-the-seed
+  "Seeding is put off until the first roll, which changes nothing; copies made before are alike."
+  (dolist (seed '(0 1 -1 4 123456789012345678901234567890))
+    (let* ((state (base:seeded-lisps-dice seed))
+           (copy (make-random-state state))
+           (short (ldb (byte 32 0) (base::mix-word (ldb (byte 64 0) seed))))
+           (numbers (numbers-of (sb-ext:seed-random-state short))))
+      (is (equal numbers (numbers-of state)))
+      (is (equal numbers (numbers-of copy)))
+      (is (equal numbers (let ((*random-state* (make-random-state copy)))
+                           (base:reseed-lisps-dice seed)
+                           (numbers-of *random-state*)))))))
+
 (test random.says-something-else-in-each-tick
   (with-jumping (:seed 1)
     (let ((jumps (second (after-ticks 100))))

@@ -99,3 +99,56 @@
         (directions '()))
     (robot::do-fan (dx dy) (0.3d0 (/ pi 2) 50) (push (atan dy dx) directions))
     (is (every #'near expected (reverse directions)))))
+
+;;; Scans have a walk of their own, which has to meet the cells of all other walks.
+
+(world:defmap walled-court (30 20)
+  (rect (0 0) (29 19) bricks 10)
+  (wall (12 5) (12 12) slate 30))
+
+(world:defmap open-court (30 20)
+  (wall (12 5) (12 12) slate 30)
+  (wall (0 7) (0 12) slate 30))
+
+(defun cells-by-walks (world x y angle reach)
+  "Return what OCCUPIED-CELLS finds with 50 rays over a right angle, walked by WALK-GRID."
+  (let ((flags (world:world-flags world)) (map (world:world-map world)) (found '()))
+    (robot::do-fan (dx dy) (angle (/ pi 2) 50)
+      (world:walk-grid (lambda (index at column)
+                         (declare (ignore at column))
+                         (when (logtest world:+occupied+ (aref flags index))
+                           (pushnew index found))
+                         (logtest world:+opaque+ (aref flags index)))
+                       (world:map-width map) (world:map-height map) x y
+                       (robot::nonzero dx) (robot::nonzero dy) reach))
+    (nreverse found)))
+
+(defun court-with-things (name dice)
+  "Return a world of the map NAME with 40 things, some of which obstruct sight."
+  (let ((world (world:make-world (world:find-map name) :seed 1)))
+    (loop repeat 40
+          do (world:make-new-thing 'box (list world (base:roll-between 1 29 dice)
+                                              (base:roll-between 1 19 dice))
+                                   `((:size 5) (:obsview ,(base:chance 0.2d0 dice)))))
+    world))
+
+(test rays.scans-meet-the-cells-of-all-walks
+  "With walls around and without, from anywhere, corners and edges included; no mark is left."
+  (dolist (name '(walled-court open-court))
+    (let* ((dice (base:make-dice 3)) (world (court-with-things name dice)) (seen 0)
+           (flags (copy-seq (world:world-flags world))))
+      (loop repeat 2000
+            for whole = (base:chance 0.3d0 dice)
+            for (x y) = (loop for size in '(30 20)
+                              for at = (base:roll-between 0d0 size dice)
+                              collect (if whole (float (floor at) 1d0) at))
+            for angle = (if (base:chance 0.3d0 dice)
+                            (* (/ pi 100) (floor (base:roll-between 0 200 dice)))
+                            (base:roll-between 0d0 7d0 dice))
+            for reach = (if (base:chance 0.2d0 dice) 1 world:+no-limit+)
+            for found = (robot::occupied-cells world x y angle (/ pi 2) 50 reach)
+            do (incf seen (length found))
+               (unless (equal found (cells-by-walks world x y angle reach))
+                 (fail "~A, from ~A ~A, at ~A: ~A" name x y angle found)))
+      (is (< 1000 seen))
+      (is (equalp flags (world:world-flags world))))))

@@ -43,6 +43,21 @@
       (driver::close-interface driver::*interface*)
       (is (null (run::simulation-participants simulation))))))
 
+(test ticks.in-which-plans-only-wait-cost-nothing
+  "No byte is allocated. But plans know which tick it is, and hear of what is done from outside."
+  (with-fitter ()
+    (let* ((bell (rpl:create-fluent 'bell))
+           (task (driver:begin-plan (rpl:interp-lambda () (rpl:wait-for bell) (rpl:plan-time)))))
+      (run:run-ticks 3)
+      (let ((before (sb-ext:get-bytes-consed)))
+        (run:run-ticks 5000)
+        (is (< (- (sb-ext:get-bytes-consed) before) 100000)))
+      (is (= 5003 (rpl:plan-runner-tick (driver:rpl-runner))))
+      (is (not (rpl:task-over-p task)))
+      (rpl:set-value bell t)
+      (run:run-ticks 1)
+      (is (<= 5003 (rpl:task-result task) 5004)))))
+
 (test arguments.wrong-ones-say-so
   (with-fitter ()
     (dolist (call (list (lambda () (driver:rpl-camera-turn 2 1))

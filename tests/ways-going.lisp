@@ -166,6 +166,43 @@ stop at TICK, and what that then does; NIL if it had ended by then."
                                                                      continuation))
                                      tick)))))
 
+(test going.elsewhere-ends-the-way-that-it-was-on
+  "Also where there is nothing to drive."
+  (loop for (x y) in '((4 6) (3.5 6.5) (5 5))
+        do (run:with-simulation (ars-worlds:dot :clean t)
+             (let ((said '()))
+               (flet ((note (name) (lambda (err robot)
+                                     (declare (ignore robot))
+                                     (push (list name err) said))))
+                 (ars-worlds:robot-go-to ars-worlds:dot 10 10 (note :first))
+                 (run:run-ticks 3)
+                 (ars-worlds:robot-go-to ars-worlds:dot x y (note :second))
+                 (run:run-ticks 100))
+               (is (equal '((:first :interrupt) (:second nil))
+                          (sort said #'string< :key #'first)))
+               (is (null (command:under-way ars-worlds:dot)))))))
+
+(test going.needs-nobody-to-tell
+  (run:with-simulation (ars-worlds:dot :clean t)
+    (ars-worlds:robot-go-to ars-worlds:dot 5 5 nil)
+    (run:run-ticks 100)
+    (ars-worlds:robot-go-distance ars-worlds:dot 1 nil)
+    (run:run-ticks 100)
+    (is (null (find :error (base:take-messages) :key #'base:message-kind)))))
+
+(test reckonings.go-on-side-by-side
+  (run:with-simulation (ars-worlds:dot :clean t)
+    (let ((me (ars-worlds:begin-reckoning (ars-worlds:here ars-worlds:dot) ars-worlds:dot)))
+      (flet ((believed () (mapcar #'round (ars-worlds:reckon me)))
+             (true () (mapcar #'round (subseq (ars-worlds:here ars-worlds:dot) 0 2))))
+        (loop for (x y) in '((5 5) (9 9) (4 6))
+              do (ars-worlds:robot-go-to ars-worlds:dot x y nil)
+                 (run:run-ticks 100)
+                 (is (equal (true) (believed))))
+        (loop repeat 8
+              do (ars-worlds:begin-reckoning '(1 1 0) ars-worlds:dot))
+        (signals base:misuse (believed))))))
+
 (test going.refuses-what-it-cannot-use
   (run:with-simulation (ars-worlds:marvin)
     (loop for (robot x y . options) in `((rex 3 3) (,ars-worlds:marvin "a" 3)

@@ -1,7 +1,8 @@
 ;;;; course.lisp -- programs of continuations notice that somebody else has taken their robot over.
 
-;;; A command that is taken over tells its continuation :INTERRUPT. But a program may wait for a camera
-;;; when somebody commands the robot, as STOP does. So it counts how often the robot was asked for.
+;;; A command that is taken over tells its continuation :INTERRUPT. But a program may be waiting for
+;;; a camera when somebody commands the robot, as STOP does. So it counts how often the robot is
+;;; asked for.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)

@@ -101,6 +101,17 @@ map.")
                               (in-worlds "pictures/looking-ahead/ways.svg"))
                              :part '(28 2 100 46))))
 
+;;; One fetch.
+
+(defun save-fetch ()
+  "Save pictures of a fetch: what happened where, and the tasks of its plan over time."
+  (with-simulation (marvin :seed 7 :journal t)
+    (let ((*trace-plans* t))
+      (run-plan 'fetch-thing '((:color blue) (:substance plastic)) '((109 24)))
+      (save-plan-timeline (ensure-directories-exist (in-worlds "pictures/fetch/timeline.svg"))))
+    (save-run-picture (in-worlds "pictures/fetch/run.svg")
+                      :title "marvin fetches a globe across the office")))
+
 ;;; Choosing by rollouts: what it is worth, and how good forecasts are.
 
 (defparameter *ways-of-choosing*
@@ -163,6 +174,7 @@ and save their pictures."
   (save-layers)
   (draw-ward (in-worlds "floors/"))
   (save-ways-ahead)
+  (save-fetch)
   (let* ((page (in-worlds "README.md"))
          (lines (with-table-lines (page-lines page) 'choosing-by-rollouts
                             (choosing-lines (run-experiment 'choosing-by-rollouts)))))

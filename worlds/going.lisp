@@ -44,12 +44,15 @@
   "True if VALUE is a list (x y heading) of numbers."
   (and (listp value) (eql 3 (list-length value)) (every #'realp value)))
 
-(defun check-going (robot x y start tolerance patience)
+(defun check-going (robot x y continuation start tolerance patience)
   "Signal WRONG-ARGUMENT about the first of these that ROBOT-GO-TO cannot use."
   (loop for (fine-p name value expected)
           in (list (list (typep robot 'robot) "robot" robot "a robot")
                    (list (realp x) "x" x "a number of metres from the left")
                    (list (realp y) "y" y "a number of metres from the top")
+                   (list (ars-magna.base:argument-of-type-p continuation 'continuation)
+                         "continuation" continuation
+                         (ars-magna.base:argument-type-text 'continuation))
                    (list (or (null start) (pose-p start)) ":start" start
                          "a list (x y heading) of numbers, or NIL")
                    (list (and (realp tolerance) (<= 0 tolerance)) ":tolerance" tolerance
@@ -62,18 +65,25 @@
 (defun robot-go-to (robot x y continuation &key start (tolerance 1) (patience 40))
   "Let ROBOT go to the point (X,Y) of its map, or the nearest that is free, as near as TOLERANCE
 metres, through doorways and round obstacles: by its odometer, its place sense and a camera. START
-is where it is, a list (x y heading); by default it finds that out. Returns at once. CONTINUATION
-gets, in the end and once, an error code or NIL, and ROBOT. The codes: :NO-WAY, :GAVE-UP after
+is where it is, a list (x y heading); by default it finds that out. Returns at once. What ROBOT does
+ends, also when it is there already. CONTINUATION, unless it is NIL, gets, in the end and once, an
+error code or NIL, and ROBOT. The codes: :NO-WAY, :GAVE-UP after
 PATIENCE troubles, and :INTERRUPT if another command took the robot or the camera over, or the run
 is over, also since it was rewound. Signals WRONG-ARGUMENT for a point that is nowhere near a free
 one, and for arguments that are none."
-  (check-going robot x y start tolerance patience)
-  (let ((me (begin-reckoning (or start (here robot)) robot)))
-    (go-on-journey (make-journey :robot robot :asked (asked-so-far robot) :me me
-                                 :goal (goal-near (reckoning-chart me) x y)
+  (check-going robot x y continuation start tolerance patience)
+  (let* ((me (begin-reckoning (or start (here robot)) robot))
+         (goal (goal-near (reckoning-chart me) x y)))
+    (grab-resource robot (robot-simulation robot))
+    (go-on-journey (make-journey :robot robot :asked (asked-so-far robot) :me me :goal goal
                                  :tolerance tolerance :patience patience
-                                 :camera (widest-of robot) :continuation continuation))
+                                 :camera (widest-of robot)
+                                 :continuation (or continuation #'no-continuation)))
     (values)))
+
+(defun no-continuation (err robot)
+  "Do nothing, for whoever wants to be told nothing."
+  (declare (ignore err robot)))
 
 (defun end-journey (journey err)
   "End JOURNEY with the error code ERR, or NIL for success."
@@ -142,7 +152,9 @@ NIL, and ROBOT: :INTERRUPT if somebody else has taken the robot over, which then
 it drove with. Signals WRONG-ARGUMENT unless METRES is more than 0 and at most a million."
   (ars-magna.base:check-of-type 'robot-go-distance "the robot" robot 'robot)
   (ars-magna.base:check-of-type 'robot-go-distance "the distance" metres 'distance)
-  (let ((course (make-course robot)) (speed (robot-speed robot)))
+  (ars-magna.base:check-of-type 'robot-go-distance "the continuation" continuation 'continuation)
+  (let ((course (make-course robot)) (speed (robot-speed robot))
+        (continuation (or continuation #'no-continuation)))
     (drive-metres course metres (if (plusp speed) (min speed max-speed*) max-speed*)
       (continuation (err robot)
         (if (over-p course err)

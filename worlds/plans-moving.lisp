@@ -169,10 +169,24 @@ map. True if so."
              (drive-by (+ 1 (mod trouble 3)))))
     (reckon me)))
 
+(defun check-travel (me point tolerance patience)
+  "Signal WRONG-ARGUMENT about the first of these that TRAVEL-TO cannot use."
+  (loop for (fine-p name value expected)
+          in (list (list (typep me 'reckoning) "me" me "a reckoning: see BEGIN-RECKONING")
+                   (list (and (listp point) (eql 2 (list-length point)) (every #'realp point))
+                         "point" point "a list (x y) of numbers of metres")
+                   (list (and (realp tolerance) (<= 0 tolerance)) ":tolerance" tolerance
+                         "a number of metres, from 0")
+                   (list (and (integerp patience) (plusp patience)) ":patience" patience
+                         "a whole number, from 1"))
+        unless fine-p
+          do (ars-magna.base:reject-argument 'travel-to name value expected)))
+
 (def-interp-proc travel-to (me point &key (tolerance 1) (patience 40) (camera (widest-camera)))
   "Bring the robot of the reckoning ME to POINT, a list (x y) on its map, as near as TOLERANCE
 metres, through doorways and round obstacles. Fails with :CANNOT-GET-THERE after PATIENCE
-troubles, or at once if there is no way."
+troubles, or at once if there is no way, with a WRONG-ARGUMENT if an argument is none."
+  (check-travel me point tolerance patience)
   (let ((limit (+ patience (reckoning-trouble me)))
         (steps 0))
     (loop UNTIL (<= (distance-left me point) tolerance)

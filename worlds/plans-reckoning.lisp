@@ -1,8 +1,8 @@
 ;;;; plans-reckoning.lisp -- where a robot believes to be, and how it corrects that.
 
 ;;; Good for plans that find their way on a map. A RECKONING starts where the robot is told that it
-;;; starts and goes on by an odometer. Walls met and doorways sensed correct it. The true position
-;;; is read nowhere but by HERE, for a plan's start.
+;;; starts and goes on by an odometer of its own. Walls met and doorways sensed correct it. The true
+;;; position is read nowhere but by HERE, for a plan's start.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
@@ -23,15 +23,41 @@
   "Return where ROBOT is and its heading, a list (x y heading). Plans are given it as their start."
   (append (multiple-value-list (robot-position robot)) (list (robot-angle robot))))
 
+;;; Nobody says when a reckoning is over. So there are a few odometers for them, of which the newest
+;;; reckoning takes the one that was taken longest ago.
+
+(defparameter *reckoning-names* '(reckoning reckoning-2 reckoning-3 reckoning-4 reckoning-5
+                                  reckoning-6 reckoning-7 reckoning-8)
+  "What the odometers of reckonings are called.")
+
+(defun name-for-reckoning (robot)
+  "Return the name that the odometer of the next reckoning of ROBOT is to have."
+  (let ((taken (remove-if-not (lambda (name) (member name *reckoning-names*))
+                              (mapcar #'odometer-name (robot-odometers robot)))))
+    (or (find-if-not (lambda (name) (member name taken)) *reckoning-names*)
+        (first taken))))
+
 (defun begin-reckoning (start &optional (robot (rpl-robot)))
-  "Return a reckoning of ROBOT, by default the plans', which is at START, a list (x y heading)."
+  "Return a reckoning of ROBOT, by default the plans', which is at START, a list (x y heading). The
+last eight reckonings of a robot can be used side by side; older ones are over."
   (destructuring-bind (x y heading) start
     (make-reckoning (make-chart (ars-magna.world:world-map (robot-world robot)))
-                    (ars-magna.robot:make-odometer robot 'reckoning)
+                    (ars-magna.robot:make-odometer robot (name-for-reckoning robot))
                     x y heading)))
 
+(defun check-reckoning (me)
+  "Signal MISUSE if the odometer of the reckoning ME has been taken for a newer one."
+  (let ((odometer (reckoning-odometer me)))
+    (unless (eq odometer (robot-odometer (ars-magna.robot:odometer-robot odometer)
+                                         (odometer-name odometer)))
+      (ars-magna.base:reject-use
+       "This reckoning is over: the robot has begun ~D others since. Begin a new one."
+       (length *reckoning-names*)))))
+
 (defun reckon (me)
-  "Bring the reckoning ME up to date, when the robot stands. Return where it is, a point."
+  "Bring the reckoning ME up to date, when the robot stands. Return where it is, a point. Signals
+MISUSE if ME is over: see BEGIN-RECKONING."
+  (check-reckoning me)
   (let* ((odometer (reckoning-odometer me))
          (moved (nominal (get-odometer-pos odometer)))
          (turned (nominal (get-odometer-ang odometer)))

@@ -123,6 +123,7 @@ package; NIL if there is none."
   (let ((errand (make-plan-errand (procedure-name plan) session (current-simulation))))
     (let-plans-drive (session-robot))
     (setf (session-failure session) nil)
+    (pushnew (procedure-name plan) (session-plans session))
     (let ((task (begin-errand errand plan arguments)))
       (push errand (session-errands session))
       (when (live-p (plan-errand-simulation errand)) (start-watching-plan errand))

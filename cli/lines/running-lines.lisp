@@ -134,7 +134,7 @@ give one a new VALUE."
 
 ;;; Journals.
 
-(defun moment-text (tick digest)
+(defun tick-text (tick digest)
   (format nil "tick ~D, state ~16,'0X~%" tick digest))
 
 (define-line "SAVE-JOURNAL" (session (file :file "the name of a file"))
@@ -146,7 +146,7 @@ give one a new VALUE."
           (values (save-journal (path-called file) simulation)
                   (simulation-tick simulation)
                   (state-digest simulation)))
-      (format t "~A: ~A" (native-name path) (moment-text tick digest)))))
+      (format t "~A: ~A" (native-name path) (tick-text tick digest)))))
 
 (defun anyway-p (word)
   "True if WORD is ANYWAY, NIL if it was left out. Signals BAD-LINE for another."
@@ -175,4 +175,4 @@ digest that it comes to."
 With ANYWAY also if what is defined here is not what the run was recorded with."
   (multiple-value-bind (tick digest)
       (replay-showing session (load-journal (path-called file)) (anyway-p anyway))
-    (format t "~A: ~A" file (moment-text tick digest))))
+    (format t "~A: ~A" file (tick-text tick digest))))

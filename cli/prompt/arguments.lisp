@@ -19,7 +19,7 @@ method, DATUM is the argument.")
 
 (defun part-type-p (type)
   "True if TYPE is the name of a kind of part."
-  (and (find type (all-kinds 'part) :key #'kind-name :test #'same-name-p) t))
+  (and (find-kind-name type 'part) t))
 
 (defun kind-words (type)
   "Return TYPE, the name of a kind of part, as people write it."

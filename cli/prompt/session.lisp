@@ -47,6 +47,8 @@
   (debugging-p nil :type boolean)
   ;; That of the last plan, if it failed, and the plan's name, in a list.
   (failure nil)
+  ;; What the plans are called that it has started; those of a rewound run are its own, too.
+  (plans '() :type list)
   ;; What has been issued and may not have ended, and whether Lisp may have issued more.
   (errands '() :type list)
   (lisp-p nil)

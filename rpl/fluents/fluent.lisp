@@ -98,10 +98,12 @@ counts."
   (let ((home (home-of fluent)))
     (and home (not (home-forked-p home copier)))))
 
+;; A home made since may be of the run that was forked, or of any other.
 (defmethod concerns-p ((fluent fluent) realm)
   (let ((home (home-of fluent)))
     (or (null home)
-        (and (realm-source realm) (eq home (weak-value (realm-source realm)))))))
+        (< (realm-made realm) (home-born home))
+        (member home (realm-sources realm) :key #'weak-value :test #'eq))))
 
 (document-functions
  make-watcher "Return somebody who is to be told of a fluent by a function, on behalf of a client."

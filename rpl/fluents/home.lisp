@@ -16,7 +16,8 @@
   "Where changes are heard. HOLDER is the thread that has it, ON-POST is called after each post.
 ATTENDED-P says whether a thread is there that will hear what is posted. LEFT-P is true while a
 thread has it, and afterwards if that has left it in the middle of something: then REPAIRER is
-called with it before anything else is done. CLOSED-P says that it hears nothing any more.
+called with it before anything else is done. CLOSED-P says that it hears nothing any more. BORN is a
+token, given when it was made.
 For whoever keeps a trace, ON-CHANGE is called with
 :SET or :PULSE, a base fluent and its value, before anybody hears of that, and WRAPPER with each
 entry: it returns what is posted instead."
@@ -28,6 +29,7 @@ entry: it returns what is posted instead."
   (attended-p (constantly nil) :type function)
   (left-p nil :type boolean)
   (closed-p nil :type boolean)
+  (born (next-token) :type (integer 0))
   (repairer #'identity :type function)
   (on-change nil :type (or null function))
   (wrapper nil :type (or null function)))
@@ -57,18 +59,22 @@ NIL.")
   (swap-if (home-holder home) (current-thread) nil))
 
 (defun call-having (home take function)
-  "Call FUNCTION in HOME, and leave that, if TAKE, called with it, returns true. True if so. An
-interrupt may come at any point."
+  "Call FUNCTION in HOME, and leave that, if TAKE, called with it, returns true. Return the values,
+or else NIL. An interrupt may come at any point."
   (declare (type function take function))
   (unwind-protect
        (when (funcall take home)
-         (let ((*runner* home) (*homes* (cons home *homes*)))
+         (let* ((homes (cons home *homes*)) (*runner* home) (*homes* homes))
+           (declare (dynamic-extent homes))
            (when (home-left-p home) (funcall (home-repairer home) home))
            (setf (home-left-p home) t)
-           (funcall function)
-           (setf (home-left-p home) nil)
-           t))
+           (multiple-value-prog1 (funcall function)
+             (setf (home-left-p home) nil))))
     (leave-home home)))
+
+(defun in-use-p (home)
+  "True if a thread has HOME, or has left it in the middle of something."
+  (or (home-left-p home) (home-holder home)))
 
 (defun wait-for-home (home)
   (loop until (take-home home) do (yield-thread))
@@ -80,10 +86,7 @@ interrupt may come at any point."
   (cond ((eq home *runner*) (funcall function))
         ((member home *homes* :test #'eq)
          (let ((*runner* home)) (funcall function)))
-        (t (let ((values '()))
-             (call-having home #'wait-for-home
-                          (lambda () (setf values (multiple-value-list (funcall function)))))
-             (values-list values)))))
+        (t (call-having home #'wait-for-home function))))
 
 (defmacro at-home ((home) &body body)
   "Run BODY as CALL-AT-HOME would a function."
@@ -122,6 +125,7 @@ interrupt may come at any point."
   home-on-post "Return the function that is called after each post, in the posting thread."
   make-backlog "Return an empty backlog, which grows as needed."
   home-attended-p "Return the function that says whether a thread will hear what is posted."
+  home-born "Return a number that is greater for homes that were made later. Can be set."
   home-closed-p "True if the home hears nothing any more. Can be set."
   home-on-change "Return the function that is told of changes, or NIL. Can be set."
   home-wrapper "Return the function that is given what is posted, or NIL. Can be set."

@@ -21,12 +21,14 @@ no plan.")
   (:export #:base-fluents #:depends-p #:fluent-watchers #:fl-apply #:fl-funcall #:fluent-text
            #:fluent-value #:unwatch #:watch)
   ;; realm
-  (:export #:*realm* #:+root+ #:fork-realm #:leave-realm #:realm-source #:source-realm
-           #:entity #:entity-realm #:entity-like #:here #:fresh-twin #:foreign-p #:home-forked-p)
+  (:export #:*realm* #:+root+ #:fork-realm #:leave-realm #:realm-sources #:source-realm
+           #:entity #:entity-realm #:entity-like #:here #:fresh-twin #:foreign-p #:home-forked-p
+           #:next-token)
   ;; home
-  (:export #:*runner* #:*home-in-use* #:*on-outside-change* #:home #:home-closed-p #:home-on-post
+  (:export #:*runner* #:*home-in-use* #:*on-outside-change* #:home #:home-closed-p #:home-born
+           #:home-on-post
            #:home-attended-p #:home-on-change #:home-wrapper #:home-backlog #:at-home
-           #:call-at-home #:post #:next-entry #:posted-p)
+           #:call-at-home #:in-use-p #:post #:next-entry #:posted-p)
   ;; known
   (:export #:declare-fluent-variable #:known-fluent-variable-p #:known-vector-variable-p
            #:one-fluent #:truth-value)

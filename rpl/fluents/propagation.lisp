@@ -163,7 +163,7 @@ views that are true for the instant at which that change happened.")
 it."
   (if (and (not (posted-p home))
            (not (funcall (home-attended-p home)))
-           (call-having home #'take-home (lambda () (set-now fluent value))))
+           (call-having home #'take-home (lambda () (set-now fluent value) t)))
       (funcall (home-on-post home))
       (post home `((:set ,fluent ,value)))))
 

@@ -14,8 +14,8 @@
   "What belongs to one fork, number NUMBER of those of PARENT; or, without one, to all runs that are
 no forks. TWINS has entities by token, FORKS is a list (number . weak realm), the newest first, of
 COUNT there have been; there is ROOM for so many more before those that are gone are left out.
-SOURCE leads to the home of which this is a fork. LEFT-P says that another fork goes on in the place
-of this one, which is over."
+MADE is a token, given when it was made. SOURCES lead to the homes that the run had then of which
+this is a fork. LEFT-P says that another fork goes on in the place of this one, which is over."
   (parent nil :type (or null realm))
   (number 0 :type fixnum)
   (twins (make-hash-table :test 'eq :size 100) :type hash-table :read-only t)
@@ -23,12 +23,17 @@ of this one, which is over."
   (forks '() :type list)
   (room 16 :type fixnum)
   (count 0 :type fixnum)
-  (source nil)
+  (made 0 :type (integer 0))
+  (sources '() :type list)
   (left-p nil :type boolean)
   (tokens 0 :type atomic-count))
 
 (define-global +root+ (make-realm nil 0)
   "The realm of all runs that are no forks.")
+
+(defun next-token ()
+  "Return a number, greater than all that were returned before."
+  (1+ (atomic-incf (realm-tokens +root+))))
 
 (declaim (type realm *realm*))
 (defvar *realm* +root+
@@ -84,7 +89,7 @@ the place of that."
     (with-lock ((realm-lock (entity-realm entity)))
       (when (zerop (entity-token entity))
         (setf (entity-first entity) (make-weak entity)
-              (entity-token entity) (1+ (atomic-incf (realm-tokens +root+)))))))
+              (entity-token entity) (next-token)))))
   (entity-token entity))
 
 (defun add-twin (entity realm twin)
@@ -100,8 +105,8 @@ the place of that."
 
 (document-functions
   entity-realm "Return the realm that the entity belongs to."
-  realm-source "Return a weak reference to the home of which the realm is a fork, or NIL. Can be
-set.")
+  realm-sources "Return weak references to the homes, when the realm was made, of what it is a fork
+of. Can be set.")
 
 ;;; Forking.
 
@@ -109,6 +114,7 @@ set.")
   "Return a new fork of REALM."
   (with-lock ((realm-lock realm))
     (let ((fork (make-realm realm (incf (realm-count realm)))))
+      (setf (realm-made fork) (next-token))
       (push (cons (realm-number fork) (make-weak fork)) (realm-forks realm))
       (when (minusp (decf (realm-room realm))) (forget-gone-forks realm))
       fork)))
@@ -174,7 +180,8 @@ set.")
     (when above
       (dolist (twin (twins-in parent)) (entity-in twin realm))
       (setf (realm-number realm) (realm-number parent)
-            (realm-source realm) (realm-source parent)
+            (realm-made realm) (realm-made parent)
+            (realm-sources realm) (realm-sources parent)
             (realm-parent realm) above)
       (note-fork realm above))))
 

@@ -13,7 +13,8 @@ that a robot believes in, and choosing by that.")
                 #:simulation-participants #:simulation-journal #:simulation-world
                 #:fork-simulation #:call-in-fork #:release-fork #:*fork-asker*)
   (:import-from :ars-magna.rpl
-                #:*break-on-plan-failures* #:*step-plans* #:+parked+ #:enter #:environment
+                #:*break-on-plan-failures* #:*runaway-limit* #:*step-plans* #:+parked+ #:enter
+                #:environment
                 #:awaited-text #:count-steps #:check-arguments #:failure-class #:failure-of
                 #:failure-text
                 #:find-procedure

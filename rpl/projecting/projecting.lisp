@@ -23,6 +23,8 @@ UNKNOWN-NAME and WRONG-ARGUMENT."
 the list ARGUMENTS, or a list of both. INTERFACE is whose plans they are. Signals UNKNOWN-NAME and
 WRONG-ARGUMENT."
   (let ((options (checked-options 'project options)))
+    (when (and (task-p plan) arguments)
+      (reject-argument 'project :arguments arguments "none, since a task has begun with its own"))
     (if (task-p plan)
         (%make-question :operator 'project :task task :interface interface
                         :subject (checked-subject plan interface (getf options :world))
@@ -79,8 +81,9 @@ PROJECTION-PROBABILITY and others.
 or positive infinity, which is worse than any.
   WORLD, a function, makes worlds that rollouts are run in instead of forks, such as the one that
 the robot believes in. It is called with a function and a seed, and is to call that function inside
-of (with-simulation (robot :seed seed) ...). The true run cannot be seen there; PLAN has a name
-then, and ARGUMENTS are no objects of a run.
+of (with-simulation (robot :seed seed) ...). Robots, fluents and parameters are those of that world
+there; what global variables hold of the true run can be read, but not changed or commanded. PLAN
+has a name then, and ARGUMENTS are no objects of a run.
   PRINT, if true, lets plans write in rollouts as ever; otherwise that is lost.
 In a plan, it waits until all plans rest, and goes on in the same tick; PLAN begins as if called
 there. Elsewhere, as in a continuation, in a test or at the prompt, PLAN begins on top, as by

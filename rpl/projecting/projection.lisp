@@ -70,13 +70,24 @@ if none did."
   (let ((condition (some #'error-of (projection-rollouts projection))))
     (and condition (cut (brief-text condition) 120))))
 
+(defun reasons-text (projection)
+  "Return in a line why rollouts of PROJECTION did not succeed, or NIL if all did."
+  (let ((failures (projection-failures projection)))
+    (and failures
+         (cut (format nil "~{~A~^, ~}"
+                      (loop for (reason . count) in failures
+                            collect (format nil "~D ~(~A~)" count (safe-text reason))))
+              120))))
+
 (defmethod print-object ((projection projection) stream)
   (print-unreadable-object (projection stream :type t)
     (multiple-value-bind (low high) (projection-interval projection)
-      (format stream "~A: ~D of ~D, ~,2F to ~,2F~@[, ~,1F ticks~]~@[, first error: ~A~]"
+      (format stream "~A: ~D of ~D, ~,2F to ~,2F~@[, ~,1F ticks~]~@[; not: ~A~]~
+                      ~@[; first error: ~A~]"
               (projection-text projection)
               (projection-successes projection) (trials-of projection) low high
-              (projection-mean-ticks projection) (first-error-text projection)))))
+              (projection-mean-ticks projection) (reasons-text projection)
+              (first-error-text projection)))))
 
 ;;; Which of several is the best.
 

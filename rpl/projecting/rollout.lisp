@@ -31,7 +31,8 @@ function the failure is an error."
   rollout-p "True of rollouts: trials of a plan that a projection has made."
   rollout-seed "Return the integer from which all chance in the rollout came."
   rollout-state "Return how the rollout ended: :succeeded, :failed, :evaporated, :deadlock,
-:stopped; or :limit, if its horizon came first."
+:stopped; :limit, if its horizon came first; or :runaway, if plans took a million steps in a tick
+without waiting."
   rollout-ticks "Return how many ticks the rollout took."
   rollout-cost "Return the number that the function :cost returned at the end, or NIL without one.")
 

@@ -48,19 +48,29 @@ how it has ended, with which result, at no cost, and OPTION."
 
 (defun go-to-end (question interface begin over)
   "Call BEGIN, which returns the task whose end counts or NIL, and let ticks of the current
-simulation pass until what QUESTION is about has ended; OVER is called after each. Return how it has
-ended, with which result, at what cost, and the option whose function broke it off, if any."
+simulation pass until what QUESTION is about has ended, or OVER, which is called after each, says
+how it ends. Return how it has ended, with which result, at what cost, and the option whose function
+broke it off, if any."
   (handler-case
       (let* ((last (+ (simulation-tick) (option question :horizon)))
              (task (funcall begin))
              (how (pass-until interface
                               (lambda ()
                                 (check-wanted)
-                                (funcall over)
-                                (end-of task question interface))
+                                (or (funcall over) (end-of task question interface)))
                               last)))
         (with-cost question how (if task (task-result task) (question-result question))))
     (error (condition) (broken-off condition))))
+
+;;; A plan that never waits would take a million steps in each tick, and bring nothing to light.
+
+(defun runaway-test (runner)
+  "Return a function that returns :RUNAWAY if the plans of RUNNER have taken as many steps as a
+reaction may, or more, since it was called last, or made."
+  (let ((steps (counted-steps runner)))
+    (lambda ()
+      (let ((before (shiftf steps (counted-steps runner))))
+        (when (<= *runaway-limit* (- steps before)) :runaway)))))
 
 (defun run-rollout (scene trial seed question interface begin)
   "Return the rollout number TRIAL, with SEED, of SCENE, having run it in the current simulation:
@@ -68,10 +78,13 @@ see GO-TO-END."
   (let* ((start (simulation-tick))
          (runner (interface-runner interface))
          (steps (counted-steps runner))
+         (runaway (runaway-test runner))
          (trails '()))
     (multiple-value-bind (how result cost broken)
         (go-to-end question interface begin
-                   (lambda () (setf trails (note-places (current-simulation) trails))))
+                   (lambda ()
+                     (setf trails (note-places (current-simulation) trails))
+                     (funcall runaway)))
       (make-rollout scene trial seed how result (- (simulation-tick) start) cost
                     (- (counted-steps runner) steps)
                     (ways-along trails trial (outcome-word how))

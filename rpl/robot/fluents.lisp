@@ -14,7 +14,7 @@ part is a symbol, NIL for the robot itself.")
   "Return the name of the kind of part called KIND, or NIL for ROBOT. Signals MALFORMED-DEFINITION
 if there is none."
   (unless (same-name-p kind 'robot)
-    (or (find kind (mapcar #'kind-name (all-kinds 'part)) :test #'same-name-p)
+    (or (find-kind-name kind 'part)
         (reject-clause "define-fluents" kind "ROBOT, or a kind of part such as CAMERA"))))
 
 (defun note-fluent-variable (variable kind)

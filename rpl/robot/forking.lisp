@@ -18,8 +18,8 @@
   (let ((twin (forked interface copier))
         (robot (forked (interface-robot interface) copier))
         (realm (forked (source-realm copier) copier)))
-    (setf (interface-ender twin) (lambda () (close-interface twin))
-          (realm-source realm) (make-weak (interface-runner interface)))
+    (setf (interface-ender twin) (lambda () (close-interface twin)))
+    (push (make-weak (interface-runner interface)) (realm-sources realm))
     (push (interface-ender twin) (robot-enders robot))
     twin))
 

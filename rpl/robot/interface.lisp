@@ -74,7 +74,8 @@ SAVE-PLAN-TIMELINE.")
 
 (defun call-holding (function interface)
   "Call FUNCTION, holding the plans of INTERFACE, which this thread has locked."
-  (unwind-protect (let ((*held* (cons interface *held*)))
+  (unwind-protect (let* ((held (cons interface *held*)) (*held* held))
+                    (declare (dynamic-extent held))
                     (setf (interface-holder interface) (current-thread))
                     (funcall function))
     (setf (interface-holder interface) nil)))
@@ -109,7 +110,9 @@ known to be at Lisp code that does not return."
 
 (defmacro with-plans ((interface) &body body)
   "Run BODY while nobody else touches the plans of INTERFACE."
-  `(call-with-plans (lambda () ,@body) ,interface))
+  `(flet ((body () ,@body))
+     (declare (dynamic-extent #'body))
+     (call-with-plans #'body ,interface)))
 
 (defun let-others-hold (interface)
   "Let others have the plans of INTERFACE, which this thread does not hold, before it takes them

@@ -11,15 +11,10 @@
   (let ((value (symbol-value variable)))
     (if (simple-vector-p value) (svref value (part-index part)) value)))
 
-(defun part-kind (type)
-  "Return the kind of part that arguments of TYPE are, or NIL if they are no parts."
-  (let ((kind (find type (all-kinds 'part) :key #'kind-name :test #'same-name-p)))
-    (and kind (kind-name kind))))
-
 (defun convert-argument (value type operator)
   "Return what VALUE, perhaps a fluent or an index, stands for as an argument of
 TYPE (reading 181)."
-  (let ((value (fluent-value value)) (kind (part-kind type)))
+  (let ((value (fluent-value value)) (kind (find-kind-name type 'part)))
     (cond (kind (find-part kind value operator))
           ((and (same-name-p type 'destination) (integerp value))
            (find-part 'storage-bin value operator))

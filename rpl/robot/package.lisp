@@ -8,7 +8,7 @@
   (:import-from :ars-magna.time
                 #:*simulation* #:seconds-now #:current-simulation #:asking #:live-p
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
-                #:check-not-secluded
+                #:timeline-tick #:check-not-secluded
                 #:wake-owner #:begin-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
                 #:hog-seconds)
   (:import-from :ars-magna.run
@@ -31,7 +31,7 @@
                 #:apply-settings #:*home-in-use* #:*runner* #:post-call #:react-to-all
                 #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers
                 #:next-wake-time #:needs-tick-p #:set-charges #:make-plan-runner #:start-plan
-                #:stop-plan #:plan-runner
+                #:rest-in-tick #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:plan-runner-steps #:current-task #:task #:task-p
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-cleaning #:form-text
@@ -41,7 +41,7 @@
                 #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks* #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p #:*realm*
                 #:give-back-all #:+root+
-                #:realm-source #:leave-realm #:source-realm #:at-home #:entity #:here
+                #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:here
                 #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
                 #:reasons #:decide #:withdraw #:task-frame #:entity-realm #:entity-like
                 #:*on-outside-change* #:note-word #:task-now)

@@ -8,8 +8,8 @@
 (defun thread-wanted-p (interface)
   "True if plans of INTERFACE are to react in a thread of their own."
   (let ((simulation (interface-simulation interface)))
-    (and (live-p simulation)
-         (timeline-real-p (simulation-timeline simulation)))))
+    (and (timeline-real-p (simulation-timeline simulation))
+         (live-p simulation))))
 
 (defun charge-as-told (interface)
   "Let thinking cost the plans of INTERFACE what it costs in its run now."
@@ -53,6 +53,17 @@ nothing happens."
     (or (interface-tick-wanted-p interface)
         (and tick (>= (simulation-tick (interface-simulation interface)) tick)))))
 
+(defun rest-fully (interface)
+  "Let it be the next tick for the plans of INTERFACE, if they all wait, and for something else.
+True if so. Most ticks are like that."
+  (let* ((simulation (interface-simulation interface))
+         (timeline (simulation-timeline simulation)))
+    (not (or (interface-closing-p interface)
+             (interface-wishes interface)
+             (interface-holder interface)
+             (thinking-charged-p timeline)
+             (not (rest-in-tick (interface-runner interface) (timeline-tick timeline)))))))
+
 (defun apply-posts (interface)
   "Apply what was posted to INTERFACE, if it has no plans."
   (with-plans (interface)
@@ -65,7 +76,8 @@ nothing happens."
            (wake interface)))
         ((not (thread-wanted-p interface))
          (begin-moment (simulation-timeline simulation))
-         (with-plans (interface) (react-fully interface)))
+         (unless (rest-fully interface)
+           (with-plans (interface) (react-fully interface))))
         ((tasks-of interface) (ensure-thread interface))
         ((interface-answers interface) (apply-posts interface))))
 
@@ -106,8 +118,8 @@ not count: they tell plans nothing."
         (timeline-inbox (simulation-timeline simulation)))))
 
 (defun seconds-when-live (simulation)
-  "Return the time in seconds, by which plans that hog their thread are noticed; headless 0."
-  (if (live-p simulation) (seconds-now) 0d0))
+  "Return the time in seconds, by which plans that hog their thread are noticed; headless NIL."
+  (and (live-p simulation) (seconds-now)))
 
 (defun no-longer-unwanted (interface task)
   (loop for tasks = (interface-unwanted interface)

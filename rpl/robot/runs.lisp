@@ -51,6 +51,8 @@ it goes on with the ticks; live in a thread of its own. Signals UNKNOWN-NAME."
 
 (defun deadlocked-p (interface)
   (and (null (hog-of interface))
+       (plan-deadlocked-p (interface-runner interface))
+       ;; Somebody may just have been at work.
        (with-plans (interface) (plan-deadlocked-p (interface-runner interface)))))
 
 (defun ended-by-itself-p (task)

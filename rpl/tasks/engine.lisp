@@ -16,7 +16,8 @@
   "Return what runs plans, at TICK. TRACE says whether to keep a trace. BUDGET is how many steps a
 reaction may take before time passes (NIL: as many as it needs). If CHARGED is true, thoughts that
 say what they cost take ticks, and all reactions of a tick share its BUDGET. CLOCK, a function that
-returns seconds, serves to warn of Lisp code that runs for more than SLOW seconds. DICE choose for
+returns seconds, or NIL while nobody cares, serves to warn of Lisp code that runs for more than SLOW
+seconds. DICE choose for
 TRY-ONE.
 BUSY-P says whether somebody else, such as a command under way, may still post. ON-POST is called
 after each post, in the posting thread; ATTENDED-P says whether a thread will hear that anyway.
@@ -204,6 +205,23 @@ and nothing heard."
 (defun idle-p (runner)
   "True if no task of RUNNER is ready and nothing is posted: only time or a post can change that."
   (not (or (any-ready-p runner) (runner-doomed runner) (posted-p runner))))
+
+(defun charged-for-p (runner)
+  "True if a tick may cost RUNNER something, or pay what that owes, though no task goes on."
+  (or (runner-charged-p runner) (runner-budget runner)))
+
+(defun rest-in-tick (runner tick)
+  "Let it be TICK for RUNNER, without a reaction, if none of its tasks would go on in that. True if
+so."
+  (let ((wake (next-wake-time runner)))
+    (unless (or (and wake (<= wake tick))
+                (not (idle-p runner))
+                (runner-courtesies runner)
+                (runner-on-tick runner)
+                (charged-for-p runner)
+                (in-use-p runner))
+      (setf (runner-tick runner) tick)
+      t)))
 
 (defun needs-tick-p (runner)
   "True if RUNNER needs the next tick: a task waits for time, or what is to be done had no steps

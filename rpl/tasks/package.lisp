@@ -73,8 +73,8 @@ plans nor a simulator.")
   ;; engine
   (:export #:advance-timers #:apply-next-batch #:close-runner #:tell-at-rest #:digest-runner
            #:idle-p #:make-plan-runner #:next-wake-time #:plan-deadlocked-p #:post-batch
-           #:needs-tick-p #:post-call #:react #:react-to-all #:reseed-runner #:start-plan
-           #:stop-plan)
+           #:needs-tick-p #:rest-in-tick #:post-call #:react #:react-to-all #:reseed-runner
+           #:start-plan #:stop-plan)
   ;; blocking
   (:export #:block-task #:check-together #:make-heed #:suspend #:unblock-task #:wake-up)
   ;; circles

@@ -92,7 +92,9 @@ as it needs. CLIENT is on whose behalf all this is."
 
 (defmethod copy-plan-value ((runner plan-runner) fork)
   (if (home-forked-p runner fork)
-      (copy-slots runner fork)
+      (let ((copy (copy-slots runner fork)))
+        (setf (home-born copy) (next-token))
+        copy)
       runner))
 
 (defun runner-note (runner key)
@@ -144,13 +146,15 @@ long. Where steps are counted it is one."
 
 (addition plan-time)
 (defun plan-time ()
-  "Return the tick that it is for the plan that asks."
-  (runner-tick *runner*))
+  "Return the tick that it is for the plan that asks. Signals MISUSE outside of plans."
+  (if *runner*
+      (runner-tick *runner*)
+      (reject-use "PLAN-TIME is for plans to ask. Elsewhere (simulation-tick) returns the tick.")))
 
 (addition current-task)
 (defun current-task ()
-  "Return the task that asks."
-  (runner-current *runner*))
+  "Return the task that asks, or NIL outside of plans."
+  (and *runner* (runner-current *runner*)))
 
 (defun running-task (runner)
   "Return the task of RUNNER whose step is under way, or NIL."
@@ -219,7 +223,8 @@ have used their slice."
 
 (defun any-ready-p (runner)
   "True if a task of RUNNER could go on now."
-  (or (some (lambda (ring) (plusp (ring-count ring))) (runner-rings runner))
+  (or (and (plusp (logandc2 (runner-mask runner) +interrupt+))
+           (some (lambda (ring) (plusp (ring-count ring))) (runner-rings runner)))
       (some (lambda (task) (eq (task-state task) :ready)) (runner-spent runner))))
 
 (defun alone-p (task)

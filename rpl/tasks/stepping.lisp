@@ -13,13 +13,17 @@
       (warning-set "A plan's Lisp code ran for " (/ (round seconds 0.001) 1000.0)
                    " s without a pause: " (form-text form) " in " (task-label task)))))
 
-(defun timed-step (clock node task frame value)
-  "Do the step of NODE; warn if it took long by CLOCK."
-  (declare (type function clock))
-  (let ((start (funcall clock)) (runner (task-runner task)))
+(defun time-now (runner)
+  "Return the seconds by the clock of RUNNER, or NIL if nobody wants to know."
+  (let ((clock (runner-clock runner)))
+    (and clock (funcall clock))))
+
+(defun timed-step (start node task frame value)
+  "Do the step of NODE, at START by the clock; warn if it took long."
+  (let ((runner (task-runner task)))
     (setf (runner-looked-at runner) nil)
     (multiple-value-prog1 (funcall (node-step node) node task frame value)
-      (let ((seconds (- (funcall clock) start)))
+      (let ((seconds (- (or (time-now runner) start) start)))
         (when (and (> seconds (runner-slow runner)) (not (runner-looked-at runner)))
           (warn-of-slow-step task frame seconds))))))
 
@@ -40,12 +44,13 @@
   "Do the step of NODE as RUN-STEPS would, for whoever measures, goes through plans step by step, or
 may look into errors."
   (let* ((runner (task-runner task))
-         (stepper (runner-stepper runner))
-         (clock (runner-clock runner)))
+         (stepper (runner-stepper runner)))
     (flet ((take ()
-             (if clock
-                 (timed-step clock node task frame value)
-                 (funcall (node-step node) node task frame value))))
+             (let ((start (time-now runner)))
+               (if start
+                   (timed-step start node task frame value)
+                   (funcall (node-step node) node task frame value)))))
+      (declare (dynamic-extent #'take))
       (when stepper (funcall stepper task frame))
       ;; A leaf offers the same, and a value in its place.
       (if (and *leaves-offer-restarts* (not (leaf-p node)))
@@ -86,7 +91,7 @@ VALUE are what the last step returned; return what it should have."
   "Let TASK go on from FRAME with VALUE until it waits, gives way or ends."
   (declare #.*hot* (type task task))    ; 15 ns a step beyond what the step does
   (let* ((runner (task-runner task))
-         (watched (or (runner-clock runner) (runner-stepper runner) *leaves-offer-restarts*))
+         (watched (or (time-now runner) (runner-stepper runner) *leaves-offer-restarts*))
          (higher (ash 2 (task-level task))))
     (declare (type plan-runner runner))
     (loop

@@ -224,9 +224,10 @@ their packages."
 
 (defun task-label (task)
   "Return a short text that says which task TASK is."
-  (if (task-name task)
-      (string-downcase (safe-text (task-name task) :escape nil))
-      (form-text (node-form (task-node task)) 40)))
+  (let ((name (task-name task)))
+    (cond ((null name) (form-text (node-form (task-node task)) 40))
+          ((and (symbolp name) (< (length (symbol-name name)) 100)) (string-downcase name))
+          (t (string-downcase (safe-text name :escape nil))))))
 
 (addition task-path)
 (defun task-path (task)
@@ -238,7 +239,7 @@ their packages."
 
 ;; Whatever a plan asks for, in whatever task, is asked for by the plan as a whole.
 (defmethod asker-note ((task task))
-  (list "the plan " (first (task-path task))))
+  (list "the plan " (task-label (task-top task))))
 
 (defmethod print-object ((task task) stream)
   (print-unreadable-object (task stream :type t)

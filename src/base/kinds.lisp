@@ -13,7 +13,8 @@
 ;;; From that follow the readers' documentation, RESET, DIGEST-STATE, forks and the inspection of an
 ;;; object. Other objects in a slot are referred to, unless the slot is marked as a :PART: then they
 ;;; belong to the object, and are reset, digested and shown with it. What is in a slot marked as
-;;; :SHARED is replaced and never altered: forks have the same.
+;;; :SHARED is replaced and never altered: forks have the same. Slots marked as :NEAR stand first in
+;;; memory, beside each other: what is read of many objects, one after the other, belongs there.
 
 (defstruct (kind-slot (:constructor make-kind-slot
                           (name role type text part-p shared-p initial reader writer))
@@ -76,15 +77,35 @@
   (and (typep object 'structure-object)
        (kind-called (type-of object))))
 
+(defun based-on-p (kind base)
+  "True if KIND is or includes the kind called BASE."
+  (loop for each = kind then (kind-parent each)
+        while each
+          thereis (eq base (kind-name each))))
+
 (defun all-kinds (&optional base)
   "Return a list of all kinds, in order of definition; with BASE, the name of one, of those that
 are or include it."
-  (remove-if-not (lambda (kind)
-                   (or (null base)
-                       (loop for each = kind then (kind-parent each)
-                             while each
-                               thereis (eq base (kind-name each)))))
+  (remove-if-not (lambda (kind) (or (null base) (based-on-p kind base)))
                  (all-object-kinds)))
+
+(defun look-up-kind-name (name base kinds)
+  (loop for kind in kinds
+        when (and (same-name-p name (kind-name kind)) (based-on-p kind base))
+          return (kind-name kind)))
+
+(defun find-kind-name (name base)
+  "Return the name of the first kind, of those that are or include the one called BASE, that is
+called as NAME, a symbol or string; NIL if none is."
+  (let ((kinds (registry-objects *object-kinds*)))
+    (if (symbolp name)
+        ;; Plans' commands ask this of each argument. What was found holds until a kind is defined.
+        (let ((known (get name 'known-kind-name)))
+          (unless (and known (eq base (first known)) (eq kinds (second known)))
+            (setf known (list base kinds (look-up-kind-name name base kinds))
+                  (get name 'known-kind-name) known))
+          (third known))
+        (look-up-kind-name name base kinds))))
 
 ;;; Defining.
 
@@ -127,6 +148,12 @@ slot...)."
                                    (and (member :part options) t)
                                    (and (member :shared options) t)))))
 
+(defun slots-by-place (groups)
+  "Return the slots in GROUPS, lists (role slot...), in the order in which they stand in memory."
+  (stable-sort (loop for (nil . slots) in groups append slots)
+               (lambda (one other)
+                 (and (member :near (nthcdr 4 one)) (not (member :near (nthcdr 4 other)))))))
+
 (defun check-kind-name (name include documentation)
   (unless (and (symbolp name) name (symbol-package name) (not (keywordp name)))
     (reject-clause-of-kind name name "a symbol of a package as the name of the kind"))
@@ -140,9 +167,9 @@ slot...)."
   "Signal MALFORMED-DEFINITION unless SLOT of the kind NAME makes sense beside KNOWN, other names."
   (unless (and (proper-list-p slot) (<= 4 (length slot))
                (symbolp (first slot)) (first slot)
-               (stringp (fourth slot)) (subsetp (nthcdr 4 slot) '(:part :shared)))
+               (stringp (fourth slot)) (subsetp (nthcdr 4 slot) '(:part :shared :near)))
     (reject-clause-of-kind name slot
-                           "(name default type \"what it is\" [:part] [:shared])"))
+                           "(name default type \"what it is\" [:part] [:shared] [:near])"))
   (when (member (first slot) known :test #'same-name-p)
     (reject-clause-of-kind name slot "a name that no other slot has, also of what is included")))
 
@@ -187,7 +214,7 @@ with, says."
   "Define a structure and say what each of its slots is. NAME-AND-OPTIONS is its name, or (name
 [:include kind] [:constructor constructor]), as in DEFSTRUCT. GROUPS are lists (role slot...), a
 slot is (name default type \"what it is\"), and behind that :PART if what is in it belongs to the
-object, :SHARED if it is never altered. The roles are
+object, :SHARED if it is never altered, :NEAR if it is to stand beside others. The roles are
   :fixed    how the object was made;
   :state    what decides the future, or what programs are told of it;
   :memory   what is shown to people and decides nothing;
@@ -212,7 +239,7 @@ MALFORMED-DEFINITION."
                               `(:constructor ,constructor))
                          (:copier nil))
          ,documentation
-         ,@(loop for (nil slot default type) in slots
+         ,@(loop for (slot default type) in (slots-by-place groups)
                  collect `(,slot ,default :type ,type)))
        (register-kind ',name ',include (list ,@(slot-forms name conc slots)) ,conc)
        (defmethod describe-object ((object ,name) stream)

@@ -98,6 +98,18 @@ ones were forgotten, a warning that says how many comes first."
           (cons (make-message :warning (list forgotten " earlier messages were forgotten")) kept)
           kept))))
 
+;;; What a message says with numbers takes longer to write than to know, and few are read.
+
+(defstruct (phrase (:constructor phrase (control &rest arguments)) (:copier nil))
+  "An item of a message: what FORMAT makes of CONTROL and ARGUMENTS, which never change."
+  (control "" :type string :read-only t)
+  (arguments '() :type list :read-only t))
+(setf (documentation 'phrase 'function)
+      "Return an item of a message that says what FORMAT makes of the arguments, once it is read.")
+
+(defmethod print-object ((phrase phrase) stream)
+  (apply #'format stream (phrase-control phrase) (phrase-arguments phrase)))
+
 ;;; Printing.
 
 (defun write-item (item stream)

@@ -9,10 +9,17 @@
   "Return what NAME (a symbol or string) is called, in upper case."
   (string-upcase (string name)))
 
+(defun called-alike-p (a b)
+  "True if the symbols or strings A and B are called the same. Most are not of one length."
+  (declare #.*hot*)
+  (let ((a (if (symbolp a) (symbol-name a) (string a)))
+        (b (if (symbolp b) (symbol-name b) (string b))))
+    (and (= (length a) (length b)) (string-equal a b))))
+
 (declaim (inline same-name-p))
 (defun same-name-p (a b)
   "True if the symbols or strings A and B are called the same, whatever their packages and case."
-  (or (eq a b) (string-equal a b)))
+  (or (eq a b) (called-alike-p a b)))
 
 (defun value-equal (a b)
   "True if A and B are the same attribute value: symbols by name, numbers by value, lists by

@@ -23,8 +23,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:read-file-into-string #:starts-with-subseq #:define-constant #:proper-list-p
            #:parse-ordinary-lambda-list)
   ;; policy
-  (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:cell-index
-           #:tick-count #:document-functions
+  (:export #:*hot* #:compiler-note #:declaim-final #:double #:heap-bytes #:make-room #:cell-index
+           #:surely #:tick-count #:document-functions
            #:document-restarts #:all-restarts #:restart-documentation)
   ;; public
   (:export #:public #:addition #:settable #:settable-p #:addition-p #:public-symbols #:*marking-p*)
@@ -129,7 +129,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:copy-message-queue #:message-queue-listener
            #:message #:message-kind #:message-items #:message-asker #:*told-of*
            #:take-messages #:queue-message
-           #:message-text
+           #:message-text #:phrase
            #:write-message #:write-items #:out #:*message-limit*)
   ;; askers
   (:export #:*asker* #:asker-note #:asker-forked-p #:*goes-on-in-forks-p* #:goes-on-in-forks-p
@@ -171,7 +171,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:digest #:make-digest #:digest-add #:digest-value)
   ;; kinds, digesting, copying
   (:export #:define-kind #:*object-kinds* #:kind-p #:kind-of #:kind-called #:kind-name
-           #:kind-slots #:all-kinds
+           #:kind-slots #:all-kinds #:find-kind-name
            #:kind-slot-name #:kind-slot-role #:kind-slot-type #:kind-slot-text #:kind-slot-part-p
            #:kind-slot-reader
            #:kind-slot-writer #:object-slots #:reset #:reference #:digest-state #:digest-mention

@@ -16,9 +16,67 @@
   (declare (type word word))
   (ldb (byte 32 0) (mix-word word)))
 
+;;; Seeding. What a seed makes of the words of a random state takes microseconds, and few programs
+;;; roll. So only the first word, which is the seed itself, is set, with a mark behind it; the rest
+;;; follows when the first roll asks SBCL for new numbers. A copy of such words means the same.
+
+(deftype words () "What is in a random state." '(simple-array (unsigned-byte 32) (627)))
+
+(declaim (type function *words-of-state* *fill-words*))
+(defparameter *words-of-state* (symbol-function (find-symbol "RANDOM-STATE-STATE" "SB-KERNEL"))
+  "The function that returns the words of a random state.")
+(defparameter *fill-words* (symbol-function (find-symbol "INIT-RANDOM-STATE" "SB-KERNEL"))
+  "The function of a seed and the words of a random state that seeds these.")
+
+(defconstant +place-of-place+ 2
+  "The index, in the words of a random state, of the place at which they are read next.")
+(defconstant +first-word+ (1+ +place-of-place+))
+(defconstant +all-read+ 624 "The place in words of which all have been read.")
+(define-constant +mark+ #(#x6C617A79 #x64696365 #x2E2E2E2E) :test #'equalp
+  :documentation "What stands behind the first of words that are still to be filled.")
+
+(defun mark-seeded (words seed)
+  "Let WORDS, of a random state, be filled from SEED when somebody asks for new ones."
+  (declare (type words words))
+  (setf (aref words +place-of-place+) +all-read+
+        (aref words +first-word+) seed)
+  (loop for mark of-type (unsigned-byte 32) across +mark+
+        for index from (1+ +first-word+)
+        do (setf (aref words index) mark)))
+
+(defun fill-if-marked (words)
+  "Fill the WORDS of a random state if they bear the mark."
+  (declare (type words words))
+  (when (loop for mark of-type (unsigned-byte 32) across +mark+
+              for index from (1+ +first-word+)
+              always (= mark (aref words index)))
+    (funcall *fill-words* (aref words +first-word+) words)))
+
+(defun fill-and-renew (renew words)
+  "Do what RENEW, SBCL's function, does with WORDS of which all have been read."
+  (fill-if-marked words)
+  (funcall renew words))
+
+(wrap-function (find-symbol "RANDOM-MT19937-UPDATE" "SB-KERNEL") #'fill-and-renew)
+
+(defun seeding-waits-p ()
+  "True if this SBCL asks for new words in such a way that they can be filled by then."
+  (let ((state (make-random-state nil)))
+    (mark-seeded (funcall *words-of-state* state) 1992)
+    (= (random (expt 2 64) state) (random (expt 2 64) (sb-ext:seed-random-state 1992)))))
+
+(defparameter *seeding-waits-p* (seeding-waits-p) "Whether seeding may wait for the first roll.")
+
+(defun reseed (state seed)
+  "Let the random state STATE be what SEEDED-LISPS-DICE returns for SEED, an integer."
+  (let ((words (funcall *words-of-state* state)))
+    (mark-seeded words (short-seed (ldb (byte 64 0) seed)))
+    (unless *seeding-waits-p* (fill-if-marked words))
+    state))
+
 (defun seeded-lisps-dice (seed)
   "Return a random state for CL:RANDOM that depends on the integer SEED only."
-  (sb-ext:seed-random-state (short-seed (ldb (byte 64 0) seed))))
+  (reseed (make-random-state nil) seed))
 
 (defun call-with-lisps-dice (function seed)
   "Call FUNCTION. What CL:RANDOM says in it depends on the integer SEED only."
@@ -33,8 +91,7 @@
   "Return a number of 64 bits that no other process comes upon, if chance allows."
   (random (expt 2 64) (make-random-state t)))
 
-;;; The dice of a tick. Few ticks call users' code, and seeding takes microseconds: it is done when
-;;; the first code is called.
+;;; The dice of a tick. They are seeded when the first users' code is called.
 
 (defstruct (tick-dice (:constructor make-tick-dice ()) (:copier nil))
   "What CL:RANDOM rolls in users' code that changes a world in the tick at hand: STATE, once it is
@@ -61,16 +118,6 @@ seeded by the integers SEED and TICK."
   (logxor (ldb (byte 64 0) (tick-dice-seed dice))
           (mix-word (ldb (byte 64 0) (tick-dice-tick dice)))))
 
-(declaim (type function *words-of-state* *fill-words*))
-(defparameter *words-of-state* (symbol-function (find-symbol "RANDOM-STATE-STATE" "SB-KERNEL"))
-  "The function that returns the words of a random state.")
-(defparameter *fill-words* (symbol-function (find-symbol "INIT-RANDOM-STATE" "SB-KERNEL"))
-  "The function of a seed and the words of a random state that seeds these.")
-
-(defun reseed (state seed)
-  "Let the random state STATE be what SEEDED-LISPS-DICE returns for SEED, an integer."
-  (funcall *fill-words* (short-seed (ldb (byte 64 0) seed)) (funcall *words-of-state* state)))
-
 ;; The state itself is changed: while users' code is called it is bound once more.
 (defun reseed-lisps-dice (seed)
   "Let what CL:RANDOM says to programs here depend on the integer SEED from now on. Code that
@@ -85,15 +132,13 @@ changes a world rolls other dice."
   (place 0 :type (unsigned-byte 32) :read-only t)
   (words nil :type (simple-array (unsigned-byte 32) (*)) :read-only t))
 
-(defconstant +place-of-place+ 2 "The index, in the words of a random state, of the place.")
-
 (defun dice-rolled (before)
   "Return what the dice of programs are here and now, for ROLL-BACK. It is BEFORE, which was
 returned earlier, or NIL, if they have not been rolled since."
   (let* ((now (funcall *words-of-state* *random-state*))
          (place (aref now +place-of-place+))
-         (same-words-p (and before (= (aref now (1+ +place-of-place+))
-                                      (aref (rolled-words before) (1+ +place-of-place+))))))
+         (same-words-p (and before (= (aref now +first-word+)
+                                      (aref (rolled-words before) +first-word+)))))
     (declare (type (simple-array (unsigned-byte 32) (*)) now))
     (cond ((not same-words-p) (make-rolled place (copy-seq now)))
           ((= place (rolled-place before)) before)

@@ -74,8 +74,8 @@ name, DOCUMENTATION what its author says there of what is defined."
 
 (defun called-p (entry name registry)
   (or (same-name-p name (entry-name entry))
-      (member name (funcall (registry-aliases registry) (entry-object entry))
-              :test #'same-name-p)))
+      (loop for alias in (funcall (registry-aliases registry) (entry-object entry))
+              thereis (same-name-p name alias))))
 
 (defun qualified-symbol (name)
   "Return the symbol that NAME, a string such as \"PACKAGE:NAME\", stands for, or NIL. What is not
@@ -95,7 +95,10 @@ called just so is looked for in upper case."
           (name (or (qualified-symbol name) name)))
       (or (loop for entry in entries
                 when (eq name (entry-name entry)) return entry)
-          (find-if (lambda (entry) (called-p entry name registry)) entries :from-end t)))))
+          (loop with last = nil
+                for entry in entries
+                when (called-p entry name registry) do (setf last entry)
+                finally (return last))))))
 
 (defun entries-meant (name)
   "Return the entries of users' definitions, of whatever kind, that NAME, a symbol, stands for."

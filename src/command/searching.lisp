@@ -19,7 +19,7 @@ that the attributes can have, and of a range the lower end first"
   "the name of a place type")
 
 (defun found-text (operation designators)
-  (format nil "~A found ~{~A~^, ~}" (operation-resource operation) designators))
+  (phrase "~A found ~{~A~^, ~}" (operation-resource operation) (copy-list designators)))
 
 (defun name-sightings (camera sightings)
   "Return designators for those of SIGHTINGS that CAMERA still has. Of more than a robot keeps, the

@@ -8,7 +8,8 @@
 (define-command think (operation (robot robot)
                        (ticks tick-span "for how many ticks, if thinking is charged"))
     ()
-    ((:family :thinking) (:section "1.2") (:delay 1) (:prefix "think") (:occupies robot-mind))
+    ((:family :thinking) (:section "1.2") (:delay 1) (:prefix "think") (:occupies robot-mind)
+     (:report () "Robot has thought"))
     "Let ROBOT think: where thinking is charged for TICKS, but 1 at least; elsewhere until the end
 of the next tick. Its body and its parts go on meanwhile. A newer thought interrupts an older one."
   (if (and (> ticks 1) (thinking-charged-p (operation-timeline operation)))

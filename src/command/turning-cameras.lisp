@@ -18,7 +18,7 @@ estimate of the angle."
   (turn-camera operation camera (angle-difference direction (camera-angle camera))))
 
 (defun camera-turned-text (operation angle)
-  (format nil "~A turned ~,2F" (operation-resource operation) angle))
+  (phrase "~A turned ~,2F" (operation-resource operation) angle))
 
 (define-command camera-turn (operation (camera camera)
                              (angle angle "how far in radians, to the right if positive"))

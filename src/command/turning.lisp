@@ -22,7 +22,7 @@ them (reading 91)."
                                  (declare (ignore operation))
                                  (format nil "Speed too high. Set to the maximum, ~,2F"
                                          max-speed*))))
-     (:report (speed) (format nil "Speed set to ~,2F" speed)))
+     (:report (speed) (phrase "Speed set to ~,2F" speed)))
     "Set the speed at which ROBOT drives, cut off at 0 and MAX-SPEED*."
   (multiple-value-bind (speed outside) (set-within speed 0 max-speed*)
     (setf (robot-speed robot) speed)
@@ -83,7 +83,7 @@ odometry's reading of the step. See reading 99."
       (go-on-now operation 'turn-on)))
 
 (defun turned-text (angle)
-  (format nil "Robot turned ~,2F" angle))
+  (phrase "Robot turned ~,2F" angle))
 
 (define-command robot-turn (operation (robot robot)
                             (angle angle "how far in radians, to the right if positive"))

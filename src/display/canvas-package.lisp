@@ -28,4 +28,5 @@
   (:export #:+text-font+ #:text-width #:paint-text #:character-width #:draw-words
            #:call-with-opacity #:with-opacity)
   ;; svg
-  (:export #:svg-canvas #:svg-stream #:call-with-svg #:with-svg #:write-svg #:number-text))
+  (:export #:svg-canvas #:svg-stream #:call-with-svg #:with-svg #:write-svg #:number-text
+           #:write-number #:write-text))

@@ -6,7 +6,7 @@
         :ars-magna.robot :ars-magna.run :ars-magna.canvas)
   (:shadowing-import-from :cl #:equal)
   (:shadowing-import-from :ars-magna.world #:map)
-  (:import-from :ars-magna.command #:under-way-text #:interruption-text)
+  (:import-from :ars-magna.command #:under-way-text #:interruption-text #:last-failure)
   ;; text-map
   (:export #:text-map #:+text-layers+)
   ;; history
@@ -24,6 +24,9 @@
   (:export #:draw-terrain #:draw-movers #:draw-world #:draw-framed-world #:suitable-scale
            #:draw-view-margins
            #:draw-display #:display-title #:+displays+)
+  ;; moments
+  (:export #:moment-p #:moment-tick #:moment-kind #:moment-text #:moment-x #:moment-y
+           #:make-moment #:moments-watcher #:checked-moments #:in-order #:journal-moments)
   ;; picture, animation
   (:export #:picture-scale)
   (:export #:picture-kind #:save-svg #:save-picture #:save-snapshot #:svg-picture #:save-animation

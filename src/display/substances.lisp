@@ -9,13 +9,13 @@
   :test #'cl:equal
   :documentation "The colours of substances, in order of definition, over and over again.")
 
-(define-constant +tints+ '(:yellow #xD8B400 :cyan #x00B8C8 :red #xE04830 :blue #x4068E8
-                           :green #x40A040 :lightcyan #x60C8B0 :violet #x9848C8
-                           :lightyellow #xC8D040 :lightviolet #xC890E0)
+(define-constant +tints+ '(:yellow #xC8B060 :cyan #x58B0B8 :red #xC08878 :blue #x7890D0
+                           :green #x78A878 :lightcyan #x88C4B0 :violet #xA080C8
+                           :lightyellow #xC0C488 :lightviolet #xC8A4D8)
   :test #'cl:equal
   :documentation "The hues of these colours; grey has none.")
 
-(define-constant +tint-strength+ 0.22d0 :documentation "How much of its hue a wall has.")
+(define-constant +tint-strength+ 0.55d0 :documentation "How much of its hue a wall has.")
 
 (defun substance-ink (name)
   "Return the colour of the substance called NAME, or NIL."

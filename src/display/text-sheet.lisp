@@ -46,7 +46,7 @@ a list of all glyphs that mean something there."
 first the one that shows."
   (let* ((view (sheet-view sheet))
          (map (view-map view))
-         (things (loop for index in indices append (svref (world-cells (view-world view)) index))))
+         (things (loop for index in indices append (cell-things index (view-world view)))))
     (or (mapcar (lambda (robot) (robot-glyph robot things)) (robots-in view indices))
         (marked sheet :belief number)
         (things-glyphs things (sheet-letters sheet))

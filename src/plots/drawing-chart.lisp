@@ -29,19 +29,26 @@
              (incf x (+ (entry-width text) +entry-space+)))
     (incf y (+ +text-step+ 4))))
 
-(defun drawing-chart (draw width height &key title subtitle entries)
+(defun draw-notes (canvas notes y)
+  (loop for note in notes
+        for below from y by +text-step+
+        do (write-lines canvas +margin+ below (list note))))
+
+(defun drawing-chart (draw width height &key title subtitle entries notes)
   "Return a drawing WIDTH and HEIGHT pixels large as an SVG document, with TITLE and SUBTITLE above,
 strings or NIL, and ENTRIES below, lists (index text) that say what lines mean that end in a marker
-(see LOOK-COLOR and DRAW-MARKER). The function DRAW is called with a canvas whose origin is the
-upper left corner of the drawing."
+(see LOOK-COLOR and DRAW-MARKER), and NOTES, strings, a line for each. The function DRAW is called
+with a canvas whose origin is the upper left corner of the drawing."
   (let* ((page-width (max width 480))
          (heading (plan-heading title subtitle (+ page-width (* 2 +margin+))))
          (rows (entry-rows entries page-width))
+         (legend (* (+ +text-step+ 4) (length rows)))
          (top (+ (heading-bottom heading) 12)))
     (page-svg (lambda (canvas)
                 (draw-heading canvas heading)
                 (with-origin (canvas +margin+ top)
                   (with-clipping (canvas 0 0 width height) (funcall draw canvas)))
-                (draw-entries canvas rows (+ top height 22)))
+                (draw-entries canvas rows (+ top height 22))
+                (draw-notes canvas notes (+ top height legend 22)))
               (+ page-width (* 2 +margin+))
-              (+ top height (* (+ +text-step+ 4) (length rows)) +margin+ 4))))
+              (+ top height legend (* +text-step+ (length notes)) +margin+ 4))))

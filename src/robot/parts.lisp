@@ -219,13 +219,16 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   "Return the part of ROBOT of KIND, a symbol such as CAMERA or a kind of one's own, with INDEX
 among those, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument robot-part kind (typep kind '(or symbol string)) "the name of a kind of part")
-  (unless (find kind (all-kinds 'part) :key #'kind-name :test #'same-name-p)
+  (unless (find-kind-name kind 'part)
     (reject-name "kind of part" kind (mapcar #'kind-name (all-kinds 'part))))
   (part-of robot (lambda (robot) (parts-of-kind robot kind)) index 'robot-part))
 
 (defun parts-of-kind (robot kind)
   "Return a vector of the parts of ROBOT of the kind called KIND."
-  (coerce (remove-if-not (lambda (part) (same-name-p kind (type-of part))) (robot-parts robot))
+  (coerce (loop for parts in (list (robot-cameras robot) (robot-hands robot) (robot-bins robot)
+                                   (robot-sensors robot))
+                append (loop for part across parts
+                             when (same-name-p kind (type-of part)) collect part))
           'simple-vector))
 
 ;;; Parts are called by their numbers (manual E).

@@ -5,8 +5,8 @@
 ;;; A ray passes from cell to cell (grid-walk.lisp); a fan is a number of evenly spaced rays, turned
 ;;; into each other by one rotation instead of a sine and a cosine each. Nothing is allocated but
 ;;; a list of the cells that were found. Each is found once: while a scan lasts, the flags of the
-;;; cells found carry the mark +SEEN+, so that cost depends on what is seen, neither on the size
-;;; of the map nor on what exists in it.
+;;; cells found carry the mark +SEEN+ instead of +OCCUPIED+, so that they are passed like empty
+;;; ones, and cost depends on what is seen, neither on the size of the map nor on what exists in it.
 
 (define-constant +seen+ 128
   :documentation "The flag of a cell that the scan under way has found; clear between scans.")
@@ -14,6 +14,9 @@
   :documentation "Any component of a ray's direction that is nearer to 0 is taken for this.")
 
 (deftype flag-vector () '(simple-array (unsigned-byte 8) (*)))
+(deftype index-step ()
+  "How far it is from a cell to the next, by index."
+  '(signed-byte 16))
 
 (declaim (inline nonzero))
 (defun nonzero (component)
@@ -32,16 +35,79 @@ crossed."
                (funcall visit index (aref flags index)))
              width height x y (nonzero dx) (nonzero dy) reach))
 
-(defmacro do-fan ((dx dy) (angle width count) &body body)
+(defmacro do-fan ((dx dy &optional (per-x (gensym)) (per-y (gensym))) (angle width count)
+                  &body body)
   "Run BODY for each of COUNT directions DX, DY, evenly spaced over WIDTH radians around
-ANGLE (reading 146)."
-  (with-gensyms (spacing first cos sin)
+ANGLE (reading 146), with their reciprocals PER-X and PER-Y, finite and not 0. All are computed
+before BODY runs for the direction before, so that the processor divides while BODY walks."
+  (with-gensyms (spacing first cos sin next-x next-y next-per-x next-per-y)
     `(let* ((,spacing (/ ,width ,count))
             (,first (- ,angle (* 0.5d0 (- ,width ,spacing))))
             (,cos (cos ,spacing)) (,sin (sin ,spacing))
-            (,dx (cos ,first)) (,dy (sin ,first)))
-       (declare (type double-float ,spacing ,first ,cos ,sin ,dx ,dy))
+            (,next-x (cos ,first)) (,next-per-x (/ (nonzero ,next-x)))
+            (,next-y (sin ,first)) (,next-per-y (/ (nonzero ,next-y))))
+       (declare (type double-float ,spacing ,first ,cos ,sin
+                      ,next-x ,next-y ,next-per-x ,next-per-y))
        (loop repeat ,count
-             do (progn ,@body)
-                (psetf ,dx (- (* ,dx ,cos) (* ,dy ,sin))
-                       ,dy (+ (* ,dx ,sin) (* ,dy ,cos)))))))
+             do (let ((,dx ,next-x) (,per-x ,next-per-x)
+                      (,dy ,next-y) (,per-y ,next-per-y))
+                  (declare (ignorable ,per-x ,per-y))
+                  (setf ,next-x (- (* ,dx ,cos) (* ,dy ,sin))
+                        ,next-y (+ (* ,dx ,sin) (* ,dy ,cos))
+                        ,next-per-x (/ (nonzero ,next-x))
+                        ,next-per-y (/ (nonzero ,next-y)))
+                  ,@body)))))
+
+;;; Scans are most of what a robot that looks costs, so they have a walk of their own, which meets
+;;; the same cells as WALK-GRID. What the rays of a fan have in common is computed once, cells that
+;;; nobody waits for cost one test, each axis has its own code. 75 x 75, 10 things: 10.8 -> 12.6 M
+;;; rays/s, some 5 % of it by leaving REACH out; 1000 x 1000 rooms, 100,000 things: 14.7 -> 19.7.
+
+(declaim (inline begin-axis))
+(defun begin-axis (back per stride behind ahead left-behind left-ahead)
+  "Return how the index changes where a ray crosses borders of one axis, at what distance it does
+so first, and how often it may, going BACK or not, with a distance PER border. The rest is how far
+the borders behind and ahead are, and how many of each."
+  (declare (type double-float per behind ahead) (type grid-size stride left-behind left-ahead))
+  (if back
+      (values (- stride) (* per behind) left-behind)
+      (values stride (* per ahead) left-ahead)))
+
+(declaim (inline walk-fan))
+(defun walk-fan (visit stops flags width height x y angle fan count reach)
+  "Call VISIT, which is inline, with index and flags of each cell that has some of the flags STOPS
+and that COUNT rays from (X,Y) meet after the first, evenly spaced over FAN radians around ANGLE.
+Each goes on until VISIT returns true, the map ends, or REACH columns or rows have been crossed.
+If REACH is NIL, a constant, all that is left to end them is VISIT."
+  (declare (type function visit) (type flag-vector flags) (type (unsigned-byte 8) stops)
+           (type double-float x y angle fan) (type grid-size width height)
+           (type (or null grid-size) reach))
+  (let* ((cell-x (cell-number x)) (behind-x (- x cell-x)) (ahead-x (- (1+ cell-x) x))
+         (cell-y (cell-number y)) (behind-y (- y cell-y)) (ahead-y (- (1+ cell-y) y))
+         (most (or reach 0))
+         (left-behind-x (min most cell-x)) (left-ahead-x (min most (- width cell-x 1)))
+         (left-behind-y (min most cell-y)) (left-ahead-y (min most (- height cell-y 1))))
+    (do-fan (dx dy inverse-x inverse-y) (angle fan count)
+      (let ((index (+ cell-x (* cell-y width)))
+            (per-x (abs inverse-x)) (per-y (abs inverse-y)))
+        (declare (type cell-index index) (type double-float per-x per-y))
+        (multiple-value-bind (step-x at-x left-x)
+            (begin-axis (minusp inverse-x) per-x 1 behind-x ahead-x left-behind-x left-ahead-x)
+          (declare (type index-step step-x) (type double-float at-x) (type grid-size left-x))
+          (multiple-value-bind (step-y at-y left-y)
+              (begin-axis (minusp inverse-y) per-y width behind-y ahead-y
+                          left-behind-y left-ahead-y)
+            (declare (type index-step step-y) (type double-float at-y) (type grid-size left-y))
+            (macrolet ((enter-next (at per step left)
+                         `(let ((next (+ index ,step)))
+                            (when reach
+                              (when (zerop ,left) (return))
+                              (decf ,left))
+                            (incf ,at ,per)
+                            (when (logtest stops (aref flags next))
+                              (when (funcall visit next (aref flags next)) (return)))
+                            ;; AREF has made sure.
+                            (setf index (surely cell-index next)))))
+              (loop (if (< at-x at-y)
+                        (enter-next at-x per-x step-x left-x)
+                        (enter-next at-y per-y step-y left-y))))))))))

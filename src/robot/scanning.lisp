@@ -10,15 +10,23 @@
 ;;; the hand is.
 
 (declaim (inline mark-seen))
-(defun mark-seen (flags index flag)
-  (declare (type flag-vector flags) (type cell-index index) (type (unsigned-byte 8) flag))
-  (setf (aref flags index) (logior flag +seen+)))
+(defun mark-seen (flags index)
+  "Let the flag +SEEN+ take the place of +OCCUPIED+ in FLAGS at INDEX, or the other way round."
+  (declare (type flag-vector flags) (type cell-index index))
+  (setf (aref flags index) (logxor (aref flags index) (logior +occupied+ +seen+))))
+
+(declaim (inline walls-around-p))
+(defun walls-around-p (map x y)
+  "True if any line from (X,Y) ends at a wall of MAP."
+  (declare (type double-float x y))
+  (and (map-enclosed map)
+       (<= 1d0 x) (< x (double (1- (map-width map))))
+       (<= 1d0 y) (< y (double (1- (map-height map))))))
 
 (defun unmark-seen (flags cells)
   (declare #.*hot* (type flag-vector flags) (type list cells))
   (dolist (index cells)
-    (declare (type cell-index index))
-    (setf (aref flags index) (logandc2 (aref flags index) +seen+))))
+    (mark-seen flags index)))
 
 (defun occupied-cells (world x y angle width count reach)
   "Return a list of the cells of WORLD with things on their floor that a fan of COUNT rays from
@@ -29,14 +37,17 @@
          (columns (map-width map)) (rows (map-height map)) (found '()))
     (flet ((visit (index flag)
              (declare (type cell-index index) (type (unsigned-byte 8) flag))
-             (unless (zerop flag)
-               (when (= (logand flag (logior +occupied+ +seen+)) +occupied+)
-                 (mark-seen flags index flag)
-                 (push index found))
-               (logtest flag +opaque+))))
+             (when (logtest flag +occupied+)
+               (mark-seen flags index)
+               (push index found))
+             (logtest flag +opaque+)))
       (declare (inline visit))
-      (do-fan (dx dy) (angle width count)
-        (walk-ray #'visit flags columns rows x y dx dy reach)))
+      (macrolet ((walk (reach)
+                   `(walk-fan #'visit (logior +occupied+ +opaque+) flags columns rows x y
+                              angle width count ,reach)))
+        (if (and (= reach +no-limit+) (walls-around-p map x y))
+            (walk nil)
+            (walk reach))))
     (unmark-seen flags found)
     (nreverse found)))
 
@@ -51,7 +62,7 @@ place type has NUMBER in the map."
     (flet ((visit (index flag)
              (declare (type cell-index index) (type (unsigned-byte 8) flag))
              (when (and (= (aref places index) number) (not (logtest flag +seen+)))
-               (mark-seen flags index flag)
+               (mark-seen flags index)
                (push index found))
              (logtest flag +opaque+)))
       (declare (inline visit))
@@ -101,11 +112,11 @@ meet within REACH columns and rows."
 (defun things-in-cells (cells camera local)
   "Return the things on the floor of CELLS that are within the reach of CAMERA's robot, or if not
 LOCAL the others (reading 131)."
-  (let* ((robot (camera-robot camera)) (things (world-cells (robot-world robot))))
-    (loop for index in cells
-          append (loop for thing in (svref things index)
-                       when (eq local (within-reach-p robot (thing-x thing) (thing-y thing)))
-                         collect thing))))
+  (let* ((robot (camera-robot camera)) (world (robot-world robot)) (things '()))
+    (dolist (index cells (nreverse things))
+      (do-cell (thing index world)
+        (when (eq local (within-reach-p robot (thing-x thing) (thing-y thing)))
+          (push thing things))))))
 
 (defun things-faced (camera cells)
   "Return the things within reach in other cells than CELLS that CAMERA looks straight at."

@@ -85,9 +85,9 @@ cell, with the chance PROB-STOP* at each, or at the edge of the map (reading 136
 
 (defun random-thing (world dice)
   "Return any thing of WORLD; NIL if there are none, or by bad luck."
-  (let ((things (world-things world)))
-    (and (plusp (length things))
-         (aref things (roll-index (length things) dice)))))
+  (let ((count (world-rank-count world)))
+    (and (plusp count)
+         (thing-of-rank (roll-index count dice) world))))
 
 (defun imagined-reading (demand dice)
   "Return a reading that fits DEMAND."

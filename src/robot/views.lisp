@@ -8,17 +8,19 @@
 ;;; all. What lies in the robot's own cell does not count. From inside, all there is to see is the
 ;;; container.
 
-(defun obstructing-thing (things)
-  "Return the largest of THINGS that obstructs vision, the first of equals, or NIL (reading 240)."
+(defun obstructing-thing (index world)
+  "Return the largest of the things in the cell INDEX of WORLD that obstructs vision, the first of
+equals, or NIL (reading 240)."
   (let ((best nil))
-    (dolist (thing things best)
+    (do-cell (thing index world)
       (when (and (thing-obsview-p thing)
                  (or (null best) (> (thing-size thing) (thing-size best))))
-        (setf best thing)))))
+        (setf best thing)))
+    best))
 
 (defun true-pixel (world x y dx dy)
   "Return what a ray from (X,Y) in direction DX, DY sees, without noise (reading 65)."
-  (let* ((flags (world-flags world)) (map (world-map world)) (cells (world-cells world))
+  (let* ((flags (world-flags world)) (map (world-map world))
          (sum 0d0) (count 1) (last 0d0))
     (flet ((visit (index flag)
              (cond ((zerop flag) nil)
@@ -26,8 +28,8 @@
                     (setf last (aref (map-parameters map) index)))
                    ((logtest flag +obsview+)
                     (setf last (thing-substance-parameter
-                                (obstructing-thing (svref cells index)))))
-                   (t (dolist (thing (svref cells index))
+                                (obstructing-thing index world))))
+                   (t (do-cell (thing index world)
                         (when (thing-substance-p thing)
                           (incf sum (thing-substance-parameter thing))
                           (incf count)))

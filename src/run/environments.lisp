@@ -92,6 +92,7 @@ is not the current one out here, its parameters and, of a fork, its variables."
                  (*message-queue* (simulation-messages simulation))
                  (*tick-dice* nil))
              (funcall function))))
+    (declare (dynamic-extent #'call))
     (if (eq simulation *simulation*)
         (call)
         (call-elsewhere simulation #'call))))

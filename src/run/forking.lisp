@@ -150,6 +150,7 @@ and false if there is to be no fork."
 (defun fork-deciding (simulation continuations)
   "Return a fork of SIMULATION, or NIL if somebody has given that up."
   (let ((decisions '()))
+    (make-room (octets-of-copy (simulation-world simulation)))
     (loop
       (handler-case (return (await-fork simulation continuations decisions))
         (cannot-fork (condition)

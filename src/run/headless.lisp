@@ -72,13 +72,13 @@ SIMULATION runs live or is inside a tick, or if another thread passes its ticks.
   (check-not-over simulation 'run-ticks)
   (check-not-secluded simulation)
   (check-passable simulation)
-  (loop with custody = (timeline-custody (simulation-timeline simulation))
-        until (call-with-custody custody
-                                 (lambda ()
-                                   (call-inside simulation
-                                                (lambda () (pass-ticks count simulation)))
-                                   t)
-                                 (lambda () (await-free simulation) nil)))
+  (flet ((pass () (pass-ticks count simulation)))
+    (declare (dynamic-extent #'pass))
+    (flet ((pass-inside () (call-inside simulation #'pass) t)
+           (wait () (await-free simulation) nil))
+      (declare (dynamic-extent #'pass-inside #'wait))
+      (loop with custody = (timeline-custody (simulation-timeline simulation))
+            until (call-with-custody custody #'pass-inside #'wait))))
   (simulation-tick simulation))
 
 (addition run-until)

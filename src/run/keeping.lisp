@@ -25,10 +25,7 @@ can go back; T for a usual number, NIL for none. The prompt sets it to T.")
 
 (defun octets-of-fork (simulation)
   "Return roughly how many octets a fork of SIMULATION takes."
-  (let* ((world (simulation-world simulation)) (map (world-map world)))
-    (+ 50000
-       (* 9 (map-width map) (map-height map))
-       (* 500 (length (world-things world))))))
+  (+ 50000 (octets-of-copy (simulation-world simulation))))
 
 (defun room-for-forks (simulation past)
   "Return how many forks SIMULATION, of PAST, may keep."

@@ -41,7 +41,7 @@ lists."
    "Return what the reference with KIND, a symbol, and ARGUMENTS names in SIMULATION.")
   (:method (kind arguments simulation)
     (unless (and (typep arguments '(cons t (cons (integer 0) null)))
-                 (find kind (all-kinds 'part) :key #'kind-name :test #'same-name-p))
+                 (find-kind-name kind 'part))
       (reject-use "~S names nothing that a run has." (cons kind arguments)))
     (robot-part (robot-in simulation (first arguments)) kind (second arguments))))
 

@@ -134,6 +134,15 @@ recorded with, unless ANYWAY is true."
   `(call-with-replay (lambda () ,@body) ,journal
                      :until ,until :anyway ,anyway :keep ,keep))
 
+(defun journal-meant (journal)
+  "Return the journal that JOURNAL is: one, the name of a file with one, or, if it is NIL, that of
+the current simulation up to now."
+  (cond ((null journal)
+         (let ((simulation (current-simulation)))
+           (asking (simulation) (end-of-journal simulation))))
+        ((journal-p journal) journal)
+        (t (read-journal journal))))
+
 (addition replay)
 (defun replay (journal &key until anyway)
   "Repeat JOURNAL as WITH-REPLAY does. Return the simulation, and its STATE-DIGEST."

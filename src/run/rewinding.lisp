@@ -126,7 +126,8 @@ it, and the tick at which plans strayed on the way, or NIL."
 
 (defun end-rewound (old new)
   "Let OLD be over, as NEW goes on in its place."
-  (let ((reason (format nil "it was rewound to tick ~D, and *SIMULATION* goes on from there"
+  (let ((reason (format nil "it was rewound to tick ~D, and another run goes on from there: ~
+                             *SIMULATION*, where it was rewound"
                         (simulation-tick new))))
     (succeed-in-line new old)
     (retire-robots (simulation-robots old) reason)

@@ -19,8 +19,10 @@
   ((name  :initarg :name  :reader unsavable-name)
    (parts :initarg :parts :reader unsavable-parts))
   (:report (lambda (condition stream)
-             (format stream "The run in ~(~A~) cannot be saved whole: ~{~A~^; ~}. Wait for their ~
-                             end, or leave them out, by the restart SAVE-WITHOUT."
+             (format stream "The run in ~(~A~) cannot be saved whole: ~{~A~^; ~}. Wait ~
+                             until plans and events are over, or leave all that out by the ~
+                             restart SAVE-WITHOUT; a journal that cannot be saved is left out ~
+                             whole."
                      (unsavable-name condition) (unsavable-parts condition))))
   (:documentation "A run is to be saved in which something goes on that no file can hold."))
 
@@ -54,7 +56,7 @@ hold."
                               "a command was withdrawn by a plan"))
           (and journal
                (some (lambda (entry) (unprintable-in (cddr entry))) (journal-entries journal))
-               (list "its journal has entries with functions in them"))))
+               (list "its journal has entries with functions in them, as those of PUT-KICKER"))))
 
 (defun stripped-copy (simulation)
   "Return a copy of SIMULATION without what no file can hold."
@@ -173,12 +175,13 @@ be told."
   "Write the state of SIMULATION, between two ticks, to FILE, from which LOAD-SIMULATION has it go
 on as it would have: world, things, kickers, robots and their parts, designators, tracks, odometers,
 commands under way and asked for, parameters, seed and dice; and the journal, so that a replay
-still repeats all of the run. Who is told of the ends of commands and tracks, observers and messages
-are left out. FILE is replaced when all is written. Return its truename. Signals UNSAVABLE, with the
-restart SAVE-WITHOUT, where plans or events of SCHEDULE are under way; MISUSE if the run is over or
-inside a tick, has what has no printed form, such as a kicker of PUT-KICKER's, or cannot be written,
-as where FILE is something else than a saved run; and WRONG-ARGUMENT unless FILE is a name. Whatever
-it signals, FILE is as it was."
+still repeats all of the run. Who is told of the ends of commands and tracks, as programs of
+continuations are, observers and messages are left out. FILE is replaced when all is written. Return
+its truename. Signals UNSAVABLE, with the restart SAVE-WITHOUT, where plans or events of SCHEDULE
+are under way or the journal has functions in it; MISUSE if the run is over or inside a tick, has
+what has no printed form, such as a kicker of PUT-KICKER's, or cannot be written, as where FILE is
+something else than a saved run; and WRONG-ARGUMENT unless FILE is a name. Whatever it signals, FILE
+is as it was."
   (check-argument save-simulation file (typep file '(or string pathname)) "the name of a file")
   (check-argument save-simulation simulation (simulation-p simulation) "a simulation")
   (when (foreign-file-p file)

@@ -81,9 +81,10 @@ have been begun."
 
 (defun let-all-participants-act (simulation)
   (let ((*tick-dice* nil))
-    (call-each (lambda (participant)
-                 (call-user-code #'participant-after-tick "a participant" participant simulation))
-               (simulation-participants simulation))))
+    (flet ((act (participant)
+             (call-user-code #'participant-after-tick "a participant" participant simulation)))
+      (declare (dynamic-extent #'act))
+      (call-each #'act (simulation-participants simulation)))))
 
 (defun let-participants-act (simulation)
   (when (simulation-participants simulation) (let-all-participants-act simulation)))

@@ -58,7 +58,8 @@
       (funcall function)
       (deferring-interrupts
         (if (take-custody custody)
-            (let ((*held* (cons custody *held*)))
+            (let* ((held (cons custody *held*)) (*held* held))
+              (declare (dynamic-extent held))
               (in-any-case
                 (allowing-interrupts (funcall function))
                 (give-up-custody custody)))

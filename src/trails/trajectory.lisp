@@ -42,15 +42,6 @@
                                 (when (zerop (mod (simulation-tick simulation) every))
                                   (write-rows simulation names out)))))
 
-(defun journal-meant (journal)
-  "Return the journal that JOURNAL is: one, the name of a file with one, or, if it is NIL, that of
-the current simulation up to now."
-  (cond ((null journal)
-         (let ((simulation (current-simulation)))
-           (asking (simulation) (end-of-journal simulation))))
-        ((journal-p journal) journal)
-        (t (load-journal journal))))
-
 (defun check-trajectory (file every robots journal)
   (check-argument save-trajectory file
                   (and (typep file '(or string pathname)) (not (wild-pathname-p file))

@@ -176,7 +176,10 @@ NIL if it cannot be crossed. Signals WRONG-ARGUMENT."
 (defun take-over-field (chart goal)
   "Let CHART have the field of the node GOAL for itself, with nothing barred yet."
   (let* ((shared (shared-field (chart-terrain chart) goal))
-         (own (with-lock ((field-lock shared)) (copy-field shared))))
+         ;; Where this is broken off it is half of one and half of the other.
+         (old (shiftf (chart-field chart) nil))
+         (own (with-lock ((field-lock shared))
+                (if old (copy-into-field old shared) (copy-field shared)))))
     (setf (chart-changed chart) (mapcar #'car (chart-barred chart))
           (chart-field chart) own)))
 

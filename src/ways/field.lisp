@@ -40,6 +40,15 @@ the terrain's: totals are found in it, but no cell changes."
     (copy-into-queue (field-queue copy) (field-queue field))
     copy))
 
+(defun copy-into-field (copy field)
+  "Let COPY, a field of the same terrain that nobody shares, be as FIELD is. Return COPY."
+  (setf (field-goal copy) (field-goal field))
+  (replace (field-cells copy) (field-cells field))
+  (replace (field-totals copy) (field-totals field))
+  (replace (field-drafts copy) (field-drafts field))
+  (copy-into-queue (field-queue copy) (field-queue field))
+  copy)
+
 (defmethod copy-plan-value ((field field) fork)
   (if (field-lock field)
       field

@@ -25,15 +25,19 @@ turns.")
 
 (declaim (inline free-line-cost))
 (defun free-line-cost (field x y end-x end-y limit leaving)
-  "Return what LINE-COST does for the cells of FIELD."
-  (the double-float
-       (line-cost (field-cells field) (field-columns field) x y end-x end-y limit leaving)))
+  "Return what the straight line from (X,Y) to (END-X,END-Y) costs on the cells of FIELD; +BARRED+
+if it is not free, or costs more than LIMIT. LEAVING is true if it may begin near a wall."
+  (let ((line (make-line x y end-x end-y limit)))
+    (declare (dynamic-extent line))
+    (measure-line line (field-cells field) (field-columns field) leaving)
+    (line-cost line)))
 
 (declaim (inline first-line-p))
 (defun first-line-p (pencil)
   "True if the way of PENCIL has not turned yet."
   (null (pencil-points pencil)))
 
+(declaim (inline go-straight-p draw-on))
 (defun go-straight-p (pencil field x y limit last)
   "True if the line from the last turn of PENCIL to (X,Y) is free and costs no more than LIMIT. The
 LAST line of a way may end as near to a wall as the first may begin."

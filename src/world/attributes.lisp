@@ -43,8 +43,9 @@
 
 (defun attribute-of (name)
   "Return the attribute called NAME, a symbol, or NIL if nobody has defined it."
-  (find (attribute-key name) (the list (registry-objects *attributes*))
-        :key #'attribute-name :test #'eq))
+  (loop with key = (attribute-key name)
+        for attribute in (registry-objects *attributes*)
+        when (eq key (attribute-name attribute)) return attribute))
 
 (defun declared-name-like (name)
   "Return the name of a defined attribute for which NAME, of no attribute, may be a slip; or NIL."

@@ -20,7 +20,7 @@
 
 (defun cell-violations (world index)
   "Return what is wrong with the cell INDEX of WORLD, a list of strings."
-  (let* ((things (svref (world-cells world) index))
+  (let* ((things (cell-things index world))
          (flags (reduce #'logior (mapcar #'thing-flags things)
                         :initial-value (aref (map-flags (world-map world)) index))))
     (append (unless (= flags (aref (world-flags world) index))
@@ -43,5 +43,5 @@ The answer should be NIL."
                                collect (format nil "~A is listed in ~A" inside thing)))
           (unless (= (world-live-count world) (length (world-thing-list world)))
             (list "the count of things is wrong"))
-          (loop for index below (length (world-cells world))
+          (loop for index below (length (world-flags world))
                 append (cell-violations world index))))

@@ -7,10 +7,6 @@
 ;;; attachment was copied to by its thing. What has been destroyed or taken off has no rank: it is
 ;;; copied like anything else, if somebody still has it.
 
-(defun ranked-things (world)
-  "Return a simple vector of the things of WORLD by rank."
-  (coerce (world-things world) 'simple-vector))
-
 (declaim (inline twin-by-rank))
 (defun twin-by-rank (thing old new)
   "Return what THING was copied to, if it is one of the vector OLD, that were copied to NEW."
@@ -45,16 +41,26 @@
     (setf (group-row copy) (settled (copy-seq (group-row group)) copier))
     copy))
 
-(defun copy-attachment (attachment twin copier)
-  "Return a copy of ATTACHMENT for TWIN, a copy of its thing, seated in the copy of its group."
-  (let ((copy (copy-structure attachment))
-        (group (attachment-group attachment)))
-    (setf (attachment-kicker copy) (forked (attachment-kicker attachment) copier)
-          (attachment-thing copy) twin)
-    (when group
-      (setf (attachment-group copy) (forked group copier))
-      (seat-member (attachment-group copy) (attachment-index copy) copy))
-    copy))
+(defun attachment-copier (copier)
+  "Return a function of an attachment and of a copy of its thing that returns a copy of the former
+for the latter, seated in the copy of its group."
+  (let ((kicker nil) (new-kicker nil) (group nil) (new-group nil))
+    ;; Most have the kicker and the group of the one before.
+    (flet ((kicker-for (old)
+             (unless (eq old kicker) (setf new-kicker (forked old copier) kicker old))
+             new-kicker)
+           (group-for (old)
+             (unless (eq old group) (setf new-group (forked old copier) group old))
+             new-group))
+      (lambda (attachment twin)
+        (declare #.*hot* (type attachment attachment))
+        (let ((copy (copy-structure attachment)))
+          (setf (attachment-kicker copy) (kicker-for (attachment-kicker attachment))
+                (attachment-thing copy) twin)
+          (when (attachment-group attachment)
+            (setf (attachment-group copy) (group-for (attachment-group attachment)))
+            (seat-member (attachment-group copy) (attachment-index copy) copy))
+          copy)))))
 
 (defun seat-others (group copy copier)
   "Seat in COPY those members of GROUP that are on no thing any more, until they are taken out."
@@ -67,53 +73,70 @@
 
 ;;; Things.
 
-(defun complete-thing (thing twin copy old new copier)
-  "Let what TWIN, the copy of THING for the world COPY, refers to be copies too."
-  (declare #.*hot* (type thing thing twin))
-  (flet ((twin (inside) (or (twin-by-rank inside old new) (forked inside copier))))
-    (setf (thing-world twin) copy)
-    (unless (symbolp (thing-location thing))
-      (setf (thing-location twin) (forked (thing-location thing) copier)))
-    (when (thing-contents thing)
-      (setf (thing-contents twin) (mapcar #'twin (thing-contents thing))))
+(defun copy-thing (thing world copied)
+  "Return a copy of THING for WORLD. COPIED returns those of kickers, see ATTACHMENT-COPIER. What it
+is in, and what is in it, is yet to be copied."
+  (declare #.*hot* (type thing thing) (type function copied))
+  (let ((twin (copy-structure thing)))
+    (setf (thing-world twin) world)
     (when (thing-kickers thing)
       (setf (thing-kickers twin)
-            (mapcar (lambda (attachment) (copy-attachment attachment twin copier))
-                    (thing-kickers thing))))))
+            (loop for attachment in (thing-kickers thing)
+                  collect (funcall copied attachment twin))))
+    twin))
 
-(defun copy-cells (world old new)
-  "Return a copy of the cells of WORLD, with those NEW in them that its things OLD were copied to."
-  (declare #.*hot* (type simple-vector old new))
-  (let* ((cells (world-cells world))
-         (copy (make-array (length cells) :initial-element nil)))
-    (loop for thing across old
-          do (when (and thing (eq :floor (thing-location (the thing thing))))
-               (let ((index (thing-index thing)))
-                 (unless (svref copy index)
-                   (setf (svref copy index)
-                         (loop for other of-type thing in (svref cells index)
-                               collect (svref new (thing-rank other))))))))
-    copy))
+(declaim (inline by-itself-p))
+(defun by-itself-p (thing)
+  "True if THING is in nothing, and nothing is in it."
+  (declare (type thing thing))
+  (and (symbolp (thing-location thing))
+       (null (thing-contents thing))))
+
+(defun complete-thing (thing old new copier)
+  "Let what the copy of THING is in, and what is in it, be copies too. See TWIN-BY-RANK."
+  (declare (type thing thing))
+  (flet ((twin (other) (or (twin-by-rank other old new) (forked other copier))))
+    (let ((twin (twin thing)))
+      (unless (symbolp (thing-location thing))
+        (setf (thing-location twin) (forked (thing-location thing) copier)))
+      (setf (thing-contents twin) (mapcar #'twin (thing-contents thing))))))
+
+(defun copy-stock (stock things copier)
+  "Return a copy of STOCK that has THINGS, copies of its own."
+  (let ((copy (make-stock)))
+    (setf (stock-things copy) (settled things copier)
+          (stock-count copy) (stock-count stock)
+          (stock-firsts copy) (settled (copy-seq (stock-firsts stock)) copier)
+          (stock-nexts copy) (settled (copy-seq (stock-nexts stock)) copier)
+          (stock-marks copy) (settled (copy-seq (stock-marks stock)) copier))
+    (settled copy copier)))
+
+(defun copy-each-thing (old new count world copier)
+  "Put copies for WORLD of the first COUNT things in the vector OLD into NEW."
+  (declare #.*hot* (type simple-vector old new) (type cell-index count))
+  (let ((copied (attachment-copier copier)) (others '()))
+    (dotimes (rank count)
+      (let ((thing (svref old rank)))
+        (when thing
+          (setf (svref new rank) (copy-thing thing world copied))
+          (unless (by-itself-p thing) (push thing others)))))
+    (setf (copier-objects copier) (cons old new))
+    (dolist (thing others) (complete-thing thing old new copier))))
 
 (defun copy-things (world copy copier)
   "Let COPY, a copy of WORLD, have copies of its things and kickers."
-  (declare #.*hot*)
-  (let* ((old (ranked-things world))
-         (new (make-array (length old) :initial-element nil)))
-    (declare (type simple-vector old new))
-    (dotimes (rank (length old))
-      (when (svref old rank)
-        (setf (svref new rank) (copy-structure (the thing (svref old rank))))))
-    (setf (copier-objects copier) (cons old new))
-    (dotimes (rank (length old))
-      (when (svref old rank)
-        (complete-thing (svref old rank) (svref new rank) copy old new copier)))
+  (let* ((stock (world-stock world)) (things (stock-things stock))
+         (new (make-array (length things) :initial-element nil)))
+    (copy-each-thing things new (stock-count stock) copy copier)
     (loop for group in (world-kicker-groups world)
           do (seat-others group (forked group copier) copier))
-    (setf (world-things copy) (settled (make-array (length new) :adjustable t :initial-contents new
-                                                                :fill-pointer t)
-                                       copier)
-          (world-cells copy) (settled (copy-cells world old new) copier))))
+    (setf (world-stock copy) (copy-stock stock new copier))))
+
+(defun octets-of-copy (world)
+  "Return roughly how many octets a copy of WORLD takes."
+  (let ((map (world-map world)))
+    (+ (* 5 (map-width map) (map-height map))
+       (* 300 (world-rank-count world)))))
 
 ;; One of another run stays what it is.
 (defmethod copy-plan-value ((world world) fork)

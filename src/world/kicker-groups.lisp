@@ -23,12 +23,15 @@
    (row (make-array 12 :initial-element nil) simple-vector "the members: attachment, thing, kicker")
    (count 0 fixnum "how many members the row has")
    (dead '() list "members that have left since the last tick"))
+  (:scratch
+   (outlook nil (or null outlook) "what is known of the next trials, if there are many"))
   (:link
    (origin (make-origin) origin "who is to blame for trouble")))
 
 (defstruct (origin (:constructor make-origin ()) (:copier nil))
   "What is printed as the origin of trouble: the attachment that ran when it came."
-  (attachment nil :type (or null attachment)))
+  ;; Of no type that would have to be looked for in it, far away, each time one runs.
+  (attachment nil :type t))
 
 (defmethod reference ((group group))
   (list :group (group-probability group)))
@@ -37,21 +40,6 @@
   (princ (origin-attachment origin) stream))
 
 ;;; Chance.
-
-(defun gap-scale (probability)
-  "Return the factor that turns the logarithm of a roll into a gap, see DRAW-GAP."
-  (cond ((>= probability 1d0) 0d0)
-        ((< probability 1d-12) (- (/ (max probability 1d-300))))
-        (t (/ (log (- 1d0 probability))))))
-
-(declaim (inline draw-gap))
-(defun draw-gap (scale dice)
-  "Return how many trials fail before the next success; SCALE is 1 / log(1 - p), 0 for p = 1."
-  (declare (type double-float scale))
-  (let ((u (- 1d0 (roll dice))))
-    (declare (type (double-float (0d0) 1d0) u))
-    (truncate (the (double-float 0d0 #.(expt 2d0 40))
-                   (min #.(expt 2d0 40) (* scale (log u)))))))
 
 (defun refresh-rate (group dice)
   "Draw anew if a tick now stands for another span of time."
@@ -134,24 +122,26 @@
 (define-constant +large-group+ 5000
   :documentation "How many members of a group are more than a processor keeps near itself.")
 
+(defun ensure-outlook (group)
+  "Return the outlook of GROUP."
+  (or (group-outlook group)
+      (setf (group-outlook group) (make-outlook))))
+
 (defun read-group-ahead (group end dice)
   "Read what it takes to move the things of those before END in the row of GROUP whose trials will
 succeed next. Return the index in the row of the first for which that was not done."
   (declare #.*hot* (type group group) (type (unsigned-byte 50) end) (type dice dice))
-  (let ((dice (copy-dice dice)) (scale (group-scale group)) (row (group-row group))
-        (batch (make-array +batch+)) (index (group-skip group)) (count 0))
-    (declare (dynamic-extent dice batch) (type (unsigned-byte 50) index) (type batch-count count))
-    (loop while (and (< index end) (< count +batch+))
-          do (setf (svref batch count) (* 3 index))
-             (incf count)
-             (incf index (1+ (draw-gap scale dice))))
-    (dotimes (i count)
-      (let ((place (svref batch i)))
-        (declare (type (unsigned-byte 53) place))
+  (let* ((row (group-row group)) (outlook (ensure-outlook group)) (gaps (outlook-gaps outlook))
+         (index (group-skip group)) (batch (make-array +batch+))
+         (ahead (foresee outlook index end (group-scale group) dice)))
+    (declare (dynamic-extent batch) (type (unsigned-byte 50) index) (type outlook outlook))
+    (dotimes (i (outlook-count outlook))
+      (let ((place (* 3 index)))
         (setf (svref batch i) (and (svref row place) (svref row (+ place 2))
-                                   (svref row (+ place 1))))))
-    (read-ahead batch count *world*)
-    index))
+                                   (svref row (+ place 1))))
+        (incf index (1+ (aref gaps i)))))
+    (read-ahead batch (outlook-count outlook) *world*)
+    ahead))
 
 (defun run-and-see (kicker thing)
   "Do as RUN-MEMBER does. True if THING is elsewhere then."
@@ -166,13 +156,17 @@ error the row goes on behind it. When it is tried again, the one that failed com
 large group, memory is read ahead if the first that runs moves its thing."
   (declare #.*hot* (type group group) (type (unsigned-byte 50) end) (type dice dice)
            (type tick-count tick))
-  (let ((origin (group-origin group)) (curious (>= end +large-group+)) (ahead end))
+  (let ((origin (group-origin group)) (curious (>= end +large-group+)) (ahead end)
+        (outlook nil))
     (declare (type (unsigned-byte 50) ahead))
     (when (origin-attachment origin) (run-again origin))
     (loop for index of-type (unsigned-byte 50) = (group-skip group)
           while (< index end)
-          do (when (>= index ahead) (setf ahead (read-group-ahead group end dice)))
-             (setf (group-skip group) (+ index 1 (draw-gap (group-scale group) dice)))
+          do (when (>= index ahead)
+               (setf ahead (read-group-ahead group end dice)
+                     outlook (group-outlook group)))
+             (setf (group-skip group)
+                   (+ index 1 (draw-foreseen-gap outlook (group-scale group) dice)))
              (let* ((row (group-row group))
                     (attachment (svref row (* 3 index)))
                     (thing (svref row (+ 1 (* 3 index))))
@@ -201,10 +195,21 @@ large group, memory is read ahead if the first that runs moves its thing."
 (defun run-group (group dice tick)
   (refresh-rate group dice)
   (let ((end (group-count group)))
-    (in-any-case
-      (run-row group end dice tick)
-      (progn (decf (group-skip group) end)
-             (when (group-dead group) (bury-dead group))))))
+    (flet ((end-row ()
+             (decf (group-skip group) end)
+             (when (group-dead group) (bury-dead group))))
+      (in-any-case (run-row group end dice tick) (end-row)))))
+
+(declaim (inline skip-group))
+(defun skip-group (group)
+  "Note that a tick has passed for GROUP, if no trial in it succeeds, as in most ticks. True if so."
+  (declare (type group group))
+  (let ((left (- (group-skip group) (group-count group))))
+    (when (and (>= left 0)
+               (null (group-dead group))
+               (eql (group-quantum group) tick-quantum*))
+      (setf (group-skip group) left)
+      t)))
 
 (defun run-due-kicker (attachment world)
   "Run ATTACHMENT of a thing in WORLD, as RUN-KICKER has asked for."
@@ -226,7 +231,8 @@ Return nothing."
       (unless (= (world-kicker-generation world) *kicker-generation*) (regroup-kickers world))
       (let ((tick (incf (world-kicker-tick world))))
         (flet ((run-due (attachment) (run-due-kicker attachment world))
-               (run-chance (group) (run-group group dice (if due tick 0))))
+               (run-chance (group)
+                 (unless (skip-group group) (run-group group dice (if due tick 0)))))
           (declare (dynamic-extent #'run-due #'run-chance))
           (in-any-case
             (call-each #'run-due due)

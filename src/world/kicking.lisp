@@ -12,6 +12,7 @@
         thereis (and location (location-closed-p location))
         while (thing-p location)))
 
+(declaim (inline kickable-p))
 (defun kickable-p (thing)
   "True if THING lies on the floor, or where nothing closed keeps it from getting there."
   (or (eq :floor (thing-location thing))
@@ -37,9 +38,10 @@
   (y 0d0 :type double-float))
 (declaim-final kick)
 
+(declaim (inline start-kick))
 (defun start-kick (kick thing)
   "Let KICK begin where THING is. Return KICK."
-  (declare #.*hot* (type kick kick) (type thing thing))
+  (declare (type kick kick) (type thing thing))
   (if (eq :floor (thing-location thing))
       (setf (kick-from-x kick) (thing-x thing)
             (kick-from-y kick) (thing-y thing))

@@ -117,7 +117,7 @@
                       (ldb (byte 32 0) (aref words position))
                       (ldb (byte 32 32) (aref words position))
                       (bits-to-double (aref words (1+ position))))))
-  (note-parameter-range map)
+  (note-walls map)
   map)
 
 (defun begins-as-cache-p (path)

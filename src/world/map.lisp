@@ -39,6 +39,7 @@
   (place-types #(nil) :type simple-vector)
   (least-parameter 0d0 :type double-float)
   (greatest-parameter 0d0 :type double-float)
+  (enclosed nil :type boolean)
   (things '() :type list)
   ;; The names, keywords, of the attributes that its things say something of.
   (attribute-names '() :type list :read-only t)
@@ -71,6 +72,7 @@ radians against the clock. It is (1 0 0 0) unless DEFMAP or IMPORT-MAP said some
  map-place-types "Return a vector of the place types known to the map; element 0 is NIL."
  map-least-parameter "Return the least parameter of any wall in the map, 0 without walls."
  map-greatest-parameter "Return the greatest parameter of any wall in the map, 0 without walls."
+ map-enclosed "Return true if walls fill all cells at the map's edges, so that no line leads out."
  map-resident "Return the world of the map that top-level code works in, NIL if nobody has asked."
  map-attribute-names "Return the keywords of the attributes that the map's things start with."
  map-package "Return the name of the package that the map's author wrote in, or NIL."

@@ -26,7 +26,8 @@
   ;; map
   (:export #:map #:map-p #:map-name #:map-width #:map-height #:map-frame #:map-flags
            #:map-parameters #:map-substances #:map-substance-types #:map-places #:map-directions
-           #:map-place-types #:map-least-parameter #:map-greatest-parameter #:map-things
+           #:map-place-types #:map-least-parameter #:map-greatest-parameter #:map-enclosed
+           #:map-things
            #:map-resident-world #:map-resident #:map-attribute-names #:map-package #:map-replaced
            #:map-form
            #:map-index #:point-index #:find-map #:all-maps #:map-cell #:wall-at-p
@@ -58,11 +59,13 @@
            #:thing-capacity #:thing-substance-p #:thing-substance-parameter
            #:get-attribute #:set-attribute #:change-attribute)
   ;; world
-  (:export #:world #:world-p #:world-map #:world-seed #:world-flags #:world-cells
-           #:world-things #:world-thing-list #:world-robots #:world-timeline
+  (:export #:world #:world-p #:world-map #:world-seed #:world-flags #:do-cell #:cell-things
+           #:world-rank-count #:thing-of-rank #:world-thing-list #:world-robots #:world-timeline
            #:world-dice #:world-dice-set #:world-move-watchers #:*world* #:current-world
            #:make-world #:reset-world #:seed-world #:world-has-kickers-p #:things-at
            #:find-thing #:find-things #:do-things #:world-live-count)
+  ;; forking
+  (:export #:octets-of-copy)
   ;; recipes
   (:export #:recipe #:make-recipe)
   ;; placing

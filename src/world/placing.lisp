@@ -13,63 +13,49 @@
           (if (thing-obsmove-p thing) +obsmove+ 0)
           (if (thing-obsview-p thing) +obsview+ 0)))
 
+(declaim (inline refresh-cell-flags set-mark))
 (defun refresh-cell-flags (world index)
   "Make the flags of a cell of WORLD agree with the things on its floor."
-  (declare #.*hot* (type world world) (type cell-index index))
-  (let ((flags (logand +wall+ (aref (world-flags world) index))))
-    (declare (type (unsigned-byte 8) flags))
-    (dolist (thing (svref (world-cells world) index))
-      (declare (type thing thing))
-      (setf flags (logior flags (thing-flags thing))))
-    (setf (aref (world-flags world) index) flags)))
+  (declare (type world world) (type cell-index index))
+  (let ((flags (world-flags world)))
+    (setf (aref flags index) (logior (logand +wall+ (aref flags index))
+                                     (marks-of-cell index (world-stock world))))))
 
-(declaim (inline thing-index))
-(defun thing-index (thing)
-  "Return the index of the cell that THING, on the floor, lies in."
-  (the cell-index (point-index (world-map (thing-world thing)) (thing-x thing) (thing-y thing))))
-
-(declaim (inline add-link))
-(defun add-link (link cells index)
-  "Put LINK, a list of one thing, at the end of the list at INDEX of CELLS."
-  (declare (type simple-vector cells) (type cell-index index) (type cons link))
-  (let ((others (svref cells index)))
-    (if others
-        (setf (rest (last (the cons others))) link)
-        (setf (svref cells index) link))))
-
-(defun take-link (thing cells index)
-  "Take THING out of the list at INDEX of CELLS. Return the list of one thing that it was there."
-  (declare #.*hot* (type simple-vector cells) (type cell-index index))
-  (let ((before nil) (link (svref cells index)))
-    (declare (type list before) (type cons link))
-    (loop until (eq thing (first link)) do (setf before link link (rest link)))
-    (if before
-        (setf (rest before) (rest link))
-        (setf (svref cells index) (rest link)))
-    (setf (rest link) '())
-    link))
+(defun set-mark (thing stock)
+  "Let STOCK know the flags of a cell with THING on its floor."
+  (setf (aref (stock-marks stock) (thing-rank thing)) (thing-flags thing)))
 
 (defun take-from-floor (thing)
+  (declare #.*hot* (type thing thing))
   (let ((world (thing-world thing)) (index (thing-index thing)))
-    (take-link thing (world-cells world) index)
+    (take-from-cell (thing-rank thing) index (world-stock world))
     (refresh-cell-flags world index)))
 
-(defun put-on-floor (thing x y)
-  (setf (thing-x thing) x (thing-y thing) y (thing-location thing) :floor)
-  (let* ((world (thing-world thing)) (index (thing-index thing)) (flags (world-flags world)))
-    (add-link (list thing) (world-cells world) index)
-    (setf (aref flags index) (logior (aref flags index) (thing-flags thing)))))
+(declaim (inline add-flags))
+(defun add-flags (rank index world)
+  "Let the cell INDEX of WORLD have the flags that come of the thing with RANK."
+  (let ((flags (world-flags world)))
+    (setf (aref flags index)
+          (logior (aref flags index) (aref (stock-marks (world-stock world)) rank)))))
 
-(defun change-cell (thing world from to)
-  "Take THING from the cell FROM of WORLD, an index, to the cell TO, where it comes last, without
-consing."
-  (declare #.*hot* (type thing thing) (type world world) (type cell-index from to))
-  (let ((cells (world-cells world)) (flags (world-flags world)))
-    (unless (and (= from to) (null (rest (the cons (svref cells from)))))
-      (let ((link (take-link thing cells from)))
-        (refresh-cell-flags world from)
-        (add-link link cells to)
-        (setf (aref flags to) (logior (aref flags to) (thing-flags thing)))))))
+(defun put-on-floor (thing x y)
+  (declare #.*hot* (type thing thing) (type double-float x y))
+  (setf (thing-x thing) x (thing-y thing) y (thing-location thing) :floor)
+  (let* ((world (thing-world thing)) (stock (world-stock world)) (index (thing-index thing)))
+    (set-mark thing stock)
+    (append-to-cell (thing-rank thing) index stock)
+    (add-flags (thing-rank thing) index world)))
+
+(defun change-cell (rank world from to)
+  "Take the thing with RANK from the cell FROM of WORLD, an index, to the cell TO, where it comes
+last, without consing."
+  (declare #.*hot* (type cell-index rank from to) (type world world))
+  (let ((stock (world-stock world)))
+    (unless (and (= from to) (alone-in-cell-p rank from stock))
+      (take-from-cell rank from stock)
+      (refresh-cell-flags world from)
+      (append-to-cell rank to stock)
+      (add-flags rank to world))))
 
 (declaim (inline move-on-floor))
 (defun move-on-floor (thing x y)
@@ -77,7 +63,7 @@ consing."
   (declare (type double-float x y))
   (let ((from (thing-index thing)))
     (setf (thing-x thing) x (thing-y thing) y)
-    (change-cell thing (thing-world thing) from (thing-index thing))))
+    (change-cell (thing-rank thing) (thing-world thing) from (thing-index thing))))
 
 (defun take-away (thing)
   "Take THING from where it is, leaving it nowhere."

@@ -2,12 +2,13 @@
 
 (in-package :ars-magna.world)
 
-;;; In a large world a move spends most of its time waiting for memory: for the thing, then for the
-;;; list of its cell, then for a link of that, as each says where the next is. A processor waits for
-;;; many words at a time as briefly as for one if it knows where they are. So short loops that only
-;;; read go ahead of many moves, one for each step of that chain. What they find decides nothing.
+;;; In a large world a move spends most of its time waiting for memory: for the thing, then for what
+;;; is known of its cell, as one says where the other is. A processor waits for many words at a time
+;;; as briefly as for one if it knows where they are. So short loops that only read go ahead of many
+;;; moves, one for each step of that chain. What they find decides nothing.
 
-(define-constant +batch+ 64 :documentation "For how many moves memory is read at once.")
+;; The more the better, as each loop ends with waiting, as long as a processor has room for it all.
+(define-constant +batch+ 512 :documentation "For how many moves memory is read at once.")
 
 (deftype batch () '(simple-vector #.+batch+))
 (deftype batch-count () '(integer 0 #.+batch+))
@@ -24,22 +25,15 @@
   "Read what it takes to move the first COUNT elements of BATCH, things of WORLD or NIL; they are
 overwritten. Return a number without a meaning, for which all has to be read indeed."
   (declare #.*hot* (type batch batch) (type batch-count count) (type world world))
-  (let ((cells (world-cells world)) (flags (world-flags world)) (sum 0))
-    (declare (type fixnum sum))
-    (flet ((note (object) (when object (setf sum (logxor sum 1)))))
-      (declare (inline note))
-      ;; The two ends of what a move reads of a thing.
-      (dotimes (i count)
-        (let ((thing (svref batch i)))
-          (note (and thing (thing-location thing) (thing-obsview-p thing)))))
-      (dotimes (i count)
-        (let ((thing (svref batch i)))
-          (setf (svref batch i) (if thing (cell-to-read thing) 0))))
-      (dotimes (i count)
-        (let ((index (svref batch i)))
-          (declare (type cell-index index))
-          (setf sum (logxor sum (aref flags index))
-                (svref batch i) (svref cells index))))
-      (dotimes (i count)
-        (note (rest (the list (svref batch i))))))
+  (let* ((stock (world-stock world)) (firsts (stock-firsts stock)) (nexts (stock-nexts stock))
+         (flags (world-flags world)) (sum 0))
+    (declare (type (unsigned-byte 32) sum))
+    (dotimes (i count)
+      (let ((thing (svref batch i)))
+        (setf (svref batch i) (if thing (cell-to-read thing) 0))
+        (when thing (setf sum (logxor sum (aref nexts (thing-rank (the thing thing))))))))
+    (dotimes (i count)
+      (let ((index (svref batch i)))
+        (declare (type cell-index index))
+        (setf sum (logxor sum (aref flags index) (aref firsts index)))))
     sum))

@@ -88,8 +88,7 @@ robots are as they were made."
       (detach-all-kickers thing))
     (reset world)
     (setf (world-flags world) (copy-seq (map-flags map))
-          (world-cells world) (make-array (* (map-width map) (map-height map))
-                                          :initial-element '())
+          (world-stock world) (make-stock (* (map-width map) (map-height map)))
           (world-kicker-generation world) *kicker-generation*)))
 
 (defun reset-world (world &key (seed (world-seed world)))

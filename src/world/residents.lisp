@@ -49,7 +49,8 @@ simulation or, as long as there is none, the resident worlds of all maps. Signal
   (check-argument find-things name (typep name '(or symbol string integer))
                   "a symbol, a string such as \"PEN#2\", or a serial number")
   (loop for each in (worlds-in-view world)
-        append (loop for thing across (world-things each)
+        append (loop for rank below (world-rank-count each)
+                     for thing = (thing-of-rank rank each)
                      when (and thing (thing-called-p thing name)) collect thing)))
 
 (addition find-thing)

@@ -5,9 +5,17 @@
 (defun change-attributes (thing descriptor)
   "Give THING the attributes in DESCRIPTOR and make caches and flags agree."
   (setf (thing-attributes thing) (merge-descriptors descriptor (thing-attributes thing)))
-  (refresh-physics thing)
-  (when (eq (thing-location thing) :floor)
-    (refresh-cell-flags (thing-world thing) (thing-index thing))))
+  (when (some #'physical-p (mapcar #'first descriptor))
+    (refresh-physics thing)
+    (when (eq (thing-location thing) :floor)
+      (set-mark thing (world-stock (thing-world thing)))
+      (refresh-cell-flags (thing-world thing) (thing-index thing)))))
+
+(defun checked-entry (operator name value)
+  "Return a list (attribute value) with a keyword as the name. Signals WRONG-ARGUMENT."
+  (let ((key (attribute-key name)))
+    (check-attribute-value operator key value)
+    (list key value)))
 
 (defun normal-descriptor (operator descriptor)
   "Return the object descriptor DESCRIPTOR with keywords as names, a copy. Signals WRONG-ARGUMENT."
@@ -15,9 +23,7 @@
     (reject-value operator "descriptor" descriptor
                   "a list of lists (attribute value), each attribute once"))
   (loop for (name value) in (given operator "descriptor" descriptor)
-        for key = (attribute-key name)
-        do (check-attribute-value operator key value)
-        collect (list key value)))
+        collect (checked-entry operator name value)))
 
 (defun descriptor-p (object)
   "True if OBJECT has the shape of an object descriptor."
@@ -35,7 +41,9 @@ or unspecified. Of lists, strings and vectors THING gets copies. Signals WRONG-A
 that the attribute cannot have."
   (check-argument set-attribute thing (thing-p thing) "a thing")
   (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
-  (let ((descriptor (normal-descriptor 'set-attribute (list (list attribute new-value)))))
+  (let ((descriptor (if (typep new-value '(or symbol number))
+                        (list (checked-entry 'set-attribute attribute new-value))
+                        (normal-descriptor 'set-attribute (list (list attribute new-value))))))
     (changing ((world-of-living thing) set-attribute thing attribute new-value)
       (change-attributes thing descriptor)))
   new-value)

@@ -2,13 +2,34 @@
 
 (in-package :ars-magna.world)
 
+(defun check-cell (index stock met)
+  "Signal CONTRADICTION unless what lies in the cell INDEX of STOCK are things that none of the tags
+in MET, which they are added to, stand for."
+  (loop for tag = (aref (stock-firsts stock) index) then (aref (stock-nexts stock) (1- tag))
+        until (zerop tag)
+        do (must-hold (and (<= tag (stock-count stock))
+                           (thing-p (svref (stock-things stock) (1- tag)))
+                           (zerop (bit met tag)))
+                      "what lies in a cell are no things")
+           (setf (bit met tag) 1)))
+
 (defun check-cells (world)
-  "Signal CONTRADICTION unless WORLD has as many cells as its map, with lists of things in them."
-  (let ((size (* (map-width (world-map world)) (map-height (world-map world)))))
-    (must-hold (= size (length (world-cells world)) (length (world-flags world)))
+  "Signal CONTRADICTION unless WORLD has as many cells as its map, with things in them."
+  (let* ((stock (world-stock world)) (size (length (stock-firsts stock)))
+         (met (make-array (1+ (stock-count stock)) :element-type 'bit :initial-element 0)))
+    (must-hold (= size (* (map-width (world-map world)) (map-height (world-map world)))
+                  (length (world-flags world)))
                "its world has not the size of ~A" (world-map world))
-    (must-hold (every (lambda (things) (proper-list-of-p #'thing-p things)) (world-cells world))
-               "what lies in a cell are no things")))
+    (dotimes (index size) (check-cell index stock met))))
+
+(defun check-stock (stock)
+  "Signal CONTRADICTION unless STOCK has room for as many things as it says."
+  (must-hold (and (<= 0 (stock-count stock) (length (stock-things stock)))
+                  (<= +least-stock+ (length (stock-things stock)))
+                  (= (length (stock-things stock)) (length (stock-nexts stock))
+                     (length (stock-marks stock)))
+                  (every #'null (subseq (stock-things stock) (stock-count stock))))
+             "its vector of things cannot grow"))
 
 (defun check-descriptor (thing)
   (must-hold (proper-list-of-p (lambda (entry) (typep entry '(cons keyword (cons t null))))
@@ -33,10 +54,9 @@
              "the kickers of ~A are not its own" thing))
 
 (defun check-things (world)
-  (let ((things (world-things world)) (serials (make-hash-table)))
-    (must-hold (array-has-fill-pointer-p things) "its vector of things cannot grow")
-    (loop for thing across things
-          for rank from 0
+  (let ((serials (make-hash-table)))
+    (loop for rank below (world-rank-count world)
+          for thing = (thing-of-rank rank world)
           do (when thing
                (check-thing thing rank world)
                (must-hold (null (gethash (thing-serial thing) serials))
@@ -53,16 +73,21 @@
     (must-hold (eq location (thing-location thing)) "~A is not where it is listed" thing)
     (incf (gethash thing met 0))))
 
+(defun check-lying (thing index world)
+  "Signal CONTRADICTION unless THING can lie in the cell INDEX of WORLD."
+  (must-hold (and (map-index (world-map world) (thing-x thing) (thing-y thing))
+                  (= index (thing-index thing)))
+             "~A does not lie in its cell" thing)
+  (must-hold (= (thing-flags thing) (aref (stock-marks (world-stock world)) (thing-rank thing)))
+             "~A is not marked as what it is" thing))
+
 (defun check-floor (world met)
   "Count in MET what lies in the cells of WORLD, and check that and the cells' flags."
-  (loop for things across (world-cells world)
-        for index from 0
+  (loop for index below (length (world-flags world))
         for flags = (aref (map-flags (world-map world)) index)
-        do (count-met things :floor met)
-           (dolist (thing things)
-             (must-hold (and (map-index (world-map world) (thing-x thing) (thing-y thing))
-                             (= index (thing-index thing)))
-                        "~A does not lie in its cell" thing)
+        do (do-cell (thing index world)
+             (count-met (list thing) :floor met)
+             (check-lying thing index world)
              (setf flags (logior flags (thing-flags thing))))
            (must-hold (= flags (aref (world-flags world) index))
                       "cell ~D is not as the map and the things in it make it" index)))
@@ -156,6 +181,7 @@ file, could have come about by itself."
   (must-hold (and (= (length (world-dice-set world)) (length +dice-purposes+))
                   (every (lambda (dice) (typep dice 'dice)) (world-dice-set world)))
              "its dice are none")
+  (check-stock (world-stock world))
   (check-cells world)
   (check-things world)
   (check-places world)

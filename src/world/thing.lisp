@@ -11,11 +11,11 @@
   (:fixed
    (name nil symbol "the symbol that the thing is called; others may be called the same")
    (serial 0 fixnum "the thing's number in its world, from 1; 0 for prototypes")
-   (world nil t "the world that the thing is in, or NIL for a prototype"))
+   (world nil t "the world that the thing is in, or NIL for a prototype" :near))
   (:state
-   (location nil t "where the thing is: :FLOOR, what holds it, or NIL if it is nowhere")
-   (x 0d0 double-float "the x coordinate of a thing on the floor, in metres")
-   (y 0d0 double-float "the y coordinate of a thing on the floor, in metres")
+   (location nil t "where the thing is: :FLOOR, what holds it, or NIL if it is nowhere" :near)
+   (x 0d0 double-float "the x coordinate of a thing on the floor, in metres" :near)
+   (y 0d0 double-float "the y coordinate of a thing on the floor, in metres" :near)
    (attributes '() list "the thing's attributes as an object descriptor; do not alter it"
                :shared)
    (contents '() list "the list of things directly inside the thing, in order of arrival")
@@ -30,7 +30,7 @@
    (capacity 0d0 double-float "the thing's :capacity, 0 if it is no container")
    (substance-parameter 0d0 double-float
                         "the parameter of the thing's :substance, 0 if unspecified")
-   (rank 0 fixnum "where in the vector of its world's things it is")))
+   (rank 0 fixnum "where in the vector of its world's things it is" :near)))
 
 (addition thing-p thing-name thing-serial thing-world thing-location thing-x thing-y
           thing-attributes thing-contents thing-kickers thing-alive-p thing-obsmove-p
@@ -96,6 +96,10 @@ false, always can."
             (warn-of-definition "~@[~A: ~]~A" (clause-place type) text)
             (warning-set text))))))
 
+(defun physical-p (key)
+  "True if a cached slot of things goes by the attribute KEY; see REFRESH-PHYSICS."
+  (member key '(:obsmove :obsview :closed :size :weight :capacity :substance) :test #'eq))
+
 (defun refresh-physics (thing)
   "Make the cached slots of THING agree with its attributes."
   (flet ((number-of (key)
@@ -121,9 +125,8 @@ which is SET-ATTRIBUTE (manual 5.3). A list is the thing's own: do not alter it,
 
 (defun merge-descriptors (new old)
   "Return the object descriptor OLD with what NEW says instead; order as in OLD, then as in NEW."
-  (append (loop for (key value) in old
-                collect (list key (let ((other (assoc key new :test #'eq)))
-                                    (if other (second other) value))))
+  (append (loop for entry in old
+                collect (or (assoc (first entry) new :test #'eq) entry))
           (remove-if (lambda (entry) (assoc (first entry) old :test #'eq)) new)))
 
 ;;; Containment.

@@ -145,9 +145,22 @@ against the edges, is the edges."
                   (setf (map-least-parameter map) least
                         (map-greatest-parameter map) greatest))))
 
+(defun note-enclosure (map)
+  (let ((right (1- (map-width map))) (bottom (1- (map-height map))))
+    (setf (map-enclosed map)
+          (and (loop for x from 0 to right
+                     always (and (filled-at-p map x 0) (filled-at-p map x bottom)))
+               (loop for y from 0 to bottom
+                     always (and (filled-at-p map 0 y) (filled-at-p map right y)))))))
+
+(defun note-walls (map)
+  "Note what is to be known of the walls of MAP, now that all are drawn."
+  (note-parameter-range map)
+  (note-enclosure map))
+
 (defun draw-walls (map)
   "Draw all clauses of MAP into its empty grid. Return MAP."
   (clear-walls map)
   (dolist (clause (map-clauses map)) (draw-clause map clause))
-  (note-parameter-range map)
+  (note-walls map)
   map)

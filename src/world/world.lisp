@@ -6,10 +6,6 @@
 ;;; and the seed. Serial numbers count from 1 in order of creation, so that things in order of
 ;;; creation are things in order of serial number.
 
-(deftype thing-vector () '(and (vector t) (not simple-array)))
-
-(defun make-list-vector () (make-array 16 :adjustable t :fill-pointer 0))
-
 (define-kind (world :constructor (%make-world (map)))
     "Things, dice and kickers on a map, in the state that they have now."
   (:fixed
@@ -24,12 +20,7 @@ moved, been made or been destroyed"))
    (seed 0 integer "the integer that all chance in the world comes from")
    (flags (make-octets 0) octets
           "the flags of the world's cells by index: walls, and things on the floor")
-   (cells #() simple-vector
-          "a vector that has, by cell index, the list of the things on the floor, oldest first; a
-thing that goes from cell to cell takes its link of the list along")
-   (things (make-list-vector) thing-vector
-           "a vector of the world's things in order of creation; NIL where one has been destroyed.
-WORLD-THING-LIST leaves those out" :part)
+   (stock (make-stock) stock "its things, and which of them lie where on the floor" :part)
    (live-count 0 fixnum "how many things are alive in the world")
    (next-serial 1 fixnum "the serial number of the next thing to be made")
    (dice-set #() simple-vector "a vector of the world's dice, one for each purpose" :part)
@@ -87,34 +78,61 @@ meanwhile are left out."
 
 (defun call-with-things (function world)
   (declare (type function function))
-  (let ((things (world-things world)))
-    (dotimes (position (length things))
-      (let ((thing (aref things position)))
+  (let* ((stock (world-stock world)) (things (stock-things stock)))
+    (dotimes (rank (stock-count stock))
+      (let ((thing (svref things rank)))
         (when (and thing (thing-alive-p thing)) (funcall function thing))))))
+
+(defun world-rank-count (world)
+  "Return how many ranks the things of WORLD have, those of some that were destroyed among them."
+  (stock-count (world-stock world)))
+
+(defun thing-of-rank (rank world)
+  "Return the thing of WORLD that has RANK, or NIL if it has been destroyed."
+  (svref (stock-things (world-stock world)) rank))
 
 (addition world-thing-list)
 (defun world-thing-list (world)
   "Return a fresh list of the things alive in WORLD, in order of creation."
-  (coerce (remove nil (world-things world)) 'list))
+  (loop for rank below (world-rank-count world)
+        for thing = (thing-of-rank rank world)
+        when thing collect thing))
+
+(declaim (inline thing-index))
+(defun thing-index (thing)
+  "Return the index of the cell that THING, on the floor, lies in."
+  (the cell-index (point-index (world-map (thing-world thing)) (thing-x thing) (thing-y thing))))
 
 (defun add-thing (thing world)
-  (setf (thing-rank thing) (vector-push-extend thing (world-things world)))
+  (add-to-stock thing (world-stock world))
   (incf (world-live-count world)))
 
 (defun remove-thing (thing world)
   "Forget THING; now and then, close the gaps that the destroyed have left."
-  (setf (aref (world-things world) (thing-rank thing)) nil)
-  (decf (world-live-count world))
-  (when (> (length (world-things world)) (+ 64 (* 2 (world-live-count world))))
-    (let ((old (world-things world)))
-      (setf (world-things world) (make-list-vector))
-      (loop for other across old
-            when other
-              do (setf (thing-rank other) (vector-push-extend other (world-things world)))))))
+  (let ((stock (world-stock world)))
+    (setf (svref (stock-things stock) (thing-rank thing)) nil)
+    (decf (world-live-count world))
+    (when (> (stock-count stock) (+ 64 (* 2 (world-live-count world))))
+      (close-gaps stock (lambda (other)
+                          (and (eq :floor (thing-location other)) (thing-index other)))))))
 
 (defun take-serial (world)
   (prog1 (world-next-serial world)
     (incf (world-next-serial world))))
+
+(defmacro do-cell ((thing index world) &body body)
+  "Run BODY with THING bound to each thing on the floor of the cell INDEX of WORLD, in order of
+arrival. BODY moves none."
+  (with-gensyms (visit)
+    `(flet ((,visit (,thing) ,@body))
+       (declare (inline ,visit))
+       (call-with-cell #',visit ,index (world-stock ,world)))))
+
+(defun cell-things (index world)
+  "Return a fresh list of the things on the floor of the cell INDEX of WORLD, in order of arrival."
+  (let ((things '()))
+    (do-cell (thing index world) (push thing things))
+    (nreverse things)))
 
 (addition things-at)
 (defun things-at (world x y)
@@ -123,4 +141,4 @@ in order of arrival. NIL outside the map. Signals WRONG-ARGUMENT."
   (check-argument things-at world (world-p world) "a world, as (robot-world ROBOT) returns")
   (check-point 'things-at x y)
   (let ((index (map-index (world-map world) x y)))
-    (and index (copy-list (svref (world-cells world) index)))))
+    (and index (cell-things index world))))

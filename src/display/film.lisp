@@ -1,0 +1,158 @@
+;;;; film.lisp -- a run as one page for a browser: to be played, stopped, and searched for moments.
+
+(in-package :ars-magna.display)
+
+;;; The page needs nothing else. Its terrain is drawn once. What moves is drawn for each frame, and
+;;; the lines of that are kept apart, each once: from frame to frame few of them change.
+
+;; Read when this file is loaded, so that a saved program has them with it.
+(defun text-beside (name)
+  (file-text (asdf:system-relative-pathname "ars-magna" (format nil "src/display/~A" name))))
+
+(defparameter *film-script* (text-beside "film.js") "The program in a film.")
+(defparameter *film-style* (text-beside "film.css") "How a film looks.")
+
+;;; Frames.
+
+(defstruct (reel (:constructor make-reel ()) (:copier nil))
+  "The lines that frames are made of, NUMBERS of them by text, and the frames, latest first: each is
+a vector of such numbers."
+  (numbers (make-hash-table :test 'cl:equal) :type hash-table :read-only t)
+  (frames '() :type list))
+
+(defun lines-of (text)
+  "Return the lines of TEXT, which ends in a newline, each with its newline."
+  (loop for start = 0 then (1+ end)
+        for end = (position #\Newline text :start start)
+        while end collect (subseq text start (1+ end))))
+
+(defun number-of-line (line reel)
+  (let ((numbers (reel-numbers reel)))
+    (or (gethash line numbers)
+        (setf (gethash line numbers) (hash-table-count numbers)))))
+
+(defun add-frame (text reel)
+  "Let the frame that is drawn by TEXT, in SVG, be the next of REEL."
+  (push (cl:map 'vector (lambda (line) (number-of-line line reel)) (lines-of text))
+        (reel-frames reel)))
+
+(defun reel-lines (reel)
+  "Return a vector of the lines of REEL, by number."
+  (let ((lines (make-array (hash-table-count (reel-numbers reel)))))
+    (maphash (lambda (line number) (setf (aref lines number) line)) (reel-numbers reel))
+    lines))
+
+(defun changes-in (frame before)
+  "Return a list place number ... of what FRAME has otherwise than BEFORE, which is as long."
+  (loop for number across frame
+        for old across before
+        for place from 0
+        unless (eql number old) append (list place number)))
+
+;;; As text. JSON is JavaScript as well.
+
+(defun write-array (writer items out)
+  "Write ITEMS, a sequence, as an array, each by WRITER, a function of it and OUT."
+  (write-char #\[ out)
+  (let ((first-p t))
+    (cl:map nil (lambda (item)
+                  (unless (shiftf first-p nil) (write-char #\, out))
+                  (funcall writer item out))
+            items))
+  (write-char #\] out))
+
+(defun write-quoted (text out)
+  "Write TEXT as a string that nothing in it can end, nor the script that it stands in."
+  (write-char #\" out)
+  (loop for char across text
+        do (case char
+             ((#\" #\\) (write-char #\\ out) (write-char char out))
+             (#\Newline (write-string "\\n" out))
+             (#\< (write-string "\\u003C" out))
+             (t (if (< (char-code char) 32)
+                    (format out "\\u~4,'0X" (char-code char))
+                    (write-char char out)))))
+  (write-char #\" out))
+
+(defun write-frames (frames out)
+  "Write FRAMES, in order: the first whole, others by what changes, if they are as long."
+  (write-char #\[ out)
+  (loop for before = nil then frame
+        for frame in frames
+        do (when before (write-char #\, out))
+           (cond ((and before (= (length frame) (length before)))
+                  (write-string "{\"changes\":" out)
+                  (write-array #'write-number (changes-in frame before) out))
+                 (t (write-string "{\"all\":" out)
+                    (write-array #'write-number frame out)))
+           (write-char #\} out))
+  (write-char #\] out))
+
+(defun frame-at (tick ticks)
+  "Return the number of the first frame that shows what was so at TICK; TICKS are those of all."
+  (or (position-if (lambda (shown) (>= shown tick)) ticks)
+      (1- (length ticks))))
+
+(defun write-moment (moment ticks out)
+  (format out "{\"tick\":~A,\"frame\":~D,\"kind\":\"~(~A~)\",\"text\":"
+          (number-text (moment-tick moment)) (frame-at (moment-tick moment) ticks)
+          (moment-kind moment))
+  (write-quoted (moment-text moment) out)
+  (write-char #\} out))
+
+(defun write-data (reel ticks rate moments out)
+  (write-string "var FILM = {\"rate\":" out)
+  (write-number rate out)
+  (write-string ",\"ticks\":" out)
+  (write-array #'write-number ticks out)
+  (format out ",~%\"lines\":")
+  (write-array #'write-quoted (reel-lines reel) out)
+  (format out ",~%\"frames\":")
+  (write-frames (reverse (reel-frames reel)) out)
+  (format out ",~%\"moments\":")
+  (write-array (lambda (moment out) (write-moment moment ticks out)) moments out)
+  (format out "};~%"))
+
+;;; The page.
+
+(defun write-controls (out)
+  (format out "<div id=\"timeline\"><div id=\"marks\"></div>~
+               <input id=\"slider\" type=\"range\" min=\"0\" value=\"0\" aria-label=\"Frame\"></div>
+<div id=\"controls\">
+<button id=\"back\" title=\"One frame back\">&lt;</button>
+<button id=\"play\">Play</button>
+<button id=\"on\" title=\"One frame on\">&gt;</button>
+<label>Speed <select id=\"speed\">~{<option value=\"~A\"~A>~A</option>~}</select></label>
+<output id=\"tick\"></output>
+<span><kbd>space</kbd> plays and stops, arrows step, <kbd>+</kbd> and <kbd>-</kbd>
+change the speed</span>
+</div>~%"
+          (loop for (value text) in '(("0.25" "a quarter") ("0.5" "half") ("1" "as made")
+                                      ("2" "twice") ("4" "4 times") ("10" "10 times"))
+                append (list value (if (string= value "1") " selected" "") text))))
+
+(defun write-moments-list (moments out)
+  (format out "<ol id=\"moments\">~%")
+  (dolist (moment moments)
+    (format out "<li><button><i class=\"~(~A~)\"></i>tick ~A: " (moment-kind moment)
+            (number-text (moment-tick moment)))
+    (write-text (moment-text moment) out)
+    (format out "</button></li>~%"))
+  (format out "</ol>~%"))
+
+(defun write-film (out title picture last-picture reel ticks rate moments)
+  "Write to OUT the page of a film called TITLE. PICTURE is an SVG document of its first frame in
+which a group called movers is what frames draw; LAST-PICTURE is one of its last, for those who
+cannot play."
+  (format out "<!DOCTYPE html>~%<html lang=\"en\"><head><meta charset=\"utf-8\">~%<title>")
+  (write-text title out)
+  (format out "</title>~%<style>~%~A</style></head><body>~%<h1>" *film-style*)
+  (write-text title out)
+  (format out "</h1>~%<div id=\"stage\">~%~A</div>~%" picture)
+  (format out "<noscript><p>To play this a browser needs scripts. Above is how it began; this is ~
+               how it ended.</p>~%~A</noscript>~%" last-picture)
+  (write-controls out)
+  (write-moments-list moments out)
+  (format out "<script>~%")
+  (write-data reel ticks rate moments out)
+  (format out "</script>~%<script>~%~A</script>~%</body></html>~%" *film-script*))

@@ -1,0 +1,148 @@
+;;;; stock.lisp -- the things of a world by number, and which of them lie in which cell.
+
+(in-package :ars-magna.world)
+
+;;; A world may have a million cells and a hundred thousand things. So what lies where is kept in
+;;; flat vectors of small numbers, which wait for little memory and are copied at once. The RANK of
+;;; a thing is its place in the vector of things. In those of numbers a thing is 1 more than that,
+;;; its TAG; 0 is no thing. The things on the floor of a cell are a chain, in order of arrival.
+
+(deftype tag () '(unsigned-byte 32))
+(deftype tags () '(simple-array tag (*)))
+
+(defun make-tags (size) (make-array size :element-type 'tag :initial-element 0))
+
+(defconstant +least-stock+ 16 "For how many things there is room at first.")
+
+(define-kind (stock :constructor (make-stock (&optional (cells 0)
+                                              &aux (firsts (make-tags cells)))))
+    "The things of a world, and which of them lie where on its floor."
+  (:state
+   (things (make-array +least-stock+ :initial-element nil) simple-vector
+           "the things by rank, in order of creation; NIL where one has been destroyed" :part)
+   (count 0 fixnum "how many ranks have been given")
+   (firsts (make-tags 0) tags "by cell index, the tag of the first thing on the cell's floor")
+   (nexts (make-tags +least-stock+) tags
+          "by rank, the tag of the thing that came next to where the thing lies")
+   (marks (make-octets +least-stock+) octets
+          "by rank, the flags of the cell where the thing lies that come of it")))
+
+;;; Cells.
+
+;; Inline, as those who move things call them by the thousand in a tick.
+(declaim (inline thing-of-tag call-with-cell append-to-cell take-from-cell marks-of-cell))
+(defun thing-of-tag (tag stock)
+  "Return the thing of STOCK that TAG, not 0, stands for."
+  (declare (type (and tag (integer 1)) tag) (type stock stock))
+  (the thing (svref (stock-things stock) (1- tag))))
+
+(defun call-with-cell (function index stock)
+  "Call FUNCTION with each thing on the floor of the cell INDEX of STOCK, in order of arrival."
+  (declare (type function function) (type cell-index index) (type stock stock))
+  (loop for tag of-type tag = (aref (stock-firsts stock) index)
+          then (aref (stock-nexts stock) (1- tag))
+        until (zerop tag)
+        do (funcall function (thing-of-tag tag stock))))
+
+(defun append-to-cell (rank index stock)
+  "Let the thing with RANK, which lies nowhere, lie in the cell INDEX of STOCK: it came last."
+  (declare (type cell-index rank index) (type stock stock))
+  (let* ((firsts (stock-firsts stock)) (nexts (stock-nexts stock)) (first (aref firsts index)))
+    (if (zerop first)
+        (setf (aref firsts index) (1+ rank))
+        (loop for tag of-type tag = first then next
+              for next of-type tag = (aref nexts (1- tag))
+              until (zerop next)
+              finally (setf (aref nexts (1- tag)) (1+ rank))))))
+
+(defun take-from-cell (rank index stock)
+  "Let the thing with RANK, which lies in the cell INDEX of STOCK, lie nowhere."
+  (declare (type cell-index rank index) (type stock stock))
+  (let* ((firsts (stock-firsts stock)) (nexts (stock-nexts stock))
+         (tag (1+ rank)) (next (shiftf (aref nexts rank) 0)))
+    (if (= tag (aref firsts index))
+        (setf (aref firsts index) next)
+        (loop for before of-type tag = (aref firsts index) then after
+              for after of-type tag = (aref nexts (1- before))
+              until (= tag after)
+              finally (setf (aref nexts (1- before)) next)))))
+
+(declaim (inline alone-in-cell-p))
+(defun alone-in-cell-p (rank index stock)
+  "True if nothing lies in the cell INDEX of STOCK but the thing with RANK, which does."
+  (declare (type cell-index rank index) (type stock stock))
+  (and (= (1+ rank) (aref (stock-firsts stock) index))
+       (zerop (aref (stock-nexts stock) rank))))
+
+(defun marks-of-cell (index stock)
+  "Return the flags of the cell INDEX that come of what lies in it."
+  (declare (type cell-index index) (type stock stock))
+  (loop with flags of-type (unsigned-byte 8) = 0
+        for tag of-type tag = (aref (stock-firsts stock) index)
+          then (aref (stock-nexts stock) (1- tag))
+        until (zerop tag)
+        do (setf flags (logior flags (aref (stock-marks stock) (1- tag))))
+        finally (return flags)))
+
+;;; Things.
+
+(defun resize (vector size)
+  "Return a vector of SIZE, larger, with what is in VECTOR and 0 or NIL behind that."
+  (replace (make-array size :element-type (array-element-type vector)
+                            :initial-element (if (simple-vector-p vector) nil 0))
+           vector))
+
+(defun grow-stock (stock)
+  "Make room in STOCK for twice as many things."
+  (let ((size (* 2 (length (stock-things stock)))))
+    (setf (stock-things stock) (resize (stock-things stock) size)
+          (stock-nexts stock) (resize (stock-nexts stock) size)
+          (stock-marks stock) (resize (stock-marks stock) size))))
+
+(defun add-to-stock (thing stock)
+  "Give THING the next rank in STOCK."
+  (let ((rank (stock-count stock)))
+    (when (= rank (length (stock-things stock))) (grow-stock stock))
+    (incf (stock-count stock))
+    (setf (thing-rank thing) rank
+          (svref (stock-things stock) rank) thing)))
+
+;; Ranks get smaller, from the first to the last: so a tag in FIRSTS that has been put right is not
+;; mistaken for one that has yet to be.
+(defun close-gaps (stock index-of)
+  "Let the ranks in STOCK have no gaps. INDEX-OF returns the cell in which a thing lies, or NIL."
+  (let* ((old (stock-things stock)) (nexts (stock-nexts stock)) (count (stock-count stock))
+         (ranks (make-array count :initial-element nil))
+         (new (make-stock)))
+    (loop for rank below count
+          for thing = (svref old rank)
+          do (when thing
+               (add-to-stock thing new)
+               (setf (svref ranks rank) (thing-rank thing))))
+    (flet ((new-tag (tag) (if (zerop tag) 0 (1+ (svref ranks (1- tag))))))
+      (loop for rank below count
+            for thing = (svref old rank)
+            for index = (and thing (funcall index-of thing))
+            do (when index
+                 (when (= (1+ rank) (aref (stock-firsts stock) index))
+                   (setf (aref (stock-firsts stock) index) (new-tag (1+ rank))))
+                 (setf (aref (stock-nexts new) (thing-rank thing)) (new-tag (aref nexts rank))
+                       (aref (stock-marks new) (thing-rank thing))
+                       (aref (stock-marks stock) rank)))))
+    (setf (stock-things stock) (stock-things new)
+          (stock-nexts stock) (stock-nexts new)
+          (stock-marks stock) (stock-marks new)
+          (stock-count stock) (stock-count new))))
+
+;;; What is where, for a digest: the things in each cell, then those that there are.
+
+(defmethod digest-state ((stock stock) digest)
+  (digest-add digest (length (stock-firsts stock)))
+  (dotimes (index (length (stock-firsts stock)))
+    (let ((things '()))
+      (call-with-cell (lambda (thing) (push thing things)) index stock)
+      (digest-add digest (nreverse things))))
+  (digest-add digest (stock-count stock))
+  (loop for thing across (stock-things stock) repeat (stock-count stock)
+        do (digest-state thing digest))
+  digest)
