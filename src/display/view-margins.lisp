@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.display)
 
-;;; A window shows a part of the map and has no room around it; so numbers and bar lie on the map, on
-;;; white plates. All is in pixels of the whole map: LEFT and TOP are where the view begins.
+;;; A window shows a part of the map and has no room around it; so numbers and bar lie on the map,
+;;; on white plates. All is in pixels of the whole map: LEFT and TOP are where the view begins.
 
 (defun marks-between (start end step)
   "Return the multiples of STEP, in metres, from the pixel START to the pixel END."
@@ -31,8 +31,8 @@
       (draw-scale-bar canvas map y))))
 
 (defun draw-view-margins (canvas map layers left top width height)
-  "Draw what LAYERS lists of :COORDINATES and :SCALE-BAR of MAP at the edges of a view of it, WIDTH by
-HEIGHT pixels, that begins LEFT and TOP pixels from the corner of MAP. To be called within
+  "Draw what LAYERS lists of :COORDINATES and :SCALE-BAR of MAP at the edges of a view of it, WIDTH
+by HEIGHT pixels, that begins LEFT and TOP pixels from the corner of MAP. To be called within
 WITH-CANVAS, with the origin in that corner."
   (when (member :coordinates layers) (draw-view-coordinates canvas map left top width height))
   (when (member :scale-bar layers) (draw-view-bar canvas map left top height)))
