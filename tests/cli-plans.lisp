@@ -207,7 +207,25 @@
   (is-true (has-words-p (complaint "picture") "FILE" "missing"))
   (is-true (has-words-p (complaint "picture world.gif") ".svg or .png"))
   (is-true (has-words-p (complaint "picture world.svg -1") "scale"))
+  (is-true (has-words-p (complaint "picture world.svg 8 9") "one number"))
+  (is-true (has-words-p (complaint "picture world.svg nmaes") "nmaes" "NAMES" "BARE"))
   (is-true (has-words-p (complaint "picture /no/such/directory/world.svg") "/no/such/directory")))
+
+(test picture.shows-the-layers-that-are-named
+  (flet ((mentions-p (line &rest words)
+           (uiop:with-temporary-file (:pathname path :type "svg")
+             (type-batch (format nil line (uiop:native-namestring path)))
+             (let ((text (base:read-file-into-string path)))
+               (mapcar (lambda (word) (and (search word text) t)) words)))))
+    (is (equal '(t nil) (mentions-p "picture \"~A\"" ", tick" "#8a8a8a")))
+    (is (equal '(t t) (mentions-p "picture \"~A\" grid" ", tick" "#8a8a8a")))
+    (is (equal '(nil t) (mentions-p "picture \"~A\" 12 bare gr" ", tick" "#8a8a8a")))))
+
+(test picture.help-lists-all-layers
+  (let ((help (joined (type-batch "help picture"))))
+    (dolist (layer ars-magna.display:+picture-layers+)
+      (is (search (symbol-name layer) help)))
+    (is-true (has-words-p help "from 1 to 256" "from 4 to 40"))))
 
 (test display.says-why-there-is-none
   (let ((display:*display-opener* nil))

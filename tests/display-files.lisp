@@ -126,7 +126,7 @@
                         "values=\"hidden;visible;hidden\" keyTimes=\"0;0.250000;0.500000\""
                         "values=\"hidden;visible\" keyTimes=\"0;0.750000\""
                         "dur=\"0.4s\""
-                        "<ellipse cx=\"40\" cy=\"52\" rx=\"6\""))
+                        "<ellipse cx=\"40\" cy=\"52\" rx=\"7\""))
           (is (mentions-p text part)))
         (is (not (mentions-p text "tick 25<")))))))
 

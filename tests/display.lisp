@@ -35,7 +35,9 @@
                (canvas:draw-rectangle canvas canvas:draw-gcontext* 1 1 6 6 nil)))))
 
 (test canvas.a-whole-arc-is-an-ellipse-in-its-box
-  (is (equal '("<ellipse cx=\"12\" cy=\"20\" rx=\"4\" ry=\"4\" fill=\"none\" stroke=\"#000000\"/>")
+  "The circle of manual B.1 is inscribed in its cell: the pen stays within, and nothing is cut off."
+  (is (equal (list (format nil "<ellipse cx=\"12\" cy=\"20\" rx=\"3.5\" ry=\"3.5\" ~
+                                fill=\"none\" stroke=\"#000000\"/>"))
              (drawing (canvas)
                (canvas:draw-arc canvas canvas:draw-gcontext* 8 16 8 8 0 (* 2 pi) nil)))))
 
@@ -94,7 +96,7 @@
                       (canvas:with-lines (:width 2) (line))
                       (line)))))
     (is (mentions-p (first elements)
-                    "stroke=\"#ff3c30\" stroke-width=\"3\" stroke-dasharray=\"4\""))
+                    "stroke=\"#f0705c\" stroke-width=\"3\" stroke-dasharray=\"4\""))
     (is (mentions-p (second elements) "stroke=\"#000000\" stroke-width=\"2\"/>"))
     (is (mentions-p (third elements) "stroke=\"#000000\"/>"))))
 
@@ -149,23 +151,29 @@
 (defmacro in-studio ((robot) &body body)
   `(call-with-studio (lambda (,robot) (declare (ignorable ,robot)) ,@body)))
 
-(defun grey-fill (parameter)
-  (format nil "fill=\"#~(~6,'0X~)\"" (aref canvas:grey* (if (= parameter 10) 8 44))))
+(defun plain-picture (robot &rest options)
+  "Return a picture of 8 pixels to a cell, and without what is around the map."
+  (apply #'display:svg-picture robot (append options '(:scale 8 :layers (:places)))))
+
+(defun wall-fill (parameter substance)
+  "Return how the fill of a wall of the studio is written."
+  (let ((hue (getf display::+tints+ (display::substance-ink substance))))
+    (format nil "fill=\"#~(~6,'0X~)\"" (display::wall-color (if (= parameter 10) 14 44) hue))))
 
 (test world-display.walls-are-grey-by-their-parameter
   (in-studio (robot)
-    (let ((picture (display:svg-picture robot)))
+    (let ((picture (plain-picture robot)))
       (is (mentions-p picture "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"160\""))
       (is (mentions-p picture " height=\"80\" viewBox=\"0 0 160 80\""))
-      (is (mentions-p picture (grey-fill 10)))
+      (is (mentions-p picture (wall-fill 10 'bricks)))
       (is (mentions-p picture (concatenate 'string "<path d=\"M80 8h8v24h-8zM80 40h8v32h-8z\" "
-                                           (grey-fill 50)))))))
+                                           (wall-fill 50 'wood)))))))
 
 (test world-display.walls-are-black-without-colour
   (in-studio (robot)
-    (let ((picture (display:svg-picture robot :in-color nil)))
+    (let ((picture (plain-picture robot :in-color nil)))
       (is (mentions-p picture "M80 40h8v32h-8z"))
-      (is (not (mentions-p picture (grey-fill 50)))))))
+      (is (not (mentions-p picture (wall-fill 50 'wood)))))))
 
 (defun place-element (color x y)
   (format nil "<rect x=\"~D\" y=\"~D\" width=\"8\" height=\"8\" fill=\"#~(~6,'0X~)\"/>" x y color))
@@ -173,14 +181,14 @@
 (test world-display.places-are-filled-cells-in-colour
   "The opening at (10,4) is a doorway, the corners of the room are concave."
   (in-studio (robot)
-    (let ((picture (display:svg-picture robot)))
+    (let ((picture (plain-picture robot)))
       (is (mentions-p picture (place-element (aref canvas:lightblue* 9) 80 32)))
       (is (mentions-p picture (place-element (aref canvas:lightred* 11) 8 8)))
       (is (mentions-p picture (place-element (aref canvas:lightred* 11) 144 64))))))
 
 (test world-display.places-are-symbols-without-colour
   (in-studio (robot)
-    (let ((picture (display:svg-picture robot :in-color nil)))
+    (let ((picture (plain-picture robot :in-color nil)))
       (is (mentions-p picture "<rect x=\"81.5\" y=\"33.5\" width=\"6\" height=\"6\" fill=\"none\""))
       (is (mentions-p picture "<ellipse cx=\"12\" cy=\"12\" rx=\"1\" ry=\"1\" fill=\"#000000\"")))))
 
@@ -192,15 +200,33 @@
                               (place-element (aref canvas:lightblue* 9) 80 32))))
       (setf (world::place-type-invisible-p (world:find-place-type 'doorway)) nil))))
 
-(test world-display.things-are-vertical-lines-of-their-colour
+(defun shape-fills (picture tag x y)
+  "Return, from the outside to the inside, the fills of the shapes TAG around X, Y in PICTURE."
+  (flet ((middle (element start size)
+           (if (eq tag :rect)
+               (+ (of-element element start) (/ (of-element element size) 2))
+               (of-element element (if (eq start :x) :cx :cy)))))
+    (loop for element in (drawn-with tag picture)
+          when (and (realp (of-element element (if (eq tag :rect) :x :cx)))
+                    (= x (middle element :x :width)) (= y (middle element :y :height))
+                    (not (string= "none" (of-element element :fill))))
+            collect (of-element element :fill))))
+
+(test world-display.things-have-their-colour-an-outline-and-a-halo
   (in-studio (robot)
-    (let ((picture (display:svg-picture robot)))
+    (let ((picture (plain-picture robot :layers '())))
       (is (mentions-p picture "<title>BOX#1</title>"))
-      (flet ((line-at (x color)
-               (format nil "<rect x=\"~D\" y=\"33\" width=\"2\" height=\"6\" fill=\"#~(~6,'0X~)\"/>"
-                       x color)))
-        (is (mentions-p picture (line-at 27 (aref canvas:red* 9))))
-        (is (mentions-p picture (line-at 43 (aref canvas:green* 9))))))))
+      (is (equal (list "#ffffff" "#000000" (web (aref canvas:red* 9)))
+                 (shape-fills picture :rect 28 36)))
+      (is (equal (list "#ffffff" "#000000" (web (aref canvas:green* 9)))
+                 (shape-fills picture :ellipse 44 36))))))
+
+(test world-display.without-colour-things-are-vertical-lines
+  (in-studio (robot)
+    (let ((picture (plain-picture robot :in-color nil)))
+      (dolist (x '(27 43))
+        (is (mentions-p picture (format nil "<rect x=\"~D\" y=\"33\" width=\"2\" height=\"6\" ~
+                                             fill=\"#000000\"/>" x)))))))
 
 (test world-display.things-held-are-not-on-the-map
   (in-studio (robot)
@@ -210,32 +236,40 @@
 
 (test world-display.the-robot-is-a-circle-with-an-arrowhead-and-camera-lines
   (in-studio (robot)
-    (let ((picture (display:svg-picture robot)))
+    (let ((picture (plain-picture robot)))
       (is (mentions-p picture "<title>STUDIO-ROBOT</title>"))
-      (is (mentions-p picture "<ellipse cx=\"52\" cy=\"52\" rx=\"6\" ry=\"6\" fill=\"none\""))
-      (is (mentions-p picture "<polygon points=\"56,52 "))
-      (is (mentions-p picture "M58.5,52.5 L62.1,52.5")))))
+      (is (mentions-p picture "<ellipse cx=\"52\" cy=\"52\" rx=\"7\" ry=\"7\" fill=\"none\""))
+      (is (mentions-p picture "<polygon points=\"56.5,52 "))
+      (is (mentions-p picture "M59.5,52.5 L63.7,52.5")))))
 
 (test world-display.layers-can-be-switched
   (in-studio (robot)
     (display:keep-history)
-    (flet ((shows-p (layer part) (mentions-p (display:svg-picture robot :layers layer) part)))
-      (is (not (shows-p '() (format nil "~(~6,'0X~)" (aref canvas:lightred* 8)))))
-      (is (shows-p '(:wedges) (format nil "~(~6,'0X~)" (aref canvas:lightred* 8))))
+    (flet ((shows-p (layer part) (mentions-p (plain-picture robot :layers layer) part)))
+      (is (not (shows-p '() (web (display::layer-ink :wedges)))))
+      (is (shows-p '(:wedges) (web (display::layer-ink :wedges))))
       (is (not (shows-p '(:trail) "<polyline points=\"52.5,52.5")))
       (robot:place-robot robot 7.5 6.5 0)
       (run:run-ticks 1)
       (is (shows-p '(:trail) "<polyline points=\"60.5,52.5 52.5,52.5 \""))
       (is (not (shows-p '() "<polyline points=\"60.5,52.5 52.5,52.5 \"")))
-      (is (shows-p '(:odometer) (format nil "~(~6,'0X~)" (aref canvas:lightviolet* 4)))))
+      (is (shows-p '(:odometer) (web (display::layer-ink :odometer)))))
     (signals base:wrong-argument (display:svg-picture robot :layers '(:aura)))))
 
-(test world-display.scale-is-that-of-graphics-scale*
+(test world-display.scale-is-what-is-asked-for-or-set
   (in-studio (robot)
     (let ((canvas:graphics-scale* 4))
-      (is (mentions-p (display:svg-picture robot) "width=\"80\" height=\"40\"")))
-    (is (mentions-p (display:svg-picture robot :scale 16) "width=\"320\" height=\"160\""))
+      (is (mentions-p (display:svg-picture robot :layers '()) "width=\"80\" height=\"40\"")))
+    (is (mentions-p (plain-picture robot :scale 16) "width=\"320\" height=\"160\""))
     (signals base:wrong-argument (display:svg-picture robot :scale 0))))
+
+(test world-display.scale-suits-the-map-where-nobody-says
+  "20 x 10 cells have 40 pixels each, the most; with all around them, the picture is not too large."
+  (in-studio (robot)
+    (is (mentions-p (display:svg-picture robot :layers '()) "width=\"800\" height=\"400\""))
+    (let ((svg (first (elements (display:svg-picture robot)))))
+      (is (<= 600 (of-element svg :width) 900))
+      (is (<= (of-element svg :height) 700)))))
 
 ;;; The manual's :graphics bodies.
 
@@ -246,7 +280,7 @@
              :check-matchers ((((- * -) (- - -) (- * -)) 0))
              :graphics ,graphics))
     (world:rebuild-map 'studio)
-    (display:svg-picture robot :in-color in-color)))
+    (plain-picture robot :in-color in-color)))
 
 (test graphics.the-doorway-of-5.1.1-draws-as-printed
   (dolist (in-color '(t nil))
@@ -271,8 +305,8 @@
                                          0 (* 2 pi) nil)))))
     (is (mentions-p (place-picture graphics t) (place-element (aref canvas:lightred* 9) 80 32)))
     (let ((picture (place-picture graphics nil)))
-      (is (mentions-p picture "<ellipse cx=\"84\" cy=\"36\" rx=\"4\" ry=\"4\" fill=\"none\""))
-      (is (mentions-p picture "viewBox=\"80 32 8 8\" overflow=\"hidden\">")))))
+      (is (mentions-p picture "<ellipse cx=\"84\" cy=\"36\" rx=\"3.5\" ry=\"3.5\" fill=\"none\""))
+      (is (not (mentions-p picture "overflow"))))))
 
 (test graphics.a-body-that-fails-is-reported-once-and-marked
   (in-studio (robot)
@@ -280,91 +314,8 @@
             :check-matchers ((((- * -) (- - -) (- * -)) 0))
             :graphics ((win cx cy) win cx cy (error "no brush"))))
     (world:rebuild-map 'studio)
-    (let ((first (display:svg-picture robot)) (second (display:svg-picture robot)))
+    (let ((first (plain-picture robot)) (second (plain-picture robot)))
       (is (string= first second))
       (is (mentions-p first "<rect x=\"80.5\" y=\"32.5\" width=\"7\" height=\"7\" fill=\"none\"")))
     (is (equal '("Error in the :graphics of place type DOORWAY: no brush")
                (mapcar #'base:message-text (base:take-messages))))))
-
-;;; Details.
-
-(defun detail (robot display) (display:svg-picture robot :display display))
-
-(test details.state-shows-position-and-direction
-  (in-studio (robot)
-    (is (mentions-p (detail robot :state) "Position: 6.50, 6.50"))
-    (is (mentions-p (detail robot :state) "Direction: 0.00 rad (0 deg)"))))
-
-(test details.designators-are-shown-by-what-they-denote
-  (in-studio (robot)
-    (robot:add-designator robot :denotation (world:find-thing 'box))
-    (robot:add-designator robot :denotation (world:cell-type (world:map-cell
-                                                              (world:find-map 'studio) 10 4)))
-    (robot:add-designator robot :x 2 :y 2)
-    (let ((picture (detail robot :designators)))
-      (is (mentions-p picture ">BOX#1</text>"))
-      (is (mentions-p picture ">DOORWAY</text>"))
-      (is (mentions-p picture ">FALSE</text>")))))
-
-(test details.things-are-as-wide-as-their-size-and-solid-if-they-block-the-way
-  (in-studio (robot)
-    (let ((bin (robot:robot-storage-bin robot 0)) (box (world:find-thing 'box)))
-      (world:move-thing box bin)
-      (is (mentions-p (detail robot :bins) "width=\"16\" height=\"12\" fill=\"#df3127\""))
-      (world:set-attribute box :size 4)
-      (world:set-attribute box :obsmove nil)
-      (is (mentions-p (detail robot :bins) "width=\"31\" height=\"11\" fill=\"none\""))
-      (is (not (mentions-p (detail robot :bins) "<path")))
-      (world:set-attribute box :obsview t)
-      (is (mentions-p (detail robot :bins) "<path")))))
-
-(test details.a-draw-function-is-used-instead
-  (in-studio (robot)
-    (let ((box (world:find-thing 'box)) (got '()))
-      (world:set-attribute box :draw-function
-                           (lambda (window &rest arguments)
-                             (setf got arguments)
-                             (canvas:draw-glyphs window canvas:draw-gcontext*
-                                                 (second arguments) 20 "cardboard")))
-      (world:move-thing box (robot:robot-hand robot 0))
-      (is (mentions-p (detail robot :hands) "cardboard"))
-      (is (eq box (first got)))
-      (is (= 5 (length got)))
-      (is (every #'realp (rest got))))))
-
-(test details.bins-say-whether-they-are-open-and-hands-where-they-are
-  (in-studio (robot)
-    (is (mentions-p (detail robot :bins) "Storage-bin 0: open"))
-    (setf (robot::hand-location (robot:robot-hand robot 0)) (robot:robot-storage-bin robot 0))
-    (is (mentions-p (detail robot :hands) "in Storage-bin 0"))
-    (setf (robot::storage-bin-closed-p (robot:robot-storage-bin robot 0)) t)
-    (is (mentions-p (detail robot :bins) "Storage-bin 0: closed"))))
-
-(test details.cameras-show-view-and-containment
-  (in-studio (robot)
-    (setf (robot::camera-last-view (robot:robot-camera robot 0)) '(1.0d0 20.25d0)
-          (robot::camera-location (robot:robot-camera robot 0)) (world:find-thing 'box))
-    (let ((picture (detail robot :cameras)))
-      (is (mentions-p picture "View: 1.0 20.3"))
-      (is (mentions-p picture ">in </text>"))
-      (is (mentions-p picture ">BOX#1</text>")))))
-
-(defun y-of-text (picture text)
-  "Return what PICTURE says of the height at which the last TEXT stands in it."
-  (let ((start (search " y=\"" picture :from-end t :end2 (search text picture :from-end t))))
-    (subseq picture (+ start 4) (position #\" picture :start (+ start 4)))))
-
-(test details.what-a-camera-tracks-stands-under-what-it-sees-on-one-line
-  (in-studio (robot)
-    (let ((box (robot:add-designator robot :denotation (world:find-thing 'box) :x 8 :y 6.5)))
-      (robot:start-track (robot:robot-camera robot 0) box nil)
-      (let ((picture (detail robot :cameras)))
-        (is (string= (y-of-text picture "local ") (y-of-text picture ">BOX#1<")))
-        (is (< (parse-integer (y-of-text picture ">View"))
-               (parse-integer (y-of-text picture "local "))))))))
-
-(test details.all-displays-fit-in-one-picture
-  (in-studio (robot)
-    (let ((picture (detail robot :all)))
-      (dolist (display (rest display:+displays+))
-        (is (mentions-p picture (display:display-title display)))))))

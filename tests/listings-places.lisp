@@ -147,7 +147,7 @@ lead into the walls."
 
 (defun masons-picture (in-color)
   "Return a picture of MASON's world."
-  (display:svg-picture (mason) :in-color in-color))
+  (display:svg-picture (mason) :in-color in-color :scale 8 :layers '(:places)))
 
 (test doorway.is-drawn-as-a-square
   (with-listings ("5-1-1-doorway" "5-1-1-convex")
@@ -158,7 +158,7 @@ lead into the walls."
                                      fill=\"none\" stroke=\"#000000\"/>")))))))
 
 (defparameter *corner-circle*
-  "<ellipse cx=\"44\" cy=\"20\" rx=\"4\" ry=\"4\" fill=\"none\" stroke=\"#000000\"/>"
+  "<ellipse cx=\"44\" cy=\"20\" rx=\"3.5\" ry=\"3.5\" fill=\"none\" stroke=\"#000000\"/>"
   "What a circle in the cell at (5,2) is drawn as.")
 
 (test convex.is-drawn-as-a-circle

@@ -13,7 +13,7 @@
                 #:def-suite* #:test #:is #:is-true #:is-false #:signals #:ars-magna
                 #:call-times #:call-once #:end-code #:near #:frequent-p #:warnings-of
                 #:complaints #:has-words-p #:wall-picture #:map-of #:picture-map
-                #:lines-of #:joined
+                #:lines-of #:joined #:elements #:of-element #:drawn-with #:value-of #:web
                 #:message-texts)
   (:import-from :ars-magna.display #:svg-picture)
   (:import-from :ars-magna.cli #:make-session #:run-session #:session-errors))

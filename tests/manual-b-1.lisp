@@ -12,7 +12,8 @@
   (eval '(defmap chapel (9 6) (wall (3 2) (3 2) stone 1) (wall (5 2) (5 2) stone 1)))
   (eval '(defrobot sexton (chapel (1.5 4.5) 0)))
   (with-simulation (sexton)
-    (values (apply #'svg-picture (find-robot 'sexton) options)
+    (values (apply #'svg-picture (find-robot 'sexton)
+                   (append options '(:scale 8 :layers (:places))))
             (message-texts))))
 
 (defun has-square-p (picture &rest attributes)
@@ -50,7 +51,7 @@ draw one thing or the other."
     (is-true (has-square-p (chapel-picture graphics) :fill (web (vref lightgreen* 9))))
     (let ((picture (chapel-picture graphics :in-color nil)))
       (is-false (has-square-p picture))
-      (is-true (drawn-with :ellipse picture :cx 36 :cy 20 :rx 4 :ry 4 :fill "none")
+      (is-true (drawn-with :ellipse picture :cx 36 :cy 20 :rx 3.5 :ry 3.5 :fill "none")
                "a circle inscribed in the square"))))
 
 (test manual-b-1.with-color-selects-a-colour

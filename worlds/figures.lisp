@@ -57,6 +57,38 @@ map.")
   (with-open-file (out page :direction :output :if-exists :supersede :external-format :utf-8)
     (format out "~{~A~%~}" lines)))
 
+;;; Worlds.
+
+(defun save-watson ()
+  "Save a picture of ROBBIE in WATSON, with the plant that its camera tracks."
+  (with-simulation (robbie :seed 1 :clean t)
+    (let ((camera (robot-camera robbie 0)))
+      (camera-turn camera 0.78d0)
+      (run-ticks 20)
+      (camera-get-object-designator camera :non-local '((:color green))
+        (continuation (err camera designator)
+          (when designator (camera-track camera designator nil))))
+      (run-ticks 20))
+    (save-picture robbie (in-worlds "watson.svg") :layers (cons :wedges *picture-layers*))))
+
+(defun save-layers ()
+  "Save a picture of DOT in TINY that shows what layers there are."
+  (with-simulation (dot :seed 4)
+    (let ((camera (robot-camera dot 0)))
+      (keep-history)
+      (robot-turn dot -0.5d0)
+      (run-ticks 20)
+      (robot-go-forward dot 4)
+      (run-ticks 12)
+      (dolist (color '(red lightblue))
+        (camera-get-object-designator camera :non-local `((:color ,color)))
+        (run-ticks 12))
+      (camera-view camera)
+      (run-ticks 4))
+    (save-picture dot (ensure-directories-exist (in-worlds "pictures/worlds/tiny-layers.svg"))
+                  :layers '(:names :places :grid :wedges :rays :trail :designators :coordinates
+                            :legend :scale-bar :title))))
+
 ;;; Looking ahead.
 
 (defun save-ways-ahead ()
@@ -138,6 +170,8 @@ the short way."
 (defun save-figures ()
   "Draw the floor to import, run the shipped experiments, put their tables into worlds/README.md,
 and save their pictures."
+  (save-watson)
+  (save-layers)
   (draw-ward (in-worlds "floors/"))
   (save-ways-ahead)
   (save-fetch)

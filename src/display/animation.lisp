@@ -65,7 +65,7 @@ ticks and at the end, and WATCH with the simulation after each."
   (let ((count (length snapshots)) (map (snapshot-map (first snapshots))))
     (with-svg (canvas stream :color-p in-color)
       (with-canvas (canvas :scale scale)
-        (draw-terrain canvas map)
+        (draw-terrain canvas map :layers layers)
         (loop for snapshot in snapshots
               for index from 0
               do (write-frame canvas index count (/ count rate)
@@ -82,12 +82,13 @@ ticks and at the end, and WATCH with the simulation after each."
     (let ((canvas (make-instance 'svg-canvas :stream out :color-p in-color)))
       (with-canvas (canvas :scale scale) (draw-movers canvas snapshot layers)))))
 
-(defun still-text (map movers in-color scale)
-  "Return an SVG document of MAP with a group called movers over it, of the lines of SVG MOVERS."
+(defun still-text (map movers layers in-color scale)
+  "Return an SVG document of MAP, with LAYERS, and a group called movers over it, of the lines of
+SVG MOVERS."
   (with-output-to-string (out)
     (with-svg (canvas out :color-p in-color)
       (with-canvas (canvas :scale scale)
-        (draw-terrain canvas map)
+        (draw-terrain canvas map :layers layers)
         (write-svg canvas "<g id=\"movers\">
 " movers "</g>
 "))
@@ -114,7 +115,8 @@ ticks and at the end, and WATCH with the simulation after each."
       (setf ticks (reverse ticks))
       (with-output-to-string (out)
         (write-film out (film-title journal ticks)
-                    (still-text map first in-color scale) (still-text map last in-color scale)
+                    (still-text map first layers in-color scale)
+                    (still-text map last layers in-color scale)
                     reel ticks rate (in-order (append (funcall seen) moments)))))))
 
 (defun film-file-p (file)

@@ -7,6 +7,9 @@
   ;; colours
   (:export #:color #:black* #:white* #:grey* #:red* #:green* #:blue* #:violet* #:lightred*
            #:lightgreen* #:lightblue* #:lightviolet* #:shade #:color-called)
+  ;; contrast
+  (:export #:+least-contrast+ #:primaries #:color-of-primaries #:luminance #:contrast #:ink-on
+           #:tinted)
   ;; gcontext
   (:export #:gcontext #:gcontext-p #:create-gcontext #:gcontext-foreground
            #:gcontext-background #:gcontext-line-width #:gcontext-line-style
@@ -22,8 +25,8 @@
            #:draw-segments #:draw-point #:draw-points #:draw-glyph #:draw-glyphs
            #:draw-image-glyph #:draw-image-glyphs #:clear-area)
   ;; text
-  (:export #:+text-font+ #:text-width #:paint-text #:draw-words #:call-with-opacity
-           #:with-opacity)
+  (:export #:+text-font+ #:text-width #:paint-text #:character-width #:draw-words
+           #:call-with-opacity #:with-opacity)
   ;; svg
   (:export #:svg-canvas #:svg-stream #:call-with-svg #:with-svg #:write-svg #:number-text
            #:write-number #:write-text))

@@ -4,8 +4,9 @@
 
 ;;; A canvas is what the bodies of :graphics get as their window. Coordinates are pixels, x to the
 ;;; right and y down. As in X, the outline of a rectangle and a line run through the middles of
-;;; pixels, so an outline W wide covers W+1 of them; arcs are inscribed in their box. Seven
-;;; generic functions make a canvas: five that paint, two that narrow down where.
+;;; pixels, so an outline W wide covers W+1 of them. Arcs are inscribed in their box; the outline of
+;;; a whole circle, too, stays within it, where X would cover one more pixel to the right and below.
+;;; Seven generic functions make a canvas: five that paint, two that narrow down where.
 
 (defclass canvas ()
   ((color-p :initarg :color-p :initform t :reader canvas-color-p
@@ -29,7 +30,8 @@
 (defgeneric paint-arc (canvas gcontext x y width height start extent fill-p)
   (:documentation
    "Paint the arc inscribed in a box from the angle START over EXTENT, both in radians,
-counterclockwise from the right; a slice of pie if FILL-P."))
+counterclockwise from the right; a slice of pie if FILL-P. The outline of a whole circle stays
+within the box, however wide the line is."))
 
 (defgeneric paint-path (canvas gcontext points fill-p)
   (:documentation "Paint the lines through POINTS, a sequence x y ..., or the polygon if FILL-P."))

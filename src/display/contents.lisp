@@ -14,6 +14,7 @@
   (:method ((image designator-image))
     (list (designator-image-number image) (designator-image-type image)
           (designator-image-angle image) (designator-image-distance image)
+          (designator-image-x image) (designator-image-y image)
           (content (designator-image-denotation image))))
   (:method ((image camera-image))
     (list (camera-image-angle image) (camera-image-look image) (camera-image-view image)
@@ -29,7 +30,7 @@
   (:method ((image robot-image))
     (list (robot-image-x image) (robot-image-y image) (robot-image-angle image)
           (content (robot-image-cameras image)) (content (robot-image-odometer image))
-          (robot-image-trail image))))
+          (content (robot-image-designators image)) (robot-image-trail image))))
 
 (defun snapshot-content (snapshot)
   "Return an object that is EQUAL to that of another snapshot if their worlds look the same."
@@ -43,6 +44,8 @@ but the world, shows the same of it and of ROBOT, an image too."
                   (robot-image-speed robot) (robot-image-place robot)
                   (robot-image-under-way robot) (robot-image-interruption robot)))
     (:designators (content (robot-image-designators robot)))
-    (:cameras (list (robot-image-angle robot) (content (robot-image-cameras robot))))
+    (:cameras (list (robot-image-angle robot) (content (robot-image-cameras robot))
+                    (loop for camera in (robot-image-cameras robot)
+                          when (camera-image-view camera) collect (camera-image-view-age camera))))
     (:hands (content (robot-image-hands robot)))
     (:bins (content (robot-image-bins robot)))))

@@ -9,8 +9,8 @@
 (define-constant +margin+ 6 :documentation "How far from the edge drawing begins, in pixels.")
 (define-constant +object-width+ 90 :documentation "How wide things are drawn at most, in pixels.")
 (define-constant +object-height+ 12 :documentation "How high things are drawn, in pixels.")
-(define-constant +size-unit+ 8
-  :documentation "How many pixels wide a thing is drawn for each unit of its size.")
+(define-constant +largest-unit+ 8
+  :documentation "How many pixels wide a thing is drawn at most for each unit of its size.")
 
 (defun fit-text (text width)
   "Return as much of TEXT as fits into WIDTH pixels."
@@ -23,27 +23,81 @@
   "Write TEXT in the line whose top is at Y."
   (draw-text canvas x (+ y 12) (fit-text text (- width x +margin+))))
 
+(defun wrapped (text width)
+  "Return TEXT as a list of lines that fit into WIDTH pixels, broken at blanks where that can be."
+  (loop with room = (max 1 (floor width +character-width+))
+        while (< room (length text))
+        collect (let ((blank (position #\Space text :from-end t :end (1+ room))))
+                  (prog1 (subseq text 0 (or blank room))
+                    (setf text (subseq text (if blank (1+ blank) room)))))
+          into lines
+        finally (return (append lines (list text)))))
+
+(defun draw-paragraph (canvas x y width text)
+  "Write TEXT, in as many lines as it takes, from Y. Return where it ends."
+  (dolist (line (wrapped text (- width x +margin+)) y)
+    (draw-line-of-text canvas x y width line)
+    (incf y +line-height+)))
+
 ;;; Things.
 
+(defun images-shown (robot)
+  "Return a list of the images of things that displays show of ROBOT."
+  (remove-if-not #'thing-image-p
+                 (append (mapcar #'designator-image-denotation (robot-image-designators robot))
+                         (loop for camera in (robot-image-cameras robot)
+                               for track = (camera-image-track camera)
+                               collect (camera-image-location camera)
+                               when track collect (designator-image-denotation track))
+                         (loop for hand in (robot-image-hands robot)
+                               collect (hand-image-contents hand)
+                               collect (hand-image-location hand))
+                         (mapcan (lambda (bin) (copy-list (bin-image-contents bin)))
+                                 (robot-image-bins robot)))))
+
+(defvar *size-unit* +largest-unit+
+  "How many pixels wide a thing is drawn for each unit of its size: all things of a robot alike, so
+that their widths are in proportion.")
+
+(defun size-unit (robot)
+  "Return how many pixels wide a unit of size is for the largest thing shown of ROBOT to fit."
+  (let ((largest (reduce #'max (mapcar #'thing-image-size (images-shown robot))
+                         :initial-value 0)))
+    (if (< (* largest +largest-unit+) +object-width+)
+        +largest-unit+
+        (/ +object-width+ largest))))
+
 (defun thing-width (image)
-  "Return how wide to draw the thing, in pixels: in proportion to its size, but not invisible."
-  (clamp (round (* +size-unit+ (thing-image-size image))) 4 +object-width+))
+  "Return how wide to draw the thing, in pixels: in proportion to its size."
+  (* *size-unit* (max 0 (thing-image-size image))))
+
+(defun draw-hollow (canvas x y width)
+  "Draw a frame in the current colour, with an outline that is seen on white whatever that is."
+  (let ((height (1- +object-height+)) (pen (if (< width 7) 1 2)))
+    (with-color black* (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) height))
+    (when (and in-color* (<= 4 width))
+      (with-lines (:width pen)
+        (draw-rectangle canvas draw-gcontext* (+ x 1/2 (/ pen 2)) (+ y 1/2 (/ pen 2))
+                        (- width 2 pen) (- height 1 pen))))))
+
+(defun draw-solid (canvas x y width)
+  (draw-rectangle canvas draw-gcontext* x y width +object-height+ t)
+  (with-color black*
+    (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) (1- +object-height+))))
 
 (defun draw-block (canvas image x y)
   "Draw a thing as a rectangle: solid if it blocks movement, crossed out if it obstructs view."
-  (let* ((width (thing-width image))
-         (bottom (+ y +object-height+ -1))
-         (solid-p (thing-image-obsmove-p image)))
+  (let* ((width (thing-width image)) (right (+ x (max 0 (1- width))))
+         (bottom (+ y +object-height+ -1)) (solid-p (thing-image-obsmove-p image)))
     (with-color (thing-image-color image)
-      (if solid-p
-          (draw-rectangle canvas draw-gcontext* x y width +object-height+ t)
-          (draw-rectangle canvas draw-gcontext* x y (1- width) (1- +object-height+)))
-      (when (thing-image-obsview-p image)
-        (with-gcontext (draw-gcontext* :foreground (if solid-p
-                                                       white*
-                                                       (gcontext-foreground draw-gcontext*)))
-          (draw-segments canvas draw-gcontext*
-                         (list x y (+ x width -1) bottom x bottom (+ x width -1) y)))))))
+      (if solid-p (draw-solid canvas x y width) (draw-hollow canvas x y width)))
+    (when (thing-image-obsview-p image)
+      (with-gcontext (draw-gcontext* :foreground (if solid-p
+                                                     (ink-on (if in-color*
+                                                                 (thing-image-color image)
+                                                                 black*))
+                                                     black*))
+        (draw-segments canvas draw-gcontext* (list x y right bottom x bottom right y))))))
 
 (defun draw-object (canvas image x y width)
   "Draw the thing whose image is IMAGE, by its own :draw-function if it has one, and its
@@ -76,11 +130,10 @@ name (reading 211)."
                      (format nil "Place: ~:[none~;~:*~(~A~)~]" (robot-image-place robot))
                      (format nil "Under way: ~:[nothing~;~:*~A~]" (robot-image-under-way robot))
                      (format nil "Interrupted: ~:[nothing~;~:*~A~]"
-                             (robot-image-interruption robot)))))
-    (loop for y from +margin+ by +line-height+
-          for line in lines
-          do (draw-line-of-text canvas +margin+ y width line)
-          finally (return y))))
+                             (robot-image-interruption robot))))
+        (y +margin+))
+    (dolist (line lines y)
+      (setf y (draw-paragraph canvas +margin+ y width line)))))
 
 ;;; Robot designators.
 
@@ -104,7 +157,7 @@ name (reading 211)."
 (define-constant +dial+ 30 :documentation "The radius of the picture of a camera, in pixels.")
 
 (defun draw-tick (canvas x y angle)
-  (with-color (svref red* 10)
+  (with-color (layer-ink :tracks)
     (with-lines (:width 2)
       (draw-segments canvas draw-gcontext*
                      (append (around x y angle (* 1/2 +dial+)) (around x y angle +dial+))))))
@@ -116,7 +169,7 @@ view, with a tick in the direction in which it believes what it tracks to be."
          (half (* 1/2 (camera-image-field-of-view camera)))
          (angle (+ (robot-image-angle robot) (camera-image-angle camera)))
          (track (camera-image-track camera)))
-    (with-color (svref lightblue* 10)
+    (with-color (svref lightblue* 9)
       (draw-arc canvas draw-gcontext* (- x +dial+) (- y +dial+) (* 2 +dial+) (* 2 +dial+)
                 (- (+ angle half)) (* 2 half) in-color*))
     (draw-lines canvas draw-gcontext*
@@ -125,31 +178,35 @@ view, with a tick in the direction in which it believes what it tracks to be."
     (when track
       (draw-tick canvas x y (+ (robot-image-angle robot) (designator-image-angle track))))))
 
-(defun view-text (view)
-  (format nil "~{~,1F~^ ~}" (loop for pixel in view repeat 100 collect pixel)))
+(defun view-text (camera)
+  "Return what CAMERA saw last, and how long ago."
+  (if (camera-image-view camera)
+      (format nil "View ~[now~:;~:*~D tick~:P ago~]: ~{~,1F~^ ~}"
+              (camera-image-view-age camera) (camera-image-view camera))
+      "View: none yet"))
+
+(defun draw-track-line (canvas track x y width)
+  "Write what TRACK, the image of a designator, is, and draw what it denotes."
+  (let ((text (format nil "~(~A~) ~,1F " (designator-image-type track)
+                      (designator-image-distance track))))
+    (draw-line-of-text canvas x y width text)
+    (draw-denotation canvas track (+ x (words-width text)) y width)))
 
 (defun draw-camera (canvas robot camera y width)
-  (let ((left (+ (* 2 +margin+) (* 2 +dial+)))
-        (track (camera-image-track camera)))
+  "Draw CAMERA from Y; return where that ends."
+  (let ((left (+ (* 2 +margin+) (* 2 +dial+))) (track (camera-image-track camera)) (next y))
     (with-subject (canvas camera)
       (draw-dial canvas robot camera y)
-      (draw-line-of-text canvas left (+ y 6) width
-                         (format nil "View: ~A" (view-text (camera-image-view camera))))
-      (when track
-        (let ((text (format nil "~(~A~) ~,1F " (designator-image-type track)
-                            (designator-image-distance track))))
-          (draw-line-of-text canvas left (+ y 6 +line-height+) width text)
-          (draw-denotation canvas track (+ left (* +character-width+ (length text)))
-                           (+ y 6 +line-height+) width)))
+      (setf next (draw-paragraph canvas left (+ y 6) width (view-text camera)))
+      (when track (draw-track-line canvas track left next width))
       (draw-location canvas (camera-image-location camera)
-                     left (+ y 6 (* 2 +line-height+)) width))))
+                     left (+ next +line-height+) width))
+    (+ +margin+ (max (+ y (* 2 +dial+)) (+ next (* 2 +line-height+))))))
 
 (defun draw-cameras (canvas robot width)
-  (loop with height = (+ (* 2 +dial+) +margin+)
-        for y from +margin+ by height
-        for camera in (robot-image-cameras robot)
-        do (draw-camera canvas robot camera y width)
-        finally (return y)))
+  (let ((y +margin+))
+    (dolist (camera (robot-image-cameras robot) y)
+      (setf y (draw-camera canvas robot camera y width)))))
 
 ;;; Hands.
 

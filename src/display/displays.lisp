@@ -23,13 +23,14 @@ storage bins.")
 
 (defun draw-detail (canvas display robot width)
   "Draw one of the displays of ROBOT, WIDTH pixels wide; return its height."
-  (funcall (ecase display
-             (:state #'draw-state)
-             (:designators #'draw-designators)
-             (:cameras #'draw-cameras)
-             (:hands #'draw-hands)
-             (:bins #'draw-bins))
-           canvas robot width))
+  (let ((*size-unit* (size-unit robot)))
+    (funcall (ecase display
+               (:state #'draw-state)
+               (:designators #'draw-designators)
+               (:cameras #'draw-cameras)
+               (:hands #'draw-hands)
+               (:bins #'draw-bins))
+             canvas robot width)))
 
 (defun draw-titled (canvas display robot x y)
   "Draw a display of ROBOT with its title and a frame, its upper left corner at X, Y; return its
@@ -47,14 +48,11 @@ height."
 
 (defun draw-all (canvas snapshot robot layers)
   "Draw the six displays side by side; return the width and height of that."
-  (let* ((map (snapshot-map snapshot))
-         (left (+ (to-pixels (map-width map)) +margin+))
-         (bottom 0))
-    (draw-world canvas snapshot :layers layers)
-    (dolist (display (rest +displays+))
-      (incf bottom (+ (draw-titled canvas display robot left bottom) +margin+)))
-    (values (+ left +detail-width+ 1)
-            (max (to-pixels (map-height map)) bottom))))
+  (multiple-value-bind (width height) (draw-framed-world canvas snapshot layers)
+    (let ((left (+ width +margin+)) (bottom 0))
+      (dolist (display (rest +displays+))
+        (incf bottom (+ (draw-titled canvas display robot left bottom) +margin+)))
+      (values (+ left +detail-width+ 1) (max height bottom)))))
 
 (defun draw-display (canvas display snapshot robot &key (layers *picture-layers*)
                                                      (width +detail-width+))
@@ -63,9 +61,7 @@ in it. Return the width and height drawn, in pixels. WIDTH is that of the detail
 the world shows. To be called within WITH-CANVAS."
   (case display
     (:all (draw-all canvas snapshot robot layers))
-    (:world (draw-world canvas snapshot :layers layers)
-     (values (to-pixels (map-width (snapshot-map snapshot)))
-             (to-pixels (map-height (snapshot-map snapshot)))))
+    (:world (draw-framed-world canvas snapshot layers))
     (t (values width (draw-detail canvas display robot width)))))
 
 (defun check-display (operator display)
@@ -74,15 +70,9 @@ the world shows. To be called within WITH-CANVAS."
                            :expected (format nil "one of ~{~(~S~)~^, ~}"
                                              (append +displays+ '(:all))))))
 
-(defun check-layers (operator layers)
-  (unless (and (listp layers) (subsetp layers +picture-layers+))
-    (error 'wrong-argument :operator operator :name "layers" :value layers
-                           :expected (format nil "a list of some of ~{~(~S~)~^, ~}"
-                                             +picture-layers+))))
-
 (define-argument-type 'picture-scale (lambda (value) (and (finite-p value) (<= 1 value 256)))
   "a number of pixels to a cell, from 1 to 256")
 
 (defun check-scale (operator scale)
-  (unless (argument-of-type-p scale 'picture-scale)
+  (unless (or (null scale) (argument-of-type-p scale 'picture-scale))
     (reject-argument operator "scale" scale (argument-type-text 'picture-scale))))

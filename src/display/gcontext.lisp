@@ -40,8 +40,10 @@ default 4, or a list (dash gap ...). Can be set. A canvas may have dashes of its
 (public (graphics-scale* :ars))
 ;; As reading 208 says.
 (defvar graphics-scale* 8
-  "How many pixels there are to the side of a grid cell in the display of the world. Default 8
-(manual B; the default is ours).")
+  "How many pixels there are to the side of a grid cell in the display of the world (manual B).
+While it is 8, the default, which is ours, pictures for which no :SCALE is given choose a scale that
+suits their map; set to another value, it counts for them, too. Where a body of :graphics or
+:draw-function runs, it is the scale of the picture.")
 
 (public in-color*)
 (defvar in-color* t

@@ -52,15 +52,21 @@
 
 ;;; Looks.
 
-(defun ray-end (world x y angle)
-  "Return, as two values, where what a camera at X, Y can see of WORLD in direction ANGLE ends."
-  (let* ((map (world-map world)) (flags (world-flags world))
-         (dx (cos angle)) (dy (sin angle))
+(declaim (inline ray-end))
+(defun ray-end (map opaque-p x y angle)
+  "Return, as two values, where what a camera at X, Y can see of MAP in direction ANGLE ends.
+OPAQUE-P is a function of the index of a cell."
+  (declare (type function opaque-p))
+  (let* ((dx (cos angle)) (dy (sin angle))
          (end (walk-grid (lambda (index at column)
                            (declare (ignore at column))
-                           (logtest +opaque+ (aref flags index)))
+                           (funcall opaque-p index))
                          (map-width map) (map-height map) x y dx dy +no-limit+)))
     (values (+ x (* end dx)) (+ y (* end dy)))))
+
+(defun world-ray-end (world x y angle)
+  (let ((flags (world-flags world)))
+    (ray-end (world-map world) (lambda (index) (logtest +opaque+ (aref flags index))) x y angle)))
 
 (defun look-of (camera)
   "Return the look that CAMERA's last view comes from, if it was taken where CAMERA is now."
@@ -73,7 +79,7 @@
     (make-look (camera-last-view camera) x y
                (loop for ray below count
                      append (multiple-value-list
-                             (ray-end (robot-world robot) x y
+                             (world-ray-end (robot-world robot) x y
                                       (+ first (* ray (/ width count)))))))))
 
 (defun note-look (history camera)
@@ -103,6 +109,7 @@
   "Return the history that is kept of SIMULATION, or NIL."
   (car (gethash simulation *histories*)))
 
+(addition keep-history)
 (defun keep-history (&optional (simulation (current-simulation)))
   "From now on keep a history of SIMULATION, so that its pictures can show the trails of robots and
 the rays of the last looks. Return it."

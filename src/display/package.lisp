@@ -17,8 +17,12 @@
            #:robot-image-name #:robot-image-x #:robot-image-y #:robot-image-designators)
   ;; subjects, contents
   (:export #:describe-subject #:snapshot-content #:display-content)
-  ;; terrain, world-display, details
-  (:export #:draw-terrain #:draw-movers #:draw-world #:*picture-layers* #:+picture-layers+
+  ;; layers
+  (:export #:*picture-layers* #:+picture-layers+ #:layer-title #:layer-documentation
+           #:layers-of-kind)
+  ;; terrain, world-display, margins, displays
+  (:export #:draw-terrain #:draw-movers #:draw-world #:draw-framed-world #:suitable-scale
+           #:draw-view-margins
            #:draw-display #:display-title #:+displays+)
   ;; moments
   (:export #:moment-p #:moment-tick #:moment-kind #:moment-text #:moment-x #:moment-y

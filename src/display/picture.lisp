@@ -3,11 +3,12 @@
 (in-package :ars-magna.display)
 
 (defun write-picture (stream snapshot robot &key (display :world) (layers *picture-layers*)
-                                              (in-color t) (scale graphics-scale*))
+                                              (in-color t) scale)
   "Write an SVG document of DISPLAY from SNAPSHOT to STREAM; ROBOT is the image of a robot in it."
   (with-svg (canvas stream :color-p in-color)
-    (with-canvas (canvas :scale scale)
-      (draw-display canvas display snapshot robot :layers layers))))
+    (with-canvas (canvas)
+      (let ((graphics-scale* (suitable-scale scale snapshot layers)))
+        (draw-display canvas display snapshot robot :layers layers)))))
 
 (defun check-picture (operator robot display layers scale)
   (unless (robot-p robot)
@@ -17,11 +18,15 @@
   (check-layers operator layers)
   (check-scale operator scale))
 
-(defun svg-picture (robot &key (display :world) (layers *picture-layers*) (in-color t)
-                            (scale graphics-scale*))
+(addition svg-picture)
+(defun svg-picture (robot &key (display :world) (layers *picture-layers*) (in-color t) scale)
   "Return a picture of the world of ROBOT as it is now: an SVG document, as a string. DISPLAY is one
-of +DISPLAYS+ or :ALL, LAYERS a list of some of +PICTURE-LAYERS+, SCALE how many pixels there
-are to a cell. IN-COLOR is false for a picture in black and white. Signals WRONG-ARGUMENT."
+of :WORLD, :STATE, :DESIGNATORS, :CAMERAS, :HANDS and :BINS, the displays of the manual, or :ALL.
+LAYERS lists what the picture shows besides walls, things and robots: *PICTURE-LAYERS* tells what
+there is; the list () gives the bare map. SCALE is how many pixels there are to a cell, from 1 to
+256. Without SCALE it is GRAPHICS-SCALE*, if you have set that to another value than 8, or else what
+suits the map: from 4 to 40, so that the picture is 900 x 700 pixels at most, if 4 do for that.
+IN-COLOR is false for a picture in black and white. Signals WRONG-ARGUMENT."
   (check-picture 'svg-picture robot display layers scale)
   (let ((snapshot (snapshot-of robot)))
     (with-output-to-string (stream)
@@ -64,7 +69,7 @@ picture there."
     (:png (convert-to-png svg (merge-pathnames file)))))
 
 (defun save-snapshot (snapshot robot file &key (display :all) (layers *picture-layers*)
-                                            (in-color t) (scale graphics-scale*))
+                                            (in-color t) scale)
   "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does; ROBOT is the image of a robot in it."
   (save-svg (with-output-to-string (stream)
               (write-picture stream snapshot robot
@@ -73,7 +78,7 @@ picture there."
 
 (addition save-picture)
 (defun save-picture (robot file &key (display :world) (layers *picture-layers*) (in-color t)
-                                  (scale graphics-scale*))
+                                  scale)
   "Save a picture of the world of ROBOT as it is now in FILE, replacing it: SVG or, where the
 program rsvg-convert is installed, PNG, as its name ends. The other arguments are those of
 SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE without that program."

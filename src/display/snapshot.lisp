@@ -15,9 +15,10 @@
 (define-image snapshot "What a world looks like at one moment."
   (tick 0) (map nil) (things #()) (robots '()))
 
-(define-image thing-image "What a snapshot knows of a thing; COLOR is that of the display."
+(define-image thing-image "What a snapshot knows of a thing; COLOR is that of the display. It is
+MOVING-P if it has kickers."
   (thing nil) (x 0d0) (y 0d0) (location nil) (attributes '()) (color 0) (size 0d0)
-  (obsmove-p nil) (obsview-p nil) (draw-function nil))
+  (obsmove-p nil) (obsview-p nil) (container-p nil) (moving-p nil) (draw-function nil))
 
 (define-image robot-image "What a snapshot knows of a robot."
   (name nil) (x 0d0) (y 0d0) (angle 0d0) (speed 0d0) (place nil)
@@ -25,8 +26,10 @@
   (cameras '()) (hands '()) (bins '())
   (designators '()) (odometer nil) (trail '()))
 
-(define-image camera-image "What a snapshot knows of a camera; ANGLE is relative to the robot."
-  (index 0) (angle 0d0) (field-of-view 1d0) (view '()) (track nil) (location nil) (look nil))
+(define-image camera-image "What a snapshot knows of a camera; ANGLE is relative to the robot. Its
+last VIEW was taken VIEW-AGE ticks ago."
+  (index 0) (angle 0d0) (field-of-view 1d0) (view '()) (view-age 0) (track nil)
+  (location nil) (look nil))
 
 (define-image hand-image "What a snapshot knows of a hand."
   (index 0) (strength 0d0) (contents nil) (location nil))
@@ -35,8 +38,8 @@
   (index 0) (capacity 0d0) (closed-p nil) (contents '()))
 
 (define-image designator-image "What a snapshot knows of a designator. DENOTATION is the image of a
-thing, the name of a place type, or NIL if the designator is false."
-  (number 0) (type nil) (angle 0d0) (distance 0d0) (denotation nil))
+thing, the name of a place type, or NIL if the designator is false; X and Y are where that is."
+  (number 0) (type nil) (angle 0d0) (distance 0d0) (denotation nil) (x nil) (y nil))
 
 (define-image odometer-image "What a snapshot knows of an odometer: where, seen from outside, it
 puts the robot, and how uncertain it is."
@@ -55,18 +58,22 @@ puts the robot, and how uncertain it is."
 
 ;;; Things.
 
+(defun moving-p (thing) (and (thing-kickers thing) t))
+
 (defun image-of-thing (thing &optional old)
   "Return the image of THING: OLD, an image of it, if that is still right."
   (let ((attributes (thing-attributes thing)))
     (if (and old
              (eq attributes (thing-image-attributes old))
              (= (thing-x thing) (thing-image-x old))
-             (= (thing-y thing) (thing-image-y old)))
+             (= (thing-y thing) (thing-image-y old))
+             (eq (moving-p thing) (thing-image-moving-p old)))
         old
         (make-thing-image
          :thing thing :x (thing-x thing) :y (thing-y thing) :attributes attributes
          :color (shade (get-attribute thing :color)) :size (thing-size thing)
          :obsmove-p (thing-obsmove-p thing) :obsview-p (thing-obsview-p thing)
+         :container-p (plusp (thing-capacity thing)) :moving-p (moving-p thing)
          :draw-function (get-attribute thing :draw-function)))))
 
 (defun image-serial (image) (thing-serial (thing-image-thing image)))
@@ -106,8 +113,17 @@ what it holds of each."
   (cond ((thing-p denotation) (image-of-thing denotation))
         ((place-p denotation) (princ-to-string (place-type-name (place-type denotation))))))
 
+(defun place-of-denotation (denotation)
+  "Return, as a list, where what DENOTATION is lies; NIL if it is false."
+  (cond ((thing-p denotation) (list (thing-x denotation) (thing-y denotation)))
+        ((place-p denotation)
+         (let ((cell (place-cell denotation)))
+           (list (+ 1/2 (cell-x cell)) (+ 1/2 (cell-y cell)))))))
+
 (defun image-of-designator (designator)
   (make-designator-image
+   :x (first (place-of-denotation (designator-denotation designator)))
+   :y (second (place-of-denotation (designator-denotation designator)))
    :number (designator-number designator) :type (designator-type designator)
    :angle (designator-angle designator) :distance (designator-distance designator)
    :denotation (image-of-denotation (designator-denotation designator))))
@@ -117,6 +133,7 @@ what it holds of each."
     (make-camera-image
      :index (camera-index camera) :angle (camera-angle camera)
      :field-of-view (camera-field-of-view camera) :view (camera-last-view camera)
+     :view-age (- (world-tick (robot-world (camera-robot camera))) (camera-last-view-tick camera))
      :track (and designator (image-of-designator designator))
      :location (image-of-location (camera-location camera))
      :look (and history (cdr (assoc camera (history-looks history) :test #'eq))))))

@@ -11,9 +11,18 @@
   (format nil "Designator ~D" (designator-image-number image)))
 
 (defun angle-text (angle)
-  "Return ANGLE, in radians, as text that gives degrees too."
-  (format nil "~,2F rad (~D deg)" (hundredths angle)
-          (mod (round (* angle (/ 180 pi))) 360)))
+  "Return ANGLE, in radians, as text: in degrees, more than -180 and no more than 180, and in
+radians as it is, which are never reduced (reading 50) and so may tell of several turns."
+  (let ((degrees (- 180 (mod (- 180 (round (* angle (/ 180 pi)))) 360))))
+    (format nil "~D deg (~,2F rad~:[~; in all~])" degrees (hundredths angle)
+            (< (+ pi 0.01d0) (abs angle)))))
+
+(defun plain-text (value)
+  "Return VALUE of an attribute as text, numbers in decimals without exponents, in lower case."
+  (typecase value
+    (float (if (within-reason-p value) (number-text value) (princ-to-string value)))
+    (cons (format nil "(~{~A~^ ~})" (mapcar #'plain-text (ensure-list value))))
+    (t (format nil "~(~A~)" value))))
 
 (defun denotation-text (image)
   "Return what the designator whose image is IMAGE denotes, as text; false ones say so (manual B)."
@@ -28,7 +37,7 @@
     (format stream "~A at ~,2F, ~,2F~%" (subject-title image)
             (thing-image-x image) (thing-image-y image))
     (loop for (name value) in (thing-image-attributes image)
-          do (format stream "  ~(~S~) ~(~A~)~%" name value))
+          do (format stream "  ~(~S~) ~A~%" name (plain-text value)))
     (let ((contents (thing-contents (thing-image-thing image))))
       (when contents (format stream "  contains ~{~A~^, ~}~%" contents))))
   (:method ((image robot-image) stream)
@@ -43,11 +52,12 @@
             (angle-text (camera-image-angle image))))
   (:method ((image hand-image) stream)
     (format stream "~A, of strength ~A, ~:[is empty~;holds ~:*~A~]~%" (subject-title image)
-            (hand-image-strength image)
+            (number-text (hand-image-strength image))
             (and (hand-image-contents image) (subject-title (hand-image-contents image)))))
   (:method ((image bin-image) stream)
     (format stream "~A, ~:[open~;closed~], of capacity ~A, contains ~:[nothing~;~:*~{~A~^, ~}~]~%"
-            (subject-title image) (bin-image-closed-p image) (bin-image-capacity image)
+            (subject-title image) (bin-image-closed-p image)
+            (number-text (bin-image-capacity image))
             (mapcar #'subject-title (bin-image-contents image))))
   (:method ((cell cell) stream)
     (format stream "Cell ~D, ~D: ~A~%" (cell-x cell) (cell-y cell)

@@ -143,13 +143,18 @@
       (spot (+ start extent))
       (write-svg canvas (if fill-p "z\"" "\"")))))
 
+(defun write-ellipse (canvas x y width height pen)
+  "Write the ellipse that, drawn with a pen reaching PEN beyond its line, just fits into the box."
+  (note-reach canvas x y (+ x width) (+ y height))
+  (write-svg canvas "<ellipse cx=\"" (+ x (/ width 2)) "\" cy=\"" (+ y (/ height 2))
+             "\" rx=\"" (max 0 (- (/ width 2) pen)) "\" ry=\"" (max 0 (- (/ height 2) pen)) "\""))
+
 (defmethod paint-arc ((canvas svg-canvas) gcontext x y width height start extent fill-p)
   (let ((pen (if fill-p 0 (pen-reach gcontext))))
-    (note-reach canvas (- x pen) (- y pen) (+ x width pen) (+ y height pen)))
-  (if (>= (abs extent) (- (* 2 pi) 1d-9))
-      (write-svg canvas "<ellipse cx=\"" (+ x (/ width 2)) "\" cy=\"" (+ y (/ height 2))
-                 "\" rx=\"" (/ width 2) "\" ry=\"" (/ height 2) "\"")
-      (write-slice canvas x y width height start extent fill-p))
+    (cond ((>= (abs extent) (- (* 2 pi) 1d-9))
+           (write-ellipse canvas x y width height pen))
+          (t (note-reach canvas (- x pen) (- y pen) (+ x width pen) (+ y height pen))
+             (write-slice canvas x y width height start extent fill-p))))
   (write-paint canvas gcontext fill-p))
 
 (defun write-points (canvas gcontext numbers shift)
@@ -231,6 +236,9 @@
   (write-text string (svg-stream canvas))
   (write-svg canvas "</text>
 "))
+
+(defmethod character-width ((canvas svg-canvas) size)
+  (* 61/100 size))
 
 (defmethod call-with-opacity (function (canvas svg-canvas) opacity)
   (write-svg canvas "<g opacity=\"" opacity "\">

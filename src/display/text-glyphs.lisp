@@ -74,16 +74,6 @@ large things are their initials, as far as can be. There may be more kinds than 
 
 ;;; Walls, by their substance.
 
-(define-constant +substance-inks+ '(:yellow :cyan :red :blue :grey :green :lightcyan :violet
-                                    :lightyellow :lightviolet)
-  :test #'cl:equal
-  :documentation "The colours of substances, in order of definition, over and over again.")
-
-(defun substance-ink (name)
-  "Return the colour of the substance called NAME, or NIL."
-  (let ((position (position name (all-substances) :key #'substance-name :test #'same-name-p)))
-    (and position (nth (mod position (length +substance-inks+)) +substance-inks+))))
-
 (defun wall-glyph (map index colored-p)
   "Return the glyph of the wall in the cell INDEX of MAP; if COLORED-P, by its substance."
   (let ((name (and colored-p (svref (map-substance-types map) (aref (map-substances map) index)))))

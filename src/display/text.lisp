@@ -41,6 +41,13 @@ default a canvas uses its one font, to the right.")
                     (- x (ecase anchor (:start 0) (:middle (/ width 2)) (:end width)))
                     y string))))
 
+(defgeneric character-width (canvas size)
+  (:documentation "Return how wide a character is that DRAW-WORDS draws on CANVAS in a font SIZE
+pixels high, in pixels, if all are alike: by default as in a canvas's one font.")
+  (:method (canvas size)
+    (declare (ignore canvas size))
+    +character-width+))
+
 (defun draw-words (canvas gcontext x y string &key (size 12) (anchor :start) upward-p bold-p)
   "Draw STRING in a font SIZE pixels high, with the :START, :MIDDLE or :END, as ANCHOR says, of its
 base line at X, Y; upward if UPWARD-P, else to the right. Signals WRONG-ARGUMENT."

@@ -23,6 +23,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:part #:part-p #:part-robot #:part-index #:part-location
            #:camera #:camera-p #:camera-robot #:camera-index #:camera-field-of-view
            #:camera-resolution #:camera-angle #:camera-location #:camera-last-view
+           #:camera-last-view-tick
            #:camera-tracking
            #:hand #:hand-p #:hand-robot #:hand-index #:hand-strength #:hand-location
            #:hand-contents #:hand-holding #:hand-way-in

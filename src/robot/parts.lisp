@@ -90,7 +90,8 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
    (angle 0d0 double-float "the camera's angle relative to the robot, in radians")
    (tracking nil t "the camera's TRACK, or NIL if it tracks nothing; see CAMERA-TRACKS" :part))
   (:memory
-   (last-view '() list "the last view, a list of numbers; () before the first" :shared)))
+   (last-view '() list "the last view, a list of numbers; () before the first" :shared)
+   (last-view-tick 0 tick-count "the tick in which that was taken")))
 
 (public hand)
 (define-kind (hand :include part)

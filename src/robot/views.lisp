@@ -67,6 +67,7 @@ from the least to the greatest parameter of the walls of MAP (reading 147)."
 and remember it as CAMERA-LAST-VIEW (manual 3.4.3)."
   (let* ((world (robot-world (camera-robot camera)))
          (map (world-map world)) (dice (world-dice world :looking)))
-    (setf (camera-last-view camera)
+    (setf (camera-last-view-tick camera) (world-tick world)
+          (camera-last-view camera)
           (loop for value in (if (camera-location camera) (inside-view camera) (open-view camera))
                 collect (noisy-pixel value map dice)))))

@@ -10,10 +10,12 @@
 were (reading 201)."
   (let* ((dice (world-dice (robot-world (part-robot camera)) :looking))
          (state (dice-state dice))
-         (last-view (camera-last-view camera)))
+         (last-view (camera-last-view camera))
+         (tick (camera-last-view-tick camera)))
     (unwind-protect (take-view camera)
       (setf (dice-state dice) state
-            (camera-last-view camera) last-view))))
+            (camera-last-view camera) last-view
+            (camera-last-view-tick camera) tick))))
 
 (defun inside-name (part)
   "Return what PART is inside of, a string, or NIL."

@@ -1,0 +1,63 @@
+;;;; belief-layers.lisp -- layers of what robots believe, and of where they have been.
+
+(in-package :ars-magna.display)
+
+(defun believed-place (robot designator)
+  "Return, in pixels, where ROBOT believes DESIGNATOR to be: it knows that from where it is."
+  (around (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
+          (+ (robot-image-angle robot) (designator-image-angle designator))
+          (to-pixels (designator-image-distance designator))))
+
+(defun draw-track (canvas robot designator)
+  "Draw a line to where ROBOT believes what a camera tracks to be."
+  (let ((target (believed-place robot designator)))
+    (inked ((layer-ink :tracks) :style :dash)
+      (draw-segments canvas draw-gcontext*
+                     (list* (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
+                            target)))
+    (inked ((layer-ink :tracks))
+      (draw-circle canvas (first target) (second target) (max 4 (* 1/2 graphics-scale*)) nil))))
+
+(defun draw-designator-on-map (canvas robot designator)
+  "Draw a cross with the number of DESIGNATOR where ROBOT believes it to be, and a line from there
+to what it denotes."
+  (destructuring-bind (x y) (believed-place robot designator)
+    (let ((true-x (designator-image-x designator)) (true-y (designator-image-y designator))
+          (color (layer-ink :designators)))
+      (with-subject (canvas designator)
+        (when true-x
+          (inked (color :style :dash)
+            (draw-segments canvas draw-gcontext*
+                           (list x y (to-pixels true-x) (to-pixels true-y)))))
+        (inked (color :width 2) (draw-cross canvas x y 4))
+        (with-color color
+          (draw-text-on-plate canvas (+ x 7) (- y 3)
+                              (princ-to-string (designator-image-number designator))))))))
+
+(defun odometer-box (odometer)
+  "Return the corners of the box that contains the position of ODOMETER, x y ..., in metres."
+  (let ((cos (cos (odometer-image-axis odometer))) (sin (sin (odometer-image-axis odometer))))
+    (loop for (across down) in '((-1 -1) (1 -1) (1 1) (-1 1) (-1 -1))
+          for dx = (* across 1/2 (odometer-image-width odometer))
+          for dy = (* down 1/2 (odometer-image-height odometer))
+          collect (+ (odometer-image-x odometer) (- (* cos dx) (* sin dy)))
+          collect (+ (odometer-image-y odometer) (* sin dx) (* cos dy)))))
+
+(defun draw-odometer (canvas odometer)
+  "Draw where ODOMETER puts its robot: the box that contains its position, and from the middle of
+that the bounds of its heading."
+  (let* ((x (odometer-image-x odometer)) (y (odometer-image-y odometer))
+         (heading (odometer-image-heading odometer))
+         (half (* 1/2 (odometer-image-spread odometer))))
+    (inked ((layer-ink :odometer))
+      (draw-lines canvas draw-gcontext* (pixels-of (odometer-box odometer)))
+      (dolist (angle (list (- heading half) (+ heading half)))
+        (draw-segments canvas draw-gcontext* (pixels-of (list* x y (around x y angle 3))))))))
+
+(defun draw-trail (canvas points color)
+  (when (cddr points)
+    (inked (color)
+      (draw-lines canvas draw-gcontext*
+                  (loop for (x y) on points by #'cddr
+                        repeat +trail-length+
+                        collect (to-pixels x) collect (to-pixels y))))))

@@ -1,0 +1,62 @@
+;;;; inks.lisp -- lines and outlines that are seen on whatever they lie on.
+
+(in-package :ars-magna.display)
+
+;;; Lines are dark and have a light halo: on light ground the line is seen, on dark ground the halo,
+;;; on what is between both. So nobody need know what is below.
+
+(defun call-inked (function color width style)
+  (with-gcontext (draw-gcontext* :foreground white* :line-width (+ width 2))
+    (funcall function))
+  (with-color color
+    (with-lines (:width width :style style)
+      (funcall function))))
+
+(defmacro inked ((color &key (width 1) (style :solid)) &body body)
+  "Run BODY, which draws lines, twice: for a halo, and then in COLOR, a dark one, WIDTH pixels
+wide."
+  `(call-inked (lambda () ,@body) ,color ,width ,style))
+
+(defun to-pixels (metres) (* metres graphics-scale*))
+
+(defun pixels-of (points)
+  "Return the list of coordinates POINTS, in metres, in pixels."
+  (mapcar #'to-pixels points))
+
+(defun around (x y angle radius)
+  "Return a list of the coordinates RADIUS from X, Y in direction ANGLE."
+  (list (+ x (* radius (cos angle))) (+ y (* radius (sin angle)))))
+
+(defun draw-circle (canvas x y radius fill-p)
+  "Draw a circle, or a line of which the middle is RADIUS away from X, Y."
+  (let ((reach (if fill-p radius (+ radius (/ (max 1 (gcontext-line-width draw-gcontext*)) 2)))))
+    (draw-arc canvas draw-gcontext* (- x reach) (- y reach) (* 2 reach) (* 2 reach) 0 2pi fill-p)))
+
+(defun draw-text (canvas x y text)
+  (draw-glyphs canvas draw-gcontext* x y text))
+
+(defun words-width (text)
+  "Return how wide TEXT is, in pixels."
+  (* +character-width+ (length text)))
+
+(defun draw-text-on-plate (canvas x y text)
+  "Write TEXT on a white ground."
+  (with-gcontext (draw-gcontext* :foreground white*)
+    (draw-rectangle canvas draw-gcontext* (- x 1) (- y 10) (+ 2 (words-width text)) 13 t))
+  (draw-text canvas x y text))
+
+;;; The inks of layers: so dark that what is too light for the halo is light enough for them.
+
+(define-constant +layer-inks+
+    '(:wedges #x7A1030 :tracks #x8A1010 :designators #x0C3C78 :odometer #x4A1A80 :reach #x5A3A00)
+  :test #'cl:equal
+  :documentation "The colours of what layers draw, by name.")
+
+(defun layer-ink (name) (getf +layer-inks+ name))
+
+(define-constant +ray-inks+ '(#x10308C #x4A2480 #x801850 #x8A3010 #x604800)
+  :test #'cl:equal
+  :documentation "The colours of rays, from the least parameter of walls to the greatest.")
+
+(define-constant +grid-ink+ #x8A8A8A :documentation "The colour of the grid, which lies on white.")
+(define-constant +frame-ink+ #x606060 :documentation "The colour of frames and ticks, on white.")

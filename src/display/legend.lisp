@@ -1,0 +1,173 @@
+;;;; legend.lisp -- what there is to be seen in a picture of a world, each with a sample.
+
+(in-package :ars-magna.display)
+
+;;; An entry is a text with a function of a canvas and a place, X and Y in pixels, that draws the
+;;; sample around there, no more than 16 pixels wide and high.
+
+(defstruct (entry (:constructor make-entry (text sample)) (:copier nil))
+  (text "" :type string :read-only t)
+  (sample (constantly nil) :type function :read-only t))
+
+(defmacro sample-of ((canvas x y) text &body body)
+  "Return an entry with TEXT, the sample of which BODY draws."
+  `(make-entry ,text (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)))
+
+;;; Robots.
+
+(defun robot-entries (snapshot)
+  (loop for robot in (snapshot-robots snapshot)
+        for position from 0
+        collect (let ((color (robot-color position)))
+                  (sample-of (canvas x y) (string-downcase (robot-image-name robot))
+                    (draw-ring canvas x y 6 0 color)))))
+
+;;; Walls: the substances, with the range of their parameters.
+
+(defun parameter-ranges (map)
+  "Return lists (number least greatest) of the substances of the walls of MAP, by their numbers."
+  (let ((ranges '()))
+    (loop for flag across (map-flags map)
+          for substance across (map-substances map)
+          for parameter across (map-parameters map)
+          when (logtest +wall+ flag)
+            do (let ((range (assoc substance ranges)))
+                 (if range
+                     (setf (second range) (min parameter (second range))
+                           (third range) (max parameter (third range)))
+                     (push (list substance parameter parameter) ranges))))
+    (sort ranges #'< :key #'first)))
+
+(defun range-text (least greatest)
+  (format nil "~A~:[ to ~A~;~]" (number-text least) (= least greatest) (number-text greatest)))
+
+(defun draw-swatch (canvas x y left right)
+  "Draw a rectangle in the colours LEFT and RIGHT."
+  (loop for color in (list left right) for start in (list (- x 7) x)
+        do (with-color color
+             (draw-rectangle canvas draw-gcontext* start (- y 5) 7 10 t))))
+
+(defun wall-entries (map)
+  (let ((hues (hues-of map)) (ranges (parameter-ranges map)))
+    (cond ((null ranges) '())
+          ((not in-color*)
+           (list (sample-of (canvas x y) "wall" (draw-swatch canvas x y black* black*))))
+          (t (loop for (number least greatest) in ranges
+                   collect (wall-entry map number least greatest (svref hues number)))))))
+
+(defun wall-entry (map number least greatest hue)
+  (flet ((color (parameter) (wall-color (wall-shade map parameter) hue)))
+    (sample-of (canvas x y)
+        (format nil "~(~A~) ~A" (svref (map-substance-types map) number)
+                (range-text least greatest))
+      (draw-swatch canvas x y (color least) (color greatest)))))
+
+;;; Places.
+
+(defun place-types-of (map)
+  "Return the place types that are marked on MAP."
+  (let ((numbers (remove-duplicates (map-places map))))
+    (loop for type across (map-place-types map) for number from 0
+          when (and (find number numbers) (plusp number) (drawn-place-type-p type))
+            collect type)))
+
+(defun place-entries (map)
+  (loop for type in (place-types-of map)
+        collect (let ((type type))
+                  (sample-of (canvas x y) (string-downcase (place-type-name type))
+                    (let ((graphics-scale* 12))
+                      (draw-place-at canvas type (- x 6) (- y 6)))))))
+
+;;; Things, by what they are called and look like.
+
+(defun thing-kinds (snapshot)
+  "Return lists of the images of things that are called the same, by their names."
+  (let ((kinds (make-hash-table :test 'cl:equal)))
+    (loop for image across (snapshot-things snapshot)
+          do (push image (gethash (thing-image-name image) kinds)))
+    (sort (loop for images being the hash-values of kinds collect (reverse images))
+          #'string< :key (lambda (images) (thing-image-name (first images))))))
+
+(defun sample-half (image)
+  "Return half the width of the sample of the thing, in pixels."
+  (let ((graphics-scale* 9)) (half-width image)))
+
+(defun thing-entries (snapshot)
+  (if in-color*
+      (loop for (image . others) in (thing-kinds snapshot)
+            collect (let ((image image))
+                      (sample-of (canvas x y)
+                          (format nil "~A~@[ (~D)~]" (thing-image-name image)
+                                  (and others (1+ (length others))))
+                        (draw-thing-sample canvas image x y (sample-half image)))))
+      (and (plusp (length (snapshot-things snapshot)))
+           (list (sample-of (canvas x y) "thing"
+                   (let ((graphics-scale* 12)) (draw-upright-line canvas x y)))))))
+
+(defun shape-entries (snapshot)
+  "Return entries that say what the shapes of things mean."
+  (flet ((plain (text predicate &rest options)
+           (when (find-if predicate (snapshot-things snapshot))
+             (list (sample-of (canvas x y) text
+                     (draw-thing-sample canvas (apply #'make-thing-image :color white* options)
+                                        x y 5))))))
+    (and in-color*
+         (append (plain "blocks the way" (lambda (image) (eq :square (thing-shape image)))
+                        :obsmove-p t)
+                 (plain "lets one pass" (lambda (image) (eq :round (thing-shape image))))
+                 (plain "moves by itself" #'thing-image-moving-p :moving-p t)
+                 (plain "container" #'thing-image-container-p :container-p t)
+                 (plain "blocks the view" #'thing-image-obsview-p :obsview-p t)))))
+
+;;; Lines.
+
+(define-constant +line-words+
+    '((:wedges . "in view") (:tracks . "tracked") (:designators . "believed, true")
+      (:odometer . "odometer") (:reach . "may move"))
+  :test #'cl:equal
+  :documentation "What lines of layers are called in legends.")
+
+(defun line-shown-p (snapshot layer)
+  "True if there is something of LAYER in SNAPSHOT."
+  (loop for robot in (snapshot-robots snapshot)
+          thereis (ecase layer
+                    (:wedges (robot-image-cameras robot))
+                    (:tracks (some #'camera-image-track (robot-image-cameras robot)))
+                    (:designators (robot-image-designators robot))
+                    (:odometer (robot-image-odometer robot))
+                    (:reach (find-if #'thing-image-moving-p (snapshot-things snapshot))))))
+
+(defun line-entries (snapshot layers)
+  (loop for (layer . words) in +line-words+
+        when (and (member layer layers) (line-shown-p snapshot layer))
+          collect (let ((layer layer))
+                    (sample-of (canvas x y) words
+                      (inked ((layer-ink layer)
+                              :style (if (member layer '(:wedges :odometer)) :solid :dash))
+                        (draw-segments canvas draw-gcontext* (list (- x 8) y (+ x 7) y)))))))
+
+(defun ray-entries (snapshot layers)
+  (when (and in-color* (member :rays layers)
+             (some (lambda (robot) (some #'camera-image-look (robot-image-cameras robot)))
+                   (snapshot-robots snapshot)))
+    (list (sample-of (canvas x y) "read: low to high"
+            (loop for ink in +ray-inks+ for at from -8 by 3
+                  do (with-color ink
+                       (draw-rectangle canvas draw-gcontext* (+ x at) (- y 4) 3 8 t)))))))
+
+;;; The whole.
+
+(define-constant +entry-limit+ 80 :documentation "How many entries a legend has at most.")
+
+(defun legend-entries (snapshot layers)
+  "Return the entries of the legend of a picture of SNAPSHOT with LAYERS."
+  (let* ((map (snapshot-map snapshot))
+         (entries (append (robot-entries snapshot) (wall-entries map)
+                          (and (member :places layers) (place-entries map))
+                          (line-entries snapshot layers) (ray-entries snapshot layers)
+                          (shape-entries snapshot) (thing-entries snapshot)))
+         (more (- (length entries) +entry-limit+)))
+    (if (plusp more)
+        (append (subseq entries 0 +entry-limit+)
+                (list (sample-of (canvas x y) (format nil "and ~D more kinds" more))))
+        entries)))

@@ -1,0 +1,48 @@
+;;;; robots.lisp -- a robot on the map: a ring with an arrowhead, and a line for each camera.
+
+(in-package :ars-magna.display)
+
+;;; It is drawn below things and hollow, so that it hides nothing of what it is about to grasp.
+
+(defun robot-radius ()
+  "Return the radius of the ring that a robot is drawn as, in pixels."
+  (max 6 (* 7/8 graphics-scale*)))
+
+(define-constant +robot-inks+ '(#x10018C #x0A5018 #x5C0086 #x600C0C)
+  :test #'cl:equal
+  :documentation "The colours of the robots of a world, in turn.")
+
+(defun robot-color (position)
+  "Return the colour of the robot at POSITION among its world's."
+  (nth (mod position (length +robot-inks+)) +robot-inks+))
+
+(defun draw-arrowhead (canvas x y radius angle)
+  (draw-lines canvas draw-gcontext*
+              (append (around x y angle radius)
+                      (around x y (+ angle 2.5d0) radius)
+                      (around x y angle (* -0.25d0 radius))
+                      (around x y (- angle 2.5d0) radius))
+              :fill-p t))
+
+(defun draw-camera-line (canvas x y radius angle)
+  (inked ((layer-ink :tracks) :width 2)
+    (draw-segments canvas draw-gcontext*
+                   (append (around x y angle radius) (around x y angle (* 8/5 radius))))))
+
+(defun draw-ring (canvas x y radius angle color)
+  "Draw the ring and the arrowhead of a robot that looks in direction ANGLE."
+  (inked (color :width 2) (draw-circle canvas x y radius nil))
+  (with-gcontext (draw-gcontext* :foreground white*)
+    (draw-arrowhead canvas x y (- radius 1) angle))
+  (with-color color (draw-arrowhead canvas x y (- radius 5/2) angle)))
+
+(defun draw-robot (canvas image color)
+  (let ((x (to-pixels (robot-image-x image)))
+        (y (to-pixels (robot-image-y image)))
+        (angle (robot-image-angle image))
+        (radius (robot-radius)))
+    (with-subject (canvas image)
+      (dolist (camera (robot-image-cameras image))
+        (unless (camera-image-location camera)
+          (draw-camera-line canvas x y radius (+ angle (camera-image-angle camera)))))
+      (draw-ring canvas x y radius angle color))))

@@ -1,0 +1,100 @@
+;;;; things.lisp -- things on the map: small vertical lines, or in colour, what they look like.
+
+(in-package :ars-magna.display)
+
+;;; In colour a thing is a shape around its place. The larger its :size, the larger it is; its shape
+;;; says what it does. It has an outline of black, and around that a halo of white: so one sees it
+;;; whatever its colour is and whatever it lies on, be that another thing.
+
+(define-constant +largest-thing+ 3/2 :documentation "How wide a thing is drawn at most, in cells.")
+(define-constant +largest-size+ 64 :documentation "The :size of what is drawn so wide.")
+(define-constant +least-width+ 6 :documentation "How wide a thing is drawn at least, in pixels.")
+
+(defun half-width (image)
+  "Return half the width of the thing on the map, in pixels: its area grows with its size. Without
+colours all have the same."
+  (if in-color*
+      (* 1/2 (max +least-width+
+                  (* graphics-scale* +largest-thing+
+                     (sqrt (/ (clamp (thing-image-size image) 0 +largest-size+)
+                              +largest-size+)))))
+      (* 3/8 graphics-scale*)))
+
+;;; Shapes. What moves by itself has a point.
+
+(defun thing-shape (image)
+  "Return :SQUARE if the thing blocks the way, :ROUND if not, and if it moves by itself, :HOUSE
+or :DIAMOND."
+  (if (thing-image-moving-p image)
+      (if (thing-image-obsmove-p image) :house :diamond)
+      (if (thing-image-obsmove-p image) :square :round)))
+
+(defun draw-shape (canvas shape x y half)
+  "Draw SHAPE, filled, that reaches HALF pixels from its middle at X, Y."
+  (flet ((polygon (&rest points)
+           (draw-lines canvas draw-gcontext* points :fill-p t)))
+    (let ((left (- x half)) (top (- y half)) (right (+ x half)) (bottom (+ y half)))
+      (ecase shape
+        (:square (draw-rectangle canvas draw-gcontext* left top (* 2 half) (* 2 half) t))
+        (:round (draw-circle canvas x y half t))
+        (:diamond (polygon x top right y x bottom left y))
+        (:house (polygon x (- top (/ half 2)) right (- y (/ half 3)) right bottom
+                         left bottom left (- y (/ half 3))))))))
+
+(defun draw-body (canvas image x y half)
+  "Draw the shape of the thing with halo and outline."
+  (let ((shape (thing-shape image)) (more (if (thing-image-moving-p image) 3/2 1)))
+    (with-gcontext (draw-gcontext* :foreground white*)
+      (draw-shape canvas shape x y (+ half more)))
+    (with-color black* (draw-shape canvas shape x y half))
+    (with-color (thing-image-color image)
+      (draw-shape canvas shape x y (max 1 (- half more))))))
+
+(defun draw-rim (canvas image x y half)
+  "Draw the rim of a container; where there is no room, a dot."
+  (let ((inner (- half 3)))
+    (cond ((< inner 3/2) (draw-circle canvas x y 1 t))
+          ((eq :square (thing-shape image))
+           (draw-rectangle canvas draw-gcontext* (- x inner 1/2) (- y inner 1/2)
+                           (* 2 inner) (* 2 inner)))
+          (t (draw-circle canvas x y (if (thing-image-moving-p image) (/ inner 2) inner) nil)))))
+
+(defun draw-cross (canvas x y reach)
+  (draw-segments canvas draw-gcontext*
+                 (loop for (dx dy) in (list (list reach reach) (list reach (- reach)))
+                       append (list (- x dx 1/2) (- y dy 1/2) (+ x dx -1/2) (+ y dy -1/2)))))
+
+(defun draw-thing-sample (canvas image x y half)
+  "Draw the thing in colour around X, Y, HALF as wide as HALF pixels."
+  (draw-body canvas image x y half)
+  (with-color (ink-on (thing-image-color image))
+    (when (thing-image-container-p image) (draw-rim canvas image x y half))
+    (when (thing-image-obsview-p image)
+      (draw-cross canvas x y (* half (if (eq :square (thing-shape image)) 3/4 1/2))))))
+
+(defun draw-upright-line (canvas x y)
+  (let ((width (max 1 (round graphics-scale* 4)))
+        (height (max 3 (round (* 3/4 graphics-scale*)))))
+    (draw-rectangle canvas draw-gcontext* (- x (/ width 2)) (- y (/ height 2)) width height t)))
+
+(defun draw-thing-on-map (canvas image)
+  (let ((x (to-pixels (thing-image-x image)))
+        (y (to-pixels (thing-image-y image))))
+    (with-subject (canvas image)
+      (if in-color*
+          (draw-thing-sample canvas image x y (half-width image))
+          (draw-upright-line canvas x y)))))
+
+(defun draw-things (canvas images)
+  "Draw the things, the large ones first, so that small ones are seen on them."
+  (dolist (image (stable-sort (coerce images 'list) #'> :key #'thing-image-size))
+    (draw-thing-on-map canvas image)))
+
+(defun draw-reach (canvas images)
+  "Draw a ring around each thing that moves by itself."
+  (loop for image across images
+        when (thing-image-moving-p image)
+          do (inked ((layer-ink :reach) :style :dash)
+               (draw-circle canvas (to-pixels (thing-image-x image))
+                            (to-pixels (thing-image-y image))
+                            (+ (half-width image) (/ graphics-scale* 2) 2) nil))))

@@ -1,0 +1,200 @@
+;;;; pictures.lisp -- what pictures show of things, layers, names, and around the map.
+
+(in-package :ars-magna.tests)
+
+(in-suite display)
+
+(defun image-with (&rest attributes)
+  "Return the image of a thing that has ATTRIBUTES, slots of images."
+  (apply #'display::make-thing-image attributes))
+
+(defun drawn-shape (&rest attributes)
+  "Return the elements that the thing with ATTRIBUTES is drawn as on a map."
+  (drawing (canvas)
+    (display::draw-thing-sample canvas (apply #'image-with attributes) 20 20 10)))
+
+;;; Things.
+
+(test things.shapes-say-what-they-do
+  (flet ((shape (&rest attributes) (display::thing-shape (apply #'image-with attributes))))
+    (is (eq :round (shape)))
+    (is (eq :square (shape :obsmove-p t)))
+    (is (eq :diamond (shape :moving-p t)))
+    (is (eq :house (shape :moving-p t :obsmove-p t))))
+  (is (every (lambda (part) (mentions-p part "<ellipse")) (drawn-shape)))
+  (is (every (lambda (part) (mentions-p part "<rect")) (drawn-shape :obsmove-p t)))
+  (is (every (lambda (part) (mentions-p part "<polygon")) (drawn-shape :moving-p t))))
+
+(test things.containers-have-a-rim-and-what-obstructs-view-a-cross
+  (is (= 3 (length (drawn-shape))))
+  (is (= 4 (length (drawn-shape :container-p t))))
+  (is (mentions-p (fourth (drawn-shape :container-p t)) "fill=\"none\""))
+  (is (mentions-p (fourth (drawn-shape :obsview-p t)) "<path d=\"M")))
+
+(test things.grow-with-the-square-root-of-their-size
+  "At least 6 pixels, at most a cell and a half."
+  (let ((canvas:graphics-scale* 40))
+    (flet ((half (size) (display::half-width (image-with :size size))))
+      (is (= (* 2 (half 4)) (half 16)))
+      (is (= (* 2 (half 16)) (half 64)))
+      (is (= 3 (half 0.01d0)))
+      (is (= 30 (half 64) (half 1000))))))
+
+(test things.the-small-lie-above-the-large-and-all-above-the-robot
+  (in-studio (robot)
+    (world:move-thing (world:find-thing 'pen) 3.5 4.5)
+    (world:set-attribute (world:find-thing 'pen) :size 0.1)
+    (let ((picture (plain-picture robot :layers '())))
+      (is (< (search "STUDIO-ROBOT" picture) (search "BOX#1" picture) (search "PEN#2" picture))))))
+
+(test things.that-move-by-themselves-have-a-ring-in-the-layer-reach
+  (in-studio (robot)
+    (flet ((rings () (drawn-with :ellipse (plain-picture robot :layers '(:reach))
+                                 :stroke (web (display::layer-ink :reach)))))
+      (is (null (rings)))
+      (world:put-kicker stir (pen (world:find-thing 'pen)) (:prob 0.1) pen)
+      (is (= 1 (length (rings)))))))
+
+;;; Layers.
+
+(test layers.each-has-a-title-and-a-sentence
+  (dolist (layer display:+picture-layers+)
+    (is (plusp (length (display:layer-title layer))))
+    (is (char= #\. (char (reverse (display:layer-documentation layer)) 0)))
+    (is (mentions-p (documentation 'display:*picture-layers* 'variable)
+                    (display:layer-title layer))))
+  (is (subsetp display:*picture-layers* display:+picture-layers+))
+  (signals base:wrong-argument (display:layer-title :aura)))
+
+(defun wedge-points (picture)
+  "Return the points, in pixels, of the first field of view in PICTURE."
+  (let ((line (first (drawn-with :polyline picture
+                                 :stroke (web (display::layer-ink :wedges))))))
+    (with-input-from-string (in (substitute #\Space #\, (of-element line :points)))
+      (loop for number = (read in nil) while number collect number))))
+
+(test layers.fields-of-view-end-at-walls-and-opaque-things
+  "The robot at (6.5,7.5) looks east, at the wall from x = 10 on."
+  (in-studio (robot)
+    (robot:place-robot robot 6.5 7.5 0)
+    (flet ((reach ()
+             (loop for (x) on (wedge-points (plain-picture robot :layers '(:wedges))) by #'cddr
+                   maximize x)))
+      (is (near 80.5 (reach) .1))
+      (world:make-new-thing 'screen (list (robot:robot-world robot) 8.5 7.5)
+                            '((:obsview t) (:size 1)))
+      (let ((points (wedge-points (plain-picture robot :layers '(:wedges)))))
+        (is (loop for (x y) on points by #'cddr
+                  thereis (and (near 64.5 x .1) (near 60.5 y 2))))))))
+
+(test layers.rays-have-the-colour-of-what-they-read
+  (in-studio (robot)
+    (display:keep-history)
+    (setf (robot::camera-last-view (robot:robot-camera robot 0))
+          (append (make-list 5 :initial-element 10d0) (make-list 5 :initial-element 50d0)))
+    (run:run-ticks 1)
+    (let ((picture (plain-picture robot :layers '(:rays))))
+      (dolist (ink (list (first display::+ray-inks+) (first (last display::+ray-inks+))))
+        (let ((line (first (drawn-with :path picture :stroke (web ink)))))
+          (is (= 5 (count #\M (of-element line :d)))))))))
+
+(test layers.designators-join-what-is-believed-to-what-is-so
+  (in-studio (robot)
+    (let ((designator (robot:add-designator robot :denotation (world:find-thing 'box))))
+      (setf (robot::designator-angle designator) (/ pi 2)
+            (robot::designator-distance designator) 2d0))
+    (let ((line (first (drawn-with :path (plain-picture robot :layers '(:designators))
+                                   :stroke (web (display::layer-ink :designators))
+                                   :stroke-dasharray 4))))
+      (is (equal "M52.5,68.5 L28.5,36.5 " (of-element line :d))))))
+
+(test layers.grid-lies-below-walls
+  (in-studio (robot)
+    (let* ((picture (plain-picture robot :layers '(:grid) :scale 16))
+           (grid (search (web display::+grid-ink+) picture)))
+      (is (< grid (search (wall-fill 50 'wood) picture)))
+      (is (= (+ 21 11) (count #\M (of-element (first (drawn-with
+                                                      :path picture
+                                                      :stroke (web display::+grid-ink+)))
+                                              :d)))))))
+
+;;; Names.
+
+(defun boxes-of-names (robot)
+  "Return the boxes of the names in a picture of ROBOT's world."
+  (loop for text in (drawn-with :text (plain-picture robot :scale 24 :layers '(:names)))
+        for x = (of-element text :x) for y = (of-element text :y)
+        collect (list x (- y 9) (+ x (* 6 (length (of-element text :text)))) (+ y 2))))
+
+(test names.stand-where-nothing-else-is
+  (in-studio (robot)
+    (loop for x from 1.5 below 10
+          do (loop for y from 1.5 below 9 by 2
+                   do (world:make-new-thing 'a-thing (list (robot:robot-world robot) x y)
+                                            '((:size 1)))))
+    (let ((boxes (boxes-of-names robot)) (map (world:find-map 'studio)))
+      (is (< 5 (length boxes)))
+      (is (loop for (box . others) on boxes
+                never (some (lambda (other) (display::overlap-p box other)) others)))
+      (let ((canvas:graphics-scale* 24))
+        (is (notany (lambda (box) (display::on-wall-p map box)) boxes))))))
+
+(test names.are-those-of-robots-and-things
+  (in-studio (robot)
+    (let ((names (mapcar (lambda (text) (of-element text :text))
+                         (drawn-with :text (plain-picture robot :scale 24 :layers '(:names))))))
+      (is (equal '("box" "pen" "studio-robot") (sort names #'string<))))))
+
+;;; Around the map.
+
+(test margins.of-a-view-lie-at-its-edges
+  "A view of 160 x 120 pixels that begins at (80,40), 16 pixels to a metre."
+  (let* ((map (world::small-map 40 30 (constantly nil)))
+         (elements (elements (format nil "~{~A~}"
+                                     (drawing (canvas)
+                                       (let ((canvas:graphics-scale* 16))
+                                         (display:draw-view-margins
+                                          canvas map '(:coordinates :scale-bar)
+                                          80 40 160 120))))))
+         (texts (remove :text elements :key #'first :test-not #'eq)))
+    (is (equal '("5" "10" "5" "5 m") (mapcar (lambda (text) (of-element text :text)) texts)))
+    (dolist (text texts)
+      (is (<= 76 (of-element text :x) 240))
+      (is (<= 40 (of-element text :y) 160)))))
+
+(defun words-in-picture (robot &rest options)
+  (mapcar (lambda (text) (of-element text :text))
+          (drawn-with :text (apply #'display:svg-picture robot options))))
+
+(test margins.legend-names-what-is-there
+  (in-studio (robot)
+    (let ((words (words-in-picture robot)))
+      (dolist (word '("studio-robot" "bricks 10" "wood 50" "doorway" "concave" "box" "pen"
+                      "blocks the way" "lets one pass" "studio-robot in studio, tick 0"))
+        (is (member word words :test #'string=) "~A" word))
+      (dolist (word '("convex" "moves by itself" "container" "blocks the view"))
+        (is (not (member word words :test #'string=)) "~A" word)))))
+
+(test margins.legend-counts-things-that-are-called-the-same
+  (in-studio (robot)
+    (world:make-new-thing 'pen (list (robot:robot-world robot) 8 8) '())
+    (is (member "pen (2)" (words-in-picture robot) :test #'string=))))
+
+(test margins.scale-bar-and-coordinates-are-in-metres
+  (in-studio (robot)
+    (let ((words (words-in-picture robot :scale 8 :layers '(:coordinates :scale-bar))))
+      (is (member "10 m" words :test #'string=))
+      (is (equal '("0" "5" "10" "15" "20" "0" "5" "10") (butlast words))))))
+
+(test margins.the-bare-map-has-none
+  (in-studio (robot)
+    (is (null (words-in-picture robot :layers '())))))
+
+(test margins.every-picture-of-a-shipped-size-fits
+  "Up to 200 x 150 cells a picture is no larger than 900 x 700."
+  (loop for (width height) in '((12 12) (40 30) (75 75) (120 80) (24 18) (200 150) (10 80))
+        for map = (world::small-map width height (constantly nil))
+        for scale = (display:suitable-scale nil (display::make-snapshot :map map) '(:title))
+        do (is (<= 4 scale 40))
+           (is (<= (* scale width) 900))
+           (is (<= (* scale height) 700))))
