@@ -119,7 +119,8 @@
 (test animation.shows-each-frame-in-its-turn
   (in-studio (robot)
     (with-scratch-file (file "svg")
-      (display:save-animation (journal-of-a-drive robot) file :every 5 :layers '(:trail))
+      (display:save-animation (journal-of-a-drive robot) file :every 5 :layers '(:trail)
+                                                                 :scale 8)
       (let ((text (uiop:read-file-string file)))
         (dolist (part '("tick 5<" "tick 10<" "tick 15<" "tick 20<"
                         "values=\"visible;hidden\" keyTimes=\"0;0.250000\""

@@ -61,18 +61,23 @@ ticks and at the end, and WATCH with the simulation after each."
                       +line-height+ t))
     (draw-text canvas 3 12 text)))
 
+(defun write-frames-of (canvas snapshots rate layers)
+  (loop with count = (length snapshots)
+        for snapshot in snapshots
+        for index from 0
+        do (write-frame canvas index count (/ count rate)
+                        (lambda ()
+                          (draw-movers canvas snapshot layers)
+                          (draw-tick-label canvas (snapshot-tick snapshot))))))
+
 (defun write-animation (stream snapshots rate &key layers in-color scale)
-  (let ((count (length snapshots)) (map (snapshot-map (first snapshots))))
+  (let ((first (first snapshots)))
     (with-svg (canvas stream :color-p in-color)
-      (with-canvas (canvas :scale scale)
-        (draw-terrain canvas map :layers layers)
-        (loop for snapshot in snapshots
-              for index from 0
-              do (write-frame canvas index count (/ count rate)
-                              (lambda ()
-                                (draw-movers canvas snapshot layers)
-                                (draw-tick-label canvas (snapshot-tick snapshot)))))
-        (values (to-pixels (map-width map)) (to-pixels (map-height map)))))))
+      (with-canvas (canvas :scale (suitable-scale scale first layers))
+        (draw-framed canvas first layers
+                     (lambda ()
+                       (draw-terrain canvas (snapshot-map first) :layers layers)
+                       (write-frames-of canvas snapshots rate layers)))))))
 
 ;;; A page.
 
@@ -82,17 +87,18 @@ ticks and at the end, and WATCH with the simulation after each."
     (let ((canvas (make-instance 'svg-canvas :stream out :color-p in-color)))
       (with-canvas (canvas :scale scale) (draw-movers canvas snapshot layers)))))
 
-(defun still-text (map movers layers in-color scale)
-  "Return an SVG document of MAP, with LAYERS, and a group called movers over it, of the lines of
-SVG MOVERS."
+(defun still-text (snapshot movers layers in-color scale)
+  "Return an SVG document of the map of SNAPSHOT and LAYERS, with a group called movers over it, of
+the lines of SVG MOVERS."
   (with-output-to-string (out)
     (with-svg (canvas out :color-p in-color)
       (with-canvas (canvas :scale scale)
-        (draw-terrain canvas map :layers layers)
-        (write-svg canvas "<g id=\"movers\">
+        (draw-framed canvas snapshot layers
+                     (lambda ()
+                       (draw-terrain canvas (snapshot-map snapshot) :layers layers)
+                       (write-svg canvas "<g id=\"movers\">
 " movers "</g>
-"))
-      (values (* scale (map-width map)) (* scale (map-height map))))))
+")))))))
 
 (defun film-title (journal ticks)
   (format nil "~{~(~A~)~^ and ~}, tick~P ~D~@[ to ~D~]"
@@ -103,21 +109,22 @@ SVG MOVERS."
 
 (defun film-text (journal moments &key every until rate layers in-color scale)
   "Return the page of a film of JOURNAL, with MOMENTS besides those that are seen in it."
-  (let ((reel (make-reel)) (ticks '()) (first nil) (last nil) (map nil))
+  (let ((reel (make-reel)) (ticks '()) (opening nil) (first nil) (last nil))
     (multiple-value-bind (watch seen) (moments-watcher)
       (call-with-frames (lambda (snapshot)
+                          (unless opening
+                            (setf opening snapshot
+                                  scale (suitable-scale scale snapshot layers)))
                           (setf last (movers-text snapshot layers in-color scale)
-                                first (or first last)
-                                map (snapshot-map snapshot))
+                                first (or first last))
                           (push (snapshot-tick snapshot) ticks)
                           (add-frame last reel))
                         journal (frame-step journal every until) until watch)
       (setf ticks (reverse ticks))
-      (with-output-to-string (out)
-        (write-film out (film-title journal ticks)
-                    (still-text map first layers in-color scale)
-                    (still-text map last layers in-color scale)
-                    reel ticks rate (in-order (append (funcall seen) moments)))))))
+      (flet ((still (movers) (still-text opening movers layers in-color scale)))
+        (with-output-to-string (out)
+          (write-film out (film-title journal ticks) (still first) (still last)
+                      reel ticks rate (in-order (append (funcall seen) moments))))))))
 
 (defun film-file-p (file)
   "True if FILE, the name of one, is a page for browsers, as it ends."
@@ -144,8 +151,7 @@ SVG MOVERS."
 
 (addition save-animation)
 (defun save-animation (journal file &key every until (rate 10) series (display :world) moments
-                                      (layers *picture-layers*) (in-color t)
-                                      (scale graphics-scale*))
+                                      (layers *picture-layers*) (in-color t) scale)
   "Replay JOURNAL (a journal, a file that holds one, or NIL for that of the current simulation so
 far) up to the tick UNTIL or its end and save what it looks like every EVERY ticks (by default as
 few that there are no more than 600 frames), RATE frames a second, to FILE. If its name ends in
@@ -159,7 +165,9 @@ does."
   (let ((kind (animation-kind file))
         (moments (checked-moments 'save-animation moments))
         (journal (journal-meant journal))
-        (look (list :layers layers :in-color in-color :scale scale)))
+        ;; The tick, which the title has, is told of by frames.
+        (look (list :layers (if series layers (remove :title layers))
+                    :in-color in-color :scale scale)))
     (check-animation kind series every rate display layers scale)
     (cond (series
            (apply #'save-series journal file :every every :until until :display display look))

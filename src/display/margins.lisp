@@ -152,13 +152,14 @@ suits the map of SNAPSHOT."
             (draw-legend canvas arrangement 0 (+ height (if (shown-p :scale-bar) 32 8)))
             (draw-legend canvas arrangement (+ width 14) 0))))))
 
-(defun draw-framed-world (canvas snapshot layers)
-  "Draw the world of SNAPSHOT and around it what LAYERS lists; return width and height of that."
+(defun draw-framed (canvas snapshot layers draw)
+  "Draw around the map of SNAPSHOT what LAYERS lists, and call DRAW, which draws the map and what is
+on it; return width and height of all that."
   (let* ((arrangement (arrange snapshot layers)) (map (snapshot-map snapshot))
          (left (arrangement-left arrangement)) (top (arrangement-top arrangement)))
     (with-origin (canvas left top)
       (draw-margins canvas snapshot layers arrangement)
-      (draw-world canvas snapshot :layers layers))
+      (funcall draw))
     (values (+ left (max (to-pixels (map-width map))
                          (if (arrangement-below-p arrangement)
                              (columns-width (arrangement-columns arrangement))
@@ -168,3 +169,8 @@ suits the map of SNAPSHOT."
                  (if (arrangement-below-p arrangement)
                      0
                      (+ top (arrangement-high arrangement) 8))))))
+
+(defun draw-framed-world (canvas snapshot layers)
+  "Draw the world of SNAPSHOT and around it what LAYERS lists; return width and height of that."
+  (draw-framed canvas snapshot layers
+               (lambda () (draw-world canvas snapshot :layers layers))))
