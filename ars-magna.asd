@@ -226,18 +226,20 @@
     ((:file "package")
      (:module "terminal" :serial t
       :components ((:file "keyboard") (:file "process") (:file "telling") (:file "input")
+                   (:file "handed-octets")
                    (:file "escapes") (:file "columns") (:file "drawn-line") (:file "console")
                    (:file "progress") (:file "json") (:file "layout")))
      (:module "editing" :serial t
       :components ((:file "keys") (:file "changes") (:file "history") (:file "editor")
-                   (:file "search") (:file "tabbing") (:file "standard")))
+                   (:file "search") (:file "tabbing") (:file "standard")
+                   (:file "handed-text")))
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "reporting") (:file "session") (:file "line")
                    (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")
                    (:file "robot-lines") (:file "finding")
                    (:file "evaluation") (:file "carrying-out") (:file "guarding")
                    (:file "plans") (:file "loading") (:file "worlds") (:file "choices")
-                   (:file "debugger") (:file "completing") (:file "prompt") (:file "visits")))
+                   (:file "debugger") (:file "sessions") (:file "completing") (:file "prompt") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
                    (:file "status-data") (:file "status-lines") (:file "map-lines")
@@ -254,12 +256,15 @@
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."
-  :depends-on ("ars-magna" "ars-magna/cli" "mcclim")
+  ;; The smallest of McCLIM's systems that shows a frame; whoever has the whole has it too.
+  :depends-on ("ars-magna" "ars-magna/cli" "mcclim/looks")
   :serial t
   :components
   ((:module "src/clim" :serial t
     :components ((:file "package") (:file "watcher") (:file "canvas") (:file "panes")
-                 (:file "world-pane") (:file "transcript") (:file "prompt") (:file "window")
+                 (:file "world-pane") (:file "transcript") (:file "transcript-pane")
+                 (:file "prompt") (:file "guarding") (:file "interactor") (:file "window")
+                 (:file "line-menus")
                  (:file "commands") (:file "opening")))))
 
 (defsystem "ars-magna/fiveam"

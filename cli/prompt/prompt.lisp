@@ -11,6 +11,8 @@
 
 (defun next-line (session)
   "Read a line of SESSION and do what it says; at the end of input, let the session be over."
+  (unless (or (session-visit session) (plusp (session-forks session)))
+    (funcall (session-place session)))
   (follow-simulation session)
   (when (session-account session) (account-for-last session))
   (let ((text (unless (stopped-p session)

@@ -50,7 +50,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:native-name #:native-path #:path-called #:existing-path #:missing-directory
            #:replace-file #:plain-file-p
            #:unusable-file-text #:shown-name
-           #:call-replacing-file #:decoded #:file-text #:cut-file
+           #:call-replacing-file #:encoded #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
            #:host-name #:process-number
            #:environment-value #:real-microseconds #:run-command #:run-attached)
@@ -85,7 +85,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:time-limit #:deferring-interrupts #:allowing-interrupts
            #:call-holding-interrupts #:call-open-to-interrupts
            #:regain-room #:debugger-p #:answering-debugger #:calls-under-way
-           #:debugger-hook #:with-debugger-hook)
+           #:debugger-hook #:common-debugger-hook #:disabled-p
+           #:with-debugger-hook)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:reading-trouble
            #:text-of-condition #:one-line-text #:hundredths #:editors-output)
