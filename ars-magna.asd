@@ -239,14 +239,15 @@
                    (:file "robot-lines") (:file "finding")
                    (:file "evaluation") (:file "carrying-out") (:file "guarding")
                    (:file "plans") (:file "loading") (:file "worlds") (:file "choices")
-                   (:file "debugger") (:file "sessions") (:file "completing") (:file "prompt") (:file "visits")))
+                   (:file "debugger") (:file "sessions")
+                   (:file "window-system") (:file "completing") (:file "prompt") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
                    (:file "status-data") (:file "status-lines") (:file "map-lines")
                    (:file "running-lines") (:file "watch-line") (:file "world-lines")
                    (:file "plan-lines") (:file "plan-views") (:file "manipulate-line")
                    (:file "help") (:file "topics") (:file "help-lines")
-                   (:file "rewind-line") (:file "picture-lines") (:file "trial-lines")
+                   (:file "rewind-line") (:file "picture-lines") (:file "window-lines") (:file "trial-lines")
                    (:file "fork-line") (:file "import-line")
                    (:file "export-line")))
      (:module "shell" :serial t

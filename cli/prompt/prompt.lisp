@@ -21,7 +21,8 @@
            (note-line-begun (session-account session) (if (comment-p text) nil text)
                             (session-errors session))
            (do-next session text))
-          (t (setf (session-over-p session) t)))))
+          (t (setf (session-over-p session) t
+                   (session-ended-p session) (not (terminal-p session)))))))
 
 (defun stopped-p (session)
   "True if SESSION stops at an error, and there was one when all was done that it has asked for."

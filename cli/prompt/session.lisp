@@ -53,6 +53,8 @@
   ;; If the run of plans that it waits for was rewound: what to call first, with this session.
   (after-rewind nil :type (or null function))
   (over-p nil)
+  ;; It is over because nothing more is typed: nobody has said QUIT.
+  (ended-p nil :type boolean)
   ;; The trial that the prompt is in, or NIL.
   (visit nil)
   ;; The first line that is an error is the last.

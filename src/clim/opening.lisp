@@ -171,7 +171,14 @@ Return the window. Signals MISUSE where there is no X server."
                   window)
           (t (open-new-window robot)))))
 
-(setf *display-opener* #'open-window)
+(defun await-windows ()
+  "Wait until no window is open."
+  (loop for window = (first (with-lock (*windows-lock*) *windows*))
+        while window
+        do (join-thread (window-thread window))))
+
+(setf *display-opener* #'open-window
+      *displays-waiter* #'await-windows)
 
 (defun watch-rewound (old new)
   "Let the windows that show OLD show NEW, which is to go on in its place."
