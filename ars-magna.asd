@@ -293,7 +293,8 @@
 (defsystem "ars-magna/clim-tests"
   :description "What the window claims."
   :depends-on ("ars-magna/tests" "ars-magna/clim" "fiveam")
-  :components ((:module "tests" :components ((:file "clim-window")))))
+  :components ((:module "tests" :serial t
+                :components ((:file "clim-window") (:file "clim-talking")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
@@ -336,7 +337,7 @@
                  (:file "ways-going") (:file "cli-plans") (:file "cli-colour")
                  (:file "cli-rewinding")
                  (:file "cli-robots") (:file "cli-hostile")
-                 (:file "cli-debugger") (:file "experiment-replay")
+                 (:file "cli-debugger") (:file "cli-sessions") (:file "experiment-replay")
                  (:file "cli-trials") (:file "cli-newcomers") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "experiment-shell") (:file "experiment-shell-code")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")

@@ -77,7 +77,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:export #:session #:make-session #:session-robot #:session-errors #:session-input
            #:session-thread #:run-session #:prompt #:*prompt-robot*)
   ;; sessions
-  (:export #:go-to-run #:run-session-apart #:interrupt-session #:end-session #:enter-line
+  (:export #:go-to-run #:listen-instead #:run-session-apart #:interrupt-session #:end-session #:enter-line
            #:at-work-on)
   ;; worlds
   (:export #:all-worlds)

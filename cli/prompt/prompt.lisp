@@ -9,15 +9,21 @@
         (debug-line session breakage text)
         (run-text session text))))
 
-(defun next-line (session)
-  "Read a line of SESSION and do what it says; at the end of input, let the session be over."
+(defun find-place (session)
+  "Let SESSION command the robot that it is for, and listen to its simulation."
   (unless (or (session-visit session) (plusp (session-forks session)))
     (funcall (session-place session)))
-  (follow-simulation session)
+  (follow-simulation session))
+
+(defun next-line (session)
+  "Read a line of SESSION and do what it says; at the end of input, let the session be over."
+  (find-place session)
   (when (session-account session) (account-for-last session))
   (let ((text (unless (stopped-p session)
                 (read-input session (if (session-breaks session) "Break> " "Robot> ")))))
     (cond (text
+           ;; While it was typed, a window may have gone on to another run.
+           (find-place session)
            (note-line-begun (session-account session) (if (comment-p text) nil text)
                             (session-errors session))
            (do-next session text))

@@ -318,6 +318,11 @@ another, so that nobody waits for the tick to end, which it may never."
     (when simulation
       (set-listener (first (sessions-hearing simulation)) simulation))))
 
+(defun listen-instead (session simulation)
+  "Let SESSION, which waits for a line, listen to SIMULATION from now on. Any thread may ask."
+  (stop-listening session)
+  (listen-to session simulation))
+
 (defun follow-simulation (session)
   "Let SESSION listen to the simulation that is current now."
   (unless (and (eq *simulation* (session-simulation session))

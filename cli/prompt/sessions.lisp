@@ -24,6 +24,19 @@
   "Return SESSION and those that listen to the same simulation."
   (adjoin session (sessions-hearing (session-simulation session))))
 
+;;; What users' programs print in a simulator's thread, as continuations do, goes to the terminal,
+;;; and to the windows of that simulation.
+
+(defun session-of-thread ()
+  (find (current-thread) (with-lock (*sessions-lock*) *sessions*) :key #'session-thread))
+
+(defun consoles-beside (console)
+  "Return the other consoles that show what this thread writes to CONSOLE."
+  (when (and *simulation* (rest *sessions*) (not (session-of-thread)))
+    (remove console (mapcar #'session-console (sessions-hearing *simulation*)))))
+
+(setf *mirrors* 'consoles-beside)
+
 ;;; Who answers what breaks.
 
 (defun sessions-to-ask ()

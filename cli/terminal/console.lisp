@@ -217,9 +217,20 @@ below.")
   (when (plusp (console-column console)) (put-string (string #\Newline) console stream))
   (put-string text console stream))
 
+;; What knows of several consoles at once sets it.
+(defvar *mirrors* (constantly '())
+  "A function of a console that returns others which show what this thread writes to it.")
+
+(defun call-with-mirrors (function console)
+  "Call FUNCTION with each of the consoles that show what this thread writes to CONSOLE."
+  (let ((mirrors (funcall *mirrors* console)))
+    (when mirrors
+      (let ((*mirrors* (constantly '()))) (mapc function mirrors)))))
+
 (defmethod stream-write-string ((console console) string &optional (start 0) end)
   (with-console (stream console)
     (put-string string console stream start (or end (length string))))
+  (call-with-mirrors (lambda (mirror) (write-string string mirror :start start :end end)) console)
   string)
 
 (defun write-fresh (text console)
@@ -248,12 +259,14 @@ words."
 (defmethod stream-force-output ((console console))
   (with-console (stream console)
     (draw console stream)
-    (force-output stream)))
+    (force-output stream))
+  (call-with-mirrors #'force-output console))
 
 (defmethod stream-finish-output ((console console))
   (with-console (stream console)
     (draw console stream)
-    (finish-output stream)))
+    (finish-output stream))
+  (call-with-mirrors #'finish-output console))
 
 ;;; Prompts.
 

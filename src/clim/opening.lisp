@@ -52,7 +52,12 @@
   "Let WINDOW show the robot called NAME of SIMULATION from now on."
   (setf (watcher-robot (window-watcher window)) name
         (clim:frame-pretty-name window) (window-title name))
-  (watch-simulation (window-watcher window) simulation)
+  (unless (eq simulation (window-simulation window))
+    (watch-simulation (window-watcher window) simulation)
+    (setf (pane-placed-p (pane-named window 'world)) nil)
+    (ars-magna.cli:listen-instead (conversation-session (window-conversation window)) simulation))
+  (say (window-transcript window)
+       (format nil "~A in ~A.~%" name (simulation-name simulation)))
   (request-refresh window))
 
 (defun agree-on-robot (window)
@@ -76,7 +81,8 @@ else, if its user has chosen another one of the same run, that that is shown."
   "Let WINDOW, which shows a run that is over for REASON, show the one in which its robot is now, or
 close."
   (let ((simulation (run-of-robot (watcher-robot (window-watcher window)))))
-    (cond (simulation (watch-simulation (window-watcher window) simulation))
+    (cond (simulation
+           (show-robot-called window (watcher-robot (window-watcher window)) simulation))
           (t (warn-of-closing window (format nil "its run is over, ~A" reason))
              (close-window window)))))
 
@@ -167,9 +173,12 @@ close."
   "Show ROBOT in a window: in the one that it has, in one whose run is over, or else in a new one.
 Return the window. Signals MISUSE where there is no X server."
   (let ((window (or (find-window (robot-name robot)) (window-left))))
-    (cond (window (show-robot-called window (robot-name robot) (robot-simulation robot))
-                  window)
-          (t (open-new-window robot)))))
+    (cond ((null window) (open-new-window robot))
+          ((and (eq (watcher-robot (window-watcher window)) (robot-name robot))
+                (eq (window-simulation window) (robot-simulation robot)))
+           window)
+          (t (show-robot-called window (robot-name robot) (robot-simulation robot))
+             window))))
 
 (defun await-windows ()
   "Wait until no window is open."
