@@ -130,12 +130,6 @@ defined twice, that a package has grown since it was defined."
 
 ;;; The prompt.
 
-(defun save-window-prompt ()
-  "Save a core that runs the prompt, and has what opens windows, in the file that the environment
-says."
-  (ensure-window-libraries)
-  (save-prompt "ars-magna/clim"))
-
 (defun save-prompt (&optional (system "ars-magna/cli"))
   "Save a core that runs the prompt, with SYSTEM, in the file that the environment says."
   (load-strictly system)
@@ -145,6 +139,12 @@ says."
   (uiop:symbol-call :ars-magna.cli :make-process-own)
   (sb-ext:save-lisp-and-die (path-in-environment "ARS_MAGNA_CORE")
                             :toplevel (uiop:find-symbol* :main :ars-magna.cli)))
+
+(defun save-window-prompt ()
+  "Save a core that runs the prompt, and has what opens windows, in the file that the environment
+says."
+  (ensure-window-libraries)
+  (save-prompt "ars-magna/clim"))
 
 ;;; The manual.
 

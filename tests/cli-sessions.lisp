@@ -7,16 +7,16 @@
 ;;; A talk is a prompt in a thread of its own, to which keys are handed over. It says before it reads
 ;;; a line, and after, so that whoever waits need not look at a clock.
 
-(defclass paper (cli:console) ()
+(defclass mute-console (cli:console) ()
   (:documentation "A console that does not show the line that is being typed."))
 
-(defmethod cli:wipe ((console paper) stream)
+(defmethod cli:wipe ((console mute-console) stream)
   (declare (ignore stream)))
 
-(defmethod cli:draw ((console paper) stream)
+(defmethod cli:draw ((console mute-console) stream)
   (declare (ignore stream)))
 
-(defmethod cli:leave-line ((console paper) stream)
+(defmethod cli:leave-line ((console mute-console) stream)
   (declare (ignore stream)))
 
 (defstruct talk session thread (turns (base:make-semaphore "turns")) output)
@@ -26,7 +26,7 @@
 
 (defun begin-talk (robot)
   (let* ((output (make-string-output-stream))
-         (console (make-instance 'paper :stream output :window (lambda () (values 80 24))))
+         (console (make-instance 'mute-console :stream output :window (lambda () (values 80 24))))
          (talk (make-talk :output output))
          (simulation (run:robot-simulation robot))
          (turn (lambda () (base:signal-semaphore (talk-turns talk))))
@@ -39,7 +39,9 @@
                                                       (robot:robot-name robot))
                                (funcall turn))
                              "talk"))
-    (await-turns talk 1)
+    ;; When a line has been done, it listens.
+    (enter talk "; nothing")
+    (await-turns talk 3)
     talk))
 
 (defun await-turns (talk count)
@@ -56,7 +58,7 @@
   (cli:end-session (talk-session talk))
   (base:join-thread (talk-thread talk)))
 
-(defun written-in (talk) (get-output-stream-string (talk-output talk)))
+(defun told-to (talk) (get-output-stream-string (talk-output talk)))
 
 (defmacro in-talk ((talk) &body body)
   "Run BODY with TALK bound to a prompt of the studio's robot."
@@ -110,7 +112,7 @@
   (in-talk (talk)
     (enter talk (pushing "(read)") "(a 2)")
     (is-true (await-turns talk 2))
-    (is (equal "((A 2))" (prin1-to-string (entered))))))
+    (is (equal '("A" 2) (cons (string (first (first (entered)))) (rest (first (entered))))))))
 
 (test sessions.an-interrupt-ends-the-line-and-nothing-else
   (in-talk (talk)
@@ -120,7 +122,7 @@
     (is-true (cli:at-work-on (talk-session talk)))
     (cli:interrupt-session (talk-session talk))
     (is-true (await-turns talk 2))
-    (is (mentions-p (written-in talk) "Interrupted."))
+    (is (mentions-p (told-to talk) "Interrupted."))
     (enter talk (pushing 5))
     (is-true (await-turns talk 2))
     (is (equal '(5) (entered)))))
@@ -130,7 +132,7 @@
     (enter talk (format nil "(progn (break \"oh\") ~A)" (pushing 3)) "0")
     (is-true (await-turns talk 2))
     (is (equal '(3) (entered)))
-    (let ((written (written-in talk)))
+    (let ((written (told-to talk)))
       (dolist (part '("*BREAK* -> oh" "0  continue"))
         (is (mentions-p written part))))))
 
@@ -151,7 +153,7 @@
              (await-break talk)
              (enter talk "0")
              (is-true (base:wait-on-semaphore went-on 20))
-             (is (mentions-p (written-in talk) "*BREAK* -> stuck")))
+             (is (mentions-p (told-to talk) "*BREAK* -> stuck")))
         (end-talk talk)
         (run:stop-clock simulation)))))
 
@@ -173,7 +175,7 @@
                     (flet ((says-which (talk)
                              (enter talk "(eq (ars-magna.cli:session-robot) ars-magna.tests::*gate*)")
                              (await-turns talk 2)
-                             (written-in talk)))
+                             (told-to talk)))
                       (setf (base:global-value '*gate*) first)
                       (is (mentions-p (says-which one) "T"))
                       (is (mentions-p (says-which two) "NIL")))
@@ -188,8 +190,8 @@
              (base:error-set "a shelf has fallen")
              (enter one (pushing 1))
              (is-true (await-turns one 2))
-             (is (mentions-p (written-in one) "a shelf has fallen"))
-             (is (mentions-p (written-in two) "a shelf has fallen")))
+             (is (mentions-p (told-to one) "a shelf has fallen"))
+             (is (mentions-p (told-to two) "a shelf has fallen")))
         (end-talk one)
         (end-talk two)))))
 

@@ -237,6 +237,11 @@
              (is (eq window (window:find-window 'studio-robot)))
              (window:close-window window)
              (base:join-thread (window::window-thread window))
+             (base:join-thread (window::conversation-thread
+                                (window::window-conversation window)))
+             ;; The next tick takes the observers of both away.
+             (command:robot-turn robot 1 nil)
+             (run:await-idle simulation 20)
              (is (null (window:find-window 'studio-robot)))
              (is (eq :disowned (clim:frame-state window)))
              (is (time:live-p simulation))

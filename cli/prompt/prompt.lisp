@@ -23,7 +23,7 @@
                 (read-input session (if (session-breaks session) "Break> " "Robot> ")))))
     (cond (text
            ;; While it was typed, a window may have gone on to another run.
-           (find-place session)
+           (unless (session-breaks session) (find-place session))
            (note-line-begun (session-account session) (if (comment-p text) nil text)
                             (session-errors session))
            (do-next session text))

@@ -50,8 +50,9 @@
 
 (defun show-robot-called (window name simulation)
   "Let WINDOW show the robot called NAME of SIMULATION from now on."
-  (setf (watcher-robot (window-watcher window)) name
-        (clim:frame-pretty-name window) (window-title name))
+  (setf (watcher-robot (window-watcher window)) name)
+  ;; Not all of CLIM's ports can do that.
+  (ignore-errors (setf (clim:frame-pretty-name window) (window-title name)))
   (unless (eq simulation (window-simulation window))
     (watch-simulation (window-watcher window) simulation)
     (setf (pane-placed-p (pane-named window 'world)) nil)
