@@ -13,7 +13,8 @@
 (defun unhurried-p (line)
   "True if what LINE prints is to be seen as it comes."
   (or (line-full-name line)
-      (member (line-name line) '("EVAL" "REPEAT" "TRIAL" "FORK" "WATCH") :test #'string=)))
+      (member (line-name line) '("EVAL" "REPEAT" "TRIAL" "FORK" "WATCH" "WINDOW" "DISPLAY")
+              :test #'string=)))
 
 (defun text-width (session)
   "Return how many characters a line of running text may have for SESSION: as its window has room

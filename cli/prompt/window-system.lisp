@@ -29,13 +29,17 @@
            (uiop:symbol-call :quicklisp :quickload "mcclim/looks")
            (asdf:load-system "ars-magna/clim")))))
 
-(defun call-without-chatter (function)
-  "Call FUNCTION, which compiles and loads libraries; what the compiler says is of no interest."
-  (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream)))
+(defun call-as-in-bare-lisp (function)
+  "Call FUNCTION, which compiles and loads libraries, in Lisp's own syntax. What the compiler says is
+of no interest."
+  (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream))
+        (*package* (find-package :cl-user))
+        (*readtable* (copy-readtable nil))
+        (*read-default-float-format* 'single-float))
     (handler-bind ((warning #'muffle-warning)) (funcall function))))
 
 (defun load-windows (loader)
-  (handler-case (call-without-chatter loader)
+  (handler-case (call-as-in-bare-lisp loader)
     (error (condition)
       (reject-line "McCLIM is there, but cannot be loaded: ~A" (one-line (condition-text
                                                                           condition))))))
