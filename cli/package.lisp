@@ -12,7 +12,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:stream-line-column #:stream-write-char #:stream-write-string
                 #:stream-force-output #:stream-finish-output
                 #:stream-read-char #:stream-read-line #:stream-unread-char
-                #:stream-listen #:stream-clear-input #:stream-read-char-no-hang)
+                #:stream-read-char-no-hang #:stream-listen #:stream-clear-input)
   (:import-from :ars-magna.rpl
                 #:task-p #:task-name #:task-parent #:task-serial #:task-state #:task-result
                 #:task-over-p
@@ -75,10 +75,10 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:export #:read-argument #:argument-words)
   ;; session, prompt
   (:export #:session #:make-session #:session-robot #:session-errors #:session-input
-           #:session-thread #:run-session #:prompt #:*prompt-robot*)
+           #:run-session #:prompt #:*prompt-robot*)
   ;; sessions
-  (:export #:go-to-run #:listen-instead #:run-session-apart #:interrupt-session #:end-session #:enter-line
-           #:at-work-on)
+  (:export #:go-to-run #:listen-instead #:run-session-apart #:interrupt-session #:end-session
+           #:enter-line #:at-work-on)
   ;; worlds
   (:export #:all-worlds)
   ;; main

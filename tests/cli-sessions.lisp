@@ -4,8 +4,8 @@
 
 (def-suite* cli-sessions :in ars-magna)
 
-;;; A talk is a prompt in a thread of its own, to which keys are handed over. It says before it reads
-;;; a line, and after, so that whoever waits need not look at a clock.
+;;; A talk is a prompt in a thread of its own, to which keys are handed over. It says before it
+;;; reads a line, and after, so that whoever waits need not look at a clock.
 
 (defclass mute-console (cli:console) ()
   (:documentation "A console that does not show the line that is being typed."))
@@ -173,7 +173,8 @@
              (let ((two (begin-talk second)))
                (unwind-protect
                     (flet ((says-which (talk)
-                             (enter talk "(eq (ars-magna.cli:session-robot) ars-magna.tests::*gate*)")
+                             (enter talk "(eq (ars-magna.cli:session-robot)
+                                              ars-magna.tests::*gate*)")
                              (await-turns talk 2)
                              (told-to talk)))
                       (setf (base:global-value '*gate*) first)
@@ -204,7 +205,8 @@
 
 (test keys.are-handed-over-as-a-terminal-does
   (dolist (key '(:up :down :left :right :home :end :delete :rubout :return :tab :control-a
-                 :control-c :control-k :meta-f :meta-rubout "x" "é" (:paste "turn") (:entry "go 1")))
+                 :control-c :control-k :meta-f :meta-rubout "x" "é" (:paste "turn")
+                 (:entry "go 1")))
     (is (equal key (cli::read-key (reader-of (cli::octets-of-key key)))))))
 
 (test painted-spans.are-what-was-painted
@@ -218,7 +220,8 @@
   "Run ./cli/ars-magna with ARGUMENTS where there is no X server. Return its error output and
 status."
   (multiple-value-bind (output errors status)
-      (uiop:run-program (list* "env" "DISPLAY=" (namestring (project-file "cli/ars-magna")) arguments)
+      (uiop:run-program (list* "env" "DISPLAY=" (namestring (project-file "cli/ars-magna"))
+                               arguments)
                         :error-output :string :ignore-error-status t)
     (declare (ignore output))
     (values errors status)))

@@ -4,9 +4,9 @@
 
 ;;; A key is the text that it types, a string; a keyword such as :UP or :CONTROL-A, or :META-F for
 ;;; one after escape; or a list (:PASTE text), or (:ENTRY text) for a line that has been chosen
-;;; elsewhere, as from a menu. No terminal hands over the latter. NEXT, in what follows, is a function that returns the
-;;; next octet that the terminal hands over, as a character, or NIL at the end; an octet that it is
-;;; called with, it will return first.
+;;; elsewhere, as from a menu. No terminal hands over the latter. NEXT, in what follows, is a
+;;; function that returns the next octet that the terminal hands over, as a character, or NIL at the
+;;; end; an octet that it is called with, it will return first.
 
 (defparameter *keys-of-codes*
   '(("A" :up) ("B" :down) ("C" :right) ("D" :left) ("H" :home) ("F" :end)

@@ -3,8 +3,8 @@
 (in-package :ars-magna.cli)
 
 (defun robot-at-work-called (name)
-  "Return the robot called NAME, of this run or of another that is live. Signals BAD-LINE if there is
-none."
+  "Return the robot called NAME, of this run or of another that is live. Signals BAD-LINE if there
+is none."
   (let* ((name (robot-called name))
          (robot (or (find name (and *simulation* (simulation-robots *simulation*))
                           :key #'robot-name)

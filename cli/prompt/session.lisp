@@ -74,16 +74,18 @@
 
 (setf (documentation 'session-errors 'function)
       "Return how many errors there were so far: lines that made no sense, plans that failed, and
-error messages, but not those of a plan that goes on.")
+error messages, but not those of a plan that goes on."
+      (documentation 'session-input 'function) "Return the stream that lines are read from.")
 
 (defun make-session (&key (input *standard-input*) (output *standard-output*) batch
                        (patient batch) echo files lines account stop (color :auto)
                        (place (constantly nil)))
   "Return a session that loads FILES, does the list LINES, then reads others from INPUT, and writes
-to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes before
-the next is read; with ECHO, it shows what it reads. ACCOUNT, if any, is an account of its lines.
-With STOP, it is over when one of them is an error. PLACE is called before each. COLOR, which is :AUTO, :ALWAYS or :NEVER, says
-whether it writes in colours: by default on a terminal, unless the environment has NO_COLOR."
+to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes
+before the next is read; with ECHO, it shows what it reads. ACCOUNT, if any, is an account of its
+lines. With STOP, it is over when one of them is an error. PLACE is called before each. COLOR,
+which is :AUTO, :ALWAYS or :NEVER, says whether it writes in colours: by default on a terminal,
+unless the environment has NO_COLOR."
   (let ((console (make-console output)))
     (setf (console-colored-p console) (color-wanted-p color (console-stream console)))
     (%make-session :input input :console console :batch-p (and batch t)

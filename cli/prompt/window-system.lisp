@@ -30,8 +30,8 @@
            (asdf:load-system "ars-magna/clim")))))
 
 (defun call-as-in-bare-lisp (function)
-  "Call FUNCTION, which compiles and loads libraries, in Lisp's own syntax. What the compiler says is
-of no interest."
+  "Call FUNCTION, which compiles and loads libraries, in Lisp's own syntax. What the compiler says
+is of no interest."
   (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream))
         (*package* (find-package :cl-user))
         (*readtable* (copy-readtable nil))
@@ -41,15 +41,15 @@ of no interest."
 (defun load-windows (loader)
   (handler-case (call-as-in-bare-lisp loader)
     (error (condition)
-      (reject-line "McCLIM is there, but cannot be loaded: ~A" (one-line (condition-text
-                                                                          condition))))))
+      (reject-line "McCLIM is there, but cannot be loaded: ~A"
+                   (one-line (condition-text condition))))))
 
 (defun display-named-p ()
   "True if the environment names an X server."
   (not (member (environment-value "DISPLAY") '(nil "") :test #'equal)))
 
 (defun ensure-windows ()
-  "Let there be something that opens windows. Signals BAD-LINE if there is no X server, or no McCLIM."
+  "Let there be something that opens windows. Signals BAD-LINE if there is no X server or McCLIM."
   (unless *display-opener*
     (unless (display-named-p)
       (reject-line "No display: the environment variable DISPLAY names no X server. MAP draws the ~

@@ -91,7 +91,7 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
         (run-live session robot-name options))))
 
 (defun check-window (options)
-  "Signal USAGE-ERROR if OPTIONS ask for a window of a run that has none, or there is none to be had."
+  "Signal USAGE-ERROR if OPTIONS ask for a window of a run that has none, or none is to be had."
   (when (option-value :window options)
     (when (and (or (option-value :batch options) (option-value :script options)
                    (option-value :json options))

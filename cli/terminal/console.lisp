@@ -37,6 +37,9 @@ if something was written after it. TROUBLE is the condition that what was writte
 delivered, or NIL. COLORED-P is true if its messages and prompts have colours. While HELD-BACK-P is
 true, what is written is kept in HELD-BACK, a list of strings, newest first."))
 
+(setf (documentation 'console-line 'function)
+      "Return the drawn-line that is being typed on the console, or NIL. Can be set.")
+
 (defun make-console (stream &optional window)
   "Return a console on STREAM, or STREAM if it is one. WINDOW is as in CONSOLE."
   (if (typep stream 'console) stream (make-instance 'console :stream stream :window window)))

@@ -47,8 +47,8 @@ is no ink."
     (and ink (make-keyword (car ink)))))
 
 (defun painted-spans (text)
-  "Return TEXT, a line that PAINT has been at, as a list of lists (text ink); INK is a keyword, or NIL
-where nothing was painted."
+  "Return TEXT, a line that PAINT has been at, as a list of lists (text ink); INK is a keyword, or
+NIL where nothing was painted."
   (let ((spans '()) (ink nil) (start 0))
     (loop
       (let ((escape (position +escape+ text :start start)))

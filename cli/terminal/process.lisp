@@ -27,7 +27,8 @@
   'sb-sys:fd-stream)
 
 (defgeneric octets-within-p (stream seconds)
-  (:documentation "Wait until STREAM can be read or is at its end, for SECONDS at most. True if so.")
+  (:documentation "Wait until STREAM can be read or is at its end, for SECONDS at most. True if it
+can, or is.")
   (:method ((stream stream) seconds)
     (or (listen stream)
         (sb-sys:wait-until-fd-usable (sb-sys:fd-stream-fd stream) :input seconds))))

@@ -80,8 +80,8 @@
       (reverse (subseq lines 0 (min count (length lines)))))))
 
 (defun numbered-lines (transcript count &optional last)
-  "Return at most COUNT lines of TRANSCRIPT up to the one numbered LAST, by default the newest, which
-comes first; each as a list of its number and its text."
+  "Return at most COUNT lines of TRANSCRIPT up to the one numbered LAST, by default the newest,
+which comes first; each as a list of its number and its text."
   (with-lock ((transcript-lock transcript))
     (let* ((newest (transcript-newest transcript))
            (skip (if last (max 0 (- newest last)) 0)))
