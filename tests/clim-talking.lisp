@@ -67,6 +67,12 @@
              (mapcar (lambda (row) (list (window::row-start row) (window::row-stop row)))
                      (window::rows-of-line 0 "0123456789abcdefg hi there" 10)))))
 
+(test transcript.what-is-counted-stands-in-one-line
+  (let ((transcript (window::make-transcript (constantly nil))))
+    (window::say transcript (format nil "~C1 of 2" #\Return))
+    (window::say transcript (format nil "~C2 of 2" #\Return))
+    (is (equal '("2 of 2") (window::latest-lines transcript 5)))))
+
 (test transcript.stays-where-one-has-scrolled-to
   (in-window (window robot)
     (let* ((pane (fill-transcript window 100)) (end (rows-shown pane)))

@@ -31,11 +31,18 @@
   (setf (first (transcript-lines transcript))
         (concatenate 'string (first (transcript-lines transcript)) text)))
 
+(defun add-part (transcript part)
+  "Add PART, of a line, to the last line of TRANSCRIPT; a return goes back to its beginning, as
+where something is counted."
+  (let ((return (position #\Return part :from-end t)))
+    (when return (setf (first (transcript-lines transcript)) ""))
+    (extend-line transcript (subseq part (if return (1+ return) 0)))))
+
 (defun add-text (transcript text)
   "Add TEXT, which may consist of several lines, to TRANSCRIPT."
   (loop for start = 0 then (1+ end)
         for end = (position #\Newline text :start start)
-        do (extend-line transcript (subseq text start end))
+        do (add-part transcript (subseq text start end))
         while end
         do (begin-line-of transcript)))
 
