@@ -196,6 +196,26 @@
         (end-talk one)
         (end-talk two)))))
 
+(test sessions.are-told-of-their-own-runs-only
+  "Also where several runs share a queue, as live ones do."
+  (in-studio (first)
+    (let ((queue base:*message-queue*) (one (begin-talk first)) (run time:*simulation*))
+      (unwind-protect
+           (in-studio (second)
+             (setf (run:simulation-messages time:*simulation*) queue)
+             (let ((two (begin-talk second)) (base:*message-queue* queue))
+               (unwind-protect
+                    (progn
+                      (let ((time:*simulation* run)) (base:error-set "the first has news"))
+                      (base:error-set "so has the second")
+                      (let ((first-told (told-to one)) (second-told (told-to two)))
+                        (is (mentions-p first-told "the first has news"))
+                        (is (not (search "so has" first-told)))
+                        (is (mentions-p second-told "so has the second"))
+                        (is (not (search "the first" second-told)))))
+                 (end-talk two))))
+        (end-talk one)))))
+
 ;;; Keys.
 
 (defun reader-of (octets)

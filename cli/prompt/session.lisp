@@ -258,12 +258,12 @@ DISPLAY says so."
 (defvar *showing-lock* (make-lock "showing messages"))
 
 (defun show-messages (session)
-  "Show all queued messages, in SESSION and those that listen to the same simulation, and the
-prompts again."
+  "Show all queued messages, in SESSION or in those that listen to the runs that they are of, and
+the prompts again."
   (unless *showing-p*
     (with-lock (*showing-lock*)
-      (let ((*showing-p* t) (messages (take-all-messages)))
-        (dolist (hearer (hearers session)) (tell-messages hearer messages))))))
+      (let ((*showing-p* t))
+        (tell-hearers session (take-all-messages))))))
 
 ;;; Listening to a simulation.
 

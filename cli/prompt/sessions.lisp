@@ -14,15 +14,30 @@
   (unwind-protect (funcall function)
     (with-lock (*sessions-lock*) (removef *sessions* session))))
 
+(defun hears-p (session simulation)
+  "True if SESSION listens to SIMULATION, or to what it was before it was rewound."
+  (let ((heard (session-simulation session)))
+    (and heard (eq (latest heard) (latest simulation)))))
+
 (defun sessions-hearing (simulation)
   "Return the sessions at work that listen to SIMULATION."
   (and simulation
-       (remove simulation (with-lock (*sessions-lock*) *sessions*)
-               :key #'session-simulation :test-not #'eq)))
+       (remove-if-not (lambda (session) (hears-p session simulation))
+                      (with-lock (*sessions-lock*) *sessions*))))
 
-(defun hearers (session)
-  "Return SESSION and those that listen to the same simulation."
-  (adjoin session (sessions-hearing (session-simulation session))))
+(defun hearers (message session)
+  "Return the sessions that are to show MESSAGE, which SESSION has taken: those that listen to its
+run, or if nobody does, SESSION."
+  (or (sessions-hearing (or (message-run message) (session-simulation session)))
+      (list session)))
+
+(defun tell-hearers (session messages)
+  "Show MESSAGES, which SESSION has taken, in those sessions that they are for."
+  (let ((hearers (mapcar (lambda (message) (hearers message session)) messages)))
+    (dolist (hearer (remove-duplicates (cons session (apply #'append hearers))))
+      (tell-messages hearer (loop for message in messages
+                                  for those in hearers
+                                  when (member hearer those) collect message)))))
 
 ;;; What users' programs print in a simulator's thread, as continuations do, goes to the terminal,
 ;;; and to the windows of that simulation.
