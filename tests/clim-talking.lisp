@@ -43,6 +43,19 @@
     (is (equal (format nil "t~A~C~C" (cli::octets-of-key :up) (code-char 1) #\Return)
                (keys-given window)))))
 
+(test talking.keys-go-to-the-window-that-has-them
+  (in-window (one robot)
+    (in-window (other robot)
+      (window::type-into (pane other 'window::interactor))
+      (let ((port (clim:port (clim:frame-top-level-sheet one))))
+        (setf (clim:port-keyboard-input-focus port) (pane other 'window::interactor))
+        (clim:distribute-event port
+                               (make-instance 'clim:key-press-event
+                                              :sheet (clim:frame-top-level-sheet one)
+                                              :key-name :|a| :key-character #\a
+                                              :modifier-state 0 :x 0 :y 0))
+        (is (eq one (window::robot-window-of (clim:port-keyboard-input-focus port))))))))
+
 (test talking.what-is-pasted-is-not-entered
   (in-window (window robot)
     (window::give-key (window::window-conversation window) (list :paste (format nil "a~%b")))

@@ -128,6 +128,22 @@
   (with-guarded-command ((window-of pane) "That key")
     (press-in-window (window-of pane) event)))
 
+;;; CLIM has one place for the keys of all windows; they are to go to the window that has them.
+
+(defun robot-window-of (sheet)
+  "Return the robot's window that SHEET belongs to, or NIL."
+  (let ((frame (and (typep sheet '(or clim:pane clime:top-level-sheet-mixin))
+                    (clim:pane-frame sheet))))
+    (and (typep frame 'robot-window) frame)))
+
+(defmethod clim:distribute-event :before ((port clim:basic-port) (event clim:keyboard-event))
+  (let ((window (robot-window-of (clim:event-sheet event)))
+        (before (robot-window-of (clim:port-keyboard-input-focus port))))
+    (when (and window (not (eq window before)))
+      (setf (clim:port-keyboard-input-focus port) (clim:frame-top-level-sheet window))
+      ;; The cursor says where keys go.
+      (when before (request-refresh before)))))
+
 (defun type-into (pane)
   "Let what is typed go to PANE."
   (setf (clim:port-keyboard-input-focus (clim:port pane)) pane)
