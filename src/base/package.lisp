@@ -128,7 +128,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:error-set #:warning-set #:message-set #:error-display #:flush-all-errors*
            #:*message-queue* #:make-message-queue #:message-queue
            #:copy-message-queue #:message-queue-listener
-           #:message #:message-kind #:message-items #:message-asker #:message-run #:*run-that-reports* #:*told-of*
+           #:message #:message-kind #:message-items #:message-asker
+           #:message-run #:*run-that-reports* #:*told-of*
            #:take-messages #:queue-message
            #:message-text
            #:write-message #:write-items #:out #:*message-limit*)
