@@ -233,18 +233,21 @@
     ((:file "package")
      (:module "terminal" :serial t
       :components ((:file "keyboard") (:file "process") (:file "telling") (:file "input")
+                   (:file "handed-octets")
                    (:file "escapes") (:file "columns") (:file "drawn-line") (:file "console")
                    (:file "progress") (:file "json") (:file "layout")))
      (:module "editing" :serial t
       :components ((:file "keys") (:file "changes") (:file "history") (:file "editor")
-                   (:file "search") (:file "tabbing") (:file "standard")))
+                   (:file "search") (:file "tabbing") (:file "standard")
+                   (:file "handed-text")))
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "reporting") (:file "session") (:file "line")
                    (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")
                    (:file "comments") (:file "robot-lines") (:file "finding")
                    (:file "evaluation") (:file "carrying-out") (:file "guarding")
                    (:file "plans") (:file "loading") (:file "worlds") (:file "choices")
-                   (:file "debugger") (:file "completing") (:file "prompt") (:file "visits")))
+                   (:file "debugger") (:file "sessions")
+                   (:file "window-system") (:file "completing") (:file "prompt") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
                    (:file "status-data") (:file "status-lines") (:file "map-lines")
@@ -252,7 +255,7 @@
                    (:file "plan-lines") (:file "plan-views") (:file "manipulate-line")
                    (:file "help") (:file "subjects") (:file "topics") (:file "help-lines")
                    (:file "rewind-line") (:file "picture-lines") (:file "film-line")
-                   (:file "trial-lines")
+                   (:file "window-lines") (:file "trial-lines")
                    (:file "fork-line") (:file "import-line")
                    (:file "export-line")))
      (:module "shell" :serial t
@@ -262,12 +265,15 @@
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."
-  :depends-on ("ars-magna" "ars-magna/cli" "mcclim")
+  ;; The smallest of McCLIM's systems that shows a frame; whoever has the whole has it too.
+  :depends-on ("ars-magna" "ars-magna/cli" "mcclim/looks")
   :serial t
   :components
   ((:module "src/clim" :serial t
     :components ((:file "package") (:file "watcher") (:file "canvas") (:file "panes")
-                 (:file "world-pane") (:file "transcript") (:file "prompt") (:file "window")
+                 (:file "world-pane") (:file "transcript") (:file "transcript-pane")
+                 (:file "prompt") (:file "guarding") (:file "interactor") (:file "window")
+                 (:file "line-menus")
                  (:file "commands") (:file "opening")))))
 
 (defsystem "ars-magna/fiveam"
@@ -295,7 +301,8 @@
 (defsystem "ars-magna/clim-tests"
   :description "What the window claims."
   :depends-on ("ars-magna/tests" "ars-magna/clim" "fiveam")
-  :components ((:module "tests" :components ((:file "clim-window")))))
+  :components ((:module "tests" :serial t
+                :components ((:file "clim-window") (:file "clim-talking")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
@@ -340,7 +347,7 @@
                  (:file "ways-going") (:file "cli-plans") (:file "cli-colour")
                  (:file "cli-rewinding")
                  (:file "cli-robots") (:file "cli-hostile")
-                 (:file "cli-debugger") (:file "experiment-replay")
+                 (:file "cli-debugger") (:file "cli-sessions") (:file "experiment-replay")
                  (:file "cli-trials") (:file "cli-newcomers") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "experiment-shell") (:file "experiment-shell-code")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")

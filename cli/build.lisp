@@ -9,7 +9,8 @@
 (defpackage :ars-magna.build
   (:documentation "Compiling, saving the prompt's core, running the tests.")
   (:use :cl)
-  (:export #:print-missing-libraries #:load-strictly #:load-tests #:save-prompt #:run-tests
+  (:export #:configure #:print-missing-libraries #:print-window-libraries #:load-strictly
+           #:load-tests #:save-prompt #:save-window-prompt #:run-tests
            #:record-sessions #:write-manual))
 
 (in-package :ars-magna.build)
@@ -125,17 +126,40 @@ defined twice, that a package has grown since it was defined."
   (unless (some #'missing-p (libraries "ars-magna/clim-tests"))
     (load-strictly "ars-magna/clim-tests")))
 
+;;; McCLIM, which only the window needs, is found by ASDF or through a Quicklisp that is installed.
+
+(defun quicklisp-file ()
+  (probe-file (merge-pathnames "quicklisp/setup.lisp" (user-homedir-pathname))))
+
+(defun print-window-libraries ()
+  "Print by what McCLIM is to be had: asdf, quicklisp, or nothing."
+  (write-line (cond ((not (missing-p "mcclim/looks")) "asdf")
+                    ((quicklisp-file) "quicklisp")
+                    (t "nothing"))))
+
+(defun ensure-window-libraries ()
+  "Let ASDF find McCLIM, which Quicklisp fetches if need be."
+  (when (missing-p "mcclim/looks")
+    (load (quicklisp-file))
+    (uiop:symbol-call :quicklisp :quickload "mcclim/looks")))
+
 ;;; The prompt.
 
-(defun save-prompt ()
-  "Save a core that runs the prompt in the file that the environment says."
-  (load-strictly "ars-magna/cli")
+(defun save-prompt (&optional (system "ars-magna/cli"))
+  "Save a core that runs the prompt, with SYSTEM, in the file that the environment says."
+  (load-strictly system)
   ;; What is in the core is not to be compiled again under its user.
   (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))
   (uiop:call-image-dump-hook)
   (uiop:symbol-call :ars-magna.cli :make-process-own)
   (sb-ext:save-lisp-and-die (path-in-environment "ARS_MAGNA_CORE")
                             :toplevel (uiop:find-symbol* :main :ars-magna.cli)))
+
+(defun save-window-prompt ()
+  "Save a core that runs the prompt, and has what opens windows, in the file that the environment
+says."
+  (ensure-window-libraries)
+  (save-prompt "ars-magna/clim"))
 
 ;;; The manual.
 

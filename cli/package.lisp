@@ -12,7 +12,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:stream-line-column #:stream-write-char #:stream-write-string
                 #:stream-force-output #:stream-finish-output
                 #:stream-read-char #:stream-read-line #:stream-unread-char
-                #:stream-listen #:stream-clear-input)
+                #:stream-read-char-no-hang #:stream-listen #:stream-clear-input)
   (:import-from :ars-magna.rpl
                 #:task-p #:task-name #:task-parent #:task-serial #:task-state #:task-result
                 #:task-over-p
@@ -56,6 +56,13 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
            #:stream-force-output #:stream-finish-output
            #:stream-read-char #:stream-read-line #:stream-unread-char
            #:stream-listen #:stream-clear-input)
+  ;; escapes, columns, drawn-line, console
+  (:export #:painted-spans #:unpainted-text #:broken-text
+           #:drawn-line-label #:drawn-line-text #:drawn-line-point #:drawn-line-shown
+           #:rows-to-show
+           #:console #:console-line #:wipe #:draw #:leave-line #:clear-screen)
+  ;; handed-text
+  (:export #:make-handed-text #:press-key)
   ;; line, names
   (:export #:line #:line-name #:line-parameters #:line-sentence #:define-line #:all-lines
            #:all-line-names #:find-line #:bad-line
@@ -67,7 +74,11 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   ;; arguments
   (:export #:read-argument #:argument-words)
   ;; session, prompt
-  (:export #:session #:make-session #:session-robot #:session-errors #:run-session #:prompt)
+  (:export #:session #:make-session #:session-robot #:session-errors #:session-input
+           #:run-session #:prompt #:*prompt-robot*)
+  ;; sessions
+  (:export #:go-to-run #:listen-instead #:run-session-apart #:interrupt-session #:end-session
+           #:enter-line #:at-work-on)
   ;; worlds
   (:export #:all-worlds)
   ;; main

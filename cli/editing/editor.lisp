@@ -14,6 +14,8 @@
    (ahead :initform '() :accessor edited-ahead)
    (lines :initform '() :accessor edited-lines)
    (killed :initform "" :accessor edited-killed)
+   ;; What was being typed when another line was entered, as a list of text and point, or NIL.
+   (put-off :initform nil :accessor edited-put-off)
    ;; The entries of the history before the one that is shown, and those after it, the nearest
    ;; first; after the newest comes what was typed.
    (older :initform '() :accessor edited-older)
@@ -23,6 +25,21 @@ and have again what he has typed before. The line is shown on CONSOLE."))
 
 (defmethod initialize-instance :after ((stream edited-text) &key)
   (setf (console-edited-p (edited-console stream)) t))
+
+(defgeneric take-keys (stream &key interrupts)
+  (:documentation "Let each key that is pressed go to STREAM at once; if INTERRUPTS is true, but for
+control C and its like, which are signals.")
+  (:method ((stream edited-text) &key interrupts)
+    (hand-over-keys :interrupts interrupts)))
+
+(defgeneric stop-here (stream)
+  (:documentation "Stop this process until its user, who types into STREAM, wants it back.")
+  (:method ((stream edited-text))
+    (hide-line (edited-console stream))
+    (tell-pastes-apart (edited-console stream) nil)
+    (stop-for-a-while)
+    (tell-pastes-apart (edited-console stream) t)
+    (change-line (edited-console stream) (constantly nil))))
 
 (defvar *while-typing* nil
   "NIL, or a function that is called now and then while a line is typed.")
@@ -148,11 +165,7 @@ and have again what he has typed before. The line is shown on CONSOLE."))
 
 (define-action (:control-z) (stream)
   "Stop this process until its user wants it back."
-  (hide-line (edited-console stream))
-  (tell-pastes-apart (edited-console stream) nil)
-  (stop-for-a-while)
-  (tell-pastes-apart (edited-console stream) t)
-  (change-line (edited-console stream) (constantly nil))
+  (stop-here stream)
   nil)
 
 (define-action (:control-\\) (stream)
@@ -205,10 +218,25 @@ and have again what he has typed before. The line is shown on CONSOLE."))
 
 ;;; Reading a line.
 
+(defun enter-given (stream text)
+  "Let TEXT be the line that was typed; what was being typed comes again after it."
+  (let ((line (line-of stream)))
+    (setf (edited-put-off stream)
+          (and (string/= "" (drawn-line-text line))
+               (list (drawn-line-text line) (drawn-line-point line))))
+    (change-to stream text (length text))
+    text))
+
+(defun press-given (stream kind text)
+  "Take TEXT as what KIND says: it was pasted, or it is a line that has been chosen elsewhere."
+  (ecase kind
+    (:paste (insert-typed stream text) nil)
+    (:entry (enter-given stream text))))
+
 (defun press (stream key)
   "Do what KEY does. Return a text, or :EOF, if the line has ended."
   (cond ((stringp key) (insert-typed stream key) nil)
-        ((consp key) (insert-typed stream (second key)) nil)
+        ((consp key) (press-given stream (first key) (second key)))
         ((null key) (if (string= "" (typed-text-of stream)) :eof (typed-text-of stream)))
         ((change-of key) (do-change stream (change-of key)) nil)
         ((action-of key) (funcall (action-of key) stream))))
@@ -216,12 +244,14 @@ and have again what he has typed before. The line is shown on CONSOLE."))
 (defun call-editing (function stream)
   "Call FUNCTION, while a line can be edited on the console of STREAM."
   (let ((console (edited-console stream)))
-    (unwind-protect (progn (hand-over-keys)
+    (unwind-protect (progn (take-keys stream)
                            (begin-line console)
                            (enter-history stream)
+                           (when (edited-put-off stream)
+                             (apply #'change-to stream (shiftf (edited-put-off stream) nil)))
                            (funcall function))
       (when (console-line console) (end-line console))
-      (hand-over-keys :interrupts t))))
+      (take-keys stream :interrupts t))))
 
 (defun press-text (stream text)
   "Insert TEXT, and what else has been typed by now: so much at once, as where a terminal pastes

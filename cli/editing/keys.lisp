@@ -3,15 +3,16 @@
 (in-package :ars-magna.cli)
 
 ;;; A key is the text that it types, a string; a keyword such as :UP or :CONTROL-A, or :META-F for
-;;; one after escape; or a list (:PASTE text). NEXT, in what follows, is a function that returns the
-;;; next octet that the terminal hands over, as a character, or NIL at the end; an octet that it is
-;;; called with, it will return first.
+;;; one after escape; or a list (:PASTE text), or (:ENTRY text) for a line that has been chosen
+;;; elsewhere, as from a menu. No terminal hands over the latter. NEXT, in what follows, is a
+;;; function that returns the next octet that the terminal hands over, as a character, or NIL at the
+;;; end; an octet that it is called with, it will return first.
 
 (defparameter *keys-of-codes*
   '(("A" :up) ("B" :down) ("C" :right) ("D" :left) ("H" :home) ("F" :end)
     ("1~" :home) ("7~" :home) ("4~" :end) ("8~" :end) ("3~" :delete)
     ("1;5C" :meta-f) ("1;5D" :meta-b) ("1;3C" :meta-f) ("1;3D" :meta-b)
-    ("200~" :paste))
+    ("200~" :paste) ("202~" :entry))
   "Lists (code key): what terminals hand over after escape and [, or escape and O.")
 
 (defun read-code (next)
@@ -72,8 +73,8 @@
 (defun read-coded-key (next)
   "Return the key whose code NEXT returns."
   (let ((key (second (assoc (read-code next) *keys-of-codes* :test #'string=))))
-    (if (eq key :paste)
-        (list :paste (read-paste next))
+    (if (member key '(:paste :entry))
+        (list key (read-paste next))
         (or key :unknown))))
 
 (defun read-key-after-escape (next)
@@ -94,3 +95,26 @@
           ((char= char +escape+) (read-key-after-escape next))
           ((< (char-code char) 32) (key-called "control-~C" (code-char (+ 64 (char-code char)))))
           (t (read-text char next)))))
+
+;;; The other way round, for keys that are pressed elsewhere than at a terminal.
+
+(defun escaped-key (key)
+  "Return what a terminal hands over for KEY, a keyword, if that begins with escape; else NIL."
+  (let ((code (find key *keys-of-codes* :key #'second)) (name (string-downcase key)))
+    (cond (code (escape "~A" (first code)))
+          ((eq key :meta-rubout) (format nil "~C~C" +escape+ #\Rubout))
+          ((starts-with-subseq "meta-" name) (format nil "~C~A" +escape+ (subseq name 5))))))
+
+(defun octets-of-key (key)
+  "Return what a terminal hands over for KEY, each character of which stands for an octet; nothing
+for one that it does not know."
+  (cond ((stringp key) (encoded key))
+        ((consp key) (format nil "~A~A~A" (escaped-key (first key)) (encoded (second key))
+                             (paste-ended)))
+        ((eq key :return) (string #\Return))
+        ((eq key :tab) (string #\Tab))
+        ((eq key :rubout) (string #\Rubout))
+        ((escaped-key key))
+        ((starts-with-subseq "CONTROL-" (string key))
+         (string (code-char (logand 31 (char-code (char (string key) 8))))))
+        (t "")))

@@ -1,4 +1,4 @@
-;;;; picture-lines.lisp -- PICTURE and DISPLAY.
+;;;; picture-lines.lisp -- PICTURE.
 
 (in-package :ars-magna.cli)
 
@@ -45,7 +45,3 @@ default."
                                 (string-downcase (layer-title layer)))))
   (let ((path (apply #'save-picture (session-robot) (path-called file) (picture-options what))))
     (format t "~A~%" (native-name path))))
-
-(define-line "DISPLAY" (session) (:seeing)
-    "Show the robot and its world in a window, where there is one to be had."
-  (open-display (session-robot)))

@@ -44,6 +44,7 @@ something."
 (defun screen-p (session)
   "True if SESSION is on a terminal that can be written over, and can hear keys."
   (and (watched-p session)
+       (terminal-stream-p (session-input session))
        (not (session-batch-p session))
        (console-edited-p (session-console session))))
 

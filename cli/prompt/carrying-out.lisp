@@ -13,12 +13,13 @@
 (defun unhurried-p (line)
   "True if what LINE prints is to be seen as it comes."
   (or (line-full-name line)
-      (member (line-name line) '("EVAL" "REPEAT" "TRIAL" "FORK" "WATCH") :test #'string=)))
+      (member (line-name line) '("EVAL" "REPEAT" "TRIAL" "FORK" "WATCH" "WINDOW" "DISPLAY")
+              :test #'string=)))
 
 (defun text-width (session)
   "Return how many characters a line of running text may have for SESSION: as its window has room
 for, or 79."
-  (if (terminal-p session) (max 40 (min 79 (1- (window-size)))) 79))
+  (if (terminal-p session) (max 40 (min 79 (1- (size-of-window session)))) 79))
 
 (defun run-line (session line text)
   "Do what LINE does with the arguments in TEXT. What it prints comes out in one piece."
@@ -32,7 +33,7 @@ for, or 79."
 (defun evaluate-line (session text)
   "Evaluate TEXT as Lisp. The tables that it prints fit the window of SESSION, if it has one."
   (if (terminal-p session)
-      (call-on-page (lambda () (evaluate-text session text)) (1- (window-size)))
+      (call-on-page (lambda () (evaluate-text session text)) (1- (size-of-window session)))
       (evaluate-text session text)))
 
 (defun run-text (session text)

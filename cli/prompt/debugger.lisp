@@ -196,16 +196,25 @@ meanwhile comes after that."
                      console))
       (tell-break session breakage)))
 
-(defun debug-elsewhere (session breakage)
-  "Do what the thread of SESSION orders for BREAKAGE, until that is to go on."
-  (push breakage (session-breaks session))
-  (unwind-protect (progn (announce-break session breakage)
+(defun forget-break (session breakage)
+  "Let BREAKAGE, which goes on, wait for SESSION no longer, whose prompt that was perhaps not."
+  (let ((console (session-console session)))
+    (removef (session-breaks session) breakage)
+    (signal-semaphore (breakage-done breakage))
+    (when (and (console-prompt console)
+               (null (session-breaks session))
+               (not (session-debugging-p session)))
+      (show-prompt console "Robot> "))))
+
+(defun debug-elsewhere (sessions breakage)
+  "Do what the thread of one of SESSIONS orders for BREAKAGE, until that is to go on."
+  (dolist (session sessions) (push breakage (session-breaks session)))
+  (unwind-protect (progn (dolist (session sessions) (announce-break session breakage))
                          (loop
                            (wait-on-semaphore (breakage-ordered breakage))
                            (funcall (breakage-order breakage))
                            (signal-semaphore (breakage-done breakage))))
-    (removef (session-breaks session) breakage)
-    (signal-semaphore (breakage-done breakage))))
+    (dolist (session sessions) (forget-break session breakage))))
 
 ;; A line may wait for what has broken elsewhere, as RUN-PLAN does for a plan.
 (defun answer-breaks ()
@@ -227,23 +236,25 @@ threads, until that goes on."
                                (restarts-within condition))
                       'abort)))
 
-(defun debug-breakage (session breakage)
-  "Let the user of SESSION say how BREAKAGE, of this thread, is to go on."
-  (if (eq (session-thread session) (current-thread))
-      (debug-here session breakage)
-      (debug-elsewhere session breakage)))
+(defun debug-breakage (sessions breakage)
+  "Let the users of SESSIONS say how BREAKAGE, of this thread, is to go on."
+  (if (eq (session-thread (first sessions)) (current-thread))
+      (debug-here (first sessions) breakage)
+      (debug-elsewhere sessions breakage)))
 
 (defun enter-debugger (condition hook)
   "Let the user of the prompt say how to go on after CONDITION. Called instead of Lisp's debugger."
-  (declare (ignore hook))
   ;; What asks needs the room that is not there.
   (when (typep condition 'storage-condition) (give-up condition))
-  (let ((session *session*))
-    (when session                       ; Or it has just ended: Lisp's own debugger comes up.
-      (with-debugger-hook ('debugger-disabled-hook)
-        (debug-breakage session
-                        (make-breakage condition (restarts-to-offer condition session)
-                                       (current-thread)))))))
+  (let ((sessions (sessions-to-ask)))
+    (cond (sessions
+           (with-debugger-hook ('debugger-disabled-hook)
+             (debug-breakage sessions
+                             (make-breakage condition
+                                            (restarts-to-offer condition (first sessions))
+                                            (current-thread)))))
+          ;; Without any, as when it has just ended, Lisp's own debugger comes up.
+          (*session* (debugger-disabled-hook condition hook)))))
 
 (defvar *own-process-p* nil "True in a process that does nothing but this program.")
 
@@ -282,7 +293,7 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
     (setf *session* session
           (session-thread session) (current-thread)
           (debugger-hook) (if (terminal-p session) 'enter-debugger 'debugger-disabled-hook))
-    (unwind-protect (funcall function)
+    (unwind-protect (call-among-sessions session function)
       (setf *session* outer-session
             (debugger-hook) outer-hook)
       (release-all session))))

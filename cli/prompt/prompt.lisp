@@ -40,18 +40,27 @@ tell somebody who sits there."
   (note-line-begun (session-account session) (if (comment-p text) nil text)
                    (session-errors session)))
 
+(defun find-place (session)
+  "Let SESSION command the robot that it is for, and listen to its simulation."
+  (unless (or (session-visit session) (plusp (session-forks session)))
+    (funcall (session-place session)))
+  (follow-simulation session))
+
 (defun next-line (session)
   "Read a line of SESSION and do what it says; at the end of input, let the session be over."
-  (follow-simulation session)
+  (find-place session)
   (when (session-account session) (account-for-last session))
   (let ((text (unless (stopped-p session)
                 (read-input session (if (session-breaks session) "Break> " "Robot> ")))))
     (cond (text
+           ;; While it was typed, a window may have gone on to another run.
+           (unless (session-breaks session) (find-place session))
            (begin-line-of session text)
            (let ((rest (without-blocks session text)))
              (unless (eq rest text) (begin-line-of session rest))
              (do-telling-of-time session rest)))
-          (t (setf (session-over-p session) t)))))
+          (t (setf (session-over-p session) t
+                   (session-ended-p session) (not (terminal-p session)))))))
 
 (defun stopped-p (session)
   "True if SESSION stops at an error, and there was one when all was done that it has asked for."

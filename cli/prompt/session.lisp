@@ -55,6 +55,8 @@
   ;; If the run of plans that it waits for was rewound: what to call first, with this session.
   (after-rewind nil :type (or null function))
   (over-p nil)
+  ;; It is over because nothing more is typed: nobody has said QUIT.
+  (ended-p nil :type boolean)
   ;; The trial that the prompt is in, or NIL.
   (visit nil)
   ;; The first line that is an error is the last.
@@ -64,27 +66,34 @@
   ;; In how many forks it is, one in another.
   (forks 0 :type fixnum)
   ;; The robot to go on with, in batch mode, when this one's lines are over.
-  (next-robot nil))
+  (next-robot nil)
+  ;; A function that is called before each line is read, outside of trials and forks: it sees to it
+  ;; that the right robot is commanded.
+  (place (constantly nil) :type function :read-only t))
 
 (defmethod print-object ((session session) stream)
   (print-unreadable-object (session stream :type t)))
 
 (setf (documentation 'session-errors 'function)
       "Return how many errors there were so far: lines that made no sense, plans that failed, and
-error messages, but not those of a plan that goes on.")
+error messages, but not those of a plan that goes on."
+      (documentation 'session-input 'function) "Return the stream that lines are read from.")
 
 (defun make-session (&key (input *standard-input*) (output *standard-output*) batch
-                       (patient batch) echo files lines account stop (color :auto))
+                       (patient batch) echo files lines account stop (color :auto)
+                       (place (constantly nil)))
   "Return a session that loads FILES, does the list LINES, then reads others from INPUT, and writes
-to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes before
-the next is read; with ECHO, it shows what it reads. ACCOUNT, if any, is an account of its lines.
-With STOP, it is over when one of them is an error. COLOR, which is :AUTO, :ALWAYS or :NEVER, says
-whether it writes in colours: by default on a terminal, unless the environment has NO_COLOR."
+to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes
+before the next is read; with ECHO, it shows what it reads. ACCOUNT, if any, is an account of its
+lines. With STOP, it is over when one of them is an error. PLACE is called before each. COLOR,
+which is :AUTO, :ALWAYS or :NEVER, says whether it writes in colours: by default on a terminal,
+unless the environment has NO_COLOR."
   (let ((console (make-console output)))
     (setf (console-colored-p console) (color-wanted-p color (console-stream console)))
     (%make-session :input input :console console :batch-p (and batch t)
                    :patient-p (and patient t) :echo-p (and echo t)
-                   :files files :lines lines :account account :stop-p (and stop t))))
+                   :files files :lines lines :account account :stop-p (and stop t)
+                   :place place)))
 
 (defun check-run ()
   "Signal BAD-LINE if the run that the prompt is in is over."
@@ -109,6 +118,10 @@ over."
         (first robots)
         (reject-line "There is no robot here. WORLD lists the worlds, WORLD name starts one."))))
 
+(defun size-of-window (session)
+  "Return how many columns and rows there are where SESSION writes."
+  (funcall (or (console-window (session-console session)) #'window-size)))
+
 (defun terminal-p (session)
   "True if somebody sits at SESSION."
   (typed-by-hand-p (session-input session)))
@@ -116,7 +129,7 @@ over."
 (defun watched-p (session)
   "True if somebody sits at SESSION, and it can be found out whether he has typed something."
   (and (terminal-p session)
-       (typep (source-of (session-input session)) 'descriptor-stream)))
+       (typep (source-of (session-input session)) '(or descriptor-stream handed-octets))))
 
 (defun display-wanted-p (session)
   "True if a robot that starts for SESSION is to have a window. Where none is to be had, only
@@ -222,26 +235,37 @@ DISPLAY says so."
 (defvar *showing-p* nil
   "True while this thread shows messages; what the showing itself reports is left for later.")
 
+(defun messages-for (session messages)
+  "Count the errors among MESSAGES, and return those that SESSION is to show."
+  (incf (session-errors session)
+        (count-if (lambda (message) (counts-p message session)) messages))
+  (remove-if (lambda (message) (told-often-p message session))
+             (if (session-quiet-p session) (remove-if #'others-p messages) messages)))
+
+(defun tell-messages (session messages)
+  "Show MESSAGES in SESSION, and the prompt again."
+  (with-lock ((session-lock session))
+    (setf (session-news-p session) nil)
+    (let ((console (session-console session))
+          (messages (messages-for session messages)))
+      (when (and messages (not flush-all-errors*))
+        (or (report-messages (session-account session) messages)
+            (write-messages messages console (session-account session)))
+        (dolist (text (remove nil (mapcar (lambda (message) (repetition-text message session))
+                                          messages)))
+          (write-fresh (fitted text console) console)))
+      (restore-prompt console)
+      (finish-output console))))
+
+(defvar *showing-lock* (make-lock "showing messages"))
+
 (defun show-messages (session)
-  "Show all queued messages, and the prompt again."
+  "Show all queued messages, in SESSION or in those that listen to the runs that they are of, and
+the prompts again."
   (unless *showing-p*
-    (with-lock ((session-lock session))
-      (setf (session-news-p session) nil)
-      (let ((*showing-p* t)
-            (console (session-console session))
-            (messages (take-all-messages)))
-        (incf (session-errors session)
-              (count-if (lambda (message) (counts-p message session)) messages))
-        (when (session-quiet-p session) (setf messages (remove-if #'others-p messages)))
-        (setf messages (remove-if (lambda (message) (told-often-p message session)) messages))
-        (when (and messages (not flush-all-errors*))
-          (or (report-messages (session-account session) messages)
-              (write-messages messages console (session-account session)))
-          (dolist (text (remove nil (mapcar (lambda (message) (repetition-text message session))
-                                            messages)))
-            (write-fresh (fitted text console) console)))
-        (restore-prompt console)
-        (finish-output console)))))
+    (with-lock (*showing-lock*)
+      (let ((*showing-p* t))
+        (tell-hearers session (take-all-messages))))))
 
 ;;; Listening to a simulation.
 
@@ -277,11 +301,15 @@ another, so that nobody waits for the tick to end, which it may never."
                          (look session)
                          (remove-observer observer simulation))))))
 
+(defun set-listener (session simulation)
+  "Let SESSION, or nobody if that is NIL, be told when SIMULATION has something to say."
+  (setf (message-queue-listener (simulation-messages simulation))
+        (and session (lambda () (hear session simulation)))))
+
 (defun listen-to (session simulation)
   "Let SESSION show what SIMULATION has to say when it says it."
-  (setf (session-simulation session) simulation
-        (message-queue-listener (simulation-messages simulation))
-        (lambda () (hear session simulation)))
+  (setf (session-simulation session) simulation)
+  (set-listener session simulation)
   (keep-history simulation)
   (when (live-p simulation)
     (let ((observer (observer-for session)))
@@ -292,7 +320,12 @@ another, so that nobody waits for the tick to end, which it may never."
   (let ((simulation (shiftf (session-simulation session) nil)))
     (setf (session-observer session) nil)
     (when simulation
-      (setf (message-queue-listener (simulation-messages simulation)) nil))))
+      (set-listener (first (sessions-hearing simulation)) simulation))))
+
+(defun listen-instead (session simulation)
+  "Let SESSION, which waits for a line, listen to SIMULATION from now on. Any thread may ask."
+  (stop-listening session)
+  (listen-to session simulation))
 
 (defun follow-simulation (session)
   "Let SESSION listen to the simulation that is current now."

@@ -53,10 +53,14 @@
 (defun run-live (session robot-name options)
   "Run the lines of SESSION in the live world of ROBOT-NAME."
   (apply #'simulator robot-name :rate (option-value :rate options *default-rate*)
-                                :display (display-wanted-p session)
+                                :display (or (option-value :window options)
+                                             (display-wanted-p session))
          (when (option-value :seed options) (list :seed (option-value :seed options))))
   (when (terminal-p session) (greet session))
-  (run-session session))
+  (run-session session)
+  ;; Where nobody sits at a terminal, the window is what there is to sit at.
+  (when (and (option-value :window options) (session-ended-p session) *displays-waiter*)
+    (funcall *displays-waiter*)))
 
 (defun plan-lines (options)
   "Return the lines for the plans that OPTIONS ask for."
@@ -98,8 +102,19 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
           *debug-io* both
           *terminal-io* both)))
 
+(defun check-window (options)
+  "Signal USAGE-ERROR if OPTIONS ask for a window of a run that has none, or none is to be had."
+  (when (option-value :window options)
+    (when (and (or (option-value :batch options) (option-value :script options)
+                   (option-value :json options))
+               (null (option-value :rate options)))
+      (reject-usage "--window shows a live run; that of a batch or script is one with --rate."))
+    (handler-case (ensure-windows)
+      (bad-line (condition) (reject-usage "~A" (bad-line-text condition))))))
+
 (defun run-prompt (options)
   "Do what OPTIONS say. Return the status to exit with."
+  (check-window options)
   (let ((robot-name (robot-asked-for options))
         (session (standard-session options)))
     (when (option-value :json options) (write-all-as-objects session))

@@ -31,7 +31,8 @@
 
 (defparameter *options*
   '(("--world" :world identity) ("--robot" :robot identity) ("--seed" :seed parse-seed)
-    ("--rate" :rate parse-pace) ("--load" :load identity) ("--plan" :plan identity)
+    ("--rate" :rate parse-pace) ("--load" :load identity)
+    ("--window" :window nil) ("--plan" :plan identity)
     ("--batch" :batch nil) ("--json" :json nil) ("--stop" :stop nil)
     ("--color" :color parse-color) ("--list" :list nil))
   "Lists (option key parser [:optional]); PARSER is NIL for an option without a value. If the value

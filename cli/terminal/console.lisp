@@ -37,6 +37,9 @@ if something was written after it. TROUBLE is the condition that what was writte
 delivered, or NIL. COLORED-P is true if its messages and prompts have colours. While HELD-BACK-P is
 true, what is written is kept in HELD-BACK, a list of strings, newest first."))
 
+(setf (documentation 'console-line 'function)
+      "Return the drawn-line that is being typed on the console, or NIL. Can be set.")
+
 (defun make-console (stream &optional window)
   "Return a console on STREAM, or STREAM if it is one. WINDOW is as in CONSOLE."
   (if (typep stream 'console) stream (make-instance 'console :stream stream :window window)))
@@ -109,23 +112,36 @@ now."
   "Call FUNCTION with the line of CONSOLE, STREAM, and how many columns and rows the window has."
   (multiple-value-call function (console-line console) stream (funcall (console-window console))))
 
-(defun wipe (console stream)
-  "Take the line that is being typed off the screen, if it is there, so that what is written next
-goes on where the last has ended."
-  (let ((line (console-line console)))
-    (when (and line (drawn-line-shown line))
-      (call-in-window #'wipe-line console stream)
-      (unless (or (zerop (console-column console)) (console-wrapped-p console))
-        (format stream "~A~A" (cursor-up 1) (cursor-right (column-of-row console)))))))
+(defgeneric wipe (console stream)
+  (:documentation "Take the line that is being typed off the screen, if it is there, so that what is
+written next goes on where the last has ended.")
+  (:method ((console console) stream)
+    (let ((line (console-line console)))
+      (when (and line (drawn-line-shown line))
+        (call-in-window #'wipe-line console stream)
+        (unless (or (zerop (console-column console)) (console-wrapped-p console))
+          (format stream "~A~A" (cursor-up 1) (cursor-right (column-of-row console))))))))
 
-(defun draw (console stream)
-  "Draw the line that is being typed below what was written, if there is one and it is not there."
-  (let ((line (console-line console)))
-    (when (and line (null (drawn-line-shown line)))
-      (unless (or (zerop (console-column console)) (console-wrapped-p console))
-        (terpri stream)
-        (setf (console-wrapped-p console) (zerop (column-of-row console))))
-      (call-in-window #'draw-line console stream))))
+(defgeneric draw (console stream)
+  (:documentation "Draw the line that is being typed below what was written, if there is one and it
+is not there.")
+  (:method ((console console) stream)
+    (let ((line (console-line console)))
+      (when (and line (null (drawn-line-shown line)))
+        (unless (or (zerop (console-column console)) (console-wrapped-p console))
+          (terpri stream)
+          (setf (console-wrapped-p console) (zerop (column-of-row console))))
+        (call-in-window #'draw-line console stream)))))
+
+(defgeneric leave-line (console stream)
+  (:documentation "Let the line that is being typed stand as it is, and what is written next begin
+below.")
+  (:method ((console console) stream)
+    (let ((line (console-line console)))
+      (wipe console stream)
+      (setf (drawn-line-point line) (length (drawn-line-text line)))
+      (draw console stream)
+      (when (plusp (drawn-line-column line)) (terpri stream)))))
 
 (defun change-line (console function)
   "Call FUNCTION with the line that is being typed, if any, and show what it has made of it."
@@ -165,11 +181,16 @@ goes on where the last has ended."
     (wipe console stream)
     (finish-output stream)))
 
+(defgeneric clear-screen (console stream)
+  (:documentation "Let nothing stand on the screen.")
+  (:method ((console console) stream)
+    (write-string (window-cleared) stream)))
+
 (defun clear-window (console)
   "Let nothing stand in the window but the line that is being typed."
   (hide-line console)
   (with-console (stream console)
-    (write-string (window-cleared) stream)
+    (clear-screen console stream)
     (begin-row console)
     (draw console stream)
     (finish-output stream)))
@@ -177,12 +198,8 @@ goes on where the last has ended."
 (defun end-line (console)
   "Let what was typed stand as it is, and what is written next begin below."
   (with-console (stream console)
-    (let ((line (console-line console)))
-      (wipe console stream)
-      (setf (drawn-line-point line) (length (drawn-line-text line)))
-      (draw console stream)
-      (when (plusp (drawn-line-column line)) (terpri stream))
-      (finish-output stream))
+    (leave-line console stream)
+    (finish-output stream)
     (setf (console-line console) nil
           (console-prompt console) nil)
     (begin-row console)))
@@ -211,9 +228,20 @@ goes on where the last has ended."
   (when (plusp (console-column console)) (put-string (string #\Newline) console stream))
   (put-string text console stream))
 
+;; What knows of several consoles at once sets it.
+(defvar *mirrors* (constantly '())
+  "A function of a console that returns others which show what this thread writes to it.")
+
+(defun call-with-mirrors (function console)
+  "Call FUNCTION with each of the consoles that show what this thread writes to CONSOLE."
+  (let ((mirrors (funcall *mirrors* console)))
+    (when mirrors
+      (let ((*mirrors* (constantly '()))) (mapc function mirrors)))))
+
 (defmethod stream-write-string ((console console) string &optional (start 0) end)
   (with-console (stream console)
     (put-string string console stream start (or end (length string))))
+  (call-with-mirrors (lambda (mirror) (write-string string mirror :start start :end end)) console)
   string)
 
 (defun write-fresh (text console)
@@ -242,12 +270,14 @@ words."
 (defmethod stream-force-output ((console console))
   (with-console (stream console)
     (draw console stream)
-    (force-output stream)))
+    (force-output stream))
+  (call-with-mirrors #'force-output console))
 
 (defmethod stream-finish-output ((console console))
   (with-console (stream console)
     (draw console stream)
-    (finish-output stream)))
+    (finish-output stream))
+  (call-with-mirrors #'finish-output console))
 
 ;;; Prompts.
 

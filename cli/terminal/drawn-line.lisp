@@ -22,6 +22,12 @@ and point that it was drawn from."
   (column 0 :type (integer 0))
   (columns nil :type (or null (integer 0))))
 
+(document-functions
+  drawn-line-label "Return the prompt that stands before the line. Can be set."
+  drawn-line-text "Return what has been typed of the line. Can be set."
+  drawn-line-point "Return where in the text of the line the cursor is. Can be set."
+  drawn-line-shown "Return what the line was drawn from, a list, or NIL. Can be set.")
+
 ;;; Rows.
 
 (defun shown-char (char)

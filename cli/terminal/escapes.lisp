@@ -41,6 +41,24 @@ is no ink."
                 when end do (terpri out)
                 while end)))))
 
+(defun ink-of-code (code)
+  "Return the ink, a keyword, that has CODE, or NIL."
+  (let ((ink (rassoc code *inks* :test #'string=)))
+    (and ink (make-keyword (car ink)))))
+
+(defun painted-spans (text)
+  "Return TEXT, a line that PAINT has been at, as a list of lists (text ink); INK is a keyword, or
+NIL where nothing was painted."
+  (let ((spans '()) (ink nil) (start 0))
+    (loop
+      (let ((escape (position +escape+ text :start start)))
+        (unless (= start (or escape (length text)))
+          (push (list (subseq text start escape) ink) spans))
+        (unless escape (return (nreverse spans)))
+        (let ((end (or (position #\m text :start escape) (1- (length text)))))
+          (setf ink (ink-of-code (subseq text (min end (+ 2 escape)) end))
+                start (1+ end)))))))
+
 (defun unpainted-text (text)
   "Return TEXT without what PAINT has put into it."
   (with-output-to-string (out)

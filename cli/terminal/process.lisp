@@ -26,11 +26,12 @@
   "A stream on a file, pipe or terminal of this process."
   'sb-sys:fd-stream)
 
-(defun octets-within-p (stream seconds)
-  "Wait until STREAM, a descriptor-stream, can be read or is at its end, for SECONDS at most. True
-if so."
-  (or (listen stream)
-      (sb-sys:wait-until-fd-usable (sb-sys:fd-stream-fd stream) :input seconds)))
+(defgeneric octets-within-p (stream seconds)
+  (:documentation "Wait until STREAM can be read or is at its end, for SECONDS at most. True if it
+can, or is.")
+  (:method ((stream stream) seconds)
+    (or (listen stream)
+        (sb-sys:wait-until-fd-usable (sb-sys:fd-stream-fd stream) :input seconds))))
 
 (defun say-on-error-output (text)
   "Write TEXT to the error output, whatever state streams are in, as a line that says who says so."

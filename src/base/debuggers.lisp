@@ -71,6 +71,13 @@ says that there is nobody to talk to."
 (defun (setf debugger-hook) (function)
   (setf sb-ext:*invoke-debugger-hook* function))
 
+(defun common-debugger-hook ()
+  "Return the hook of all threads that have not bound one, or NIL. Can be set."
+  (global-value 'sb-ext:*invoke-debugger-hook*))
+
+(defun (setf common-debugger-hook) (function)
+  (setf (global-value 'sb-ext:*invoke-debugger-hook*) function))
+
 (defmacro with-debugger-hook ((function) &body body)
   "Run BODY, in which this thread's debugger hook is FUNCTION. A hook that is called has none but
 for that."

@@ -97,6 +97,10 @@ character that is written is an octet."
 
 ;;; Text of whatever octets. (SBCL's streams of UTF-8 loop at some that are none.)
 
+(defun encoded (text)
+  "Return the octets of TEXT in UTF-8, as a string of characters read as Latin 1."
+  (map 'string #'code-char (sb-ext:string-to-octets text :external-format :utf-8)))
+
 (defun decoded (octets)
   "Return the text in UTF-8 whose octets the characters of OCTETS, read as Latin 1, stand for, with
 +ILLEGIBLE+ for each that cannot be read."

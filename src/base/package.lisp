@@ -54,7 +54,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:native-name #:native-path #:path-called #:existing-path #:missing-directory
            #:replace-file #:plain-file-p
            #:unusable-file-text #:shown-name
-           #:call-replacing-file #:decoded #:file-text #:cut-file
+           #:call-replacing-file #:encoded #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
            #:host-name #:process-number
            #:environment-value #:real-microseconds #:run-command #:run-attached)
@@ -91,7 +91,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:time-limit #:deferring-interrupts #:allowing-interrupts
            #:call-holding-interrupts #:call-open-to-interrupts
            #:regain-room #:debugger-p #:answering-debugger #:calls-under-way
-           #:debugger-hook #:with-debugger-hook #:yield-foreground)
+           #:debugger-hook #:common-debugger-hook #:disabled-p
+           #:with-debugger-hook #:yield-foreground)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:reading-trouble
            #:text-of-condition #:one-line-text #:hundredths #:editors-output)
@@ -133,7 +134,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:error-set #:warning-set #:message-set #:error-display #:flush-all-errors*
            #:*message-queue* #:make-message-queue #:message-queue
            #:copy-message-queue #:message-queue-listener
-           #:message #:message-kind #:message-items #:message-asker #:*told-of*
+           #:message #:message-kind #:message-items #:message-asker
+           #:message-run #:*run-that-reports* #:*told-of*
            #:take-messages #:queue-message
            #:message-text #:phrase
            #:write-message #:write-items #:out #:*message-limit*)

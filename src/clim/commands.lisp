@@ -2,9 +2,6 @@
 
 (in-package :ars-magna.clim)
 
-;;; The commands of the menu Robot are those of the prompt: one without arguments is given at once,
-;;; another is put where the user can type its arguments.
-
 (defmacro define-window-command ((name title) (window) documentation &body body)
   "Define a command without arguments that the menus call TITLE. Trouble in BODY is reported."
   `(progn
@@ -14,17 +11,6 @@
          (declare (ignorable ,window))
          (with-guarded-command (,window ,title) ,@body)))
      (setf (documentation ',name 'function) ,documentation)))
-
-(defun call-guarded-command (window title function)
-  (handler-case (funcall function)
-    (error (condition)
-      (say (window-transcript window)
-           (format nil "~&*ERROR* -> ~A: ~A~%" title
-                   (substitute #\Space #\Newline (princ-to-string condition)))))))
-
-(defmacro with-guarded-command ((window title) &body body)
-  "Run BODY, the work of the command TITLE; what goes wrong is said in WINDOW."
-  `(call-guarded-command ,window ,title (lambda () ,@body)))
 
 ;;; Running.
 
@@ -62,6 +48,18 @@
 (define-window-command (com-free "As fast as possible") (window)
     "Let ticks pass as fast as they can."
   (set-rate :free (window-simulation window)))
+
+(define-window-command (com-interrupt "Interrupt") (window)
+    "End the line that is under way, as control-C does."
+  (interrupt-conversation (window-conversation window)))
+
+(define-window-command (com-copy "Copy") (window)
+    "Copy what is selected in the transcript, or all of it."
+  (copy-text window))
+
+(define-window-command (com-paste "Paste") (window)
+    "Paste what has been copied where one types."
+  (paste-text window :clipboard))
 
 (define-window-command (com-close "Close window") (window)
     "Close the window. The simulator goes on."
@@ -139,37 +137,9 @@
 
 ;;; The prompt's commands.
 
-(defun choose-line (window name)
-  "Give the prompt the line command called NAME, or let the user add its arguments."
-  (let ((gadget (pane-named window 'interactor)))
-    (cond ((ars-magna.cli:line-parameters (ars-magna.cli:find-line name))
-           (setf (clim:gadget-value gadget) (format nil "~A " name))
-           (type-into gadget))
-          (t (give-line (window-conversation window) name)))))
-
-(defun type-into (gadget)
-  "Let what is typed go to GADGET."
-  (clim:stream-set-input-focus gadget))
-
 (clim:define-command (com-line :command-table robot-window) ((name 'string))
   (let ((window clim:*application-frame*))
     (with-guarded-command (window name) (choose-line window name))))
-
-(defun line-group (name)
-  "Return the menu that holds the line command called NAME, by how it begins."
-  (or (loop for (start group) in '(("CAM" "Cameras") ("HAND" "Hands") ("BIN" "Storage bins")
-                                   ("DESIG" "Designators"))
-            when (starts-with-subseq start name) return group)
-      (if (find name (ars-magna.command:all-commands)
-                :key #'ars-magna.command:command-prompt-name :test #'string-equal)
-          "Moving"
-          "Prompt")))
-
-(defun line-menu (group)
-  "Return the items of the menu GROUP, for a command table."
-  (loop for name in (sort (mapcar #'ars-magna.cli:line-name (ars-magna.cli:all-lines)) #'string<)
-        when (string= group (line-group name))
-          collect (list name :command (list 'com-line name))))
 
 ;;; The menu bar.
 
@@ -180,11 +150,9 @@
   (clim:make-command-table name :inherit-from '(robot-window) :menu items :errorp nil)
   name)
 
-(defparameter *line-groups* '("Moving" "Cameras" "Hands" "Storage bins" "Designators" "Prompt"))
-
 (defun make-robot-menu ()
   (apply #'make-menu 'robot-menu
-         (loop for group in *line-groups*
+         (loop for (nil group) in *line-groups*
                for items = (line-menu group)
                when items
                  collect (list group :menu
@@ -197,7 +165,11 @@
              (item 'com-pause "Pause") (item 'com-resume "Resume") (item 'com-step "Step")
              '(nil :divider nil)
              (item 'com-slower "Half as fast") (item 'com-faster "Twice as fast")
-             (item 'com-default-rate "Default rate") (item 'com-free "As fast as possible"))
+             (item 'com-default-rate "Default rate") (item 'com-free "As fast as possible")
+             '(nil :divider nil)
+             (item 'com-interrupt "Interrupt"))
+  (make-menu 'edit-menu
+             (item 'com-copy "Copy") (item 'com-paste "Paste"))
   (make-menu 'view-menu
              (item 'com-zoom-in "Zoom in") (item 'com-zoom-out "Zoom out")
              (item 'com-fit "Whole map") (item 'com-find "Go to the robot")
@@ -210,7 +182,7 @@
              '(nil :divider nil)
              (item 'com-close "Close window"))
   (make-menu 'menu-bar
-             '("Run" :menu run-menu) '("View" :menu view-menu)
+             '("Run" :menu run-menu) '("Edit" :menu edit-menu) '("View" :menu view-menu)
              (list "Robot" :menu (make-robot-menu)) '("Window" :menu picture-menu)))
 
 (make-menu-bar)

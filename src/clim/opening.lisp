@@ -46,6 +46,47 @@
                                        (handler-case (princ-to-string condition)
                                          (error () (string (type-of condition))))))))))
 
+;;; Which robot a window shows.
+
+(defun show-robot-called (window name simulation)
+  "Let WINDOW show the robot called NAME of SIMULATION from now on."
+  (setf (watcher-robot (window-watcher window)) name)
+  ;; Not all of CLIM's ports can do that.
+  (ignore-errors (setf (clim:frame-pretty-name window) (window-title name)))
+  (unless (eq simulation (window-simulation window))
+    (watch-simulation (window-watcher window) simulation)
+    (setf (pane-placed-p (pane-named window 'world)) nil)
+    (ars-magna.cli:listen-instead (conversation-session (window-conversation window)) simulation))
+  (say (window-transcript window)
+       (format nil "~A in ~A.~%" name (simulation-name simulation)))
+  (request-refresh window))
+
+(defun agree-on-robot (window)
+  "See to it that the prompt of WINDOW, in whose thread this is, commands the robot shown there; or
+else, if its user has chosen another one of the same run, that that is shown."
+  (let ((simulation (window-simulation window)) (watcher (window-watcher window)))
+    (cond ((null simulation))
+          ((not (eq simulation *simulation*))
+           (ars-magna.cli:go-to-run simulation)
+           (setf ars-magna.cli:*prompt-robot* (watcher-robot watcher)))
+          ((not (eq (watcher-robot watcher) ars-magna.cli:*prompt-robot*))
+           (show-robot-called window ars-magna.cli:*prompt-robot* simulation)))))
+
+(defun run-of-robot (name)
+  "Return the live run that the robot called NAME is in now, or NIL."
+  (let* ((robot (find-robot name nil))
+         (simulation (and robot (robot-simulation robot))))
+    (and simulation (live-p simulation) (not (simulation-over simulation)) simulation)))
+
+(defun leave-run (window reason)
+  "Let WINDOW, which shows a run that is over for REASON, show the one in which its robot is now, or
+close."
+  (let ((simulation (run-of-robot (watcher-robot (window-watcher window)))))
+    (cond (simulation
+           (show-robot-called window (watcher-robot (window-watcher window)) simulation))
+          (t (warn-of-closing window (format nil "its run is over, ~A" reason))
+             (close-window window)))))
+
 (defun discard (window)
   "Let the X server forget WINDOW, which has closed, and its pixmaps."
   (forget-terrain (pane-named window 'world))
@@ -55,6 +96,8 @@
   "Show WINDOW until it is closed, or something goes wrong."
   (let* ((simulation (window-simulation window))
          (*message-queue* (simulation-messages simulation)))
+    (start-conversation (window-conversation window) simulation
+                        (watcher-robot (window-watcher window)))
     (unwind-protect
          (handler-case (clim:run-frame-top-level window)
            (error (condition) (warn-of-closing window condition)))
@@ -109,7 +152,8 @@
          (simulation (robot-simulation robot))
          (window nil)
          (watcher (make-watcher (robot-name robot)
-                                (lambda () (when window (request-refresh window))))))
+                                (lambda () (when window (request-refresh window)))
+                                (lambda (reason) (when window (leave-run window reason))))))
     (make-menu-bar)
     (start-watching watcher simulation)
     (setf window (make-robot-window watcher :frame-manager (clim:find-frame-manager :port port)))
@@ -119,15 +163,32 @@
                         (format nil "display of ~A" (robot-name robot))))
     window))
 
-(defun open-window (robot)
-  "Show ROBOT in a window: in the one that it has, or else a new one. Return the window. Signals
-MISUSE where there is no X server."
-  (let ((window (find-window (robot-name robot))))
-    (cond (window (watch-simulation (window-watcher window) (robot-simulation robot))
-                  window)
-          (t (open-new-window robot)))))
+(defun window-left ()
+  "Return an open window whose run is over, or NIL."
+  (find-if (lambda (window)
+             (let ((simulation (window-simulation window)))
+               (and simulation (simulation-over simulation))))
+           (with-lock (*windows-lock*) *windows*)))
 
-(setf *display-opener* #'open-window)
+(defun open-window (robot)
+  "Show ROBOT in a window: in the one that it has, in one whose run is over, or else in a new one.
+Return the window. Signals MISUSE where there is no X server."
+  (let ((window (or (find-window (robot-name robot)) (window-left))))
+    (cond ((null window) (open-new-window robot))
+          ((and (eq (watcher-robot (window-watcher window)) (robot-name robot))
+                (eq (window-simulation window) (robot-simulation robot)))
+           window)
+          (t (show-robot-called window (robot-name robot) (robot-simulation robot))
+             window))))
+
+(defun await-windows ()
+  "Wait until no window is open."
+  (loop for window = (first (with-lock (*windows-lock*) *windows*))
+        while window
+        do (join-thread (window-thread window))))
+
+(setf *display-opener* #'open-window
+      *displays-waiter* #'await-windows)
 
 (defun watch-rewound (old new)
   "Let the windows that show OLD show NEW, which is to go on in its place."

@@ -1,87 +1,110 @@
-;;;; prompt.lisp -- the lines that the user types in the window go to a prompt of the window's own.
+;;;; prompt.lisp -- each window has a prompt of its own, which is that of the terminal.
 
 (in-package :ars-magna.clim)
 
-;;; The prompt runs in a thread, reads from a stream that the window feeds and writes to the
-;;; transcript. So a line that takes long does not keep the window from painting. It begins with
-;;; the first line typed: until then messages stay with whoever else shows them.
+;;; The prompt runs in a thread, so that a line that takes long does not keep the window from
+;;; painting. The window hands over the keys that are pressed, as a terminal does; the prompt's own
+;;; editor makes lines of them. What is written goes to the transcript, and the line that is being
+;;; typed is shown by the interactor. So history, Tab, control C, the debugger and questions are
+;;; what they are at the terminal.
 
-(defclass line-stream (fundamental-character-input-stream)
-  ((lock :initform (make-lock "lines") :reader stream-lock)
-   (ready :initform (make-semaphore "line") :reader stream-ready)
-   ;; Lines not read yet, oldest first, and what is left of the one that is being read.
-   (lines :initform '() :accessor stream-lines)
-   (rest :initform "" :accessor stream-rest)
-   (over-p :initform nil :accessor stream-over-p))
-  (:documentation "An input stream of the lines given to FEED; reading waits for them."))
+(defclass window-console (ars-magna.cli:console)
+  ((transcript :initarg :transcript :reader console-transcript)
+   ;; The last line that was entered.
+   (entered :initform "" :accessor console-entered))
+  (:documentation "A console that writes to a transcript; something else shows the line that is
+being typed."))
 
-(defun feed (stream line)
-  "Let whoever reads STREAM read LINE, a string; NIL ends the stream."
-  (with-lock ((stream-lock stream))
-    (if line
-        (setf (stream-lines stream) (append (stream-lines stream) (list line)))
-        (setf (stream-over-p stream) t)))
-  (signal-semaphore (stream-ready stream)))
+(defun make-window-console (transcript size)
+  "Return a console on TRANSCRIPT. SIZE is a function that returns for how many columns and rows
+there is room."
+  (make-instance 'window-console :transcript transcript :window size
+                                 :stream (make-instance 'transcript-stream
+                                                        :transcript transcript)))
 
-(defun await-line (stream)
-  "Return the next line given to STREAM, or NIL if it is over."
-  (loop
-    (with-lock ((stream-lock stream))
-      (cond ((stream-lines stream) (return (pop (stream-lines stream))))
-            ((stream-over-p stream) (return nil))))
-    (wait-on-semaphore (stream-ready stream))))
+(defun tell-news (console)
+  (funcall (transcript-news (console-transcript console))))
 
-(defmethod stream-read-line ((stream line-stream))
-  (let ((rest (shiftf (stream-rest stream) "")))
-    (if (string= rest "")
-        (let ((line (await-line stream)))
-          (values (or line "") (null line)))
-        (values (string-right-trim '(#\Newline) rest) nil))))
+(defmethod ars-magna.cli:wipe ((console window-console) stream)
+  (declare (ignore stream))
+  (let* ((line (ars-magna.cli:console-line console))
+         (shown (and line (shiftf (ars-magna.cli:drawn-line-shown line) '()))))
+    ;; What was written last may have become what stands before the line.
+    (when (and shown (string/= "" (first shown)))
+      (unsay (console-transcript console) (first shown)))))
 
-(defmethod stream-read-char ((stream line-stream))
-  (when (string= (stream-rest stream) "")
-    (let ((line (await-line stream)))
-      (when line (setf (stream-rest stream) (format nil "~A~%" line)))))
-  (let ((rest (stream-rest stream)))
-    (cond ((string= rest "") :eof)
-          (t (setf (stream-rest stream) (subseq rest 1))
-             (char rest 0)))))
+(defmethod ars-magna.cli:draw ((console window-console) stream)
+  (declare (ignore stream))
+  (let ((line (ars-magna.cli:console-line console)))
+    (when (and line (null (ars-magna.cli:drawn-line-shown line)))
+      (setf (ars-magna.cli:drawn-line-shown line)
+            (list (ars-magna.cli:drawn-line-label line) (ars-magna.cli:drawn-line-text line)
+                  (ars-magna.cli:drawn-line-point line)))
+      (tell-news console))))
 
-(defmethod stream-unread-char ((stream line-stream) char)
-  (setf (stream-rest stream) (concatenate 'string (string char) (stream-rest stream)))
-  nil)
+(defmethod ars-magna.cli:leave-line ((console window-console) stream)
+  (let ((line (ars-magna.cli:console-line console)))
+    (setf (console-entered console) (ars-magna.cli:drawn-line-text line))
+    (fresh-line stream)
+    (format stream "~A~A~%" (ars-magna.cli:drawn-line-label line)
+            (ars-magna.cli:drawn-line-text line))))
+
+(defmethod ars-magna.cli:clear-screen ((console window-console) stream)
+  (declare (ignore stream))
+  (empty-transcript (console-transcript console)))
 
 ;;; A prompt at work.
 
-(defstruct (conversation (:constructor make-conversation (input output over)) (:copier nil))
+(defstruct (conversation (:constructor make-conversation (session console over)) (:copier nil))
   "The prompt of a window. OVER is called, with no arguments, when its user has left it."
-  (input nil :type line-stream :read-only t)
-  (output nil :type stream :read-only t)
+  (session nil :read-only t)
+  (console nil :type window-console :read-only t)
   (over nil :type function :read-only t)
   (thread nil))
 
-(defun begin-conversation (transcript over)
-  "Return a prompt that writes to TRANSCRIPT; OVER is called when its user leaves it."
-  (make-conversation (make-instance 'line-stream)
-                     (make-instance 'transcript-stream :transcript transcript)
-                     over))
+(defun begin-conversation (transcript size place over)
+  "Return a prompt that writes to TRANSCRIPT, which has room for as many columns and rows as SIZE
+returns. PLACE is called before each line; OVER when its user leaves it."
+  (let ((console (make-window-console transcript size)))
+    (make-conversation (ars-magna.cli:make-session
+                        :input (ars-magna.cli:make-handed-text console) :output console
+                        :color :always :place place)
+                       console over)))
 
-(defun converse (conversation)
-  (let ((output (conversation-output conversation)))
-    (let ((*standard-output* output))
-      (ars-magna.cli:run-session
-       (ars-magna.cli:make-session :input (conversation-input conversation) :output output
-                                   :echo t)))
-    (funcall (conversation-over conversation))))
+(defun converse (conversation simulation robot-name)
+  (ars-magna.cli:run-session-apart (conversation-session conversation) simulation robot-name)
+  (funcall (conversation-over conversation)))
+
+(defun start-conversation (conversation simulation robot-name)
+  "Let the prompt begin, to command the robot ROBOT-NAME of SIMULATION."
+  (setf (conversation-thread conversation)
+        (start-thread (lambda () (converse conversation simulation robot-name))
+                      (format nil "prompt of ~A's window" robot-name))))
 
 (defun give-line (conversation line)
-  "Let the prompt do what LINE, a string, says."
-  (unless (conversation-thread conversation)
-    (setf (conversation-thread conversation)
-          (start-thread (lambda () (converse conversation)) "prompt of a window")))
-  (feed (conversation-input conversation) line))
+  "Let the prompt do what LINE, a string, says, as if it had been typed; what is being typed stays."
+  (ars-magna.cli:enter-line (conversation-session conversation) line))
+
+(defun give-key (conversation key)
+  "Let the prompt have KEY, as in cli/editing/keys.lisp."
+  (ars-magna.cli:press-key (ars-magna.cli:session-input (conversation-session conversation)) key))
+
+(defun begin-line-with (conversation text)
+  "Let TEXT stand where the user types, who is to add what it lacks."
+  (mapc (lambda (key) (give-key conversation key))
+        (list :control-e :control-u text)))
+
+(defun interrupt-conversation (conversation)
+  "End the line that is under way, or clear the one that is being typed."
+  (ars-magna.cli:interrupt-session (conversation-session conversation)))
+
+(defun busy-with (conversation)
+  "Return the line that is under way, or NIL if the prompt waits for one."
+  (and (conversation-thread conversation)
+       (ars-magna.cli:at-work-on (conversation-session conversation))
+       (console-entered (conversation-console conversation))))
 
 (defun end-conversation (conversation)
-  "Let the prompt end after the line that it is at work on. Return nothing."
-  (feed (conversation-input conversation) nil)
+  "Let the prompt end, whatever it is at. Return nothing."
+  (ars-magna.cli:end-session (conversation-session conversation))
   (values))

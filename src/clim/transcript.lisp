@@ -2,9 +2,12 @@
 
 (in-package :ars-magna.clim)
 
-;;; Any thread may say something; lines are kept newest first, the last few hundred of them.
+;;; Any thread may say something; lines are kept newest first, the last few thousand of them. Each
+;;; has a number, counted from the first there was. Lines have colours in them as at a terminal.
 
-(define-constant +transcript-length+ 500 :documentation "How many lines of a transcript are kept.")
+(define-constant +transcript-length+ 2000 :documentation "How many lines of a transcript are kept.")
+(define-constant +longest-line+ 4000
+  :documentation "How many characters a line has at most; what goes on is another.")
 
 (defstruct (transcript (:constructor make-transcript (news)) (:copier nil))
   "Lines of text, newest first. NEWS is called, with no arguments, when there is more."
@@ -12,19 +15,36 @@
   (lock (make-lock "transcript") :read-only t)
   (lines (list "") :type list)
   (count 1 :type fixnum)
-  ;; How many lines there have ever been, to know whether there are new ones.
+  ;; The number of the newest line.
+  (newest 0 :type fixnum)
+  ;; How often something has been said, to know whether there is more.
   (total 0 :type fixnum))
+
+(defun begin-line-of (transcript)
+  (push "" (transcript-lines transcript))
+  (incf (transcript-count transcript))
+  (incf (transcript-newest transcript)))
+
+(defun extend-line (transcript text)
+  (when (< +longest-line+ (length (first (transcript-lines transcript))))
+    (begin-line-of transcript))
+  (setf (first (transcript-lines transcript))
+        (concatenate 'string (first (transcript-lines transcript)) text)))
+
+(defun add-part (transcript part)
+  "Add PART, of a line, to the last line of TRANSCRIPT; a return goes back to its beginning, as
+where something is counted."
+  (let ((return (position #\Return part :from-end t)))
+    (when return (setf (first (transcript-lines transcript)) ""))
+    (extend-line transcript (subseq part (if return (1+ return) 0)))))
 
 (defun add-text (transcript text)
   "Add TEXT, which may consist of several lines, to TRANSCRIPT."
   (loop for start = 0 then (1+ end)
         for end = (position #\Newline text :start start)
-        do (setf (first (transcript-lines transcript))
-                 (concatenate 'string (first (transcript-lines transcript))
-                              (subseq text start end)))
+        do (add-part transcript (subseq text start end))
         while end
-        do (push "" (transcript-lines transcript))
-           (incf (transcript-count transcript))))
+        do (begin-line-of transcript)))
 
 (defun forget-lines (transcript)
   (when (> (transcript-count transcript) (* 2 +transcript-length+))
@@ -32,19 +52,64 @@
           (subseq (transcript-lines transcript) 0 +transcript-length+)
           (transcript-count transcript) +transcript-length+)))
 
-(defun say (transcript text)
-  "Add TEXT to TRANSCRIPT."
+(defun call-changing-transcript (transcript function)
+  "Call FUNCTION, which changes TRANSCRIPT, and tell of that."
   (with-lock ((transcript-lock transcript))
-    (add-text transcript text)
+    (funcall function)
     (incf (transcript-total transcript))
     (forget-lines transcript))
   (funcall (transcript-news transcript)))
+
+(defun say (transcript text)
+  "Add TEXT to TRANSCRIPT."
+  (call-changing-transcript transcript (lambda () (add-text transcript text))))
+
+(defun unsay (transcript text)
+  "Take TEXT back, if it is all there is of the last line of TRANSCRIPT."
+  (call-changing-transcript
+   transcript
+   (lambda ()
+     (when (string= text (first (transcript-lines transcript)))
+       (setf (first (transcript-lines transcript)) "")))))
+
+(defun empty-transcript (transcript)
+  (call-changing-transcript
+   transcript
+   (lambda ()
+     (incf (transcript-newest transcript))
+     (setf (transcript-lines transcript) (list "")
+           (transcript-count transcript) 1))))
 
 (defun latest-lines (transcript count &optional (skip 0))
   "Return a list of the last COUNT lines of TRANSCRIPT, oldest first, but for the last SKIP."
   (with-lock ((transcript-lock transcript))
     (let ((lines (nthcdr skip (transcript-lines transcript))))
       (reverse (subseq lines 0 (min count (length lines)))))))
+
+(defun numbered-lines (transcript count &optional last)
+  "Return at most COUNT lines of TRANSCRIPT up to the one numbered LAST, by default the newest,
+which comes first; each as a list of its number and its text."
+  (with-lock ((transcript-lock transcript))
+    (let* ((newest (transcript-newest transcript))
+           (skip (if last (max 0 (- newest last)) 0)))
+      (loop for line in (nthcdr skip (transcript-lines transcript))
+            for number downfrom (- newest skip)
+            repeat count
+            collect (list number line)))))
+
+(defun text-between (transcript from to)
+  "Return what is said in TRANSCRIPT between the places FROM and TO, each a list of the number of a
+line and a column, without colours."
+  (with-output-to-string (out)
+    (loop for ((number text) . more) on (reverse (numbered-lines transcript (transcript-count
+                                                                             transcript)
+                                                                 (first to)))
+          for plain = (ars-magna.cli:unpainted-text text)
+          for start = (if (= number (first from)) (min (second from) (length plain)) 0)
+          for end = (and (= number (first to)) (min (second to) (length plain)))
+          when (<= (first from) number)
+            do (write-string plain out :start start :end end)
+               (when more (terpri out)))))
 
 ;;; As a stream.
 
@@ -62,34 +127,3 @@
 
 (defmethod stream-line-column ((stream transcript-stream))
   (length (first (latest-lines (stream-transcript stream) 1))))
-
-;;; Its pane: the bottom of the text is in view, unless the user has scrolled up.
-
-(defclass transcript-pane (display-pane) ())
-
-(defun pane-transcript (pane) (window-transcript (window-of pane)))
-
-(defmethod pane-content ((pane transcript-pane))
-  (list (pane-offset pane) (transcript-total (pane-transcript pane))))
-
-(defmethod paint ((pane transcript-pane))
-  (let ((canvas (make-instance 'clim-canvas :medium pane)))
-    (clear pane)
-    (multiple-value-bind (width height) (pane-size pane)
-      (let ((rows (floor (- height 4) +line-height+))
-            (columns (max 1 (floor width +character-width+))))
-        (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))
-          (with-canvas (canvas)
-            (loop for line in (latest-lines (pane-transcript pane) rows (pane-offset pane))
-                  for y from 14 by +line-height+
-                  do (draw-glyphs canvas draw-gcontext* 4 y
-                                  (subseq line 0 (min columns (length line)))))))))))
-
-(defmethod click ((pane transcript-pane) button x y)
-  (declare (ignore button x y)))
-
-(defmethod wheel ((pane transcript-pane) steps x y)
-  (declare (ignore x y))
-  (let ((length (transcript-count (pane-transcript pane))))
-    (setf (pane-offset pane) (clamp (- (pane-offset pane) (* 3 steps)) 0 (max 0 (1- length))))
-    (repaint-if-changed pane)))

@@ -14,11 +14,16 @@
 (define-constant +patience+ 0.5
   :documentation "How often to look for changes between ticks, in seconds.")
 
-(defstruct (watcher (:constructor make-watcher (robot news)) (:copier nil))
+(defstruct (watcher (:constructor make-watcher (robot news &optional (gone #'values)))
+                    (:copier nil))
   "ROBOT is the name of the robot that is watched. NEWS is called, with no arguments and in some
-thread, for each new snapshot; it must be quick."
-  (robot nil :type symbol :read-only t)
+thread, for each new snapshot; it must be quick. GONE is called, with the reason, when the run that
+is watched has been over for a while."
+  (robot nil :type symbol)
   (news nil :type function :read-only t)
+  (gone nil :type function :read-only t)
+  ;; The run was over when somebody looked last.
+  (over-before-p nil)
   (simulation nil)
   (observer nil)
   (snapshot nil)
@@ -34,7 +39,7 @@ thread, for each new snapshot; it must be quick."
       (documentation 'watcher-snapshot 'function) "Return the last snapshot, or NIL."
       (documentation 'make-watcher 'function)
       "Return a watcher of the robot called ROBOT that calls NEWS, a function of no arguments, for
-each new snapshot.")
+each new snapshot, and GONE, of a string, when what it watches is over, and why.")
 
 (defun traces-of-change (simulation)
   "Return a number that changes whenever a program changes SIMULATION between ticks."
@@ -80,13 +85,23 @@ itself: it will come with the next tick."
       (setf (watcher-wanted-p watcher) t)
       (fetch watcher))))
 
+;; What is started anew is over for a moment.
+(defun look-whether-over (watcher)
+  "Tell of it if the run that WATCHER watches is over, and was so when it was looked for before."
+  (let* ((simulation (watcher-simulation watcher))
+         (reason (and simulation (simulation-over simulation))))
+    (when (and reason (watcher-over-before-p watcher))
+      (funcall (watcher-gone watcher) reason))
+    (setf (watcher-over-before-p watcher) (and reason t))))
+
 (defun run-pacer (watcher)
   (loop until (watcher-over-p watcher)
         do (cond ((wait-on-semaphore (watcher-painted watcher) +patience+)
                   (wait-on-semaphore (watcher-over watcher) +pause+)
                   (setf (watcher-wanted-p watcher) t)
                   (when (watcher-stale-p watcher) (fetch watcher)))
-                 (t (fetch-if-changed watcher)))))
+                 (t (fetch-if-changed watcher)
+                    (look-whether-over watcher)))))
 
 ;;; Beginning and ending.
 

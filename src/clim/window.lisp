@@ -7,7 +7,7 @@
 ;;; window happens in its own thread.
 
 (defparameter *help-line*
-  "Type a command here and press return, or choose one from a menu. HELP lists all commands.")
+  "Type a command below and press return, or choose one from a menu. HELP lists all commands.")
 
 (defun make-detail-pane (class name display height)
   (clim:make-pane class :name name :display display :width 340 :min-width 120
@@ -27,6 +27,8 @@
    (color-p :initarg :color-p :initform t :accessor window-color-p)
    (transcript :initform nil :accessor window-transcript)
    (conversation :initform nil :accessor window-conversation)
+   ;; For how many columns and rows its transcript has room.
+   (text-size :initform '(80 24) :accessor window-text-size)
    ;; Its car is true while an event is queued.
    (queued :initform (list nil) :reader window-queued)
    (painted :initform nil :accessor window-painted)
@@ -44,7 +46,9 @@
    (transcript (clim:make-pane 'transcript-pane :name 'transcript :display :transcript
                                                 :width 680 :height 120 :min-height 40
                                                 :max-height 400))
-   (interactor :text-field :ncolumns 80 :activate-callback 'take-line))
+   (interactor (clim:make-pane 'interactor-pane :name 'interactor :display :interactor
+                                                :width 680 :height 36 :min-height 36
+                                                :max-height 36)))
   (:layouts
    (default
     (clim:vertically ()
@@ -57,9 +61,7 @@
                  (titled "Hands" hands)
                  (titled "Storage bins" bins))))
       (titled "Commands" transcript)
-      (clim:horizontally ()
-        (clim:make-pane 'clim:label-pane :label " Robot> " :max-width 64)
-        (:fill (clim:outlining (:thickness 1) interactor))))))
+      (clim:outlining (:thickness 1) interactor))))
   (:documentation "The displays of a robot in a window."))
 
 (setf (documentation 'window-layers 'function)
@@ -67,15 +69,20 @@
       (documentation 'window-watcher 'function)
       "Return the watcher that supplies the window's snapshots.")
 
+(defun window-title (robot-name)
+  (format nil "ARS MAGNA: ~A" robot-name))
+
 (defun make-robot-window (watcher &rest options)
   "Return a window, not shown yet, for the robot of WATCHER. OPTIONS are CLIM's for frames, and
 :layers and :color-p."
   (let ((window (apply #'clim:make-application-frame 'robot-window
-                       :pretty-name (format nil "ARS MAGNA: ~A" (watcher-robot watcher))
+                       :pretty-name (window-title (watcher-robot watcher))
                        :watcher watcher options)))
     (setf (window-transcript window) (make-transcript (lambda () (request-refresh window)))
           (window-conversation window)
           (begin-conversation (window-transcript window)
+                              (lambda () (values-list (window-text-size window)))
+                              (lambda () (agree-on-robot window))
                               (lambda () (close-window window))))
     (say (window-transcript window) (format nil "~A~%" *help-line*))
     window))
@@ -98,7 +105,7 @@
 (defun display-panes (window)
   "Return a list of the panes of WINDOW that show something."
   (remove nil (mapcar (lambda (name) (pane-named window name))
-                      '(world state designators cameras hands bins transcript))))
+                      '(world state designators cameras hands bins transcript interactor))))
 
 ;;; Keeping up to date.
 
@@ -127,13 +134,6 @@
     (refresh window)))
 
 ;;; What the user types and points at.
-
-(defun take-line (gadget)
-  "Let the prompt have the line in the text field GADGET."
-  (let ((window (clim:pane-frame gadget)) (line (clim:gadget-value gadget)))
-    (unless (string= line "")
-      (setf (clim:gadget-value gadget) "")
-      (give-line (window-conversation window) line))))
 
 (defun describe-to (window subject)
   "Say in WINDOW what SUBJECT is, if it is anything."

@@ -5,14 +5,17 @@
 (defvar *display-opener* nil
   "A function of a robot that opens its display in a window, or NIL if nothing that can is loaded.")
 
+(defvar *displays-waiter* nil
+  "A function that waits until all windows are closed, or NIL if nothing that opens any is loaded.")
+
 (addition open-display)
 (defun open-display (robot)
   "Show ROBOT and its world in a window that follows what happens there (manual B). Return ROBOT.
 Signals MISUSE where no window is to be had: see ars-magna/clim."
   (check-argument open-display robot (robot-p robot) "a robot")
   (unless *display-opener*
-    (reject-use "No display: it needs McCLIM and the system ars-magna/clim. ~
-                 See also PICTURE and MAP."))
+    (reject-use "No display: it needs McCLIM, and the system ars-magna/clim to be loaded. The line ~
+                 WINDOW at the prompt does that. See also PICTURE and MAP."))
   (funcall *display-opener* robot)
   robot)
 

@@ -32,4 +32,4 @@
   (:export #:picture-kind #:save-svg #:save-picture #:save-snapshot #:svg-picture #:save-animation
            #:save-way-picture)
   ;; opening
-  (:export #:open-display #:*display-opener* #:announce-display))
+  (:export #:open-display #:*display-opener* #:*displays-waiter* #:announce-display))

@@ -69,6 +69,10 @@ part of one. A timeline is its own. Signals WRONG-ARGUMENT for what has none.")
   "The simulation that code runs for: the one of WITH-SIMULATION, of the thread, or the one last
 given to SIMULATOR.")
 
+(defun run-that-reports () *simulation*)
+
+(setf *run-that-reports* 'run-that-reports)
+
 (addition current-simulation)
 (defun current-simulation ()
   "Return *SIMULATION*. Signals MISUSE when there is none."

@@ -1,0 +1,146 @@
+;;;; sessions.lisp -- several prompts at once: that of the terminal, and one in each window.
+
+(in-package :ars-magna.cli)
+
+;;; Each has a thread, a robot and a current simulation of its own. What a simulation has to say is
+;;; shown by all that listen to it, and each of them can answer what breaks in its thread.
+
+(defvar *sessions* '() "The sessions at work, the newest first.")
+(defvar *sessions-lock* (make-lock "sessions"))
+
+(defun call-among-sessions (session function)
+  "Call FUNCTION, while SESSION is at work."
+  (with-lock (*sessions-lock*) (push session *sessions*))
+  (unwind-protect (funcall function)
+    (with-lock (*sessions-lock*) (removef *sessions* session))))
+
+(defun hears-p (session simulation)
+  "True if SESSION listens to SIMULATION, or to what it was before it was rewound."
+  (let ((heard (session-simulation session)))
+    (and heard (eq (latest heard) (latest simulation)))))
+
+(defun sessions-hearing (simulation)
+  "Return the sessions at work that listen to SIMULATION."
+  (and simulation
+       (remove-if-not (lambda (session) (hears-p session simulation))
+                      (with-lock (*sessions-lock*) *sessions*))))
+
+(defun hearers (message session)
+  "Return the sessions that are to show MESSAGE, which SESSION has taken: those that listen to its
+run, or if nobody does, SESSION."
+  (or (sessions-hearing (or (message-run message) (session-simulation session)))
+      (list session)))
+
+(defun tell-hearers (session messages)
+  "Show MESSAGES, which SESSION has taken, in those sessions that they are for."
+  (let ((hearers (mapcar (lambda (message) (hearers message session)) messages)))
+    (dolist (hearer (remove-duplicates (cons session (apply #'append hearers))))
+      (tell-messages hearer (loop for message in messages
+                                  for those in hearers
+                                  when (member hearer those) collect message)))))
+
+;;; What users' programs print in a simulator's thread, as continuations do, goes to the terminal,
+;;; and to the windows of that simulation.
+
+(defun session-of-thread ()
+  (find (current-thread) (with-lock (*sessions-lock*) *sessions*) :key #'session-thread))
+
+(defun consoles-beside (console)
+  "Return the other consoles that show what this thread writes to CONSOLE."
+  (when (and *simulation* (rest *sessions*) (not (session-of-thread)))
+    (remove console (mapcar #'session-console (sessions-hearing *simulation*)))))
+
+(setf *mirrors* 'consoles-beside)
+
+;;; Who answers what breaks.
+
+(defun sessions-to-ask ()
+  "Return the sessions whose users can say how what has broken in this thread is to go on: the one
+of this thread, or all that listen to its simulation, or the newest."
+  (let ((own *session*))
+    (cond ((and own (eq (session-thread own) (current-thread))) (list own))
+          ((remove-if-not #'terminal-p (sessions-hearing *simulation*)))
+          ((and own (terminal-p own)) (list own)))))
+
+(defvar *answering* (list 0 nil)
+  "How many sessions there are beside the terminal's, and the debugger's hook before the first.")
+
+(defun begin-answering ()
+  "Let what breaks in any thread ask one of the sessions, if nobody else is there to be asked."
+  (with-lock (*sessions-lock*)
+    (let ((hook (common-debugger-hook)))
+      (when (and (= 1 (incf (first *answering*)))
+                 (or (null hook) (disabled-p hook)))
+        (setf (second *answering*) (list hook)
+              (common-debugger-hook) 'enter-debugger)))))
+
+(defun end-answering ()
+  (with-lock (*sessions-lock*)
+    (when (zerop (decf (first *answering*)))
+      (let ((before (shiftf (second *answering*) nil)))
+        (when before (setf (common-debugger-hook) (first before)))))))
+
+(defun call-answering (function)
+  (begin-answering)
+  (unwind-protect (funcall function)
+    (end-answering)))
+
+;;; A session beside others.
+
+(defun go-to-run (simulation)
+  "Let SIMULATION be the current one in this thread."
+  (setf *simulation* simulation
+        *world* (simulation-world simulation)))
+
+(defun call-apart (simulation robot-name function)
+  "Call FUNCTION, in whose thread a prompt commands the robot ROBOT-NAME of SIMULATION, whatever
+others do."
+  (let ((*session* nil)
+        (*prompt-robot* robot-name)
+        (*simulation* simulation)
+        (*world* (simulation-world simulation))
+        (*message-queue* (simulation-messages simulation))
+        (*forks-to-keep* t))
+    (with-debugger-hook ((debugger-hook))
+      (handler-case (call-answering function)
+        ;; One that has come before the session was ready for it, or after.
+        (user-interrupt () nil)))))
+
+(defun run-session-apart (session simulation robot-name)
+  "Read lines of SESSION and do what they say to the robot ROBOT-NAME of SIMULATION, in this thread,
+beside other sessions, until QUIT or the end of its input. Return SESSION."
+  (call-apart simulation robot-name
+              (lambda ()
+                (call-typing (lambda () (run-session session)) (session-input session))))
+  session)
+
+;;; What those do to it who do not type.
+
+(defun heed-in-session ()
+  "Let the session of this thread end the line that is under way, if there is one."
+  (when *session* (heed-interrupt)))
+
+(defun interrupt-session (session)
+  "Do what control C does in SESSION, from another thread: clear the line that is typed, or end the
+one that is under way."
+  (cond ((being-typed-p (session-input session)) (press-key (session-input session) :control-c))
+        ((session-thread session)
+         (interrupt-thread (session-thread session) #'heed-in-session)))
+  (values))
+
+(defun end-session (session)
+  "Let SESSION be over, from another thread. A line that is under way is interrupted; one that is
+being typed, or has been typed ahead, is not carried out."
+  (setf (session-over-p session) t)
+  (interrupt-session session)
+  (end-keys (session-input session)))
+
+(defun enter-line (session text)
+  "Let TEXT be a line that was entered in SESSION; what is being typed there stays."
+  (press-key (session-input session) (list :entry text)))
+
+(defun at-work-on (session)
+  "True if a line is under way in SESSION: none is being typed."
+  (and (session-thread session)
+       (not (session-over-p session))
+       (not (being-typed-p (session-input session)))))

@@ -1,0 +1,64 @@
+;;;; window-system.lisp -- getting the system that opens windows, where McCLIM is to be had.
+
+(in-package :ars-magna.cli)
+
+;;; Neither this program nor its tests need McCLIM. It is found by ASDF, or through a Quicklisp that
+;;; is installed. The program's own second core, for --window, has it already; the first one, and a
+;;; Lisp of the user's, load it when somebody wants a window.
+
+(defun configure-asdf ()
+  "In this program, let ASDF find the project, and what has been compiled of it."
+  (when (find-package :ars-magna.build)
+    (uiop:symbol-call :ars-magna.build :configure)))
+
+(defun known-system-p (name)
+  (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream)))
+    (and (ignore-errors (asdf:find-system name nil)) t)))
+
+(defun quicklisp-file ()
+  "Return the file that makes Quicklisp known, where the user has installed it, or NIL."
+  (probe-file (merge-pathnames "quicklisp/setup.lisp" (user-homedir-pathname))))
+
+(defun window-loader ()
+  "Return a function that loads the system of windows, or NIL if there is no McCLIM to be had."
+  (cond ((known-system-p "mcclim/looks")
+         (lambda () (asdf:load-system "ars-magna/clim")))
+        ((or (find-package :quicklisp) (quicklisp-file))
+         (lambda ()
+           (unless (find-package :quicklisp) (load (quicklisp-file)))
+           (uiop:symbol-call :quicklisp :quickload "mcclim/looks")
+           (asdf:load-system "ars-magna/clim")))))
+
+(defun call-as-in-bare-lisp (function)
+  "Call FUNCTION, which compiles and loads libraries, in Lisp's own syntax. What the compiler says
+is of no interest."
+  (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream))
+        (*package* (find-package :cl-user))
+        (*readtable* (copy-readtable nil))
+        (*read-default-float-format* 'single-float))
+    (handler-bind ((warning #'muffle-warning)) (funcall function))))
+
+(defun load-windows (loader)
+  (handler-case (call-as-in-bare-lisp loader)
+    (error (condition)
+      (reject-line "McCLIM is there, but cannot be loaded: ~A"
+                   (one-line (condition-text condition))))))
+
+(defun display-named-p ()
+  "True if the environment names an X server."
+  (not (member (environment-value "DISPLAY") '(nil "") :test #'equal)))
+
+(defun ensure-windows ()
+  "Let there be something that opens windows. Signals BAD-LINE if there is no X server or McCLIM."
+  (unless *display-opener*
+    (unless (display-named-p)
+      (reject-line "No display: the environment variable DISPLAY names no X server. MAP draws the ~
+                    world here, PICTURE in a file."))
+    (configure-asdf)
+    (let ((loader (window-loader)))
+      (unless loader
+        (write-string (text-called "usage-window.txt"))
+        (reject-line "No window: McCLIM is not installed; what is to be done stands above."))
+      (format t "Loading what windows need; the first time that takes some minutes.~%")
+      (finish-output)
+      (load-windows loader))))

@@ -1,0 +1,166 @@
+;;;; interactor.lisp -- where one types: the line that is being typed, and keys that are pressed.
+
+(in-package :ars-magna.clim)
+
+;;; The line is edited by the prompt (cli/editing); here it is only shown. While a line is under
+;;; way there is none: then that is said. What is typed meanwhile is read after it.
+
+(defclass interactor-pane (display-pane) ()
+  (:documentation "A pane that shows the line that is being typed, and takes keys."))
+
+(defun pane-conversation (pane) (window-conversation (window-of pane)))
+
+(defun line-shown (pane)
+  "Return label, text and point of the line that is being typed, or NIL."
+  (let ((line (ars-magna.cli:console-line
+               (conversation-console (pane-conversation pane)))))
+    (and line (ars-magna.cli:drawn-line-shown line))))
+
+(defun focused-p (pane)
+  (eq pane (clim:port-keyboard-input-focus (clim:port pane))))
+
+(defmethod pane-content ((pane interactor-pane))
+  (list (line-shown pane) (busy-with (pane-conversation pane)) (focused-p pane)))
+
+(defun busy-text (line)
+  (format nil "At work on ~A -- control-C, or Interrupt in the menu Run, ends it."
+          (if (< 40 (length line)) (format nil "~A..." (subseq line 0 37)) line)))
+
+(defun paint-cursor (canvas row column focused-p)
+  "Paint the cursor at ROW and COLUMN: hollow where keys go elsewhere."
+  (draw-rectangle canvas draw-gcontext* (column-x column) (+ 2 (* row +line-height+))
+                  (if focused-p 2 (1- +character-width+)) (- +line-height+ 2) focused-p))
+
+(defun paint-line (canvas pane label text point)
+  "Paint what is being typed, TEXT, with LABEL before it and the cursor at POINT."
+  (multiple-value-bind (columns height) (columns-and-rows pane)
+    (multiple-value-bind (rows row column)
+        (ars-magna.cli:rows-to-show (ars-magna.cli:unpainted-text label) text point
+                                    columns height)
+      (loop for (string) in rows
+            for y from 14 by +line-height+
+            do (paint-words canvas string 0 y nil))
+      (paint-cursor canvas row column (focused-p pane)))))
+
+(defmethod paint ((pane interactor-pane))
+  (let ((canvas (make-instance 'clim-canvas :medium pane))
+        (shown (line-shown pane))
+        (busy (busy-with (pane-conversation pane))))
+    (clear pane)
+    (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))
+      (with-canvas (canvas)
+        (cond (shown (apply #'paint-line canvas pane shown))
+              (busy (paint-words canvas (busy-text busy) 0 14 :red)))))))
+
+;;; Keys.
+
+(defparameter *keys-by-name*
+  '((:return :return) (:kp-enter :return) (:tab :tab) (:backspace :rubout) (:delete :delete)
+    (:rubout :delete) (:up :up) (:down :down) (:left :left) (:right :right)
+    (:home :home) (:end :end))
+  "Lists (name key): what CLIM calls a key, and what the prompt's editor does.")
+
+(defun pressed-with-p (event modifier)
+  (logtest modifier (clim:event-modifier-state event)))
+
+(defun named-key (name control-p meta-p)
+  "Return the key that CLIM calls NAME, perhaps with control or meta, or NIL."
+  (let ((key (second (assoc name *keys-by-name*))))
+    (case key
+      (:left (if (or control-p meta-p) :meta-b key))
+      (:right (if (or control-p meta-p) :meta-f key))
+      (:rubout (if (or control-p meta-p) :meta-rubout key))
+      (t key))))
+
+(defun key-with (prefix char)
+  (make-keyword (format nil "~A-~:@(~C~)" prefix char)))
+
+(defun key-of (event)
+  "Return the key of EVENT as the prompt's editor calls it, or NIL."
+  (let ((char (clim:keyboard-event-character event))
+        (control-p (pressed-with-p event clim:+control-key+))
+        (meta-p (pressed-with-p event clim:+meta-key+)))
+    (cond ((named-key (clim:keyboard-event-key-name event) control-p meta-p))
+          ((or (null char) (not (graphic-char-p char))) nil)
+          (control-p (and (alpha-char-p char) (key-with "CONTROL" char)))
+          (meta-p (key-with "META" char))
+          (t (string char)))))
+
+;;; Copy and paste, and looking back, are the window's own.
+
+(defun copy-text (window)
+  "Let other programs have what is selected in the transcript of WINDOW, or else all of it."
+  (let ((pane (pane-named window 'transcript)))
+    (publish-text pane (selected-text pane) :clipboard :primary)))
+
+(defun paste-text (window selection)
+  "Let what SELECTION, :PRIMARY or :CLIPBOARD, holds be typed in WINDOW."
+  (let ((text (clime:request-selection (pane-named window 'interactor) selection 'string)))
+    (when (and (stringp text) (string/= "" text))
+      (give-key (window-conversation window) (list :paste text)))))
+
+(defun own-action (event)
+  "Return a function of a window that EVENT stands for, or NIL."
+  (let ((name (clim:keyboard-event-key-name event))
+        (shift-p (pressed-with-p event clim:+shift-key+))
+        (control-p (pressed-with-p event clim:+control-key+)))
+    (flet ((is-p (char) (eql char (let ((char (clim:keyboard-event-character event)))
+                                    (and char (char-downcase char))))))
+      (cond ((and control-p shift-p (is-p #\c)) #'copy-text)
+            ((or (and control-p shift-p (is-p #\v)) (and shift-p (eq name :insert)))
+             (lambda (window) (paste-text window :clipboard)))
+            ((eq name :prior) (lambda (window) (scroll-page (pane-named window 'transcript) -1)))
+            ((eq name :next) (lambda (window) (scroll-page (pane-named window 'transcript) 1)))))))
+
+(defun take-key (window key)
+  "Let the prompt of WINDOW have KEY. Control C ends what is under way, too."
+  (if (eq key :control-c)
+      (interrupt-conversation (window-conversation window))
+      (give-key (window-conversation window) key)))
+
+(defun press-in-window (window event)
+  "Do what the key of EVENT does where one types. True if it does anything."
+  (let ((action (own-action event)) (key (key-of event)))
+    (cond (action (funcall action window) t)
+          (key (take-key window key) t))))
+
+(defmethod clim:handle-event ((pane interactor-pane) (event clim:key-press-event))
+  (with-guarded-command ((window-of pane) "That key")
+    (press-in-window (window-of pane) event)))
+
+;;; CLIM has one place for the keys of all windows; they are to go to the window that has them.
+
+(defun robot-window-of (sheet)
+  "Return the robot's window that SHEET belongs to, or NIL."
+  (let ((frame (and (typep sheet '(or clim:pane clime:top-level-sheet-mixin))
+                    (clim:pane-frame sheet))))
+    (and (typep frame 'robot-window) frame)))
+
+(defmethod clim:distribute-event :before ((port clim:basic-port) (event clim:keyboard-event))
+  (let ((window (robot-window-of (clim:event-sheet event)))
+        (before (robot-window-of (clim:port-keyboard-input-focus port))))
+    (when (and window (not (eq window before)))
+      (setf (clim:port-keyboard-input-focus port) (clim:frame-top-level-sheet window))
+      ;; The cursor says where keys go.
+      (when before (request-refresh before)))))
+
+(defun type-into (pane)
+  "Let what is typed go to PANE."
+  (setf (clim:port-keyboard-input-focus (clim:port pane)) pane)
+  (repaint-if-changed pane))
+
+(defmethod click ((pane interactor-pane) button x y)
+  (declare (ignore x y))
+  (type-into pane)
+  (when (eq button :middle)
+    (with-guarded-command ((window-of pane) "Pasting") (paste-text (window-of pane) :primary))))
+
+(defmethod wheel ((pane interactor-pane) steps x y)
+  (wheel (pane-named (window-of pane) 'transcript) steps x y))
+
+(defmethod click :after ((pane transcript-pane) button x y)
+  (declare (ignore x y))
+  (let ((window (window-of pane)))
+    (type-into (pane-named window 'interactor))
+    (when (eq button :middle)
+      (with-guarded-command (window "Pasting") (paste-text window :primary)))))

@@ -1,0 +1,204 @@
+;;;; transcript-pane.lisp -- the transcript as it is seen: broken into rows, scrolled, selected.
+
+(in-package :ars-magna.clim)
+
+;;; The end of the text is in view, unless the user has scrolled up: then what is in view stays.
+;;; Dragging selects; what is selected can be pasted by the middle button of the mouse, here and in
+;;; other programs, and copied.
+
+(defclass transcript-pane (display-pane)
+  (;; The number of the last line in view, or NIL for the newest.
+   (last :initform nil :accessor pane-last)
+   ;; The rows in view, and where the first of them is.
+   (rows :initform '() :accessor pane-rows)
+   ;; Where the selection was begun and where it ends, each a list (number column), or NIL.
+   (mark :initform nil :accessor pane-mark)
+   (point :initform nil :accessor pane-point)
+   (dragging-p :initform nil :accessor pane-dragging-p)))
+
+(defun pane-transcript (pane) (window-transcript (window-of pane)))
+
+(defmethod pane-content ((pane transcript-pane))
+  (list (pane-last pane) (pane-mark pane) (pane-point pane)
+        (transcript-total (pane-transcript pane))))
+
+;;; Rows.
+
+(defstruct (row (:constructor make-row (number start stop spans)) (:copier nil))
+  "What is in view of the line NUMBER in one row: from the column START to STOP. SPANS are those of
+the line."
+  (number 0 :type fixnum :read-only t)
+  (start 0 :type fixnum :read-only t)
+  (stop 0 :type fixnum :read-only t)
+  (spans '() :type list :read-only t))
+
+(defun row-end (text start columns)
+  "Return where a row of COLUMNS ends that begins in TEXT at START: after a blank, if there is one."
+  (let ((end (+ start columns)))
+    (if (<= (length text) end)
+        (length text)
+        (let ((blank (position #\Space text :start start :end end :from-end t)))
+          (if (and blank (< (+ start (floor columns 2)) blank)) (1+ blank) end)))))
+
+(defun rows-of-line (number line columns)
+  "Return the rows of LINE, at least one."
+  (loop with text = (ars-magna.cli:unpainted-text line)
+        with spans = (ars-magna.cli:painted-spans line)
+        for start = 0 then end
+        for end = (row-end text start columns)
+        collect (make-row number start end spans)
+        until (= end (length text))))
+
+(defun rows-in-view (pane count columns)
+  "Return the last COUNT rows of COLUMNS that PANE is to show."
+  (let ((rows '()))
+    (loop for (number line) in (numbered-lines (pane-transcript pane) count (pane-last pane))
+          while (< (length rows) count)
+          ;; The newest line is empty most of the time: something may be written there.
+          do (unless (and (null rows) (string= line ""))
+               (setf rows (append (rows-of-line number line columns) rows))))
+    (last rows count)))
+
+;;; Painting.
+
+(defparameter *ink-colors*
+  '((:red #xB00020) (:lightred #xB00020) (:green #x006400) (:lightgreen #x006400)
+    (:yellow #x7A4F00) (:lightyellow #x7A4F00) (:blue #x0000C0) (:lightblue #x0000C0)
+    (:violet #x7A00A0) (:lightviolet #x7A00A0) (:cyan #x005A70) (:lightcyan #x005A70)
+    (:grey #x606060))
+  "In which colours the transcript shows the inks of a terminal: dark ones, as it is white.")
+
+(defun color-of-ink (ink)
+  (or (second (assoc ink *ink-colors*)) black*))
+
+(define-constant +selection-color+ #xB4D5FE :documentation "What is behind selected text.")
+
+(defun column-x (column) (+ 4 (* column +character-width+)))
+
+(defun paint-words (canvas text column y ink)
+  "Paint TEXT, from COLUMN of the row at Y on, in INK."
+  (with-gcontext (draw-gcontext* :foreground (color-of-ink ink))
+    (draw-glyphs canvas draw-gcontext* (column-x column) y text)))
+
+(defun paint-row (canvas row y)
+  (loop with column = 0
+        for (text ink) in (row-spans row)
+        for start = (max column (row-start row))
+        for end = (min (+ column (length text)) (row-stop row))
+        when (< start end)
+          do (paint-words canvas (subseq text (- start column) (- end column))
+                         (- start (row-start row)) y ink)
+        do (incf column (length text))))
+
+(defun before-p (place other)
+  (or (< (first place) (first other))
+      (and (= (first place) (first other)) (< (second place) (second other)))))
+
+(defun selection (pane)
+  "Return where the selection of PANE begins and where it ends, or NIL if there is none."
+  (let ((mark (pane-mark pane)) (point (pane-point pane)))
+    (cond ((or (null mark) (null point) (equal mark point)) nil)
+          ((before-p mark point) (values mark point))
+          (t (values point mark)))))
+
+(defun selected-columns (row from to)
+  "Return from where to where ROW is selected, if what is between the places FROM and TO is."
+  (let ((number (row-number row)) (start (row-start row)) (stop (row-stop row)))
+    (values (cond ((< number (first from)) stop)
+                  ((= number (first from)) (max start (second from)))
+                  (t start))
+            (cond ((> number (first to)) start)
+                  ((= number (first to)) (min stop (second to)))
+                  (t stop)))))
+
+(defun paint-selection (canvas row y from to)
+  "Paint what is behind the part of ROW that is selected, between the places FROM and TO."
+  (multiple-value-bind (start stop) (selected-columns row from to)
+    (when (< start stop)
+      (with-gcontext (draw-gcontext* :foreground +selection-color+)
+        (draw-rectangle canvas draw-gcontext* (column-x (- start (row-start row))) (- y 12)
+                        (* (- stop start) +character-width+) +line-height+ t)))))
+
+(defun paint-rows (canvas pane)
+  (multiple-value-bind (from to) (selection pane)
+    (loop for row in (pane-rows pane)
+          for y from 14 by +line-height+
+          do (when from (paint-selection canvas row y from to))
+             (paint-row canvas row y))))
+
+(defun columns-and-rows (pane)
+  "Return for how many columns and rows of text PANE has room."
+  (multiple-value-bind (width height) (pane-size pane)
+    (values (max 10 (floor (- width 8) +character-width+))
+            (max 1 (floor (- height 4) +line-height+)))))
+
+(defmethod paint ((pane transcript-pane))
+  (let ((canvas (make-instance 'clim-canvas :medium pane)))
+    (clear pane)
+    (multiple-value-bind (columns rows) (columns-and-rows pane)
+      (setf (window-text-size (window-of pane)) (list columns rows)
+            (pane-rows pane) (rows-in-view pane rows columns)))
+    (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))
+      (with-canvas (canvas) (paint-rows canvas pane)))))
+
+;;; Scrolling.
+
+(defun scroll-lines (pane count)
+  "Show what is COUNT lines further down in PANE, but not more than there is."
+  (let* ((transcript (pane-transcript pane))
+         (newest (transcript-newest transcript))
+         (first (- newest (transcript-count transcript) -1))
+         (last (+ (or (pane-last pane) newest) count)))
+    (setf (pane-last pane) (if (<= newest last) nil (max (1+ first) last)))
+    (repaint-if-changed pane)))
+
+(defmethod wheel ((pane transcript-pane) steps x y)
+  (declare (ignore x y))
+  (scroll-lines pane (* 3 steps)))
+
+(defun scroll-page (pane direction)
+  "Show the page of PANE after the one in view, or before it if DIRECTION is -1."
+  (scroll-lines pane (* direction (max 1 (1- (nth-value 1 (columns-and-rows pane)))))))
+
+;;; Selecting.
+
+(defun place-at (pane x y)
+  "Return the place in the transcript that is shown at X, Y of PANE, or NIL."
+  (let* ((rows (pane-rows pane))
+         (row (and rows (nth (clamp (floor (- y 2) +line-height+) 0 (1- (length rows))) rows))))
+    (and row
+         (list (row-number row)
+               (clamp (+ (row-start row) (round (- x 4) +character-width+))
+                      (row-start row) (row-stop row))))))
+
+(defun selected-text (pane)
+  "Return what is selected in PANE, or all that its transcript says."
+  (let ((transcript (pane-transcript pane)))
+    (multiple-value-bind (from to) (selection pane)
+      (if from
+          (text-between transcript from to)
+          (format nil "~{~A~^~%~}"
+                  (mapcar #'ars-magna.cli:unpainted-text
+                          (latest-lines transcript (transcript-count transcript))))))))
+
+(defun publish-text (pane text &rest selections)
+  "Let other programs have TEXT, from PANE, by each of SELECTIONS, :PRIMARY or :CLIPBOARD."
+  (dolist (selection selections)
+    (clime:publish-selection pane selection text 'string)))
+
+(defmethod click ((pane transcript-pane) button x y)
+  (when (eq button :left)
+    (setf (pane-dragging-p pane) t
+          (pane-mark pane) (place-at pane x y)
+          (pane-point pane) (pane-mark pane))
+    (repaint-if-changed pane)))
+
+(defmethod clim:handle-event ((pane transcript-pane) (event clim:pointer-motion-event))
+  (when (pane-dragging-p pane)
+    (setf (pane-point pane)
+          (place-at pane (clim:pointer-event-x event) (clim:pointer-event-y event)))
+    (repaint-if-changed pane)))
+
+(defmethod clim:handle-event ((pane transcript-pane) (event clim:pointer-button-release-event))
+  (when (shiftf (pane-dragging-p pane) nil)
+    (when (selection pane) (publish-text pane (selected-text pane) :primary))))

@@ -1,0 +1,133 @@
+;;;; clim-talking.lisp -- what one types in the window, on CLIM's null port. See clim.lisp.
+
+(in-package :ars-magna.tests)
+
+(in-suite clim)
+
+(defun talk-in (window &rest lines)
+  "Let LINES be entered in WINDOW, and wait until its prompt is over; QUIT is to be the last."
+  (let ((conversation (window::window-conversation window)))
+    (window::start-conversation conversation (time:current-simulation) 'studio-robot)
+    (dolist (line lines) (window::give-line conversation line))
+    (base:join-thread (window::conversation-thread conversation))
+    (said-in window)))
+
+(test talking.lines-and-answers-are-in-the-transcript
+  (in-window (window robot)
+    (let ((said (talk-in window "(+ 20 22)" "nonsense" "quit")))
+      (dolist (part '("(+ 20 22)" "42" "*ERROR* ->" "quit"))
+        (is (mentions-p said part))))))
+
+(test talking.read-and-break-are-answered-in-the-window
+  (in-window (window robot)
+    (let ((said (talk-in window "(list (read) 2)" "one" "(progn (break \"oh\") 33)" "0" "quit")))
+      (dolist (part '("(ONE 2)" "*BREAK* -> oh" "0  continue" "33"))
+        (is (mentions-p said part))))))
+
+;;; Keys.
+
+(defun press-in (window name char &rest modifiers)
+  (let ((pane (pane window 'window::interactor)))
+    (clim:handle-event pane (make-instance 'clim:key-press-event
+                                           :sheet pane :key-name name :key-character char
+                                           :x 0 :y 0
+                                           :modifier-state (apply #'logior modifiers)))))
+
+(test talking.keys-go-to-the-prompt
+  (in-window (window robot)
+    (press-in window :|t| #\t)
+    (press-in window :up nil)
+    (press-in window :|a| #\a clim:+control-key+)
+    (press-in window :return #\Return)
+    (press-in window :shift-left nil)
+    (is (equal (format nil "t~A~C~C" (cli::octets-of-key :up) (code-char 1) #\Return)
+               (keys-given window)))))
+
+(test talking.keys-go-to-the-window-that-has-them
+  "The null port gives keys to nobody, so this is only about which window has them."
+  (in-window (one robot)
+    (is (eq one (window::robot-window-of (clim:frame-top-level-sheet one))))
+    (is (eq one (window::robot-window-of (pane one 'window::interactor))))
+    (is (null (window::robot-window-of nil)))))
+
+(test talking.what-is-pasted-is-not-entered
+  (in-window (window robot)
+    (window::give-key (window::window-conversation window) (list :paste (format nil "a~%b")))
+    (is (mentions-p (keys-given window) (format nil "a~%b")))
+    (is (not (find #\Return (keys-given window))))))
+
+;;; The transcript.
+
+(defun fill-transcript (window count)
+  (dotimes (line count)
+    (window::say (window::window-transcript window) (format nil "line ~D~%" line)))
+  (let ((pane (pane window 'window::transcript)))
+    (window::repaint pane)
+    pane))
+
+(defun rows-shown (pane)
+  "Return the numbers of the lines in view in PANE."
+  (mapcar #'window::row-number (window::pane-rows pane)))
+
+(test transcript.long-lines-go-on-in-the-next-row
+  (is (equal '((0 10) (10 18) (18 26))
+             (mapcar (lambda (row) (list (window::row-start row) (window::row-stop row)))
+                     (window::rows-of-line 0 "0123456789abcdefg hi there" 10)))))
+
+(test transcript.what-is-counted-stands-in-one-line
+  (let ((transcript (window::make-transcript (constantly nil))))
+    (window::say transcript (format nil "~C1 of 2" #\Return))
+    (window::say transcript (format nil "~C2 of 2" #\Return))
+    (is (equal '("2 of 2") (window::latest-lines transcript 5)))))
+
+(test transcript.stays-where-one-has-scrolled-to
+  (in-window (window robot)
+    (let* ((pane (fill-transcript window 100)) (end (rows-shown pane)))
+      (window::wheel pane -10 0 0)
+      (let ((before (rows-shown pane)))
+        (is (= 30 (- (first (last end)) (first (last before)) -1)))
+        (fill-transcript window 10)
+        (is (equal before (rows-shown pane))))
+      (window::wheel pane 1000 0 0)
+      (is (null (window::pane-last pane))))))
+
+(test transcript.what-is-selected-can-be-copied
+  (in-window (window robot)
+    (let ((pane (fill-transcript window 20)))
+      (is (mentions-p (window::selected-text pane) (format nil "line 1~%line 2")))
+      (let ((row (first (window::pane-rows pane))))
+        (setf (window::pane-mark pane) (list (1+ (window::row-number row)) 4)
+              (window::pane-point pane) (list (window::row-number row) 2))
+        (is (equal (format nil "ne ~D~%line" (1- (window::row-number row)))
+                   (window::selected-text pane)))))))
+
+;;; Menus.
+
+(test menus.hold-lines-by-their-families
+  (flet ((group (name) (window::line-group (cli:find-line name))))
+    (is (equal '("Cameras" "Cameras" "Moving" "Plans" "Prompt" "Hands")
+               (mapcar #'group '("OBJ-DESIG" "CAM-TRACK" "TURN" "PLAN" "QUIT" "HAND-GRASP"))))
+    (loop for (family) in cli::*families*
+          do (is (assoc family window::*line-groups*) "~A has no menu" family))))
+
+;;; Which robot.
+
+(test window.goes-on-with-the-robot-that-its-prompt-chooses
+  (in-window (window robot)
+    (let ((cli:*prompt-robot* 'somebody))
+      (window::agree-on-robot window)
+      (is (eq 'somebody (window:watcher-robot (window:window-watcher window))))
+      (is (mentions-p (clim:frame-pretty-name window) "SOMEBODY")))))
+
+(test window.says-why-it-closes-when-its-run-is-over
+  (let ((reasons '()))
+    (in-studio (robot)
+      (let ((watcher (window:make-watcher 'studio-robot (constantly nil)
+                                          (lambda (reason) (push reason reasons)))))
+        (window:watch-simulation watcher (time:current-simulation))
+        (window::look-whether-over watcher)
+        (run:end-simulation (time:current-simulation) "enough")
+        (window::look-whether-over watcher)
+        (is (null reasons))
+        (window::look-whether-over watcher)
+        (is (equal '("enough") reasons))))))
