@@ -258,9 +258,10 @@
   :serial t
   :components
   ((:module "src/clim" :serial t
-    :components ((:file "package") (:file "watcher") (:file "canvas") (:file "panes")
-                 (:file "world-pane") (:file "transcript") (:file "prompt") (:file "window")
-                 (:file "commands") (:file "opening")))))
+    :components ((:file "package") (:file "progress") (:file "watcher") (:file "canvas")
+                 (:file "panes") (:file "world-pane") (:file "transcript") (:file "prompt")
+                 (:file "plan-pane") (:file "arrangement") (:file "layout-pane") (:file "bar")
+                 (:file "strip") (:file "window") (:file "commands") (:file "opening")))))
 
 (defsystem "ars-magna/fiveam"
   :description "Checks for regression suites: plans that are held to their rates of success."

@@ -36,6 +36,16 @@
     "Let time go on."
   (resume (window-simulation window)))
 
+(define-window-command (com-pause-or-resume "Pause or go on") (window)
+    "Let time stand still, or go on."
+  (if (paused-p (window-simulation window)) (com-resume) (com-pause)))
+
+(define-constant +back+ 10 :documentation "How many ticks a step back is.")
+
+(define-window-command (com-back "Go back") (window)
+    "Go back some ticks, as the prompt's REWIND does."
+  (give-line (window-conversation window) (format nil "rewind ~D" +back+)))
+
 (define-window-command (com-step "Step") (window)
     "Pass one tick and pause."
   (step-ticks 1 (window-simulation window)))
@@ -89,6 +99,12 @@
 (define-window-command (com-find "Go to the robot") (window)
     "Bring the robot into the middle of the view."
   (show-robot (pane-named window 'world)))
+
+(define-window-command (com-follow "Follow the robot") (window)
+    "Keep the robot in view, or no longer."
+  (let ((pane (pane-named window 'world)))
+    (setf (pane-following-p pane) (not (pane-following-p pane)))
+    (repaint-if-changed pane)))
 
 (define-window-command (com-color "Colours on or off") (window)
     "Switch between colours and black and white."

@@ -44,9 +44,10 @@
 (defun repaint-if-changed (pane)
   (unless (equal (pane-painted pane) (pane-content pane)) (repaint pane)))
 
-(defun clear (pane)
+(defun clear (pane &optional (ink clim:+white+))
+  "Paint all of PANE with INK."
   (multiple-value-bind (width height) (pane-size pane)
-    (clim:draw-rectangle* pane 0 0 width height :ink clim:+white+)))
+    (clim:draw-rectangle* pane 0 0 width height :ink ink)))
 
 ;;; Details of the robot.
 

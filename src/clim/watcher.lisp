@@ -29,7 +29,8 @@ thread, for each new snapshot; it must be quick."
   (painted (make-semaphore "painted") :read-only t)
   (over (make-semaphore "over") :read-only t)
   (over-p nil)
-  (pacer nil))
+  (pacer nil)
+  (progress (make-progress) :type progress))
 (setf (documentation 'watcher-robot 'function) "Return the name of the robot that is watched."
       (documentation 'watcher-snapshot 'function) "Return the last snapshot, or NIL."
       (documentation 'make-watcher 'function)

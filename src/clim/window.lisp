@@ -9,15 +9,14 @@
 (defparameter *help-line*
   "Type a command here and press return, or choose one from a menu. HELP lists all commands.")
 
-(defun make-detail-pane (class name display height)
-  (clim:make-pane class :name name :display display :width 340 :min-width 120
-                        :height height :min-height (min height 50) :max-height clim:+fill+))
+(defun make-detail-pane (class name display)
+  (clim:make-pane class :name name :display display))
 
-(defmacro titled (title pane)
-  "Return PANE with TITLE above it."
-  `(clim:vertically (:y-spacing 0)
-     (clim:make-pane 'clim:label-pane :label ,title :align-x :left :max-height 20)
-     (:fill (clim:outlining (:thickness 1) ,pane))))
+(defun make-title (section)
+  (clim:make-pane 'title-pane :name (title-name section) :section section))
+
+(defun make-splitter (name)
+  (clim:make-pane 'splitter-pane :name name))
 
 (clim:define-application-frame robot-window ()
   ((watcher :initarg :watcher :accessor window-watcher
@@ -27,6 +26,7 @@
    (color-p :initarg :color-p :initform t :accessor window-color-p)
    (transcript :initform nil :accessor window-transcript)
    (conversation :initform nil :accessor window-conversation)
+   (hint :initform "" :accessor window-hint)
    ;; Its car is true while an event is queued.
    (queued :initform (list nil) :reader window-queued)
    (painted :initform nil :accessor window-painted)
@@ -34,32 +34,26 @@
   (:menu-bar menu-bar)
   (:command-table (robot-window))
   (:panes
-   (world (clim:make-pane 'world-pane :name 'world :display :world
-                                      :width 680 :height 520 :min-width 100 :min-height 100))
-   (state (make-detail-pane 'detail-pane 'state :state 76))
-   (designators (make-detail-pane 'designators-pane 'designators :designators 110))
-   (cameras (make-detail-pane 'detail-pane 'cameras :cameras 140))
-   (hands (make-detail-pane 'detail-pane 'hands :hands 84))
-   (bins (make-detail-pane 'detail-pane 'bins :bins 84))
-   (transcript (clim:make-pane 'transcript-pane :name 'transcript :display :transcript
-                                                :width 680 :height 120 :min-height 40
-                                                :max-height 400))
-   (interactor :text-field :ncolumns 80 :activate-callback 'take-line))
+   (bar (clim:make-pane 'bar-pane :name 'bar))
+   (world (clim:make-pane 'world-pane :name 'world :display :world))
+   (state (make-detail-pane 'detail-pane 'state :state))
+   (designators (make-detail-pane 'designators-pane 'designators :designators))
+   (cameras (make-detail-pane 'detail-pane 'cameras :cameras))
+   (hands (make-detail-pane 'detail-pane 'hands :hands))
+   (bins (make-detail-pane 'detail-pane 'bins :bins))
+   (plan (clim:make-pane 'plan-pane :name 'plan :display :plan))
+   (transcript (clim:make-pane 'transcript-pane :name 'transcript :display :transcript))
+   (prompt (clim:make-pane 'clim:label-pane :label " Robot> "))
+   (interactor :text-field :ncolumns 80 :activate-callback 'take-line)
+   (strip (clim:make-pane 'strip-pane :name 'strip)))
   (:layouts
    (default
-    (clim:vertically ()
-      (:fill (clim:horizontally (:x-spacing 4)
-               (:fill (titled "World" world))
-               (clim:vertically (:y-spacing 2)
-                 (titled "Robot state" state)
-                 (:fill (titled "Robot designators" designators))
-                 (titled "Cameras" cameras)
-                 (titled "Hands" hands)
-                 (titled "Storage bins" bins))))
-      (titled "Commands" transcript)
-      (clim:horizontally ()
-        (clim:make-pane 'clim:label-pane :label " Robot> " :max-width 64)
-        (:fill (clim:outlining (:thickness 1) interactor))))))
+    (clim:make-pane 'layout-pane
+                    :name 'layout
+                    :contents (list* bar world state designators cameras hands bins plan
+                                     transcript prompt interactor strip
+                                     (append (mapcar #'make-title +titled+)
+                                             (mapcar #'make-splitter +splitters+))))))
   (:documentation "The displays of a robot in a window."))
 
 (setf (documentation 'window-layers 'function)
@@ -92,13 +86,14 @@
 (defun window-simulation (window)
   (watcher-simulation (window-watcher window)))
 
-(defun pane-named (window name)
-  (clim:find-pane-named window name))
-
 (defun display-panes (window)
-  "Return a list of the panes of WINDOW that show something."
-  (remove nil (mapcar (lambda (name) (pane-named window name))
-                      '(world state designators cameras hands bins transcript))))
+  "Return a list of the panes of WINDOW that are painted."
+  (remove nil (mapcar (lambda (name) (pane-named window name)) (painted-parts))))
+
+(defun painted-parts ()
+  "Return the names of the parts of the window that we paint."
+  (append '(world state designators cameras hands bins plan transcript strip bar)
+          (mapcar #'title-name +titled+) +splitters+))
 
 ;;; Keeping up to date.
 

@@ -14,6 +14,7 @@
    (terrain-key :initform nil :accessor pane-terrain-key)
    ;; True once the view has been set by something.
    (placed-p :initform nil :accessor pane-placed-p)
+   (following-p :initform nil :accessor pane-following-p)
    ;; Where the mouse was when dragging began or last moved on, or NIL.
    (drag :initform nil :accessor pane-drag))
   (:documentation "The pane that shows the world."))

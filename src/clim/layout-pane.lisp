@@ -1,0 +1,160 @@
+;;;; layout-pane.lisp -- the pane that holds all others and puts them where ARRANGE says.
+
+(in-package :ars-magna.clim)
+
+(defun pane-named (window name)
+  "Return the part of WINDOW called NAME."
+  (clim:find-pane-named window name))
+
+(defclass layout-pane (clim:bboard-pane)
+  ((wishes :initform (make-wishes) :reader pane-wishes))
+  (:documentation "The pane that holds all parts of the window."))
+
+(define-constant +first-size+ '(1180 800)
+  :test #'equal
+  :documentation "How wide and high a window is at first, in pixels, where the screen has room.")
+
+(defun screen-size (pane)
+  "Return the width and height of the screen that PANE is to be shown on, if they are known."
+  (let ((graft (clim:graft pane)))
+    (if graft
+        (values (clim:graft-width graft) (clim:graft-height graft))
+        (values-list +first-size+))))
+
+(defmethod clim:compose-space ((pane layout-pane) &key width height)
+  (declare (ignore width height))
+  (multiple-value-bind (width height) (screen-size pane)
+    (clim:make-space-requirement
+     :width (min (first +first-size+) width) :min-width 320 :max-width clim:+fill+
+     :height (min (second +first-size+) (- height 60)) :min-height 240 :max-height clim:+fill+)))
+
+(defun place-pane (pane left top width height)
+  "Put PANE where the rest says; one without room is not shown."
+  (let ((shown-p (and (plusp width) (plusp height))))
+    (setf (clim:sheet-enabled-p pane) shown-p)
+    (when shown-p
+      (clim:move-and-resize-sheet pane left top width height)
+      (clim:allocate-space pane width height))))
+
+(defun arrange-panes (layout)
+  "Put all parts of the window where the wishes of LAYOUT, their pane, want them."
+  (multiple-value-bind (width height) (pane-size layout)
+    (let ((window (clim:pane-frame layout)))
+      (loop for (name . place) in (arrange (pane-wishes layout)
+                                           (lambda (section) (section-need window section))
+                                           width height)
+            for pane = (pane-named window name)
+            when pane do (apply #'place-pane pane place)))))
+
+(defmethod clim:allocate-space ((pane layout-pane) width height)
+  (clim:resize-sheet pane width height)
+  (arrange-panes pane))
+
+(defun section-need (window section)
+  "Return how many pixels high SECTION of WINDOW would like to be."
+  (declare (ignorable window))
+  (ecase section
+    (state 108) (designators 60) (cameras 140) (hands 84) (bins 84) (plan 200)))
+
+(defun window-layout (window)
+  "Return the pane that holds all parts of WINDOW."
+  (pane-named window 'layout))
+
+(defun window-wishes (window) (pane-wishes (window-layout window)))
+
+(defun rearrange (window)
+  "Put all parts of WINDOW where its wishes want them now."
+  (arrange-panes (window-layout window))
+  (mapc #'repaint (display-panes window)))
+
+;;; Folding.
+
+(defun folded-p (window section)
+  (and (member section (wishes-folded (window-wishes window))) t))
+
+(defun fold (window section &optional (folded-p t))
+  "Show only the title of SECTION in WINDOW; or, if FOLDED-P is false, all of it."
+  (unless (eq folded-p (folded-p window section))
+    (let ((wishes (window-wishes window)))
+      (setf (wishes-folded wishes)
+            (if folded-p
+                (cons section (wishes-folded wishes))
+                (remove section (wishes-folded wishes)))))
+    (rearrange window)))
+
+;;; Titles.
+
+(defclass title-pane (display-pane)
+  ((section :initarg :section :reader pane-section))
+  (:default-initargs :background clim:+gray88+)
+  (:documentation "The title of a display. A click folds the display away, or brings it back."))
+
+(defun foldable-p (section) (and (member section +sections+) t))
+
+(defun section-title (window section)
+  "Return the title of SECTION of WINDOW."
+  (case section
+    (world (let ((map (and (window-snapshot window) (window-map window))))
+             (format nil "World~@[: ~(~A~)~]" (and map (map-name map)))))
+    (transcript "Commands")
+    (plan "Plan")
+    (t (display-title (pane-display (pane-named window section))))))
+
+(defmethod pane-content ((pane title-pane))
+  (let ((window (window-of pane)) (section (pane-section pane)))
+    (list (section-title window section) (folded-p window section))))
+
+(defmethod paint ((pane title-pane))
+  (let* ((window (window-of pane)) (section (pane-section pane))
+         (canvas (make-instance 'clim-canvas :medium pane)))
+    (clear pane clim:+gray88+)
+    (with-canvas (canvas)
+      (when (foldable-p section)
+        (draw-lines canvas draw-gcontext*
+                    (if (folded-p window section) '(5 4 10 8 5 12) '(4 6 12 6 8 11))
+                    :fill-p t))
+      (draw-glyphs canvas draw-gcontext* (if (foldable-p section) 18 6) 13
+                   (section-title window section)))))
+
+(defmethod click ((pane title-pane) button x y)
+  (declare (ignore button x y))
+  (let ((window (window-of pane)) (section (pane-section pane)))
+    (when (foldable-p section)
+      (fold window section (not (folded-p window section))))))
+
+;;; Splitters.
+
+(defclass splitter-pane (display-pane)
+  ((drag :initform nil :accessor pane-drag))
+  (:default-initargs :background clim:+gray75+)
+  (:documentation "A bar between two parts of the window that can be dragged."))
+
+(defgeneric drag-splitter (name wishes layout x y)
+  (:documentation "Change WISHES so that the splitter NAME is at X, Y of the pane LAYOUT.")
+  (:method ((name (eql 'side-splitter)) wishes layout x y)
+    (declare (ignore y))
+    (setf (wishes-details-width wishes) (max 120 (- (pane-size layout) x))))
+  (:method ((name (eql 'low-splitter)) wishes layout x y)
+    (declare (ignore x))
+    (setf (wishes-transcript-height wishes)
+          (max 40 (- (nth-value 1 (pane-size layout)) y +prompt-height+ +strip-height+)))))
+
+(defmethod pane-content ((pane splitter-pane)) (multiple-value-list (pane-size pane)))
+
+(defmethod paint ((pane splitter-pane)) (clear pane clim:+gray75+))
+
+(defmethod click ((pane splitter-pane) button x y)
+  (declare (ignore button x y))
+  (setf (pane-drag pane) t))
+
+(defmethod clim:handle-event ((pane splitter-pane) (event clim:pointer-button-release-event))
+  (setf (pane-drag pane) nil))
+
+(defmethod clim:handle-event ((pane splitter-pane) (event clim:pointer-motion-event))
+  (when (pane-drag pane)
+    (let ((layout (clim:sheet-parent pane)))
+      (multiple-value-bind (x y)
+          (clim:transform-position (clim:sheet-transformation pane)
+                                   (clim:pointer-event-x event) (clim:pointer-event-y event))
+        (drag-splitter (clim:pane-name pane) (pane-wishes layout) layout x y)
+        (rearrange (window-of pane))))))
