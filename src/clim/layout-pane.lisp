@@ -15,18 +15,24 @@
   :documentation "How wide and high a window is at first, in pixels, where the screen has room.")
 
 (defun screen-size (pane)
-  "Return the width and height of the screen that PANE is to be shown on, if they are known."
+  "Return the width and height of the screen that PANE is to be shown on, or NIL and NIL."
   (let ((graft (clim:graft pane)))
     (if graft
         (values (clim:graft-width graft) (clim:graft-height graft))
-        (values-list +first-size+))))
+        (values nil nil))))
+
+(defun first-size (pane)
+  "Return how wide and high PANE should be at first: no larger than the screen."
+  (multiple-value-bind (width height) (screen-size pane)
+    (values (min (first +first-size+) (or width 10000))
+            (min (second +first-size+) (- (or height 10000) 60)))))
 
 (defmethod clim:compose-space ((pane layout-pane) &key width height)
   (declare (ignore width height))
-  (multiple-value-bind (width height) (screen-size pane)
+  (multiple-value-bind (width height) (first-size pane)
     (clim:make-space-requirement
-     :width (min (first +first-size+) width) :min-width 320 :max-width clim:+fill+
-     :height (min (second +first-size+) (- height 60)) :min-height 240 :max-height clim:+fill+)))
+     :width width :min-width 320 :max-width clim:+fill+
+     :height height :min-height 240 :max-height clim:+fill+)))
 
 (defun place-pane (pane left top width height)
   "Put PANE where the rest says; one without room is not shown."
@@ -43,8 +49,14 @@
       (loop for (name . place) in (arrange (pane-wishes layout)
                                            (lambda (section) (section-need window section))
                                            width height)
-            for pane = (pane-named window name)
+            for pane = (child-with layout (pane-named window name))
             when pane do (apply #'place-pane pane place)))))
+
+(defun child-with (layout pane)
+  "Return the child of LAYOUT that is or holds PANE; CLIM may put borders around panes."
+  (loop for sheet = pane then (clim:sheet-parent sheet)
+        while sheet
+        when (eq layout (clim:sheet-parent sheet)) return sheet))
 
 (defmethod clim:allocate-space ((pane layout-pane) width height)
   (clim:resize-sheet pane width height)
