@@ -259,9 +259,13 @@
   :components
   ((:module "src/clim" :serial t
     :components ((:file "package") (:file "progress") (:file "watcher") (:file "canvas")
-                 (:file "panes") (:file "world-pane") (:file "transcript") (:file "prompt")
-                 (:file "plan-pane") (:file "arrangement") (:file "layout-pane") (:file "bar")
-                 (:file "strip") (:file "window") (:file "commands") (:file "opening")))))
+                 (:file "guarding") (:file "arrangement") (:file "panes")
+                 (:file "scrolling") (:file "selection")
+                 (:file "view") (:file "world-pane") (:file "transcript") (:file "prompt")
+                 (:file "plan-pane") (:file "layout-pane") (:file "bar") (:file "strip")
+                 (:file "popup") (:file "pointing") (:file "offers") (:file "world-mouse")
+                 (:file "keys") (:file "help") (:file "window") (:file "commands")
+                 (:file "opening")))))
 
 (defsystem "ars-magna/fiveam"
   :description "Checks for regression suites: plans that are held to their rates of success."

@@ -12,7 +12,12 @@ whether the button is on."
   (help "" :type string :read-only t)
   (lit-p (constantly nil) :read-only t))
 
-(defmethod subject-title ((button button)) (button-help button))
+(defun key-text (key)
+  "Return what the key that types the character KEY is called."
+  (if (char= key #\Space) "space" (string key)))
+
+(defmethod subject-title ((button button))
+  (format nil "~A (key: ~A)" (button-help button) (key-text (button-key button))))
 
 (defun pause-label (window)
   (if (paused-p (window-simulation window)) "Resume" "Pause"))
@@ -21,16 +26,16 @@ whether the button is on."
 
 (defparameter *buttons*
   (list (make-button 'pause-label #\Space 'com-pause-or-resume
-                     "Let time stand still, or go on (space)"
+                     "Let time stand still, or go on"
                      (lambda (window) (paused-p (window-simulation window))))
-        (make-button "Step" #\. 'com-step "Let one tick pass, and pause (.)")
-        (make-button "Slower" #\- 'com-slower "Halve the rate of ticks (-)")
-        (make-button "Faster" #\+ 'com-faster "Double the rate of ticks (+)")
-        (make-button "Back" #\b 'com-back "Go back a few ticks, as REWIND does (b)")
-        (make-button "Fit" #\f 'com-fit "Show the whole map (f)")
-        (make-button "Follow" #\r 'com-follow "Keep the robot in view (r)" 'following-p)
-        (make-button "Layers" #\l 'com-layers "Choose what the world shows (l)")
-        (make-button "Help" #\? 'com-help "Tell what keys and mouse do (?)"))
+        (make-button "Step" #\. 'com-step "Let one tick pass, and pause")
+        (make-button "Slower" #\- 'com-slower "Halve the rate of ticks")
+        (make-button "Faster" #\+ 'com-faster "Double the rate of ticks")
+        (make-button "Back" #\b 'com-back "Go back a few ticks, as REWIND does")
+        (make-button "Fit" #\f 'com-fit "Show the whole map")
+        (make-button "Follow" #\r 'com-follow "Keep the robot in view" 'following-p)
+        (make-button "Layers" #\l 'com-layers "Choose what the world shows")
+        (make-button "Help" #\? 'com-help "Tell what keys and mouse do"))
   "The buttons of the tool bar, from left to right.")
 
 (defun button-text (button window)
@@ -70,14 +75,17 @@ whether the button is on."
     (+ x width)))
 
 (defmethod paint ((pane bar-pane))
-  (let ((canvas (make-instance 'clim-canvas :medium pane)) (x 4))
-    (clear pane clim:+gray88+)
-    (with-canvas (canvas)
-      (dolist (button *buttons*)
-        (setf x (+ 4 (draw-button canvas button (window-of pane) x)))))
-    (setf (pane-subjects pane) (canvas-subjects canvas))))
+  (clear pane clim:+gray88+)
+  (painting (canvas pane)
+    (loop with x = 4
+          for button in *buttons*
+          do (setf x (+ 4 (draw-button canvas button (window-of pane) x))))))
 
-(defmethod click ((pane bar-pane) button x y)
-  (declare (ignore button))
-  (let ((hit (subject-at (pane-subjects pane) x y)))
-    (when hit (do-command (button-command hit)))))
+(defmethod click ((pane bar-pane) mouse-button x y)
+  (declare (ignore mouse-button))
+  (let ((button (subject-at (pane-subjects pane) x y)))
+    (when button (do-command (button-command button)))))
+
+(defmethod hover-text ((pane bar-pane) x y)
+  (let ((button (subject-at (pane-subjects pane) x y)))
+    (if button (subject-title button) "")))

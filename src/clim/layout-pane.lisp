@@ -36,9 +36,9 @@
 
 (defun place-pane (pane left top width height)
   "Put PANE where the rest says; one without room is not shown."
-  (let ((shown-p (and (plusp width) (plusp height))))
-    (setf (clim:sheet-enabled-p pane) shown-p)
-    (when shown-p
+  (let ((there-p (and (plusp width) (plusp height))))
+    (setf (clim:sheet-enabled-p pane) there-p)
+    (when there-p
       (clim:move-and-resize-sheet pane left top width height)
       (clim:allocate-space pane width height))))
 
@@ -62,11 +62,17 @@
   (clim:resize-sheet pane width height)
   (arrange-panes pane))
 
+(defparameter *first-needs*
+  '((state 108) (designators 40) (cameras 140) (hands 84) (bins 84) (plan 240))
+  "How many pixels high sections would like to be, as long as nothing has been painted in them.")
+
 (defun section-need (window section)
   "Return how many pixels high SECTION of WINDOW would like to be."
-  (declare (ignorable window))
-  (ecase section
-    (state 108) (designators 60) (cameras 140) (hands 84) (bins 84) (plan 200)))
+  (let ((extent (pane-extent (pane-named window section)))
+        (first (second (assoc section *first-needs*))))
+    (if (member section '(designators plan))
+        (max extent first)
+        (if (plusp extent) extent first))))
 
 (defun window-layout (window)
   "Return the pane that holds all parts of WINDOW."
@@ -77,7 +83,7 @@
 (defun rearrange (window)
   "Put all parts of WINDOW where its wishes want them now."
   (arrange-panes (window-layout window))
-  (mapc #'repaint (display-panes window)))
+  (repaint-all window))
 
 ;;; Folding.
 
@@ -114,19 +120,24 @@
 
 (defmethod pane-content ((pane title-pane))
   (let ((window (window-of pane)) (section (pane-section pane)))
-    (list (section-title window section) (folded-p window section))))
+    (list (section-title window section) (folded-p window section)
+          (multiple-value-list (pane-size pane)))))
 
 (defmethod paint ((pane title-pane))
   (let* ((window (window-of pane)) (section (pane-section pane))
-         (canvas (make-instance 'clim-canvas :medium pane)))
+         (foldable-p (foldable-p section)))
     (clear pane clim:+gray88+)
-    (with-canvas (canvas)
-      (when (foldable-p section)
+    (painting (canvas pane)
+      (when foldable-p
         (draw-lines canvas draw-gcontext*
                     (if (folded-p window section) '(5 4 10 8 5 12) '(4 6 12 6 8 11))
                     :fill-p t))
-      (draw-glyphs canvas draw-gcontext* (if (foldable-p section) 18 6) 13
+      (draw-glyphs canvas draw-gcontext* (if foldable-p 18 6) 13
                    (section-title window section)))))
+
+(defmethod hover-text ((pane title-pane) x y)
+  (declare (ignore x y))
+  (if (foldable-p (pane-section pane)) "Click to fold this display away, or to bring it back" ""))
 
 (defmethod click ((pane title-pane) button x y)
   (declare (ignore button x y))
@@ -136,8 +147,7 @@
 
 ;;; Splitters.
 
-(defclass splitter-pane (display-pane)
-  ((drag :initform nil :accessor pane-drag))
+(defclass splitter-pane (display-pane) ()
   (:default-initargs :background clim:+gray75+)
   (:documentation "A bar between two parts of the window that can be dragged."))
 
@@ -155,18 +165,17 @@
 
 (defmethod paint ((pane splitter-pane)) (clear pane clim:+gray75+))
 
-(defmethod click ((pane splitter-pane) button x y)
+(defmethod press ((pane splitter-pane) button x y)
   (declare (ignore button x y))
   (setf (pane-drag pane) t))
 
-(defmethod clim:handle-event ((pane splitter-pane) (event clim:pointer-button-release-event))
-  (setf (pane-drag pane) nil))
+(defmethod hover-text ((pane splitter-pane) x y)
+  (declare (ignore x y))
+  "Drag to make the parts on either side larger or smaller")
 
-(defmethod clim:handle-event ((pane splitter-pane) (event clim:pointer-motion-event))
-  (when (pane-drag pane)
-    (let ((layout (clim:sheet-parent pane)))
-      (multiple-value-bind (x y)
-          (clim:transform-position (clim:sheet-transformation pane)
-                                   (clim:pointer-event-x event) (clim:pointer-event-y event))
-        (drag-splitter (clim:pane-name pane) (pane-wishes layout) layout x y)
-        (rearrange (window-of pane))))))
+(defmethod drag ((pane splitter-pane) x y)
+  (let ((layout (clim:sheet-parent pane)))
+    (multiple-value-bind (x y)
+        (clim:transform-position (clim:sheet-transformation pane) x y)
+      (drag-splitter (clim:pane-name pane) (pane-wishes layout) layout x y)
+      (rearrange (window-of pane)))))

@@ -16,10 +16,13 @@
           (progress-text (watcher-progress (window-watcher window)))
           (window-hint window)))
 
-(defmethod pane-content ((pane strip-pane)) (strip-text (window-of pane)))
+(defmethod pane-content ((pane strip-pane))
+  (list (strip-text (window-of pane)) (multiple-value-list (pane-size pane))))
 
 (defmethod paint ((pane strip-pane))
-  (let ((canvas (make-instance 'clim-canvas :medium pane)))
-    (clear pane clim:+gray88+)
-    (with-canvas (canvas)
-      (draw-glyphs canvas draw-gcontext* 6 14 (strip-text (window-of pane))))))
+  (clear pane clim:+gray88+)
+  (painting (canvas pane)
+    (draw-glyphs canvas draw-gcontext* 6 14 (strip-text (window-of pane)))))
+
+(defmethod click ((pane strip-pane) button x y)
+  (declare (ignore button x y)))

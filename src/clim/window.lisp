@@ -26,7 +26,12 @@
    (color-p :initarg :color-p :initform t :accessor window-color-p)
    (transcript :initform nil :accessor window-transcript)
    (conversation :initform nil :accessor window-conversation)
+   ;; What the mouse points at, as text; the key of what is picked, or NIL.
    (hint :initform "" :accessor window-hint)
+   (selection :initform nil :accessor window-selection)
+   ;; The name of the robot that the displays have been given room for.
+   (settled :initform nil :accessor window-settled)
+   (panes-painted :initform '() :accessor window-panes-painted)
    ;; Its car is true while an event is queued.
    (queued :initform (list nil) :reader window-queued)
    (painted :initform nil :accessor window-painted)
@@ -45,13 +50,14 @@
    (transcript (clim:make-pane 'transcript-pane :name 'transcript :display :transcript))
    (prompt (clim:make-pane 'clim:label-pane :label " Robot> "))
    (interactor :text-field :ncolumns 80 :activate-callback 'take-line)
-   (strip (clim:make-pane 'strip-pane :name 'strip)))
+   (strip (clim:make-pane 'strip-pane :name 'strip))
+   (popup (clim:make-pane 'popup-pane :name 'popup :enabled-p nil)))
   (:layouts
    (default
     (clim:make-pane 'layout-pane
                     :name 'layout
                     :contents (list* bar world state designators cameras hands bins plan
-                                     transcript prompt interactor strip
+                                     transcript prompt interactor strip popup
                                      (append (mapcar #'make-title +titled+)
                                              (mapcar #'make-splitter +splitters+))))))
   (:documentation "The displays of a robot in a window."))
@@ -86,14 +92,21 @@
 (defun window-simulation (window)
   (watcher-simulation (window-watcher window)))
 
-(defun display-panes (window)
-  "Return a list of the panes of WINDOW that are painted."
-  (remove nil (mapcar (lambda (name) (pane-named window name)) (painted-parts))))
-
 (defun painted-parts ()
   "Return the names of the parts of the window that we paint."
   (append '(world state designators cameras hands bins plan transcript strip bar)
           (mapcar #'title-name +titled+) +splitters+))
+
+(defun display-panes (window)
+  "Return a list of the panes of WINDOW that are painted."
+  (or (window-panes-painted window)
+      (setf (window-panes-painted window)
+            (remove nil (mapcar (lambda (name) (pane-named window name)) (painted-parts))))))
+
+(defun repaint-all (window)
+  "Paint all of WINDOW, as one picture."
+  (clim:with-output-buffered ((clim:frame-top-level-sheet window))
+    (mapc #'repaint (display-panes window))))
 
 ;;; Keeping up to date.
 
@@ -106,11 +119,19 @@
     (when (and sheet (swap-if (car (window-queued window)) nil t))
       (clim:queue-event sheet (make-instance 'refresh-event :sheet sheet)))))
 
+(defun settle (window)
+  "The first time, and when WINDOW has got another robot, give each display the room that it needs."
+  (let ((robot (watcher-robot (window-watcher window))))
+    (unless (eq robot (window-settled window))
+      (setf (window-settled window) robot)
+      (rearrange window))))
+
 (defun refresh (window)
   "Paint those panes of WINDOW that would look different now, all at once."
   (let ((snapshot (window-snapshot window)))
     (clim:with-output-buffered ((clim:frame-top-level-sheet window))
-      (mapc #'repaint-if-changed (display-panes window)))
+      (mapc #'repaint-if-changed (display-panes window))
+      (settle window))
     (unless (eq snapshot (window-painted window))
       (setf (window-painted window) snapshot)
       (painted (window-watcher window)))))
@@ -121,7 +142,7 @@
     (memory-barrier)
     (refresh window)))
 
-;;; What the user types and points at.
+;;; What the user types.
 
 (defun take-line (gadget)
   "Let the prompt have the line in the text field GADGET."
@@ -129,13 +150,6 @@
     (unless (string= line "")
       (setf (clim:gadget-value gadget) "")
       (give-line (window-conversation window) line))))
-
-(defun describe-to (window subject)
-  "Say in WINDOW what SUBJECT is, if it is anything."
-  (when subject
-    (let ((stream (make-instance 'transcript-stream :transcript (window-transcript window))))
-      (fresh-line stream)
-      (describe-subject subject stream))))
 
 ;;; Reading commands from the menus.
 
