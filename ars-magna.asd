@@ -264,7 +264,7 @@
                  (:file "view") (:file "world-pane") (:file "transcript") (:file "prompt")
                  (:file "plan-pane") (:file "layout-pane") (:file "bar") (:file "strip")
                  (:file "popup") (:file "pointing") (:file "offers") (:file "world-mouse")
-                 (:file "keys") (:file "help") (:file "window") (:file "commands")
+                 (:file "keys") (:file "help") (:file "robots") (:file "window") (:file "commands")
                  (:file "opening")))))
 
 (defsystem "ars-magna/fiveam"

@@ -56,17 +56,21 @@ for what suits the window; FOLDED lists sections of which only the title is to b
 ;;; Sections.
 
 (defun share-height (needs height)
-  "Return how much of HEIGHT each of NEEDS gets, which are (section pixels): what it needs, where that
-is there; else what is fair. What is left over goes to the designators, or the last."
+  "Return how much of HEIGHT each of NEEDS gets, which are (section pixels): what it needs, and what
+is left over goes to the designators, or the plan; or else what is fair."
+  (cond ((null needs) '())
+        ((<= (reduce #'+ needs :key #'second) height) (give-rest needs height))
+        (t (share-fairly needs height))))
+
+(defun share-fairly (needs height)
+  "Return shares of HEIGHT, which is not enough for NEEDS: those who need less than others get it."
   (let* ((fair (floor height (max 1 (length needs))))
          (modest (remove-if (lambda (need) (> (second need) fair)) needs))
-         (others (set-difference needs modest :test #'eq)))
-    (cond ((null needs) '())
-          ((null others) (give-rest needs height))
-          ((null modest) (give-rest (loop for (section) in needs collect (list section fair)) height))
-          (t (append modest
-                     (share-height (remove-if (lambda (need) (member need modest :test #'eq)) needs)
-                                   (- height (reduce #'+ modest :key #'second))))))))
+         (greedy (set-difference needs modest :test #'eq)))
+    (if (null modest)
+        (loop for (section) in needs collect (list section fair))
+        (append modest
+                (share-fairly greedy (- height (reduce #'+ modest :key #'second)))))))
 
 (defun give-rest (shares height)
   "Return SHARES with what they leave of HEIGHT added to one of them."

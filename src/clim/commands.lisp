@@ -106,6 +106,10 @@
     "Choose what the display of the world shows."
   (open-below-bar window (layer-rows window)))
 
+(define-window-command (com-robots "Which robot") (window)
+    "Choose whose details to show and whom to command."
+  (open-below-bar window (robot-rows window)))
+
 (define-window-command (com-help "Keys and mouse") (window)
     "Tell what keys and mouse do."
   (open-below-bar window (help-rows)))
@@ -199,7 +203,8 @@
              (item 'com-zoom-in "Zoom in") (item 'com-zoom-out "Zoom out")
              (item 'com-fit "Whole map") (item 'com-find "Go to the robot")
              '(nil :divider nil)
-             (item 'com-follow "Follow the robot") (item 'com-layers "Layers ...")
+             (item 'com-robots "Which robot ...") (item 'com-follow "Follow the robot")
+             (item 'com-layers "Layers ...")
              (item 'com-color "Colours on or off"))
   (make-menu 'picture-menu
              (item 'com-save-svg "Save as SVG") (item 'com-save-png "Save as PNG")

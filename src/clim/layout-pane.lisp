@@ -113,7 +113,9 @@
   "Return the title of SECTION of WINDOW."
   (case section
     (world (let ((map (and (window-snapshot window) (window-map window))))
-             (format nil "World~@[: ~(~A~)~]" (and map (map-name map)))))
+             (format nil "World~@[: ~(~A~)~]~@[, ~A of ~D robots~]" (and map (map-name map))
+                     (and (rest (window-robots window)) (shown-robot window))
+                     (length (window-robots window)))))
     (transcript "Commands")
     (plan "Plan")
     (t (display-title (pane-display (pane-named window section))))))
@@ -137,13 +139,20 @@
 
 (defmethod hover-text ((pane title-pane) x y)
   (declare (ignore x y))
-  (if (foldable-p (pane-section pane)) "Click to fold this display away, or to bring it back" ""))
+  (case (pane-section pane)
+    (world "Click to choose a robot")
+    (transcript "")
+    (t "Click to fold this display away, or to bring it back")))
 
 (defmethod click ((pane title-pane) button x y)
-  (declare (ignore button x y))
+  (declare (ignore button))
   (let ((window (window-of pane)) (section (pane-section pane)))
-    (when (foldable-p section)
-      (fold window section (not (folded-p window section))))))
+    (cond ((foldable-p section)
+           (fold window section (not (folded-p window section))))
+          ((eq section 'world)
+           (multiple-value-bind (x y)
+               (clim:transform-position (clim:sheet-transformation pane) x y)
+             (open-popup window (robot-rows window) x y))))))
 
 ;;; Splitters.
 

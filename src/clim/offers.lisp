@@ -3,7 +3,8 @@
 (in-package :ars-magna.clim)
 
 ;;; An offer is (title line): what the menu calls it, and what is given to the window's prompt when
-;;; it is chosen, as if the user had typed it; so the transcript shows it.
+;;; it is chosen, as if the user had typed it; so the transcript shows it. A function that the window
+;;; calls then may follow.
 
 (defgeneric offers (subject window)
   (:documentation "Return what can be done with SUBJECT, which WINDOW shows: a list of offers.")
@@ -22,9 +23,8 @@
   "Return an offer for each camera of the robot of WINDOW; TITLE and LINE are format strings for its
 number."
   (loop for camera in (robot-image-cameras (window-robot window))
-        for index from 0
-        collect (list (format nil title index) (format nil line index))
-        do (progn camera)))
+        for index = (camera-image-index camera)
+        collect (list (format nil title index) (format nil line index))))
 
 ;;; Looking into.
 
@@ -140,8 +140,11 @@ connected, if there is one."
     (append (if (eq image (window-robot window))
                 '(("How is it?" "status") ("Stop" "stop") ("Turn about" "about-face")
                   ("What place is this?" "place"))
-                (list (list "Command it" (format nil "robot ~(~A~)" (robot-image-name image)))))
+                (list (command-robot (robot-image-name image) window)))
             (looking-into form))))
+
+(defun command-robot (name window)
+  (list "Command it" (format nil "robot ~(~A~)" name) (lambda () (show-details window name))))
 
 (defun cell-middle (cell)
   (values (+ (cell-x cell) 1/2) (+ (cell-y cell) 1/2)))
@@ -156,9 +159,11 @@ connected, if there is one."
 
 ;;; As a menu.
 
-(defun offer-row (window title line)
+(defun offer-row (window title line &optional (also (constantly nil)))
   (make-row (format nil "~A   ~A" title line)
-            :action (lambda () (give-line (window-conversation window) line))))
+            :action (lambda ()
+                      (funcall also)
+                      (give-line (window-conversation window) line))))
 
 (defun subject-heading (subject)
   (if (typep subject 'cell)
@@ -170,5 +175,5 @@ connected, if there is one."
   (append (list (make-row (subject-heading subject))
                 (make-row "Tell what it is"
                           :action (lambda () (describe-to window subject))))
-          (loop for (title line) in (offers subject window)
-                collect (offer-row window title line))))
+          (loop for offer in (offers subject window)
+                collect (apply #'offer-row window offer))))

@@ -18,12 +18,14 @@ of what cannot be picked.")
          (loop for (subject . box) in (pane-subjects pane)
                when (equal key (subject-key subject)) collect box))))
 
+(defun mark-box (pane left top right bottom)
+  (clim:draw-rectangle* pane (- left 2) (- top 2) (+ right 2) (+ bottom 2)
+                        :filled nil :ink clim:+dark-orange+ :line-thickness 2))
+
 (defgeneric paint-selection (pane)
   (:documentation "Mark in PANE what is picked.")
   (:method (pane)
-    (loop for (left top right bottom) in (selected-boxes pane)
-          do (clim:draw-rectangle* pane (- left 2) (- top 2) (+ right 2) (+ bottom 2)
-                                   :filled nil :ink clim:+dark-orange+ :line-thickness 2))))
+    (loop for box in (selected-boxes pane) do (apply #'mark-box pane box))))
 
 (defun select (window subject)
   "Let SUBJECT, an image or a cell, be what is picked in WINDOW; NIL for nothing."

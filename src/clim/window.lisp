@@ -29,6 +29,8 @@
    ;; What the mouse points at, as text; the key of what is picked, or NIL.
    (hint :initform "" :accessor window-hint)
    (selection :initform nil :accessor window-selection)
+   ;; The name of the robot that is shown, or NIL for the watcher's.
+   (robot-name :initform nil :accessor window-robot-name)
    ;; The name of the robot that the displays have been given room for.
    (settled :initform nil :accessor window-settled)
    (panes-painted :initform '() :accessor window-panes-painted)
@@ -87,7 +89,7 @@
 (defun window-robot (window)
   "Return the image of the robot whose details WINDOW shows, or NIL."
   (let ((snapshot (window-snapshot window)))
-    (and snapshot (snapshot-robot snapshot (watcher-robot (window-watcher window))))))
+    (and snapshot (snapshot-robot snapshot (shown-robot window)))))
 
 (defun window-simulation (window)
   (watcher-simulation (window-watcher window)))
@@ -121,7 +123,7 @@
 
 (defun settle (window)
   "The first time, and when WINDOW has got another robot, give each display the room that it needs."
-  (let ((robot (watcher-robot (window-watcher window))))
+  (let ((robot (shown-robot window)))
     (unless (eq robot (window-settled window))
       (setf (window-settled window) robot)
       (rearrange window))))

@@ -84,3 +84,11 @@
                                  (draw-movers canvas snapshot (window-layers window)))
                                pane pane)))
           (paint-ghost pane))))))
+
+(defmethod paint-selection ((pane world-pane))
+  (let ((key (window-selection (window-of pane))) (scale (pane-scale pane)))
+    (if (eq :cell (first key))
+        (destructuring-bind (x y) (rest key)
+          (let ((left (- (* scale x) (pane-left pane))) (top (- (* scale y) (pane-top pane))))
+            (mark-box pane left top (+ left scale) (+ top scale))))
+        (call-next-method))))
