@@ -292,7 +292,10 @@
 (defsystem "ars-magna/clim-tests"
   :description "What the window claims."
   :depends-on ("ars-magna/tests" "ars-magna/clim" "fiveam")
-  :components ((:module "tests" :components ((:file "clim-window")))))
+  :serial t
+  :components ((:module "tests" :serial t
+                :components ((:file "clim-window") (:file "clim-layout") (:file "clim-pointing")
+                             (:file "clim-progress")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."

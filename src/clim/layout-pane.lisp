@@ -164,11 +164,11 @@
   (:documentation "Change WISHES so that the splitter NAME is at X, Y of the pane LAYOUT.")
   (:method ((name (eql 'side-splitter)) wishes layout x y)
     (declare (ignore y))
-    (setf (wishes-details-width wishes) (max 120 (- (pane-size layout) x))))
+    (setf (wishes-details-width wishes) (max 120 (- (pane-size layout) x +splitter+))))
   (:method ((name (eql 'low-splitter)) wishes layout x y)
     (declare (ignore x))
     (setf (wishes-transcript-height wishes)
-          (max 40 (- (nth-value 1 (pane-size layout)) y +prompt-height+ +strip-height+)))))
+          (max 40 (- (nth-value 1 (pane-size layout)) y +splitter+ +prompt-height+ +strip-height+)))))
 
 (defmethod pane-content ((pane splitter-pane)) (multiple-value-list (pane-size pane)))
 
