@@ -259,8 +259,8 @@
   :components
   ((:module "src/clim" :serial t
     :components ((:file "package") (:file "progress") (:file "watcher") (:file "canvas")
-                 (:file "guarding") (:file "arrangement") (:file "panes")
-                 (:file "scrolling") (:file "selection")
+                 (:file "guarding") (:file "arrangement") (:file "buffering")
+                 (:file "panes") (:file "scrolling") (:file "selection")
                  (:file "view") (:file "world-pane") (:file "transcript") (:file "prompt")
                  (:file "plan-pane") (:file "layout-pane") (:file "bar") (:file "strip")
                  (:file "popup") (:file "pointing") (:file "offers") (:file "world-mouse")

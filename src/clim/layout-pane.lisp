@@ -3,8 +3,11 @@
 (in-package :ars-magna.clim)
 
 (defun pane-named (window name)
-  "Return the part of WINDOW called NAME."
-  (clim:find-pane-named window name))
+  "Return the part of WINDOW called NAME, or NIL."
+  (let ((known (window-panes window)))
+    (or (gethash name known)
+        (let ((pane (clim:find-pane-named window name)))
+          (and pane (setf (gethash name known) pane))))))
 
 (defclass layout-pane (clim:bboard-pane)
   ((wishes :initform (make-wishes) :reader pane-wishes))

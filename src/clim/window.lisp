@@ -33,6 +33,8 @@
    (robot-name :initform nil :accessor window-robot-name)
    ;; The name of the robot that the displays have been given room for.
    (settled :initform nil :accessor window-settled)
+   ;; The parts found so far, by name; those that are painted.
+   (panes-found :initform (make-hash-table :test 'eq) :reader window-panes)
    (panes-painted :initform '() :accessor window-panes-painted)
    ;; Its car is true while an event is queued.
    (queued :initform (list nil) :reader window-queued)
@@ -106,9 +108,13 @@
             (remove nil (mapcar (lambda (name) (pane-named window name)) (painted-parts))))))
 
 (defun repaint-all (window)
-  "Paint all of WINDOW, as one picture."
-  (clim:with-output-buffered ((clim:frame-top-level-sheet window))
-    (mapc #'repaint (display-panes window))))
+  "Paint all of WINDOW."
+  (mapc #'repaint (display-panes window)))
+
+(defun forget-pixmaps (window)
+  "Let the X server forget what it keeps of the pictures in WINDOW."
+  (forget-terrain (pane-named window 'world))
+  (mapc #'forget-buffer (cons (window-popup window) (display-panes window))))
 
 ;;; Keeping up to date.
 
@@ -131,9 +137,10 @@
 (defun refresh (window)
   "Paint those panes of WINDOW that would look different now, all at once."
   (let ((snapshot (window-snapshot window)))
-    (clim:with-output-buffered ((clim:frame-top-level-sheet window))
-      (mapc #'repaint-if-changed (display-panes window))
-      (settle window))
+    (mapc #'repaint-if-changed (display-panes window))
+    (settle window)
+    ;; The X server may be slower than we are.
+    (clim:medium-finish-output (clim:sheet-medium (pane-named window 'world)))
     (unless (eq snapshot (window-painted window))
       (setf (window-painted window) snapshot)
       (painted (window-watcher window)))))
