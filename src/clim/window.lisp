@@ -33,9 +33,8 @@
    (robot-name :initform nil :accessor window-robot-name)
    ;; The name of the robot that the displays have been given room for.
    (settled :initform nil :accessor window-settled)
-   ;; The parts found so far, by name; those that are painted.
+   ;; The parts found so far, by name.
    (panes-found :initform (make-hash-table :test 'eq) :reader window-panes)
-   (panes-painted :initform '() :accessor window-panes-painted)
    ;; Its car is true while an event is queued.
    (queued :initform (list nil) :reader window-queued)
    (painted :initform nil :accessor window-painted)
@@ -96,16 +95,16 @@
 (defun window-simulation (window)
   (watcher-simulation (window-watcher window)))
 
-(defun painted-parts ()
-  "Return the names of the parts of the window that we paint."
+(defparameter *painted-parts*
   (append '(world state designators cameras hands bins plan transcript strip bar)
-          (mapcar #'title-name +titled+) +splitters+))
+          (mapcar #'title-name +titled+) +splitters+)
+  "The names of the parts of the window that we paint.")
 
 (defun display-panes (window)
   "Return a list of the panes of WINDOW that are painted."
-  (or (window-panes-painted window)
-      (setf (window-panes-painted window)
-            (remove nil (mapcar (lambda (name) (pane-named window name)) (painted-parts))))))
+  (loop for name in *painted-parts*
+        for pane = (pane-named window name)
+        when pane collect pane))
 
 (defun repaint-all (window)
   "Paint all of WINDOW."
