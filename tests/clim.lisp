@@ -4,8 +4,8 @@
 
 (def-suite* clim :in ars-magna)
 
-;;; The rest of these tests, ars-magna/clim-tests, names McCLIM's packages: it is loaded besides where
-;;; McCLIM is found.
+;;; The rest of these tests, ars-magna/clim-tests, names McCLIM's packages: it is loaded besides
+;;; where McCLIM is found.
 
 (test window.tests-need-mcclim
   (if (find-package :ars-magna.clim)

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.clim)
 
-(defstruct (button (:constructor make-button (label key command help &optional lit-p)) (:copier nil))
+(defstruct (button (:constructor make-button (label key command help &optional lit-p))
+                   (:copier nil))
   "COMMAND, a function of no arguments, is what a click on the button called LABEL, or the character
 KEY, does; HELP says what that is. LABEL may be a function of the window, and LIT-P one that says
 whether the button is on."

@@ -72,8 +72,8 @@
                       :line-thickness (max 1 (gcontext-line-width gcontext))))
 
 (defun outline-box (x y width height thickness)
-  "Return the box through whose sides the middle of a line of THICKNESS has to run, so that all of it
-is inside the box X, Y, WIDTH, HEIGHT of pixels."
+  "Return the box through whose sides the middle of a line of THICKNESS has to run, so that all of
+it is inside the box X, Y, WIDTH, HEIGHT of pixels."
   (let ((inset (/ (1- thickness) 2)))
     (values (+ x inset) (+ y inset)
             (max 1 (- width thickness)) (max 1 (- height thickness)))))

@@ -25,7 +25,7 @@
 
 ;;; Layers.
 
-(defun layer-title (layer)
+(defun title-of-layer (layer)
   "Return what a menu calls LAYER."
   (string-capitalize (substitute #\Space #\- (string-downcase layer)) :end 1))
 
@@ -37,7 +37,7 @@
     (repaint-if-changed (pane-named window 'world))))
 
 (defun layer-row (window layer)
-  (make-row (layer-title layer)
+  (make-row (title-of-layer layer)
             :tick-p t :stays-p t
             :tick (lambda () (member layer (window-layers window)))
             :action (lambda () (switch-layer window layer))))

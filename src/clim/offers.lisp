@@ -3,8 +3,8 @@
 (in-package :ars-magna.clim)
 
 ;;; An offer is (title line): what the menu calls it, and what is given to the window's prompt when
-;;; it is chosen, as if the user had typed it; so the transcript shows it. A function that the window
-;;; calls then may follow.
+;;; it is chosen, as if the user had typed it; so the transcript shows it. A function that is called
+;;; then may follow.
 
 (defgeneric offers (subject window)
   (:documentation "Return what can be done with SUBJECT, which WINDOW shows: a list of offers.")
@@ -95,9 +95,14 @@ connected, if there is one."
         collect (list (format nil "Let camera ~D no longer track it" camera)
                       (format nil "cam-untrack ~D" camera))))
 
+(defun on-floor-p (image window)
+  "True if the thing of IMAGE lies on the floor, and not in a hand, bin or other thing."
+  (find (thing-image-thing image) (snapshot-things (window-snapshot window))
+        :key #'thing-image-thing))
+
 (defmethod offers ((image thing-image) window)
   (let ((numbers (designators-of image window)))
-    (append (unless (thing-image-location image)
+    (append (when (on-floor-p image window)
               (list (go-there (thing-image-x image) (thing-image-y image))))
             (search-offers image window)
             (denoted-offers numbers window)

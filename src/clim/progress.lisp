@@ -26,7 +26,7 @@ had been; the tick and second from which on the rate is being measured, and that
     (:still "not live: ticks pass when a program asks for them")
     (:over "over")
     (:idle "idle: time stands still until there is something to do")
-    (:waiting "waiting for a plan that thinks")
+    (:waiting "waiting for a plan")
     (:busy "busy in")))
 
 (defun rate-text (rate)

@@ -1,4 +1,4 @@
-;;;; scrolling.lisp -- what is higher than its pane is scrolled: by the wheel, or a bar at the right.
+;;;; scrolling.lisp -- what is higher than its pane is scrolled: by the wheel, or a bar beside it.
 
 (in-package :ars-magna.clim)
 
@@ -28,7 +28,8 @@ much there is, all in the same unit.")
   (max 1 (- (pane-size pane) +scroll-bar+)))
 
 (defgeneric limit-offset (pane)
-  (:documentation "Let PANE begin no further down than there is something. True if that was mended.")
+  (:documentation
+   "Let PANE begin no further down than there is something. True if that was mended.")
   (:method (pane)
     (let ((room (max 0 (- (pane-extent pane) (nth-value 1 (pane-size pane))))))
       (when (> (pane-offset pane) room)

@@ -3,8 +3,8 @@
 (in-package :ars-magna.clim)
 
 ;;; The view fits the whole map, on opening and whenever the pane or the map changes, until the user
-;;; zooms or moves it, or sets GRAPHICS-SCALE*. LEFT and TOP are the pixels of the whole picture that
-;;; lie left of and above the pane.
+;;; zooms or moves it, or sets GRAPHICS-SCALE*. LEFT and TOP are the pixels of the whole picture
+;;; that lie left of and above the pane.
 
 (defclass view ()
   ((left :initform 0 :accessor pane-left)

@@ -16,7 +16,7 @@
            #:snapshot-things #:snapshot-robots #:snapshot-robot #:thing-image #:robot-image
            #:robot-image-name #:robot-image-x #:robot-image-y #:robot-image-designators)
   (:export #:thing-image-thing #:thing-image-x #:thing-image-y #:thing-image-attributes
-           #:thing-image-location #:robot-image-angle #:robot-image-cameras #:robot-image-hands
+           #:robot-image-angle #:robot-image-cameras #:robot-image-hands
            #:camera-image #:camera-image-index #:camera-image-track
            #:hand-image #:hand-image-index #:hand-image-contents
            #:bin-image #:bin-image-index #:bin-image-closed-p
