@@ -144,7 +144,10 @@
                (is (equal '("rewind 10") (lines-given window)))
                (key #\l)
                (is (window::popup-open-p window))
-               (is (null (key #\x))))
+               (is (window::do-key window :return #\Return))
+               (is (not (window::popup-open-p window)))
+               (is (key #\x))
+               (is (equal "x" (clim:gadget-value (pane window 'window::interactor)))))
           (run:stop-clock simulation))))))
 
 (test bar.names-its-keys

@@ -2,14 +2,28 @@
 
 (in-package :ars-magna.clim)
 
-;;; A click on a display gives it the keys; return or escape gives them back to the prompt.
-
-(defun take-keys (pane)
-  "Let what is typed go to PANE."
-  (setf (clim:port-keyboard-input-focus (clim:port pane)) pane))
+;;; A click on the world or the details gives them the keys; return, escape, a click on the
+;;; transcript, or a character that is none of theirs gives them back to the prompt.
 
 (defun give-keys-to-prompt (window)
   (type-into (pane-named window 'interactor)))
+
+(defgeneric take-keys (pane)
+  (:documentation "PANE was clicked: let what is typed go where it should from now on.")
+  (:method (pane) (declare (ignore pane)))
+  (:method ((pane world-pane)) (focus-on pane))
+  (:method ((pane detail-pane)) (focus-on pane))
+  (:method ((pane plan-pane)) (focus-on pane))
+  (:method ((pane transcript-pane)) (give-keys-to-prompt (window-of pane))))
+
+(defun focus-on (pane)
+  (setf (clim:port-keyboard-input-focus (clim:port pane)) pane))
+
+(defun type-at-prompt (window character)
+  "Let CHARACTER, and what is typed after it, go to the line of WINDOW that is typed."
+  (let ((gadget (pane-named window 'interactor)))
+    (setf (clim:gadget-value gadget) (format nil "~A~A" (clim:gadget-value gadget) character))
+    (type-into gadget)))
 
 (define-constant +arrow-step+ 60 :documentation "How far an arrow moves the view, in pixels.")
 
@@ -29,6 +43,9 @@
             (dx (move-view (pane-named window 'world) dx dy) t)
             ((member key-name '(:return :escape))
              (or (close-popup window) (give-keys-to-prompt window))
+             t)
+            ((and character (graphic-char-p character))
+             (type-at-prompt window character)
              t)))))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:key-press-event))
