@@ -147,7 +147,8 @@
                (is (window::do-key window :return #\Return))
                (is (not (window::popup-open-p window)))
                (is (key #\x))
-               (is (equal "x" (clim:gadget-value (pane window 'window::interactor)))))
+               (is (key #\b))
+               (is (equal "xb" (clim:gadget-value (pane window 'window::interactor)))))
           (run:stop-clock simulation))))))
 
 (test bar.names-its-keys

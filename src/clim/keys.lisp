@@ -17,12 +17,15 @@
   (:method ((pane transcript-pane)) (give-keys-to-prompt (window-of pane))))
 
 (defun focus-on (pane)
-  (setf (clim:port-keyboard-input-focus (clim:port pane)) pane))
+  (setf (window-typing-p (window-of pane)) nil
+        (clim:port-keyboard-input-focus (clim:port pane)) pane))
 
 (defun type-at-prompt (window character)
   "Let CHARACTER, and what is typed after it, go to the line of WINDOW that is typed."
   (let ((gadget (pane-named window 'interactor)))
-    (setf (clim:gadget-value gadget) (format nil "~A~A" (clim:gadget-value gadget) character))
+    ;; What is typed fast may still come to a display.
+    (setf (window-typing-p window) t
+          (clim:gadget-value gadget) (format nil "~A~A" (clim:gadget-value gadget) character))
     (type-into gadget)))
 
 (define-constant +arrow-step+ 60 :documentation "How far an arrow moves the view, in pixels.")
@@ -39,7 +42,10 @@
   "Do what the key called KEY-NAME, which types CHARACTER or NIL, does in WINDOW. True if anything."
   (let ((button (and character (find character *buttons* :key #'button-key))))
     (multiple-value-bind (dx dy) (arrow key-name)
-      (cond (button (close-popup window) (do-command (button-command button)) t)
+      (cond ((and (window-typing-p window) character (graphic-char-p character))
+             (type-at-prompt window character)
+             t)
+            (button (close-popup window) (do-command (button-command button)) t)
             (dx (move-view (pane-named window 'world) dx dy) t)
             ((member key-name '(:return :escape))
              (or (close-popup window) (give-keys-to-prompt window))

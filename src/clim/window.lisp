@@ -29,6 +29,8 @@
    ;; What the mouse points at, as text; the key of what is picked, or NIL.
    (hint :initform "" :accessor window-hint)
    (selection :initform nil :accessor window-selection)
+   ;; True if a line was begun by a key that came to a display.
+   (typing-p :initform nil :accessor window-typing-p)
    ;; The name of the robot that is shown, or NIL for the watcher's.
    (robot-name :initform nil :accessor window-robot-name)
    ;; The name of the robot that the displays have been given room for.
