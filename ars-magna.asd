@@ -270,11 +270,15 @@
   :serial t
   :components
   ((:module "src/clim" :serial t
-    :components ((:file "package") (:file "watcher") (:file "canvas") (:file "panes")
-                 (:file "world-pane") (:file "transcript") (:file "transcript-pane")
-                 (:file "prompt") (:file "guarding") (:file "interactor") (:file "window")
-                 (:file "line-menus")
-                 (:file "commands") (:file "opening")))))
+    :components ((:file "package") (:file "progress") (:file "watcher") (:file "canvas")
+                 (:file "guarding") (:file "arrangement") (:file "buffering")
+                 (:file "panes") (:file "scrolling") (:file "selection")
+                 (:file "view") (:file "world-pane") (:file "transcript") (:file "transcript-pane")
+                 (:file "prompt") (:file "plan-pane") (:file "layout-pane") (:file "titles")
+                 (:file "splitters") (:file "bar") (:file "strip")
+                 (:file "popup") (:file "pointing") (:file "interactor") (:file "offers")
+                 (:file "world-mouse") (:file "keys") (:file "help") (:file "robots")
+                 (:file "window") (:file "line-menus") (:file "commands") (:file "opening")))))
 
 (defsystem "ars-magna/fiveam"
   :description "Checks for regression suites: plans that are held to their rates of success."
@@ -301,8 +305,10 @@
 (defsystem "ars-magna/clim-tests"
   :description "What the window claims."
   :depends-on ("ars-magna/tests" "ars-magna/clim" "fiveam")
+  :serial t
   :components ((:module "tests" :serial t
-                :components ((:file "clim-window") (:file "clim-talking")))))
+                :components ((:file "clim-window") (:file "clim-layout") (:file "clim-pointing")
+                             (:file "clim-progress") (:file "clim-talking")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."

@@ -67,11 +67,11 @@
 
 (defun rows-shown (pane)
   "Return the numbers of the lines in view in PANE."
-  (mapcar #'window::row-number (window::pane-rows pane)))
+  (mapcar #'window::text-row-number (window::pane-rows pane)))
 
 (test transcript.long-lines-go-on-in-the-next-row
   (is (equal '((0 10) (10 18) (18 26))
-             (mapcar (lambda (row) (list (window::row-start row) (window::row-stop row)))
+             (mapcar (lambda (row) (list (window::text-row-start row) (window::text-row-stop row)))
                      (window::rows-of-line 0 "0123456789abcdefg hi there" 10)))))
 
 (test transcript.what-is-counted-stands-in-one-line
@@ -96,9 +96,9 @@
     (let ((pane (fill-transcript window 20)))
       (is (mentions-p (window::selected-text pane) (format nil "line 1~%line 2")))
       (let ((row (first (window::pane-rows pane))))
-        (setf (window::pane-mark pane) (list (1+ (window::row-number row)) 4)
-              (window::pane-point pane) (list (window::row-number row) 2))
-        (is (equal (format nil "ne ~D~%line" (1- (window::row-number row)))
+        (setf (window::pane-mark pane) (list (1+ (window::text-row-number row)) 4)
+              (window::pane-point pane) (list (window::text-row-number row) 2))
+        (is (equal (format nil "ne ~D~%line" (1- (window::text-row-number row)))
                    (window::selected-text pane)))))))
 
 ;;; Menus.

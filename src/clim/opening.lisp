@@ -55,7 +55,7 @@
   (ignore-errors (setf (clim:frame-pretty-name window) (window-title name)))
   (unless (eq simulation (window-simulation window))
     (watch-simulation (window-watcher window) simulation)
-    (setf (pane-placed-p (pane-named window 'world)) nil)
+    (setf (pane-fitting-p (pane-named window 'world)) t)
     (ars-magna.cli:listen-instead (conversation-session (window-conversation window)) simulation))
   (say (window-transcript window)
        (format nil "~A in ~A.~%" name (simulation-name simulation)))
@@ -89,7 +89,7 @@ close."
 
 (defun discard (window)
   "Let the X server forget WINDOW, which has closed, and its pixmaps."
-  (forget-terrain (pane-named window 'world))
+  (forget-pixmaps window)
   (clim:disown-frame (clim:frame-manager window) window))
 
 (defun run-window (window)

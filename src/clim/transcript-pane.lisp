@@ -13,18 +13,17 @@
    (rows :initform '() :accessor pane-rows)
    ;; Where the selection was begun and where it ends, each a list (number column), or NIL.
    (mark :initform nil :accessor pane-mark)
-   (point :initform nil :accessor pane-point)
-   (dragging-p :initform nil :accessor pane-dragging-p)))
+   (point :initform nil :accessor pane-point)))
 
 (defun pane-transcript (pane) (window-transcript (window-of pane)))
 
 (defmethod pane-content ((pane transcript-pane))
-  (list (pane-last pane) (pane-mark pane) (pane-point pane)
+  (list (multiple-value-list (pane-size pane)) (pane-last pane) (pane-mark pane) (pane-point pane)
         (transcript-total (pane-transcript pane))))
 
 ;;; Rows.
 
-(defstruct (row (:constructor make-row (number start stop spans)) (:copier nil))
+(defstruct (text-row (:constructor make-text-row (number start stop spans)) (:copier nil))
   "What is in view of the line NUMBER in one row: from the column START to STOP. SPANS are those of
 the line."
   (number 0 :type fixnum :read-only t)
@@ -46,7 +45,7 @@ the line."
         with spans = (ars-magna.cli:painted-spans line)
         for start = 0 then end
         for end = (row-end text start columns)
-        collect (make-row number start end spans)
+        collect (make-text-row number start end spans)
         until (= end (length text))))
 
 (defun rows-in-view (pane count columns)
@@ -82,12 +81,12 @@ the line."
 
 (defun paint-row (canvas row y)
   (loop with column = 0
-        for (text ink) in (row-spans row)
-        for start = (max column (row-start row))
-        for end = (min (+ column (length text)) (row-stop row))
+        for (text ink) in (text-row-spans row)
+        for start = (max column (text-row-start row))
+        for end = (min (+ column (length text)) (text-row-stop row))
         when (< start end)
           do (paint-words canvas (subseq text (- start column) (- end column))
-                         (- start (row-start row)) y ink)
+                         (- start (text-row-start row)) y ink)
         do (incf column (length text))))
 
 (defun before-p (place other)
@@ -103,7 +102,7 @@ the line."
 
 (defun selected-columns (row from to)
   "Return from where to where ROW is selected, if what is between the places FROM and TO is."
-  (let ((number (row-number row)) (start (row-start row)) (stop (row-stop row)))
+  (let ((number (text-row-number row)) (start (text-row-start row)) (stop (text-row-stop row)))
     (values (cond ((< number (first from)) stop)
                   ((= number (first from)) (max start (second from)))
                   (t start))
@@ -111,25 +110,25 @@ the line."
                   ((= number (first to)) (min stop (second to)))
                   (t stop)))))
 
-(defun paint-selection (canvas row y from to)
+(defun paint-selected (canvas row y from to)
   "Paint what is behind the part of ROW that is selected, between the places FROM and TO."
   (multiple-value-bind (start stop) (selected-columns row from to)
     (when (< start stop)
       (with-gcontext (draw-gcontext* :foreground +selection-color+)
-        (draw-rectangle canvas draw-gcontext* (column-x (- start (row-start row))) (- y 12)
+        (draw-rectangle canvas draw-gcontext* (column-x (- start (text-row-start row))) (- y 12)
                         (* (- stop start) +character-width+) +line-height+ t)))))
 
 (defun paint-rows (canvas pane)
   (multiple-value-bind (from to) (selection pane)
     (loop for row in (pane-rows pane)
           for y from 14 by +line-height+
-          do (when from (paint-selection canvas row y from to))
+          do (when from (paint-selected canvas row y from to))
              (paint-row canvas row y))))
 
 (defun columns-and-rows (pane)
   "Return for how many columns and rows of text PANE has room."
-  (multiple-value-bind (width height) (pane-size pane)
-    (values (max 10 (floor (- width 8) +character-width+))
+  (let ((height (nth-value 1 (pane-size pane))))
+    (values (max 10 (floor (- (content-width pane) 8) +character-width+))
             (max 1 (floor (- height 4) +line-height+)))))
 
 (defmethod paint ((pane transcript-pane))
@@ -152,6 +151,18 @@ the line."
     (setf (pane-last pane) (if (<= newest last) nil (max (1+ first) last)))
     (repaint-if-changed pane)))
 
+(defmethod scroll-state ((pane transcript-pane))
+  (let* ((transcript (pane-transcript pane))
+         (count (transcript-count transcript))
+         (rows (nth-value 1 (columns-and-rows pane)))
+         (below (if (pane-last pane) (- (transcript-newest transcript) (pane-last pane)) 0)))
+    (values (max 0 (- count rows below)) rows count)))
+
+(defmethod limit-offset ((pane transcript-pane)) nil)
+
+(defmethod scroll-to ((pane transcript-pane) position)
+  (scroll-lines pane (round (- position (scroll-state pane)))))
+
 (defmethod wheel ((pane transcript-pane) steps x y)
   (declare (ignore x y))
   (scroll-lines pane (* 3 steps)))
@@ -167,9 +178,9 @@ the line."
   (let* ((rows (pane-rows pane))
          (row (and rows (nth (clamp (floor (- y 2) +line-height+) 0 (1- (length rows))) rows))))
     (and row
-         (list (row-number row)
-               (clamp (+ (row-start row) (round (- x 4) +character-width+))
-                      (row-start row) (row-stop row))))))
+         (list (text-row-number row)
+               (clamp (+ (text-row-start row) (round (- x 4) +character-width+))
+                      (text-row-start row) (text-row-stop row))))))
 
 (defun selected-text (pane)
   "Return what is selected in PANE, or all that its transcript says."
@@ -188,17 +199,18 @@ the line."
 
 (defmethod click ((pane transcript-pane) button x y)
   (when (eq button :left)
-    (setf (pane-dragging-p pane) t
+    (setf (pane-drag pane) :text
           (pane-mark pane) (place-at pane x y)
           (pane-point pane) (pane-mark pane))
     (repaint-if-changed pane)))
 
-(defmethod clim:handle-event ((pane transcript-pane) (event clim:pointer-motion-event))
-  (when (pane-dragging-p pane)
-    (setf (pane-point pane)
-          (place-at pane (clim:pointer-event-x event) (clim:pointer-event-y event)))
-    (repaint-if-changed pane)))
+(defmethod drag ((pane transcript-pane) x y)
+  (setf (pane-point pane) (place-at pane x y))
+  (repaint-if-changed pane))
 
-(defmethod clim:handle-event ((pane transcript-pane) (event clim:pointer-button-release-event))
-  (when (shiftf (pane-dragging-p pane) nil)
-    (when (selection pane) (publish-text pane (selected-text pane) :primary))))
+(defmethod drop ((pane transcript-pane) x y)
+  (declare (ignore x y))
+  (when (selection pane) (publish-text pane (selected-text pane) :primary)))
+
+(defmethod hover ((pane transcript-pane) x y)
+  (declare (ignore x y)))

@@ -56,6 +56,37 @@ puts the robot, and how uncertain it is."
       (documentation 'robot-image-designators 'function)
       "Return a list of the images of the robot's designators, by number.")
 
+(setf (documentation 'thing-image-thing 'function)
+      "Return the thing itself."
+      (documentation 'thing-image-x 'function)
+      "Return the thing's x coordinate, in metres."
+      (documentation 'thing-image-y 'function)
+      "Return the thing's y coordinate, in metres."
+      (documentation 'thing-image-attributes 'function)
+      "Return a list (name value) for each attribute of the thing."
+      (documentation 'robot-image-angle 'function)
+      "Return the robot's heading, in radians."
+      (documentation 'robot-image-cameras 'function)
+      "Return a list of the images of the robot's cameras."
+      (documentation 'robot-image-hands 'function)
+      "Return a list of the images of the robot's hands."
+      (documentation 'camera-image-index 'function)
+      "Return the number of the camera."
+      (documentation 'camera-image-track 'function)
+      "Return the image of the designator that the camera tracks, or NIL."
+      (documentation 'hand-image-index 'function)
+      "Return the number of the hand."
+      (documentation 'hand-image-contents 'function)
+      "Return the image of the thing that the hand holds, or NIL."
+      (documentation 'bin-image-index 'function)
+      "Return the number of the storage bin."
+      (documentation 'bin-image-closed-p 'function)
+      "True if the storage bin is closed."
+      (documentation 'designator-image-number 'function)
+      "Return the number of the designator."
+      (documentation 'designator-image-denotation 'function)
+      "Return the image of the thing that it denotes, or the name of a place type, or NIL.")
+
 ;;; Things.
 
 (defun moving-p (thing) (and (thing-kickers thing) t))

@@ -74,7 +74,9 @@
     (run-in-window window (lambda () (clim:layout-frame window 1100 900)))
     (sleep 1)
     (run-in-window window (lambda ()
-                            (setf (window::pane-left pane) 0
+                            (setf (window::pane-fitting-p pane) nil
+                                  (window::pane-scale pane) 8
+                                  (window::pane-left pane) 0
                                   (window::pane-top pane) 0)
                             (window::repaint pane)))))
 
@@ -192,6 +194,22 @@ differ from each other."
     (say "  frames shown" (/ (- *frames* frames) *seconds*) "frames/s")
     (say "  time of a processor" (cpu-milliseconds before) "ms a second")))
 
+(defun keep-turning (robot)
+  "Let ROBOT turn on and on."
+  (command:robot-turn robot 3 (lambda (err robot angle)
+                                (declare (ignore angle))
+                                (unless err (keep-turning robot)))))
+
+(defun say-free (simulation)
+  "Print how many frames a second are shown of SIMULATION while ticks pass as fast as they can."
+  (time:set-rate :free simulation)
+  (keep-turning (first (run:simulation-robots simulation)))
+  (sleep 1)
+  (let ((frames *frames*))
+    (say "live, shown, as fast as possible" (tick-rate simulation) "ticks/s")
+    (say "  frames shown" (/ (- *frames* frames) *seconds*) "frames/s"))
+  (time:set-rate 1000 simulation))
+
 (defun say-idle (simulation)
   "Print how busy processors are while the shown SIMULATION is paused."
   (time:pause simulation)
@@ -222,6 +240,7 @@ differ from each other."
 (defun say-living (window simulation)
   (say-live simulation)
   (say-torn "torn frames of 10,000, live" 10000 window)
+  (say-free simulation)
   (say-idle simulation))
 
 (let* ((simulation (run:fresh-simulation '(watched) :seed 1))
