@@ -260,9 +260,14 @@
   :serial t
   :components
   ((:module "src/clim" :serial t
-    :components ((:file "package") (:file "watcher") (:file "canvas") (:file "panes")
-                 (:file "world-pane") (:file "transcript") (:file "prompt") (:file "window")
-                 (:file "commands") (:file "opening")))))
+    :components ((:file "package") (:file "progress") (:file "watcher") (:file "canvas")
+                 (:file "guarding") (:file "arrangement") (:file "panes")
+                 (:file "scrolling") (:file "selection")
+                 (:file "view") (:file "world-pane") (:file "transcript") (:file "prompt")
+                 (:file "plan-pane") (:file "layout-pane") (:file "bar") (:file "strip")
+                 (:file "popup") (:file "pointing") (:file "offers") (:file "world-mouse")
+                 (:file "keys") (:file "help") (:file "robots") (:file "window") (:file "commands")
+                 (:file "opening")))))
 
 (defsystem "ars-magna/fiveam"
   :description "Checks for regression suites: plans that are held to their rates of success."
@@ -289,7 +294,10 @@
 (defsystem "ars-magna/clim-tests"
   :description "What the window claims."
   :depends-on ("ars-magna/tests" "ars-magna/clim" "fiveam")
-  :components ((:module "tests" :components ((:file "clim-window")))))
+  :serial t
+  :components ((:module "tests" :serial t
+                :components ((:file "clim-window") (:file "clim-layout") (:file "clim-pointing")
+                             (:file "clim-progress")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."

@@ -71,8 +71,22 @@
                       :filled (and fill-p t) :ink (ink (gcontext-foreground gcontext))
                       :line-thickness (max 1 (gcontext-line-width gcontext))))
 
+(defun outline-box (x y width height thickness)
+  "Return the box through whose sides the middle of a line of THICKNESS has to run, so that all of it
+is inside the box X, Y, WIDTH, HEIGHT of pixels."
+  (let ((inset (/ (1- thickness) 2)))
+    (values (+ x inset) (+ y inset)
+            (max 1 (- width thickness)) (max 1 (- height thickness)))))
+
 (defmethod paint-arc ((canvas clim-canvas) gcontext x y width height start extent fill-p)
   (extend-reach canvas x y (+ x width) (+ y height))
+  (if fill-p
+      (paint-arc-in canvas gcontext x y width height start extent t)
+      (multiple-value-bind (x y width height)
+          (outline-box x y width height (max 1 (gcontext-line-width gcontext)))
+        (paint-arc-in canvas gcontext x y width height start extent nil))))
+
+(defun paint-arc-in (canvas gcontext x y width height start extent fill-p)
   (if (>= (abs extent) (- (* 2 pi) 1d-9))
       (paint-ellipse canvas gcontext x y width height fill-p)
       (let ((points (arc-points x y width height start extent)))

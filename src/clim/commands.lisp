@@ -15,17 +15,6 @@
          (with-guarded-command (,window ,title) ,@body)))
      (setf (documentation ',name 'function) ,documentation)))
 
-(defun call-guarded-command (window title function)
-  (handler-case (funcall function)
-    (error (condition)
-      (say (window-transcript window)
-           (format nil "~&*ERROR* -> ~A: ~A~%" title
-                   (substitute #\Space #\Newline (princ-to-string condition)))))))
-
-(defmacro with-guarded-command ((window title) &body body)
-  "Run BODY, the work of the command TITLE; what goes wrong is said in WINDOW."
-  `(call-guarded-command ,window ,title (lambda () ,@body)))
-
 ;;; Running.
 
 (define-window-command (com-pause "Pause") (window)
@@ -35,6 +24,16 @@
 (define-window-command (com-resume "Resume") (window)
     "Let time go on."
   (resume (window-simulation window)))
+
+(define-window-command (com-pause-or-resume "Pause or go on") (window)
+    "Let time stand still, or go on."
+  (if (paused-p (window-simulation window)) (com-resume) (com-pause)))
+
+(define-constant +back+ 10 :documentation "How many ticks a step back is.")
+
+(define-window-command (com-back "Go back") (window)
+    "Go back some ticks, as the prompt's REWIND does."
+  (give-line (window-conversation window) (format nil "rewind ~D" +back+)))
 
 (define-window-command (com-step "Step") (window)
     "Pass one tick and pause."
@@ -90,29 +89,30 @@
     "Bring the robot into the middle of the view."
   (show-robot (pane-named window 'world)))
 
+(define-window-command (com-follow "Follow the robot") (window)
+    "Keep the robot in view, or no longer."
+  (let ((pane (pane-named window 'world)))
+    (setf (pane-following-p pane) (not (pane-following-p pane)))
+    (repaint-if-changed pane)))
+
 (define-window-command (com-color "Colours on or off") (window)
     "Switch between colours and black and white."
-  (setf (window-color-p window) (not (window-color-p window)))
-  (mapc #'repaint (display-panes window)))
+  (switch-color window))
 
-(defun switch-layer (window layer)
-  (let ((layers (window-layers window)))
-    (setf (window-layers window)
-          (if (member layer layers) (remove layer layers) (cons layer layers)))
-    (repaint-if-changed (pane-named window 'world))))
+(defun open-below-bar (window rows)
+  (open-popup window rows 8 (+ +bar-height+ 2)))
 
-(macrolet ((define-switches (&rest switches)
-             `(progn
-                ,@(loop for (name title layer) in switches
-                        collect `(define-window-command (,name ,title) (window)
-                                     ,(format nil "Switch ~(~A~) on or off." title)
-                                   (switch-layer window ,layer))))))
-  (define-switches
-    (com-wedges "Camera wedges" :wedges)
-    (com-rays "Rays of the last look" :rays)
-    (com-tracks "Tracks" :tracks)
-    (com-odometer "Odometer's uncertainty" :odometer)
-    (com-trail "Trail" :trail)))
+(define-window-command (com-layers "Layers") (window)
+    "Choose what the display of the world shows."
+  (open-below-bar window (layer-rows window)))
+
+(define-window-command (com-robots "Which robot") (window)
+    "Choose whose details to show and whom to command."
+  (open-below-bar window (robot-rows window)))
+
+(define-window-command (com-help "Keys and mouse") (window)
+    "Tell what keys and mouse do."
+  (open-below-bar window (help-rows)))
 
 ;;; Pictures.
 
@@ -195,6 +195,7 @@
   "Make the menu bar, with the line commands that there are now."
   (make-menu 'run-menu
              (item 'com-pause "Pause") (item 'com-resume "Resume") (item 'com-step "Step")
+             (item 'com-back "Back")
              '(nil :divider nil)
              (item 'com-slower "Half as fast") (item 'com-faster "Twice as fast")
              (item 'com-default-rate "Default rate") (item 'com-free "As fast as possible"))
@@ -202,13 +203,13 @@
              (item 'com-zoom-in "Zoom in") (item 'com-zoom-out "Zoom out")
              (item 'com-fit "Whole map") (item 'com-find "Go to the robot")
              '(nil :divider nil)
-             (item 'com-wedges "Camera wedges") (item 'com-rays "Rays of the last look")
-             (item 'com-tracks "Tracks") (item 'com-odometer "Odometer's uncertainty")
-             (item 'com-trail "Trail") (item 'com-color "Colours on or off"))
+             (item 'com-robots "Which robot ...") (item 'com-follow "Follow the robot")
+             (item 'com-layers "Layers ...")
+             (item 'com-color "Colours on or off"))
   (make-menu 'picture-menu
              (item 'com-save-svg "Save as SVG") (item 'com-save-png "Save as PNG")
              '(nil :divider nil)
-             (item 'com-close "Close window"))
+             (item 'com-help "Keys and mouse") (item 'com-close "Close window"))
   (make-menu 'menu-bar
              '("Run" :menu run-menu) '("View" :menu view-menu)
              (list "Robot" :menu (make-robot-menu)) '("Window" :menu picture-menu)))

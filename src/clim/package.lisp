@@ -7,6 +7,7 @@ McCLIM's symbols are written with their packages. Manual B.")
         :ars-magna.run :ars-magna.canvas
         :ars-magna.display)
   (:shadowing-import-from :ars-magna.world #:map)
+  (:import-from :ars-magna.rpl-robot #:plans)
   (:import-from :ars-magna.cli
                 #:fundamental-character-output-stream #:fundamental-character-input-stream
                 #:stream-line-column #:stream-write-char #:stream-write-string

@@ -6,13 +6,15 @@
 ;;; asks for it; it does so only when what it shows has changed. Painting records nothing.
 
 (defclass display-pane (clim:basic-pane)
-  ((display :initarg :display :reader pane-display)
+  ((display :initarg :display :initform nil :reader pane-display)
    ;; Boxes of what was painted, for clicks; what was painted, to know whether that has changed.
    (subjects :initform '() :accessor pane-subjects)
    (painted :initform nil :accessor pane-painted)
    ;; How far down the picture the pane begins, in pixels, and how high the picture is.
    (offset :initform 0 :accessor pane-offset)
-   (extent :initform 0 :accessor pane-extent))
+   (extent :initform 0 :accessor pane-extent)
+   ;; What the mouse drags, with its button down: NIL for nothing.
+   (drag :initform nil :accessor pane-drag))
   (:default-initargs :background clim:+white+)
   (:documentation "A pane that shows one of the displays."))
 
@@ -22,11 +24,7 @@
 (defgeneric pane-content (pane)
   (:documentation "Return an object that is EQUAL to the one before if PANE would look the same."))
 
-(defmethod clim:handle-repaint ((pane display-pane) region)
-  (declare (ignore region))
-  ;; CLIM narrows painting down to REGION, but the rest may have changed as well.
-  (setf (clim:medium-clipping-region (clim:sheet-medium pane)) clim:+everywhere+)
-  (repaint pane))
+(defun window-of (pane) (clim:pane-frame pane))
 
 (defun pane-size (pane)
   "Return width and height of PANE, in pixels."
@@ -34,73 +32,73 @@
     (values (floor (clim:bounding-rectangle-width region))
             (floor (clim:bounding-rectangle-height region)))))
 
-(defun repaint (pane)
-  "Paint PANE, all at once."
-  (when (clim:sheet-grafted-p pane)
-    (setf (pane-painted pane) (pane-content pane))
-    (clim:with-output-buffered (pane)
-      (paint pane))))
-
-(defun repaint-if-changed (pane)
-  (unless (equal (pane-painted pane) (pane-content pane)) (repaint pane)))
-
-(defun clear (pane)
+(defun clear (pane &optional (ink clim:+white+))
+  "Paint all of PANE with INK."
   (multiple-value-bind (width height) (pane-size pane)
-    (clim:draw-rectangle* pane 0 0 width height :ink clim:+white+)))
+    (clim:draw-rectangle* pane 0 0 width height :ink ink)))
 
-;;; Details of the robot.
-
-(defclass detail-pane (display-pane) ())
-
-(defun window-of (pane) (clim:pane-frame pane))
-
-(defmethod pane-content ((pane detail-pane))
-  (list (pane-offset pane)
-        (let ((robot (window-robot (window-of pane))))
-          (and robot (display-content (pane-display pane) robot)))))
-
-(defmethod paint ((pane detail-pane))
-  (let* ((window (window-of pane))
-         (canvas (make-instance 'clim-canvas :medium pane :color-p (window-color-p window)))
-         (snapshot (window-snapshot window)))
-    (clear pane)
-    (when snapshot
-      (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))
-        (with-canvas (canvas)
-          (with-origin (canvas 0 (- (pane-offset pane)))
-            (setf (pane-extent pane)
-                  (nth-value 1 (draw-display canvas (pane-display pane) snapshot
-                                             (window-robot window) :width (pane-size pane))))))))
+(defun call-painting (function pane)
+  "Call FUNCTION with a canvas on which it paints PANE; remember what was painted where."
+  (let ((canvas (make-instance 'clim-canvas :medium pane
+                                            :color-p (window-color-p (window-of pane)))))
+    (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))
+      (with-canvas (canvas) (funcall function canvas)))
     (setf (pane-subjects pane) (canvas-subjects canvas))))
 
-(defun scroll (pane pixels)
-  "Show what is PIXELS further down in the picture in PANE, but not more than there is."
-  (let ((room (max 0 (- (pane-extent pane) (nth-value 1 (pane-size pane))))))
-    (setf (pane-offset pane) (max 0 (min room (+ (pane-offset pane) pixels))))
-    (repaint-if-changed pane)))
+(defmacro painting ((canvas pane) &body body)
+  "Run BODY, which paints PANE on CANVAS, within its bounds."
+  `(call-painting (lambda (,canvas) ,@body) ,pane))
 
-;;; The mouse. A click describes what it hits; in the display of designators, the right button
-;;; scrolls up and the left one down (manual B), and the middle one describes.
+;;; Repainting.
 
-(defclass designators-pane (detail-pane) ())
+(defmethod clim:handle-repaint ((pane display-pane) region)
+  (declare (ignore region))
+  ;; CLIM narrows painting down to REGION, but the rest may have changed as well.
+  (setf (clim:medium-clipping-region (clim:sheet-medium pane)) clim:+everywhere+)
+  (repaint pane))
+
+(defun shown-p (pane)
+  "True if PANE is to be seen."
+  (and (clim:sheet-grafted-p pane) (clim:sheet-enabled-p pane)))
+
+(defun repaint (pane)
+  "Paint PANE, all at once."
+  (when (shown-p pane)
+    (setf (pane-painted pane) (pane-content pane))
+    (clim:with-output-buffered (pane)
+      (paint pane)
+      (when (limit-offset pane) (paint pane))
+      (paint-selection pane)
+      (paint-scroll-bar pane)
+      (paint-popup-over pane))))
+
+(defun repaint-if-changed (pane)
+  (when (and (shown-p pane) (not (equal (pane-painted pane) (pane-content pane))))
+    (repaint pane)))
+
+;;; The mouse: see pointing.lisp.
 
 (define-constant +scroll-step+ (* 3 +line-height+)
-  :documentation "How far a click or a turn of the wheel scrolls, in pixels.")
+  :documentation "How far a turn of the wheel scrolls, in pixels.")
 
-;; As readings 26 and 28 say.
+(defgeneric press (pane button x y)
+  (:documentation "The mouse's BUTTON, :LEFT, :MIDDLE or :RIGHT, was pressed at X, Y of PANE.")
+  (:method (pane button x y) (click pane button x y)))
+
 (defgeneric click (pane button x y)
-  (:documentation "The mouse's BUTTON, :LEFT, :MIDDLE or :RIGHT, was pressed at X, Y of PANE."))
+  (:documentation "The mouse was clicked with BUTTON, :LEFT, :MIDDLE or :RIGHT, at X, Y of PANE."))
 
-(defmethod click ((pane display-pane) button x y)
-  (declare (ignore button))
-  (describe-to (window-of pane) (subject-at (pane-subjects pane) x y)))
+(defgeneric drag (pane x y)
+  (:documentation "The mouse moved to X, Y of PANE while what (PANE-DRAG PANE) says is dragged.")
+  (:method (pane x y) (declare (ignore pane x y))))
 
-(defmethod click ((pane designators-pane) button x y)
-  (declare (ignore x y))
-  (case button
-    (:right (scroll pane (- +scroll-step+)))
-    (:left (scroll pane +scroll-step+))
-    (t (call-next-method))))
+(defgeneric drop (pane x y)
+  (:documentation "The mouse's button, which dragged something, was released at X, Y of PANE.")
+  (:method (pane x y) (declare (ignore pane x y))))
+
+(defgeneric hover (pane x y)
+  (:documentation "The mouse moved to X, Y of PANE with no button pressed.")
+  (:method (pane x y) (hint (window-of pane) (hover-text pane x y))))
 
 (defgeneric wheel (pane steps x y)
   (:documentation "The mouse's wheel was turned by STEPS, down if positive, at X, Y of PANE.")
@@ -108,18 +106,29 @@
     (declare (ignore x y))
     (scroll pane (* steps +scroll-step+))))
 
-(defun button-name (event)
-  (let ((button (clim:pointer-event-button event)))
-    (cond ((eql button clim:+pointer-left-button+) :left)
-          ((eql button clim:+pointer-right-button+) :right)
-          (t :middle))))
+(defgeneric hover-text (pane x y)
+  (:documentation "Return in one line what lies at X, Y of PANE.")
+  (:method (pane x y)
+    (let ((subject (subject-at (pane-subjects pane) x y)))
+      (if subject (subject-text subject) ""))))
 
-(defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-press-event))
-  (click pane (button-name event) (clim:pointer-event-x event) (clim:pointer-event-y event)))
+;;; Details of the robot.
 
-;;; A turn of the wheel is an event of a button, too, but no press of it.
-(defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-event))
-  (let ((steps (position (clim:pointer-event-button event)
-                         (list clim:+pointer-wheel-up+ nil clim:+pointer-wheel-down+))))
-    (when steps
-      (wheel pane (1- steps) (clim:pointer-event-x event) (clim:pointer-event-y event)))))
+(defclass detail-pane (display-pane) ())
+
+(defmethod pane-content ((pane detail-pane))
+  (list (pane-offset pane) (multiple-value-list (pane-size pane))
+        (window-selection (window-of pane))
+        (let ((robot (window-robot (window-of pane))))
+          (and robot (display-content (pane-display pane) robot)))))
+
+(defmethod paint ((pane detail-pane))
+  (let ((window (window-of pane)))
+    (clear pane)
+    (painting (canvas pane)
+      (with-origin (canvas 0 (- (pane-offset pane)))
+        (when (window-robot window)
+          (setf (pane-extent pane)
+                (nth-value 1 (draw-display canvas (pane-display pane) (window-snapshot window)
+                                           (window-robot window)
+                                           :width (content-width pane)))))))))

@@ -85,11 +85,25 @@
                   do (draw-glyphs canvas draw-gcontext* 4 y
                                   (subseq line 0 (min columns (length line)))))))))))
 
+(defun transcript-rows (pane)
+  "Return how many lines fit into PANE."
+  (floor (- (nth-value 1 (pane-size pane)) 4) +line-height+))
+
+(defmethod scroll-state ((pane transcript-pane))
+  (let ((count (transcript-count (pane-transcript pane))) (rows (transcript-rows pane)))
+    (values (max 0 (- count rows (pane-offset pane))) rows count)))
+
+(defmethod limit-offset ((pane transcript-pane)) nil)
+
+(defmethod scroll-to ((pane transcript-pane) position)
+  (multiple-value-bind (old rows count) (scroll-state pane)
+    (declare (ignore old))
+    (setf (pane-offset pane) (clamp (round (- count rows position)) 0 (max 0 (- count rows))))
+    (repaint-if-changed pane)))
+
 (defmethod click ((pane transcript-pane) button x y)
   (declare (ignore button x y)))
 
 (defmethod wheel ((pane transcript-pane) steps x y)
   (declare (ignore x y))
-  (let ((length (transcript-count (pane-transcript pane))))
-    (setf (pane-offset pane) (clamp (- (pane-offset pane) (* 3 steps)) 0 (max 0 (1- length))))
-    (repaint-if-changed pane)))
+  (scroll pane (* 3 steps)))

@@ -7,7 +7,8 @@
 ;;; of each snapshot, and says when it has PAINTED. The pacer, in between, wants the next snapshot
 ;;; a while after that: so a picture is painted at most 30 times a second, however fast the ticks
 ;;; pass, and never when nothing happens. What is changed between ticks (a robot put somewhere, a
-;;; thing moved at the prompt) calls no observer; the pacer looks for it twice a second.
+;;; thing moved at the prompt) calls no observer, nor does a run that pauses; the pacer looks for
+;;; such things twice a second.
 
 (define-constant +pause+ 0.028
   :documentation "How long to wait after painting before wanting the next picture, in seconds.")
@@ -29,7 +30,12 @@ thread, for each new snapshot; it must be quick."
   (painted (make-semaphore "painted") :read-only t)
   (over (make-semaphore "over") :read-only t)
   (over-p nil)
-  (pacer nil))
+  (pacer nil)
+  ;; How time goes, and how it was found to go so far.
+  (progress (make-progress) :type progress)
+  (pulse (make-pulse) :type pulse)
+  ;; What GRAPHICS-SCALE* was when that was looked at last.
+  (scale graphics-scale*))
 (setf (documentation 'watcher-robot 'function) "Return the name of the robot that is watched."
       (documentation 'watcher-snapshot 'function) "Return the last snapshot, or NIL."
       (documentation 'make-watcher 'function)
@@ -80,13 +86,39 @@ itself: it will come with the next tick."
       (setf (watcher-wanted-p watcher) t)
       (fetch watcher))))
 
+(defun look-at-progress (watcher)
+  "Find out how time goes in what WATCHER watches; tell if that has changed."
+  (let ((simulation (watcher-simulation watcher)))
+    (when simulation
+      ;; The run goes on meanwhile, and a look may come just when something is half done.
+      (let ((new (or (ignore-errors (progress-of simulation (watcher-pulse watcher)))
+                     (watcher-progress watcher))))
+        (unless (equalp new (watcher-progress watcher))
+          (setf (watcher-progress watcher) new)
+          (funcall (watcher-news watcher)))))))
+
+(defun look-at-scale (watcher)
+  "Tell if the user has set GRAPHICS-SCALE*."
+  (unless (eql graphics-scale* (shiftf (watcher-scale watcher) graphics-scale*))
+    (funcall (watcher-news watcher))))
+
+(defun look-around (watcher)
+  "Look for what no observer tells of."
+  (look-at-progress watcher)
+  (look-at-scale watcher)
+  (fetch-if-changed watcher))
+
 (defun run-pacer (watcher)
-  (loop until (watcher-over-p watcher)
-        do (cond ((wait-on-semaphore (watcher-painted watcher) +patience+)
-                  (wait-on-semaphore (watcher-over watcher) +pause+)
-                  (setf (watcher-wanted-p watcher) t)
-                  (when (watcher-stale-p watcher) (fetch watcher)))
-                 (t (fetch-if-changed watcher)))))
+  (loop with next = (seconds-now)
+        until (watcher-over-p watcher)
+        do (when (wait-on-semaphore (watcher-painted watcher)
+                                    (max 0.001 (- next (seconds-now))))
+             (wait-on-semaphore (watcher-over watcher) +pause+)
+             (setf (watcher-wanted-p watcher) t)
+             (when (watcher-stale-p watcher) (fetch watcher)))
+           (when (<= next (seconds-now))
+             (setf next (+ (seconds-now) +patience+))
+             (look-around watcher))))
 
 ;;; Beginning and ending.
 

@@ -9,15 +9,14 @@
 (defparameter *help-line*
   "Type a command here and press return, or choose one from a menu. HELP lists all commands.")
 
-(defun make-detail-pane (class name display height)
-  (clim:make-pane class :name name :display display :width 340 :min-width 120
-                        :height height :min-height (min height 50) :max-height clim:+fill+))
+(defun make-detail-pane (class name display)
+  (clim:make-pane class :name name :display display))
 
-(defmacro titled (title pane)
-  "Return PANE with TITLE above it."
-  `(clim:vertically (:y-spacing 0)
-     (clim:make-pane 'clim:label-pane :label ,title :align-x :left :max-height 20)
-     (:fill (clim:outlining (:thickness 1) ,pane))))
+(defun make-title (section)
+  (clim:make-pane 'title-pane :name (title-name section) :section section))
+
+(defun make-splitter (name)
+  (clim:make-pane 'splitter-pane :name name))
 
 (clim:define-application-frame robot-window ()
   ((watcher :initarg :watcher :accessor window-watcher
@@ -27,6 +26,14 @@
    (color-p :initarg :color-p :initform t :accessor window-color-p)
    (transcript :initform nil :accessor window-transcript)
    (conversation :initform nil :accessor window-conversation)
+   ;; What the mouse points at, as text; the key of what is picked, or NIL.
+   (hint :initform "" :accessor window-hint)
+   (selection :initform nil :accessor window-selection)
+   ;; The name of the robot that is shown, or NIL for the watcher's.
+   (robot-name :initform nil :accessor window-robot-name)
+   ;; The name of the robot that the displays have been given room for.
+   (settled :initform nil :accessor window-settled)
+   (panes-painted :initform '() :accessor window-panes-painted)
    ;; Its car is true while an event is queued.
    (queued :initform (list nil) :reader window-queued)
    (painted :initform nil :accessor window-painted)
@@ -34,32 +41,27 @@
   (:menu-bar menu-bar)
   (:command-table (robot-window))
   (:panes
-   (world (clim:make-pane 'world-pane :name 'world :display :world
-                                      :width 680 :height 520 :min-width 100 :min-height 100))
-   (state (make-detail-pane 'detail-pane 'state :state 76))
-   (designators (make-detail-pane 'designators-pane 'designators :designators 110))
-   (cameras (make-detail-pane 'detail-pane 'cameras :cameras 140))
-   (hands (make-detail-pane 'detail-pane 'hands :hands 84))
-   (bins (make-detail-pane 'detail-pane 'bins :bins 84))
-   (transcript (clim:make-pane 'transcript-pane :name 'transcript :display :transcript
-                                                :width 680 :height 120 :min-height 40
-                                                :max-height 400))
-   (interactor :text-field :ncolumns 80 :activate-callback 'take-line))
+   (bar (clim:make-pane 'bar-pane :name 'bar))
+   (world (clim:make-pane 'world-pane :name 'world :display :world))
+   (state (make-detail-pane 'detail-pane 'state :state))
+   (designators (make-detail-pane 'designators-pane 'designators :designators))
+   (cameras (make-detail-pane 'detail-pane 'cameras :cameras))
+   (hands (make-detail-pane 'detail-pane 'hands :hands))
+   (bins (make-detail-pane 'detail-pane 'bins :bins))
+   (plan (clim:make-pane 'plan-pane :name 'plan :display :plan))
+   (transcript (clim:make-pane 'transcript-pane :name 'transcript :display :transcript))
+   (prompt (clim:make-pane 'clim:label-pane :label " Robot> "))
+   (interactor :text-field :ncolumns 80 :activate-callback 'take-line)
+   (strip (clim:make-pane 'strip-pane :name 'strip))
+   (popup (clim:make-pane 'popup-pane :name 'popup :enabled-p nil)))
   (:layouts
    (default
-    (clim:vertically ()
-      (:fill (clim:horizontally (:x-spacing 4)
-               (:fill (titled "World" world))
-               (clim:vertically (:y-spacing 2)
-                 (titled "Robot state" state)
-                 (:fill (titled "Robot designators" designators))
-                 (titled "Cameras" cameras)
-                 (titled "Hands" hands)
-                 (titled "Storage bins" bins))))
-      (titled "Commands" transcript)
-      (clim:horizontally ()
-        (clim:make-pane 'clim:label-pane :label " Robot> " :max-width 64)
-        (:fill (clim:outlining (:thickness 1) interactor))))))
+    (clim:make-pane 'layout-pane
+                    :name 'layout
+                    :contents (list* bar world state designators cameras hands bins plan
+                                     transcript prompt interactor strip popup
+                                     (append (mapcar #'make-title +titled+)
+                                             (mapcar #'make-splitter +splitters+))))))
   (:documentation "The displays of a robot in a window."))
 
 (setf (documentation 'window-layers 'function)
@@ -87,18 +89,26 @@
 (defun window-robot (window)
   "Return the image of the robot whose details WINDOW shows, or NIL."
   (let ((snapshot (window-snapshot window)))
-    (and snapshot (snapshot-robot snapshot (watcher-robot (window-watcher window))))))
+    (and snapshot (snapshot-robot snapshot (shown-robot window)))))
 
 (defun window-simulation (window)
   (watcher-simulation (window-watcher window)))
 
-(defun pane-named (window name)
-  (clim:find-pane-named window name))
+(defun painted-parts ()
+  "Return the names of the parts of the window that we paint."
+  (append '(world state designators cameras hands bins plan transcript strip bar)
+          (mapcar #'title-name +titled+) +splitters+))
 
 (defun display-panes (window)
-  "Return a list of the panes of WINDOW that show something."
-  (remove nil (mapcar (lambda (name) (pane-named window name))
-                      '(world state designators cameras hands bins transcript))))
+  "Return a list of the panes of WINDOW that are painted."
+  (or (window-panes-painted window)
+      (setf (window-panes-painted window)
+            (remove nil (mapcar (lambda (name) (pane-named window name)) (painted-parts))))))
+
+(defun repaint-all (window)
+  "Paint all of WINDOW, as one picture."
+  (clim:with-output-buffered ((clim:frame-top-level-sheet window))
+    (mapc #'repaint (display-panes window))))
 
 ;;; Keeping up to date.
 
@@ -111,11 +121,19 @@
     (when (and sheet (swap-if (car (window-queued window)) nil t))
       (clim:queue-event sheet (make-instance 'refresh-event :sheet sheet)))))
 
+(defun settle (window)
+  "The first time, and when WINDOW has got another robot, give each display the room that it needs."
+  (let ((robot (shown-robot window)))
+    (unless (eq robot (window-settled window))
+      (setf (window-settled window) robot)
+      (rearrange window))))
+
 (defun refresh (window)
   "Paint those panes of WINDOW that would look different now, all at once."
   (let ((snapshot (window-snapshot window)))
     (clim:with-output-buffered ((clim:frame-top-level-sheet window))
-      (mapc #'repaint-if-changed (display-panes window)))
+      (mapc #'repaint-if-changed (display-panes window))
+      (settle window))
     (unless (eq snapshot (window-painted window))
       (setf (window-painted window) snapshot)
       (painted (window-watcher window)))))
@@ -126,7 +144,7 @@
     (memory-barrier)
     (refresh window)))
 
-;;; What the user types and points at.
+;;; What the user types.
 
 (defun take-line (gadget)
   "Let the prompt have the line in the text field GADGET."
@@ -134,13 +152,6 @@
     (unless (string= line "")
       (setf (clim:gadget-value gadget) "")
       (give-line (window-conversation window) line))))
-
-(defun describe-to (window subject)
-  "Say in WINDOW what SUBJECT is, if it is anything."
-  (when subject
-    (let ((stream (make-instance 'transcript-stream :transcript (window-transcript window))))
-      (fresh-line stream)
-      (describe-subject subject stream))))
 
 ;;; Reading commands from the menus.
 

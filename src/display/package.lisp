@@ -15,6 +15,12 @@
   (:export #:snapshot #:take-snapshot #:snapshot-of #:snapshot-tick #:snapshot-map
            #:snapshot-things #:snapshot-robots #:snapshot-robot #:thing-image #:robot-image
            #:robot-image-name #:robot-image-x #:robot-image-y #:robot-image-designators)
+  (:export #:thing-image-thing #:thing-image-x #:thing-image-y #:thing-image-attributes
+           #:thing-image-location #:robot-image-angle #:robot-image-cameras #:robot-image-hands
+           #:camera-image #:camera-image-index #:camera-image-track
+           #:hand-image #:hand-image-index #:hand-image-contents
+           #:bin-image #:bin-image-index #:bin-image-closed-p
+           #:designator-image #:designator-image-number #:designator-image-denotation)
   ;; subjects, contents
   (:export #:describe-subject #:snapshot-content #:display-content)
   ;; terrain, world-display, details

@@ -21,6 +21,14 @@
                     (setf (pacing-hog pacing) count)
                     (warn-of-hog origin))))))
 
+(defun users-code-under-way (simulation)
+  "Return in words whose code the thread of the live SIMULATION is in, and how many calls of such
+code it has begun; NIL if it is in none, or one that waits in a debugger."
+  (let* ((pacing (timeline-pacing (timeline-of simulation)))
+         (calls (and pacing (pacing-calls pacing)))
+         (origin (and calls (not (user-calls-waiting-p calls)) (user-calls-origin calls))))
+    (and origin (values (text-of-origin origin) (user-calls-count calls)))))
+
 (defun abort-hog (simulation)
   "Abort the users' code that keeps the live SIMULATION waiting, if it has been named for that. True
 if there is such."

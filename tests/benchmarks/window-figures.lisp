@@ -74,7 +74,9 @@
     (run-in-window window (lambda () (clim:layout-frame window 1100 900)))
     (sleep 1)
     (run-in-window window (lambda ()
-                            (setf (window::pane-left pane) 0
+                            (setf (window::pane-fitting-p pane) nil
+                                  (window::pane-scale pane) 8
+                                  (window::pane-left pane) 0
                                   (window::pane-top pane) 0)
                             (window::repaint pane)))))
 

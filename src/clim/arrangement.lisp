@@ -1,0 +1,129 @@
+;;;; arrangement.lisp -- where each part of the window is, at any size.
+
+(in-package :ars-magna.clim)
+
+;;; Rows from top to bottom: the bar, the displays, a splitter, the transcript, the line that is
+;;; typed, the strip. In the row of displays the world is on the left, then a splitter, then a
+;;; column of sections, each a title with a display below it. Nothing here knows CLIM: a part is a
+;;; name, a place is (name left top width height), in pixels.
+
+(define-constant +title-height+ 17 :documentation "How high titles of displays are, in pixels.")
+(define-constant +bar-height+ 26 :documentation "How high the tool bar is, in pixels.")
+(define-constant +strip-height+ 20 :documentation "How high the status strip is, in pixels.")
+(define-constant +prompt-height+ 26 :documentation "How high the line to type in is, in pixels.")
+(define-constant +prompt-width+ 64 :documentation "How wide the prompt before it is, in pixels.")
+(define-constant +splitter+ 6 :documentation "How thick splitters are, in pixels.")
+(define-constant +wide+ 1500
+  :documentation "From what width of a window on plans have a column of their own, in pixels.")
+
+(define-constant +sections+ '(state designators cameras hands bins plan)
+  :test #'equal
+  :documentation "The displays of the column, from top to bottom.")
+
+(define-constant +titled+ '(world state designators cameras hands bins plan transcript)
+  :test #'equal
+  :documentation "The parts of the window that have titles.")
+
+(define-constant +splitters+ '(side-splitter low-splitter)
+  :test #'equal
+  :documentation "The parts of the window that can be dragged to make others larger.")
+
+(defstruct (wishes (:copier nil))
+  "What the user wants of an arrangement. DETAILS-WIDTH and TRANSCRIPT-HEIGHT are in pixels, or NIL
+for what suits the window; FOLDED lists sections of which only the title is to be seen."
+  (details-width nil :type (or null real))
+  (transcript-height nil :type (or null real))
+  (folded '(plan) :type list))
+
+(defun title-name (section)
+  "Return the name of the title of SECTION."
+  (ecase section
+    (world 'world-title) (state 'state-title) (designators 'designators-title)
+    (cameras 'cameras-title) (hands 'hands-title) (bins 'bins-title) (plan 'plan-title)
+    (transcript 'transcript-title)))
+
+(defun details-width (wishes width)
+  "Return how wide the column of sections is in a window WIDTH pixels wide."
+  (let ((wish (or (wishes-details-width wishes) (clamp (floor width 3) 200 360))))
+    (clamp (round wish) 120 (max 120 (- width 160)))))
+
+(defun transcript-height (wishes height)
+  "Return how high the transcript, with its title, is in a window HEIGHT pixels high."
+  (let ((wish (or (wishes-transcript-height wishes) (clamp (floor height 5) 80 260)))
+        (fixed (+ +bar-height+ +splitter+ +prompt-height+ +strip-height+)))
+    (clamp (round wish) 40 (max 40 (- height fixed 120)))))
+
+;;; Sections.
+
+(defun share-height (needs height)
+  "Return how much of HEIGHT each of NEEDS gets, which are (section pixels): what it needs, and what
+is left over goes to the designators, or the plan; or else what is fair."
+  (cond ((null needs) '())
+        ((<= (reduce #'+ needs :key #'second) height) (give-rest needs height))
+        (t (share-fairly needs height))))
+
+(defun share-fairly (needs height)
+  "Return shares of HEIGHT, which is not enough for NEEDS: those who need less than others get it."
+  (let* ((fair (floor height (max 1 (length needs))))
+         (modest (remove-if (lambda (need) (> (second need) fair)) needs))
+         (greedy (set-difference needs modest :test #'eq)))
+    (if (null modest)
+        (loop for (section) in needs collect (list section fair))
+        (append modest
+                (share-fairly greedy (- height (reduce #'+ modest :key #'second)))))))
+
+(defun give-rest (shares height)
+  "Return SHARES with what they leave of HEIGHT added to one of them."
+  (let ((rest (- height (reduce #'+ shares :key #'second)))
+        (heir (or (find 'plan shares :key #'first) (find 'designators shares :key #'first)
+                  (first (last shares)))))
+    (loop for share in shares
+          collect (if (eq share heir) (list (first share) (+ (second share) rest)) share))))
+
+(defun place-section (section left top width height)
+  "Return the places of the title of SECTION and, below it, of its display, HEIGHT pixels high."
+  (list (list (title-name section) left top width +title-height+)
+        (list section left (+ top +title-height+) width (max 0 height))))
+
+(defun place-sections (sections needs folded left top width height)
+  "Return the places of SECTIONS in a column. NEEDS is a function from one to how high it would be."
+  (let* ((open (set-difference sections folded))
+         (room (- height (* +title-height+ (length sections))))
+         (shares (share-height (loop for section in sections
+                                     when (member section open)
+                                       collect (list section (funcall needs section)))
+                               room)))
+    (loop for section in sections
+          for own = (or (second (find section shares :key #'first)) 0)
+          append (place-section section left top width own)
+          do (incf top (+ +title-height+ own)))))
+
+;;; The whole.
+
+(defun place-displays (wishes needs width top height)
+  "Return the places of the row of displays, which begins at TOP and is HEIGHT pixels high."
+  (let* ((column (details-width wishes width))
+         (own-p (and (>= width +wide+) (not (member 'plan (wishes-folded wishes)))))
+         (plan (if own-p (+ column 60) 0))
+         (world (- width column plan +splitter+))
+         (left (+ world +splitter+)))
+    (append (place-section 'world 0 top world (- height +title-height+))
+            (list (list 'side-splitter world top +splitter+ height))
+            (and own-p (place-section 'plan left top plan (- height +title-height+)))
+            (place-sections (if own-p (remove 'plan +sections+) +sections+) needs
+                            (wishes-folded wishes) (+ left plan) top column height))))
+
+(defun arrange (wishes needs width height)
+  "Return the places of all parts of a window of WIDTH times HEIGHT pixels, as WISHES want it. NEEDS
+is a function from a section to how many pixels high it would like to be."
+  (let* ((strip (- height +strip-height+))
+         (prompt (- strip +prompt-height+))
+         (low (- prompt (transcript-height wishes height)))
+         (splitter (- low +splitter+)))
+    (append (list (list 'bar 0 0 width +bar-height+))
+            (place-displays wishes needs width +bar-height+ (- splitter +bar-height+))
+            (list (list 'low-splitter 0 splitter width +splitter+))
+            (place-section 'transcript 0 low width (- prompt low +title-height+))
+            (list (list 'prompt 0 prompt +prompt-width+ +prompt-height+)
+                  (list 'interactor +prompt-width+ prompt (- width +prompt-width+) +prompt-height+)
+                  (list 'strip 0 strip width +strip-height+)))))

@@ -1,0 +1,91 @@
+;;;; bar.lisp -- the tool bar: buttons for what is done often, each with a key that does the same.
+
+(in-package :ars-magna.clim)
+
+(defstruct (button (:constructor make-button (label key command help &optional lit-p)) (:copier nil))
+  "COMMAND, a function of no arguments, is what a click on the button called LABEL, or the character
+KEY, does; HELP says what that is. LABEL may be a function of the window, and LIT-P one that says
+whether the button is on."
+  (label "" :read-only t)
+  (key #\Space :type character :read-only t)
+  (command nil :type symbol :read-only t)
+  (help "" :type string :read-only t)
+  (lit-p (constantly nil) :read-only t))
+
+(defun key-text (key)
+  "Return what the key that types the character KEY is called."
+  (if (char= key #\Space) "space" (string key)))
+
+(defmethod subject-title ((button button))
+  (format nil "~A (key: ~A)" (button-help button) (key-text (button-key button))))
+
+(defun pause-label (window)
+  (if (paused-p (window-simulation window)) "Resume" "Pause"))
+
+(defun following-p (window) (pane-following-p (pane-named window 'world)))
+
+(defparameter *buttons*
+  (list (make-button 'pause-label #\Space 'com-pause-or-resume
+                     "Let time stand still, or go on"
+                     (lambda (window) (paused-p (window-simulation window))))
+        (make-button "Step" #\. 'com-step "Let one tick pass, and pause")
+        (make-button "Slower" #\- 'com-slower "Halve the rate of ticks")
+        (make-button "Faster" #\+ 'com-faster "Double the rate of ticks")
+        (make-button "Back" #\b 'com-back "Go back a few ticks, as REWIND does")
+        (make-button "Fit" #\f 'com-fit "Show the whole map")
+        (make-button "Follow" #\r 'com-follow "Keep the robot in view" 'following-p)
+        (make-button "Layers" #\l 'com-layers "Choose what the world shows")
+        (make-button "Help" #\? 'com-help "Tell what keys and mouse do"))
+  "The buttons of the tool bar, from left to right.")
+
+(defun button-text (button window)
+  (let ((label (button-label button)))
+    (if (stringp label) label (funcall label window))))
+
+(defun lit-p (button window) (and (funcall (button-lit-p button) window) t))
+
+(defun do-command (command)
+  "Do what the window's COMMAND, a symbol, does. Trouble is said in the window."
+  (funcall command))
+
+;;; The pane.
+
+(defclass bar-pane (display-pane) ()
+  (:default-initargs :background clim:+gray88+)
+  (:documentation "The tool bar."))
+
+(defmethod pane-content ((pane bar-pane))
+  (let ((window (window-of pane)))
+    (loop for button in *buttons*
+          collect (list (button-text button window) (lit-p button window)))))
+
+(defun draw-button (canvas button window x)
+  "Draw BUTTON from X on; return where it ends."
+  (let* ((text (button-text button window))
+         (width (+ 12 (* +character-width+ (max 5 (length text))))))
+    (with-subject (canvas button)
+      (with-gcontext (draw-gcontext* :foreground (if (lit-p button window)
+                                                     (svref lightblue* 9)
+                                                     (svref grey* 60)))
+        (draw-rectangle canvas draw-gcontext* x 3 width (- +bar-height+ 7) t))
+      (with-gcontext (draw-gcontext* :foreground (svref grey* 30))
+        (draw-rectangle canvas draw-gcontext* x 3 width (- +bar-height+ 7)))
+      (draw-glyphs canvas draw-gcontext*
+                   (+ x (floor (- width (* +character-width+ (length text))) 2)) 17 text))
+    (+ x width)))
+
+(defmethod paint ((pane bar-pane))
+  (clear pane clim:+gray88+)
+  (painting (canvas pane)
+    (loop with x = 4
+          for button in *buttons*
+          do (setf x (+ 4 (draw-button canvas button (window-of pane) x))))))
+
+(defmethod click ((pane bar-pane) mouse-button x y)
+  (declare (ignore mouse-button))
+  (let ((button (subject-at (pane-subjects pane) x y)))
+    (when button (do-command (button-command button)))))
+
+(defmethod hover-text ((pane bar-pane) x y)
+  (let ((button (subject-at (pane-subjects pane) x y)))
+    (if button (subject-title button) "")))

@@ -1,0 +1,190 @@
+;;;; layout-pane.lisp -- the pane that holds all others and puts them where ARRANGE says.
+
+(in-package :ars-magna.clim)
+
+(defun pane-named (window name)
+  "Return the part of WINDOW called NAME."
+  (clim:find-pane-named window name))
+
+(defclass layout-pane (clim:bboard-pane)
+  ((wishes :initform (make-wishes) :reader pane-wishes))
+  (:documentation "The pane that holds all parts of the window."))
+
+(define-constant +first-size+ '(1180 800)
+  :test #'equal
+  :documentation "How wide and high a window is at first, in pixels, where the screen has room.")
+
+(defun screen-size (pane)
+  "Return the width and height of the screen that PANE is to be shown on, or NIL and NIL."
+  (let ((graft (clim:graft pane)))
+    (if graft
+        (values (clim:graft-width graft) (clim:graft-height graft))
+        (values nil nil))))
+
+(defun first-size (pane)
+  "Return how wide and high PANE should be at first: no larger than the screen."
+  (multiple-value-bind (width height) (screen-size pane)
+    (values (min (first +first-size+) (or width 10000))
+            (min (second +first-size+) (- (or height 10000) 60)))))
+
+(defmethod clim:compose-space ((pane layout-pane) &key width height)
+  (declare (ignore width height))
+  (multiple-value-bind (width height) (first-size pane)
+    (clim:make-space-requirement
+     :width width :min-width 320 :max-width clim:+fill+
+     :height height :min-height 240 :max-height clim:+fill+)))
+
+(defun place-pane (pane left top width height)
+  "Put PANE where the rest says; one without room is not shown."
+  (let ((there-p (and (plusp width) (plusp height))))
+    (setf (clim:sheet-enabled-p pane) there-p)
+    (when there-p
+      (clim:move-and-resize-sheet pane left top width height)
+      (clim:allocate-space pane width height))))
+
+(defun arrange-panes (layout)
+  "Put all parts of the window where the wishes of LAYOUT, their pane, want them."
+  (multiple-value-bind (width height) (pane-size layout)
+    (let ((window (clim:pane-frame layout)))
+      (loop for (name . place) in (arrange (pane-wishes layout)
+                                           (lambda (section) (section-need window section))
+                                           width height)
+            for pane = (child-with layout (pane-named window name))
+            when pane do (apply #'place-pane pane place)))))
+
+(defun child-with (layout pane)
+  "Return the child of LAYOUT that is or holds PANE; CLIM may put borders around panes."
+  (loop for sheet = pane then (clim:sheet-parent sheet)
+        while sheet
+        when (eq layout (clim:sheet-parent sheet)) return sheet))
+
+(defmethod clim:allocate-space ((pane layout-pane) width height)
+  (clim:resize-sheet pane width height)
+  (arrange-panes pane))
+
+(defparameter *first-needs*
+  '((state 108) (designators 40) (cameras 140) (hands 84) (bins 84) (plan 240))
+  "How many pixels high sections would like to be, as long as nothing has been painted in them.")
+
+(defun section-need (window section)
+  "Return how many pixels high SECTION of WINDOW would like to be."
+  (let ((extent (pane-extent (pane-named window section)))
+        (first (second (assoc section *first-needs*))))
+    (if (member section '(designators plan))
+        (max extent first)
+        (if (plusp extent) extent first))))
+
+(defun window-layout (window)
+  "Return the pane that holds all parts of WINDOW."
+  (pane-named window 'layout))
+
+(defun window-wishes (window) (pane-wishes (window-layout window)))
+
+(defun rearrange (window)
+  "Put all parts of WINDOW where its wishes want them now."
+  (arrange-panes (window-layout window))
+  (repaint-all window))
+
+;;; Folding.
+
+(defun folded-p (window section)
+  (and (member section (wishes-folded (window-wishes window))) t))
+
+(defun fold (window section &optional (folded-p t))
+  "Show only the title of SECTION in WINDOW; or, if FOLDED-P is false, all of it."
+  (unless (eq folded-p (folded-p window section))
+    (let ((wishes (window-wishes window)))
+      (setf (wishes-folded wishes)
+            (if folded-p
+                (cons section (wishes-folded wishes))
+                (remove section (wishes-folded wishes)))))
+    (rearrange window)))
+
+;;; Titles.
+
+(defclass title-pane (display-pane)
+  ((section :initarg :section :reader pane-section))
+  (:default-initargs :background clim:+gray88+)
+  (:documentation "The title of a display. A click folds the display away, or brings it back."))
+
+(defun foldable-p (section) (and (member section +sections+) t))
+
+(defun section-title (window section)
+  "Return the title of SECTION of WINDOW."
+  (case section
+    (world (let ((map (and (window-snapshot window) (window-map window))))
+             (format nil "World~@[: ~(~A~)~]~@[, ~A of ~D robots~]" (and map (map-name map))
+                     (and (rest (window-robots window)) (shown-robot window))
+                     (length (window-robots window)))))
+    (transcript "Commands")
+    (plan "Plan")
+    (t (display-title (pane-display (pane-named window section))))))
+
+(defmethod pane-content ((pane title-pane))
+  (let ((window (window-of pane)) (section (pane-section pane)))
+    (list (section-title window section) (folded-p window section)
+          (multiple-value-list (pane-size pane)))))
+
+(defmethod paint ((pane title-pane))
+  (let* ((window (window-of pane)) (section (pane-section pane))
+         (foldable-p (foldable-p section)))
+    (clear pane clim:+gray88+)
+    (painting (canvas pane)
+      (when foldable-p
+        (draw-lines canvas draw-gcontext*
+                    (if (folded-p window section) '(5 4 10 8 5 12) '(4 6 12 6 8 11))
+                    :fill-p t))
+      (draw-glyphs canvas draw-gcontext* (if foldable-p 18 6) 13
+                   (section-title window section)))))
+
+(defmethod hover-text ((pane title-pane) x y)
+  (declare (ignore x y))
+  (case (pane-section pane)
+    (world "Click to choose a robot")
+    (transcript "")
+    (t "Click to fold this display away, or to bring it back")))
+
+(defmethod click ((pane title-pane) button x y)
+  (declare (ignore button))
+  (let ((window (window-of pane)) (section (pane-section pane)))
+    (cond ((foldable-p section)
+           (fold window section (not (folded-p window section))))
+          ((eq section 'world)
+           (multiple-value-bind (x y)
+               (clim:transform-position (clim:sheet-transformation pane) x y)
+             (open-popup window (robot-rows window) x y))))))
+
+;;; Splitters.
+
+(defclass splitter-pane (display-pane) ()
+  (:default-initargs :background clim:+gray75+)
+  (:documentation "A bar between two parts of the window that can be dragged."))
+
+(defgeneric drag-splitter (name wishes layout x y)
+  (:documentation "Change WISHES so that the splitter NAME is at X, Y of the pane LAYOUT.")
+  (:method ((name (eql 'side-splitter)) wishes layout x y)
+    (declare (ignore y))
+    (setf (wishes-details-width wishes) (max 120 (- (pane-size layout) x +splitter+))))
+  (:method ((name (eql 'low-splitter)) wishes layout x y)
+    (declare (ignore x))
+    (setf (wishes-transcript-height wishes)
+          (max 40 (- (nth-value 1 (pane-size layout)) y +splitter+ +prompt-height+ +strip-height+)))))
+
+(defmethod pane-content ((pane splitter-pane)) (multiple-value-list (pane-size pane)))
+
+(defmethod paint ((pane splitter-pane)) (clear pane clim:+gray75+))
+
+(defmethod press ((pane splitter-pane) button x y)
+  (declare (ignore button x y))
+  (setf (pane-drag pane) t))
+
+(defmethod hover-text ((pane splitter-pane) x y)
+  (declare (ignore x y))
+  "Drag to make the parts on either side larger or smaller")
+
+(defmethod drag ((pane splitter-pane) x y)
+  (let ((layout (clim:sheet-parent pane)))
+    (multiple-value-bind (x y)
+        (clim:transform-position (clim:sheet-transformation pane) x y)
+      (drag-splitter (clim:pane-name pane) (pane-wishes layout) layout x y)
+      (rearrange (window-of pane)))))

@@ -1,0 +1,179 @@
+;;;; offers.lisp -- what can be done with what one points at: lines that the prompt understands.
+
+(in-package :ars-magna.clim)
+
+;;; An offer is (title line): what the menu calls it, and what is given to the window's prompt when
+;;; it is chosen, as if the user had typed it; so the transcript shows it. A function that the window
+;;; calls then may follow.
+
+(defgeneric offers (subject window)
+  (:documentation "Return what can be done with SUBJECT, which WINDOW shows: a list of offers.")
+  (:method (subject window)
+    (declare (ignore subject window))
+    '()))
+
+(defun coordinate-text (number)
+  "Return NUMBER as the prompt reads it, to a hundredth."
+  (format nil "~,2F" number))
+
+(defun go-there (x y)
+  (list "Go there" (format nil "go-to ~A ~A" (coordinate-text x) (coordinate-text y))))
+
+(defun camera-offers (window title line)
+  "Return an offer for each camera of the robot of WINDOW; TITLE and LINE are format strings for its
+number."
+  (loop for camera in (robot-image-cameras (window-robot window))
+        for index = (camera-image-index camera)
+        collect (list (format nil title index) (format nil line index))))
+
+;;; Looking into.
+
+(defun inspector-line (form)
+  "Return in a list the offer to inspect the value of FORM, a string, in the editor that is
+connected, if there is one."
+  (let ((inspector (loop for package in '("SWANK" "SLYNK")
+                         for symbol = (and (find-package package)
+                                           (find-symbol "INSPECT-IN-EMACS" package))
+                         when (and symbol (fboundp symbol) (editor-connected-p package))
+                           return (format nil "~(~A:~A~)" package symbol))))
+    (and inspector (list (list "Inspect in the editor" (format nil "(~A ~A)" inspector form))))))
+
+(defun editor-connected-p (package)
+  "True if an editor talks to the server in PACKAGE."
+  (let ((variable (find-symbol "*EMACS-CONNECTION*" package))
+        (default (find-symbol "DEFAULT-CONNECTION" package)))
+    (or (and variable (boundp variable) (symbol-value variable) t)
+        (and default (fboundp default) (funcall default) t))))
+
+(defun looking-into (form)
+  "Return the offers to look into the value of FORM, a string."
+  (cons (list "Describe" (format nil "(describe ~A)" form)) (inspector-line form)))
+
+;;; Things.
+
+(defun thing-form (image)
+  (format nil "(find-thing ~S)" (subject-title image)))
+
+(defun designators-of (image window)
+  "Return the numbers of the designators that denote the thing of IMAGE."
+  (loop for designator in (robot-image-designators (window-robot window))
+        when (equal (subject-key image) (subject-key (designator-image-denotation designator)))
+          collect (designator-image-number designator)))
+
+(defun looks-of (image)
+  "Return a specification, as text, of what the thing of IMAGE looks like."
+  (let ((color (assoc :color (thing-image-attributes image))))
+    (if color (format nil "((:color ~(~A~)))" (second color)) "()")))
+
+(defun search-offers (image window)
+  (camera-offers window "Look for such a thing with camera ~D"
+                 (format nil "obj-desig ~~D non-local ~A" (looks-of image))))
+
+(defun denoted-offers (numbers window)
+  "Return what can be done with what the designators with NUMBERS denote."
+  (loop for number in numbers
+        append (camera-offers window
+                              (format nil "Track designator ~D with camera ~~D" number)
+                              (format nil "cam-track ~~D ~D" number))))
+
+(defun cameras-tracking (numbers window)
+  "Return the indices of the cameras that track one of the designators with NUMBERS."
+  (loop for camera in (robot-image-cameras (window-robot window))
+        for track = (camera-image-track camera)
+        when (and track (member (designator-image-number track) numbers))
+          collect (camera-image-index camera)))
+
+(defun tracked-offers (numbers window)
+  "Return what can be done with what a camera tracks by a designator with one of NUMBERS."
+  (loop for camera in (cameras-tracking numbers window)
+        collect (list (format nil "Approach it by camera ~D" camera)
+                      (format nil "goto-desig ~D" camera))
+        append (loop for hand in (robot-image-hands (window-robot window))
+                     for index = (hand-image-index hand)
+                     collect (list (format nil "Grasp it with hand ~D" index)
+                                   (format nil "hand-grasp ~D ~D" index camera)))
+        collect (list (format nil "Let camera ~D no longer track it" camera)
+                      (format nil "cam-untrack ~D" camera))))
+
+(defmethod offers ((image thing-image) window)
+  (let ((numbers (designators-of image window)))
+    (append (unless (thing-image-location image)
+              (list (go-there (thing-image-x image) (thing-image-y image))))
+            (search-offers image window)
+            (denoted-offers numbers window)
+            (tracked-offers numbers window)
+            (looking-into (thing-form image)))))
+
+;;; Designators and parts.
+
+(defmethod offers ((image designator-image) window)
+  (let ((numbers (list (designator-image-number image))))
+    (append (denoted-offers numbers window) (tracked-offers numbers window))))
+
+(defmethod offers ((image camera-image) window)
+  (declare (ignore window))
+  (let ((index (camera-image-index image)))
+    (append (list (list "Take a view" (format nil "cam-view ~D" index))
+                  (list "Look ahead" (format nil "cam-align-robot ~D" index))
+                  (list "List what is in view" (format nil "all-obj-desig ~D non-local ()" index)))
+            (when (camera-image-track image)
+              (list (list "Stop tracking" (format nil "cam-untrack ~D" index)))))))
+
+(defmethod offers ((image hand-image) window)
+  (declare (ignore window))
+  (let ((index (hand-image-index image)))
+    (append (list (list "Does it hold anything?" (format nil "hand-grasp-check ~D" index)))
+            (when (hand-image-contents image)
+              (list (list "Let go" (format nil "hand-ungrasp ~D" index)))))))
+
+(defmethod offers ((image bin-image) window)
+  (declare (ignore window))
+  (let ((index (bin-image-index image)))
+    (list (if (bin-image-closed-p image)
+              (list "Open" (format nil "bin-open ~D" index))
+              (list "Close" (format nil "bin-close ~D" index))))))
+
+;;; Robots and cells.
+
+(defmethod offers ((image robot-image) window)
+  (let ((form (format nil "(find-robot '~(~A~))" (robot-image-name image))))
+    (append (if (eq image (window-robot window))
+                '(("How is it?" "status") ("Stop" "stop") ("Turn about" "about-face")
+                  ("What place is this?" "place"))
+                (list (command-robot (robot-image-name image) window)))
+            (looking-into form))))
+
+(defun command-robot (name window)
+  (list "Command it" (format nil "robot ~(~A~)" name) (lambda () (show-details window name))))
+
+(defun cell-middle (cell)
+  (values (+ (cell-x cell) 1/2) (+ (cell-y cell) 1/2)))
+
+(defmethod offers ((cell cell) window)
+  (declare (ignore window))
+  (multiple-value-bind (x y) (cell-middle cell)
+    (unless (cell-filled? cell)
+      (list (go-there x y)
+            (list "Put the robot here"
+                  (format nil "pos ~A ~A" (coordinate-text x) (coordinate-text y)))))))
+
+;;; As a menu.
+
+(defun offer-row (window title line &optional (also (constantly nil)))
+  (make-row (format nil "~A   ~A" title line)
+            :action (lambda ()
+                      (funcall also)
+                      (give-line (window-conversation window) line))))
+
+(defun subject-heading (subject)
+  (if (typep subject 'cell)
+      (format nil "Cell ~D, ~D" (cell-x subject) (cell-y subject))
+      (subject-title subject)))
+
+(defun offer-rows (window subject)
+  "Return the menu of what can be done with SUBJECT."
+  (append (list (make-row (subject-heading subject))
+                (make-row "Tell what it is"
+                          :action (lambda () (describe-to window subject))))
+          (loop for offer in (offers subject window)
+                collect (apply #'offer-row window offer))))

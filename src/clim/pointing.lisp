@@ -1,0 +1,107 @@
+;;;; pointing.lisp -- the mouse: hovering tells, a click picks, the right button offers.
+
+(in-package :ars-magna.clim)
+
+;;; Hovering.
+
+(defun hint (window text)
+  "Let the status strip of WINDOW say TEXT."
+  (unless (string= text (window-hint window))
+    (setf (window-hint window) text)
+    (repaint-if-changed (pane-named window 'strip))))
+
+(defun subject-text (subject)
+  "Return in one line what is known of SUBJECT."
+  (let ((text (with-output-to-string (stream) (describe-subject subject stream))))
+    (format nil "~{~A~^ ~}" (split-words (substitute #\Space #\Newline text)))))
+
+(defun split-words (text)
+  "Return a list of the words of TEXT, which spaces divide."
+  (loop with start = 0
+        for end = (position #\Space text :start start)
+        when (< start (or end (length text))) collect (subseq text start end)
+        while end do (setf start (1+ end))))
+
+;;; Picking and offering.
+
+(defun describe-to (window subject)
+  "Say in WINDOW what SUBJECT is, if it is anything."
+  (when subject
+    (let ((stream (make-instance 'transcript-stream :transcript (window-transcript window))))
+      (fresh-line stream)
+      (describe-subject subject stream))))
+
+(defun pick (window subject)
+  "Let SUBJECT be what is picked in WINDOW, and say what it is."
+  (select window subject)
+  (describe-to window subject))
+
+(defun offer (pane subject x y)
+  "Show what can be done with SUBJECT, which lies at X, Y of PANE."
+  (let ((window (window-of pane)))
+    (when subject
+      (select window subject)
+      (multiple-value-bind (x y) (clim:transform-position (clim:sheet-transformation pane) x y)
+        (open-popup window (offer-rows window subject) x y)))))
+
+(defmethod click ((pane display-pane) button x y)
+  (let ((subject (subject-at (pane-subjects pane) x y)))
+    (if (eq button :right)
+        (offer pane subject x y)
+        (pick (window-of pane) subject))))
+
+;;; In the display of designators, the right button scrolls up and the left one down where there is
+;;; more than fits (manual B); then the middle one offers. As readings 26 and 28 say.
+
+(defclass designators-pane (detail-pane) ())
+
+(defmethod click ((pane designators-pane) button x y)
+  (cond ((eq button :middle)
+         (offer pane (subject-at (pane-subjects pane) x y) x y))
+        ((not (scrollable-p pane)) (call-next-method))
+        ((eq button :right) (scroll pane (- +scroll-step+)))
+        (t (scroll pane +scroll-step+))))
+
+;;; CLIM's events.
+
+(defun button-name (event)
+  (let ((button (clim:pointer-event-button event)))
+    (cond ((eql button clim:+pointer-left-button+) :left)
+          ((eql button clim:+pointer-right-button+) :right)
+          (t :middle))))
+
+(defun press-somewhere (pane button x y)
+  "The mouse's BUTTON was pressed at X, Y of PANE: on its scroll bar, or on what it shows."
+  (cond ((on-scroll-bar-p pane x)
+         (setf (pane-drag pane) :scroll-bar)
+         (drag-scroll-bar pane y))
+        (t (press pane button x y))))
+
+(defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-press-event))
+  (let ((window (window-of pane)) (button (button-name event)))
+    (take-keys pane)
+    (unless (and (not (typep pane 'popup-pane)) (close-popup window) (eq button :left))
+      (press-somewhere pane button (clim:pointer-event-x event) (clim:pointer-event-y event)))))
+
+(defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-release-event))
+  (let ((drag (pane-drag pane)))
+    (unless (member drag '(nil :scroll-bar))
+      (drop pane (clim:pointer-event-x event) (clim:pointer-event-y event)))
+    (setf (pane-drag pane) nil)))
+
+(defmethod clim:handle-event ((pane display-pane) (event clim:pointer-motion-event))
+  (let ((x (clim:pointer-event-x event)) (y (clim:pointer-event-y event)))
+    (case (pane-drag pane)
+      ((nil) (hover pane x y))
+      (:scroll-bar (drag-scroll-bar pane y))
+      (t (drag pane x y)))))
+
+(defmethod clim:handle-event ((pane display-pane) (event clim:pointer-exit-event))
+  (hint (window-of pane) ""))
+
+;;; A turn of the wheel is an event of a button, too, but no press of it.
+(defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-event))
+  (let ((steps (position (clim:pointer-event-button event)
+                         (list clim:+pointer-wheel-up+ nil clim:+pointer-wheel-down+))))
+    (when steps
+      (wheel pane (1- steps) (clim:pointer-event-x event) (clim:pointer-event-y event)))))

@@ -1,0 +1,129 @@
+;;;; popup.lisp -- a list of rows on top of the window: menus, layers, help.
+
+(in-package :ars-magna.clim)
+
+;;; A window has one, shown or not. It is a pane above the others, so nothing waits for it: the
+;;; world goes on behind it. It is painted again whenever a pane below it is.
+
+(defstruct (row (:constructor make-row (text &key action tick (tick-p nil) stays-p)) (:copier nil))
+  "ACTION, a function of no arguments or NIL, is what a click on the row TEXT does; the popup goes
+away then unless STAYS-P. TICK, a function, says whether a row that is TICK-P is ticked."
+  (text "" :type string :read-only t)
+  (action nil :type (or null function) :read-only t)
+  (tick nil :type (or null function) :read-only t)
+  (tick-p nil :read-only t)
+  (stays-p nil :read-only t))
+
+(define-constant +row-height+ 18 :documentation "How high a row is, in pixels.")
+
+(defclass popup-pane (display-pane)
+  ((rows :initform '() :accessor pane-rows)
+   ;; The row under the mouse, or NIL.
+   (pointed :initform nil :accessor pane-pointed))
+  (:default-initargs :background clim:+gray97+)
+  (:documentation "A list of rows on top of the window."))
+
+(defun window-popup (window) (pane-named window 'popup))
+
+(defun popup-open-p (window)
+  (let ((popup (window-popup window)))
+    (and popup (clim:sheet-enabled-p popup))))
+
+;;; Painting.
+
+(defun row-ticked-p (row) (and (row-tick row) (funcall (row-tick row)) t))
+
+(defmethod pane-content ((pane popup-pane))
+  (list (pane-offset pane) (pane-pointed pane)
+        (loop for row in (pane-rows pane) collect (list (row-text row) (row-ticked-p row)))))
+
+(defun draw-tick-box (canvas row y)
+  (draw-rectangle canvas draw-gcontext* 6 (+ y 4) 9 9)
+  (when (row-ticked-p row)
+    (with-lines (:width 2)
+      (draw-lines canvas draw-gcontext* (list 7 (+ y 8) 10 (+ y 12) 16 (+ y 3))))))
+
+(defun draw-row (canvas row y width pointed-p)
+  "Draw ROW from Y on, WIDTH pixels wide."
+  (when (and pointed-p (row-action row))
+    (with-gcontext (draw-gcontext* :foreground (svref lightblue* 10))
+      (draw-rectangle canvas draw-gcontext* 1 y (- width 2) +row-height+ t)))
+  (when (row-tick-p row) (draw-tick-box canvas row y))
+  (draw-glyphs canvas draw-gcontext* (if (row-tick-p row) 22 8) (+ y 13) (row-text row)))
+
+(defmethod paint ((pane popup-pane))
+  (multiple-value-bind (width height) (pane-size pane)
+    (clear pane clim:+gray97+)
+    (painting (canvas pane)
+      (with-origin (canvas 0 (- 3 (pane-offset pane)))
+        (loop for row in (pane-rows pane)
+              for y from 0 by +row-height+
+              do (draw-row canvas row y width (eq row (pane-pointed pane))))))
+    (clim:draw-rectangle* pane 0 0 (1- width) (1- height) :filled nil :ink clim:+gray30+)))
+
+(defun places-meet-p (one other)
+  "True if the panes ONE and OTHER, of one parent, overlap."
+  (clim:region-intersects-region-p
+   (clim:transform-region (clim:sheet-transformation one) (clim:sheet-region one))
+   (clim:transform-region (clim:sheet-transformation other) (clim:sheet-region other))))
+
+(defun paint-popup-over (pane)
+  "Paint the popup that lies over PANE, if there is one."
+  (let ((window (window-of pane)))
+    (unless (typep pane 'popup-pane)
+      (when (and (popup-open-p window) (places-meet-p pane (window-popup window)))
+        (repaint (window-popup window))))))
+
+;;; Opening and closing.
+
+(defun rows-width (rows)
+  (+ 34 +scroll-bar+ (* +character-width+ (loop for row in rows maximize (length (row-text row))))))
+
+(defun place-popup (popup x y)
+  "Put POPUP, as large as its rows need, at X, Y of the window, but inside of it."
+  (multiple-value-bind (room-x room-y) (pane-size (clim:sheet-parent popup))
+    (let* ((width (min room-x (rows-width (pane-rows popup))))
+           (extent (+ 6 (* +row-height+ (length (pane-rows popup)))))
+           (height (min room-y extent)))
+      (setf (pane-extent popup) extent
+            (pane-offset popup) 0)
+      (place-pane popup (max 0 (min x (- room-x width))) (max 0 (min y (- room-y height)))
+                  width height))))
+
+(defun open-popup (window rows x y)
+  "Show ROWS on top of WINDOW, the upper left corner at X, Y of it."
+  (let ((popup (window-popup window)))
+    (setf (pane-rows popup) rows
+          (pane-pointed popup) nil)
+    (place-popup popup x y)
+    (clim:raise-sheet popup)
+    (repaint popup)))
+
+(defun close-popup (window)
+  "Let the popup of WINDOW go away. True if it was there."
+  (when (popup-open-p window)
+    (setf (clim:sheet-enabled-p (window-popup window)) nil)
+    (repaint-all window)
+    t))
+
+;;; The mouse.
+
+(defun row-at (pane y)
+  (nth (max 0 (floor (+ y -3 (pane-offset pane)) +row-height+)) (pane-rows pane)))
+
+(defun choose-row (pane row)
+  "Do what ROW of PANE says."
+  (let ((window (window-of pane)))
+    (unless (and row (row-stays-p row)) (close-popup window))
+    (when (and row (row-action row))
+      (with-guarded-command (window (row-text row)) (funcall (row-action row))))
+    (when (popup-open-p window) (repaint pane))))
+
+(defmethod click ((pane popup-pane) button x y)
+  (declare (ignore button x))
+  (choose-row pane (row-at pane y)))
+
+(defmethod hover ((pane popup-pane) x y)
+  (declare (ignore x))
+  (setf (pane-pointed pane) (row-at pane y))
+  (repaint-if-changed pane))

@@ -1,0 +1,122 @@
+;;;; view.lisp -- which part of the world is in view, and how large.
+
+(in-package :ars-magna.clim)
+
+;;; The view fits the whole map, on opening and whenever the pane or the map changes, until the user
+;;; zooms or moves it, or sets GRAPHICS-SCALE*. LEFT and TOP are the pixels of the whole picture that
+;;; lie left of and above the pane.
+
+(defclass view ()
+  ((left :initform 0 :accessor pane-left)
+   (top :initform 0 :accessor pane-top)
+   ;; Pixels to a cell.
+   (scale :initform 8 :accessor pane-scale)
+   (fitting-p :initform t :accessor pane-fitting-p)
+   ;; The pane's size and the map that the view was fitted to; what GRAPHICS-SCALE* was then.
+   (fitted :initform nil :accessor pane-fitted)
+   (scale-seen :initform graphics-scale* :accessor pane-scale-seen)
+   (following-p :initform nil :accessor pane-following-p))
+  (:documentation "A part of the world."))
+
+(define-constant +in-view+ 40
+  :documentation "How many pixels of the map stay in view, however it is moved.")
+
+(defun window-map (window)
+  (snapshot-map (window-snapshot window)))
+
+(defun view-map (pane) (window-map (window-of pane)))
+
+(defun place-view (pane left top)
+  "Let the view of PANE begin at LEFT, TOP, but not off the map."
+  (multiple-value-bind (width height) (pane-size pane)
+    (let ((map (view-map pane)) (scale (pane-scale pane)))
+      (flet ((within (value cells size)
+               (clamp (round value) (- +in-view+ size) (- (floor (* cells scale)) +in-view+))))
+        (setf (pane-left pane) (within left (map-width map) width)
+              (pane-top pane) (within top (map-height map) height))))))
+
+(defun move-view (pane dx dy)
+  "Move the view of PANE by DX, DY pixels, but not off the map."
+  (setf (pane-fitting-p pane) nil)
+  (place-view pane (+ (pane-left pane) dx) (+ (pane-top pane) dy))
+  (repaint-if-changed pane))
+
+(defun zoom (pane factor &optional (x 0) (y 0))
+  "Make the view of PANE FACTOR times larger, so that what is at X, Y stays there."
+  (let ((old (pane-scale pane)))
+    (setf (pane-scale pane) (clamp (* old factor) 1 128))
+    (let ((ratio (/ (pane-scale pane) old)))
+      (move-view pane (round (* (- ratio 1) (+ (pane-left pane) x)))
+                 (round (* (- ratio 1) (+ (pane-top pane) y)))))))
+
+;;; Fitting.
+
+(defun fitting-scale (map width height)
+  "Return how many pixels to a cell let all of MAP be in view in WIDTH times HEIGHT pixels."
+  (let ((scale (min (/ width (map-width map)) (/ height (map-height map)))))
+    (clamp (if (< scale 4) (/ (floor scale 1/4) 4) (floor scale)) 1 64)))
+
+(defun fit-view (pane)
+  "Let the whole map be in view in the middle of PANE."
+  (multiple-value-bind (width height) (pane-size pane)
+    (let* ((map (view-map pane)) (scale (fitting-scale map width height)))
+      (flet ((margin (size cells) (- (floor (max 0 (- size (* scale cells))) 2))))
+        (setf (pane-scale pane) scale
+              (pane-left pane) (margin width (map-width map))
+              (pane-top pane) (margin height (map-height map)))))))
+
+(defun fit (pane)
+  "Let the whole map be in view in PANE, also when its size changes."
+  (setf (pane-fitting-p pane) t
+        (pane-fitted pane) nil)
+  (repaint-if-changed pane))
+
+;;; The robot.
+
+(defun robot-place (pane)
+  "Return where in PANE the window's robot is, in pixels, or NIL."
+  (let ((robot (window-robot (window-of pane))) (scale (pane-scale pane)))
+    (and robot
+         (values (- (* scale (robot-image-x robot)) (pane-left pane))
+                 (- (* scale (robot-image-y robot)) (pane-top pane))))))
+
+(defun centre-robot (pane)
+  "Let the window's robot be in the middle of the view of PANE."
+  (multiple-value-bind (x y) (robot-place pane)
+    (when x
+      (multiple-value-bind (width height) (pane-size pane)
+        (place-view pane (+ (pane-left pane) (- x (/ width 2)))
+                    (+ (pane-top pane) (- y (/ height 2))))))))
+
+(defun off-centre-p (pane)
+  "True if the window's robot is not in the middle half of PANE."
+  (multiple-value-bind (x y) (robot-place pane)
+    (multiple-value-bind (width height) (pane-size pane)
+      (and x (not (and (<= (/ width 4) x (* 3/4 width)) (<= (/ height 4) y (* 3/4 height))))))))
+
+(defun show-robot (pane)
+  "Move the view of PANE so that the window's robot is in its middle."
+  (setf (pane-fitting-p pane) nil)
+  (centre-robot pane)
+  (repaint-if-changed pane))
+
+;;; Before each picture.
+
+(defun obey-scale (pane)
+  "If the user has set GRAPHICS-SCALE*, let it be the scale of the view of PANE."
+  (unless (eql graphics-scale* (pane-scale-seen pane))
+    (setf (pane-scale-seen pane) graphics-scale*
+          (pane-scale pane) (clamp graphics-scale* 1 128)
+          (pane-fitting-p pane) nil)
+    (centre-robot pane)))
+
+(defun prepare-view (pane)
+  "Let the view of PANE be where it should be for its next picture."
+  (multiple-value-bind (width height) (pane-size pane)
+    (let ((key (list width height (view-map pane))))
+      (obey-scale pane)
+      (cond ((pane-fitting-p pane)
+             (unless (equal key (pane-fitted pane)) (fit-view pane)))
+            ((and (pane-following-p pane) (off-centre-p pane))
+             (centre-robot pane)))
+      (setf (pane-fitted pane) key))))

@@ -1,0 +1,107 @@
+;;;; world-mouse.lisp -- the mouse on the display of the world.
+
+(in-package :ars-magna.clim)
+
+;;; The wheel zooms. The left button picks what is clicked, moves the view if dragged, and, while
+;;; time stands still, drags a thing or a robot to another place: a ghost shows where it would be,
+;;; and what is given to the prompt then is what a user would type. (PANE-DRAG PANE) is (subject
+;;; from-x from-y moved-p).
+
+(defmethod wheel ((pane world-pane) steps x y)
+  (zoom pane (expt 2 (- (signum steps))) x y))
+
+(defun point-at (pane x y)
+  "Return the point of the map that is painted at X, Y of PANE, in metres."
+  (let ((scale (pane-scale pane)))
+    (values (/ (+ x (pane-left pane)) scale) (/ (+ y (pane-top pane)) scale))))
+
+(defun cell-at (pane x y)
+  "Return the cell of the map that is painted at X, Y of PANE, or NIL."
+  (let ((map (view-map pane)))
+    (multiple-value-bind (x y) (point-at pane x y)
+      (and (map-index map x y) (map-cell map x y)))))
+
+(defun what-lies-at (pane x y)
+  "Return the thing or robot at X, Y of PANE, or else the cell, or NIL."
+  (or (subject-at (pane-subjects pane) x y) (cell-at pane x y)))
+
+(defmethod hover-text ((pane world-pane) x y)
+  (let ((subject (subject-at (pane-subjects pane) x y)) (cell (cell-at pane x y)))
+    (format nil "~@[~A~]~@[; ~A~]" (and cell (subject-text cell))
+            (and subject (subject-text subject)))))
+
+(defmethod click ((pane world-pane) button x y)
+  (let ((subject (what-lies-at pane x y)))
+    (if (eq button :right)
+        (offer pane subject x y)
+        (pick (window-of pane) subject))))
+
+(defmethod press ((pane world-pane) button x y)
+  (if (eq button :left)
+      (setf (pane-drag pane) (list (subject-at (pane-subjects pane) x y) x y nil))
+      (click pane button x y)))
+
+;;; Dragging.
+
+(define-constant +shake+ 4 :documentation "By how many pixels the mouse may move in a click.")
+
+(defun movable-p (pane subject)
+  "True if SUBJECT can be dragged in PANE: a thing or a robot, while time stands still."
+  (and (typep subject '(or thing-image robot-image))
+       (let ((simulation (window-simulation (window-of pane))))
+         (or (paused-p simulation) (not (live-p simulation))))))
+
+(defun beyond-shake-p (x y from-x from-y)
+  (> (max (abs (- x from-x)) (abs (- y from-y))) +shake+))
+
+(defmethod drag ((pane world-pane) x y)
+  (destructuring-bind (subject from-x from-y moved-p) (pane-drag pane)
+    (when (or moved-p (beyond-shake-p x y from-x from-y))
+      (cond ((movable-p pane subject)
+             (setf (pane-drag pane) (list subject from-x from-y t))
+             (show-ghost pane subject x y))
+            (t (setf (pane-drag pane) (list nil x y t))
+               (move-view pane (- from-x x) (- from-y y)))))))
+
+(defun show-ghost (pane subject x y)
+  "Show in PANE where SUBJECT would be if it were dropped at X, Y."
+  (multiple-value-bind (to-x to-y) (point-at pane x y)
+    (setf (pane-ghost pane) (list x y))
+    (hint (window-of pane) (format nil "~A to ~,2F, ~,2F" (subject-title subject) to-x to-y))
+    (repaint-if-changed pane)))
+
+(defun paint-ghost (pane)
+  "Paint where in PANE what is dragged would be."
+  (when (pane-ghost pane)
+    (destructuring-bind (x y) (pane-ghost pane)
+      (let ((radius (max 5 (* 1/2 (pane-scale pane)))))
+        (clim:draw-circle* pane x y radius :filled nil :ink clim:+dark-orange+
+                                           :line-thickness 2)))))
+
+(defgeneric carrying-line (subject x y window)
+  (:documentation "Return the line that puts SUBJECT at X, Y, two texts, for the prompt of WINDOW.")
+  (:method ((image thing-image) x y window)
+    (declare (ignore window))
+    (format nil "(move-thing ~A ~A ~A)" (thing-form image) x y))
+  (:method ((image robot-image) x y window)
+    (if (eq (robot-image-name image) (robot-image-name (window-robot window)))
+        (format nil "pos ~A ~A" x y)
+        (format nil "(place-robot (find-robot '~(~A~)) ~A ~A ~,3F)" (robot-image-name image) x y
+                (robot-image-angle image)))))
+
+(defun drop-subject (pane subject x y)
+  "Ask the prompt to put SUBJECT at X, Y of PANE."
+  (let ((window (window-of pane)))
+    (setf (pane-ghost pane) nil)
+    (if (cell-at pane x y)
+        (multiple-value-bind (x y) (point-at pane x y)
+          (give-line (window-conversation window)
+                     (carrying-line subject (coordinate-text x) (coordinate-text y) window)))
+        (hint window "That is not on the map."))
+    (repaint-if-changed pane)))
+
+(defmethod drop ((pane world-pane) x y)
+  (destructuring-bind (subject from-x from-y moved-p) (pane-drag pane)
+    (declare (ignore from-x from-y))
+    (cond ((not moved-p) (click pane :left x y))
+          (subject (drop-subject pane subject x y)))))

@@ -1,0 +1,173 @@
+;;;; clim-layout.lisp -- where the parts of the window are, and that all of them can be reached.
+
+(in-package :ars-magna.tests)
+
+(in-suite clim)
+
+(defun places-at (width height &optional (wishes (window::make-wishes)))
+  "Return the places of all parts of a window in which each section wants 200 pixels."
+  (window::arrange wishes (constantly 200) width height))
+
+(defun place-of (name places) (rest (assoc name places)))
+
+(defun inside-p (place width height)
+  (destructuring-bind (left top across down) place
+    (and (<= 0 left) (<= 0 top) (<= (+ left across) width) (<= (+ top down) height))))
+
+(defun apart-p (one other)
+  "True if the places ONE and OTHER have no pixel in common."
+  (destructuring-bind (left top width height) one
+    (destructuring-bind (left-2 top-2 width-2 height-2) other
+      (or (zerop (* width height width-2 height-2))
+          (<= (+ left width) left-2) (<= (+ left-2 width-2) left)
+          (<= (+ top height) top-2) (<= (+ top-2 height-2) top)))))
+
+(defparameter *window-sizes* '((640 480) (800 600) (1280 900) (1920 1080) (2600 1400)))
+
+(test layout.every-part-has-a-place-of-its-own
+  (loop for (width height) in *window-sizes*
+        for places = (mapcar #'rest (places-at width height))
+        do (is (every (lambda (place) (inside-p place width height)) places))
+           (is (loop for (place . others) on places
+                     always (every (lambda (other) (apart-p place other)) others)))))
+
+(test layout.every-display-can-be-seen-at-640-by-480
+  (let ((places (places-at 640 480)))
+    (dolist (name '(window::state window::designators window::cameras window::hands window::bins))
+      (destructuring-bind (left top width height) (place-of name places)
+        (declare (ignore left top))
+        (is (>= width 200))
+        (is (>= height 32))))
+    (is (>= (third (place-of 'window::world places)) 320))
+    (is (>= (fourth (place-of 'window::transcript places)) 60))))
+
+(test layout.who-needs-little-gets-it
+  (is (null (set-exclusive-or '((window::hands 20) (window::state 90) (window::cameras 90))
+                              (window::share-height '((window::state 150) (window::cameras 300)
+                                                      (window::hands 20))
+                                                    200)
+                              :test #'equal)))
+  (is (equal '((window::state 30) (window::designators 150) (window::hands 20))
+             (window::share-height '((window::state 30) (window::designators 10)
+                                     (window::hands 20))
+                                   200))))
+
+(test layout.plans-have-a-column-where-there-is-room
+  (let ((wishes (window::make-wishes :folded '())))
+    (flet ((plan-left (width) (first (place-of 'window::plan (places-at width 1080 wishes))))
+           (state-left (width) (first (place-of 'window::state (places-at width 1080 wishes)))))
+      (is (= (plan-left 1200) (state-left 1200)))
+      (is (< (plan-left 1920) (state-left 1920))))))
+
+;;; In a window.
+
+(defun lay-out (window width height)
+  (clim:layout-frame window width height)
+  (window:refresh window))
+
+(test layout.titles-fold-displays
+  (in-window (window robot)
+    (lay-out window 800 600)
+    (is (not (window::shown-p (pane window 'window::plan))))
+    (window::click (pane window 'window::plan-title) :left 5 5)
+    (is (window::shown-p (pane window 'window::plan)))
+    (window::click (pane window 'window::state-title) :left 5 5)
+    (is (not (window::shown-p (pane window 'window::state))))
+    (window::click (pane window 'window::state-title) :left 5 5)
+    (is (window::shown-p (pane window 'window::state)))))
+
+(test layout.splitters-move
+  (in-window (window robot)
+    (lay-out window 1000 700)
+    (flet ((size (name) (multiple-value-list (window::pane-size (pane window name))))
+           (pull (name x y)
+             (let ((pane (pane window name)))
+               (window::press pane :left 1 1)
+               (window::drag pane x y))))
+      (let ((world (size 'window::world)) (transcript (size 'window::transcript)))
+        (pull 'window::side-splitter -100 0)
+        (is (= (- (first world) 100) (first (size 'window::world))))
+        (pull 'window::low-splitter 0 -50)
+        (is (= (+ (second transcript) 50) (second (size 'window::transcript))))
+        (pull 'window::low-splitter 0 -5000)
+        (is (plusp (second (size 'window::world))))))))
+
+(defun show-many-designators (window robot)
+  "Let ROBOT have 40 designators; return the pane of WINDOW that shows them."
+  (dotimes (count 40) (robot:add-designator robot :x 2 :y 2))
+  (window::publish (window:window-watcher window) (time:current-simulation))
+  (window:refresh window)
+  (pane window 'window::designators))
+
+(test layout.displays-that-are-too-high-scroll
+  (in-window (window robot)
+    (lay-out window 640 480)
+    (let* ((pane (show-many-designators window robot)) (extent (window::pane-extent pane)))
+      (is (window::scrollable-p pane))
+      (window::wheel pane 1 5 5)
+      (is (= 48 (window::pane-offset pane)))
+      (multiple-value-bind (width height) (window::pane-size pane)
+        (is (window::on-scroll-bar-p pane (- width 3)))
+        (window::drag-scroll-bar pane height)
+        (is (= (- extent height) (window::pane-offset pane)))))))
+
+(test layout.a-picture-that-has-shrunk-is-in-view
+  "Nothing of what was there before is left."
+  (in-window (window robot)
+    (lay-out window 640 480)
+    (let ((pane (show-many-designators window robot)))
+      (window::scroll pane 300)
+      (is (= 300 (window::pane-offset pane)))
+      (mapc #'robot:drop-designator (robot:live-designators robot))
+      (window::publish (window:window-watcher window) (time:current-simulation))
+      (window:refresh window)
+      (is (= 0 (window::pane-offset pane))))))
+
+;;; The view.
+
+(test view.fits-on-opening-and-when-the-size-changes
+  (in-window (window robot)
+    (let ((pane (pane window 'window::world)))
+      (flet ((filled-p ()
+               (multiple-value-bind (width height) (window::pane-size pane)
+                 (let ((scale (window::pane-scale pane)))
+                   (and (<= (* 20 scale) width) (<= (* 10 scale) height)
+                        (or (> (* 20 (1+ scale)) width) (> (* 10 (1+ scale)) height)
+                            (= scale 64)))))))
+        (loop for (width height) in *window-sizes*
+              do (lay-out window width height)
+                 (is (filled-p)))
+        (window::zoom pane 2)
+        (let ((scale (window::pane-scale pane)))
+          (lay-out window 800 600)
+          (is (= scale (window::pane-scale pane))))
+        (window::fit pane)
+        (is (filled-p))))))
+
+(test view.follows-the-robot-if-asked
+  (in-window (window robot)
+    (lay-out window 640 480)
+    (let ((pane (pane window 'window::world)))
+      (window::zoom pane 4)
+      (window::com-follow)
+      (robot:place-robot robot 17.5 8.5 0)
+      (window::publish (window:window-watcher window) (time:current-simulation))
+      (window:refresh window)
+      (is (not (window::off-centre-p pane)))
+      (window::com-follow)
+      (robot:place-robot robot 2.5 2.5 0)
+      (window::publish (window:window-watcher window) (time:current-simulation))
+      (window:refresh window)
+      (is (window::off-centre-p pane)))))
+
+(test view.shows-the-scale-that-the-user-sets
+  (in-window (window robot)
+    (lay-out window 800 600)
+    (let ((canvas:graphics-scale* 11))
+      (window:refresh window)
+      (is (= 11 (window::pane-scale (pane window 'window::world)))))))
+
+(test canvas.outlines-of-arcs-stay-in-their-box
+  "Manual B.1: a circle inscribed in a cell has all of its pixels there."
+  (is (equal '(8 8 7 7) (multiple-value-list (window::outline-box 8 8 8 8 1))))
+  (is (equal '(9 9 5 5) (multiple-value-list (window::outline-box 8 8 8 8 3)))))

@@ -1,0 +1,166 @@
+;;;; clim-pointing.lisp -- what mouse and keys do in the window.
+
+(in-package :ars-magna.tests)
+
+(in-suite clim)
+
+(defun lines-given (window)
+  "Return the lines given to the prompt of WINDOW that it has not read."
+  (window::stream-lines (window::conversation-input (window::window-conversation window))))
+
+(defmacro without-prompt ((window) &body body)
+  "Run BODY; what is given to the prompt of WINDOW stays where LINES-GIVEN finds it."
+  `(progn
+     (setf (window::conversation-thread (window::window-conversation ,window)) t)
+     ,@body))
+
+(test pointing.hovering-tells
+  (in-window (window robot)
+    (let ((pane (painted-world window)))
+      (flet ((told (x y)
+               (window::hover pane x y)
+               (window::window-hint window)))
+        (is (equal "Cell 10, 1: a wall of wood, parameter 50.0" (told 84 12)))
+        (is (equal "Cell 10, 4: doorway" (told 84 36)))
+        (let ((text (told 28 36)))
+          (is (mentions-p text "Cell 3, 4: "))
+          (is (mentions-p text "BOX#1 at 3.50, 4.50"))
+          (is (mentions-p text ":color red")))
+        (is (mentions-p (window::strip-text window) "BOX#1"))))))
+
+(test pointing.a-click-picks
+  (in-window (window robot)
+    (let ((pane (painted-world window)))
+      (window::click pane :left 28 36)
+      (is (= 1 (length (window::selected-boxes pane))))
+      (window::click pane :left 84 12)
+      (is (equal '(:cell 10 1) (window::window-selection window)))
+      (is (null (window::selected-boxes pane))))))
+
+;;; Offers.
+
+(defun offered (pane x y)
+  "Return the texts of the menu that a click with the right button at X, Y of PANE brings."
+  (let ((window (window::window-of pane)))
+    (window::click pane :right x y)
+    (mapcar #'window::row-text (window::pane-rows (window::window-popup window)))))
+
+(defun row-with (window text)
+  (find text (window::pane-rows (window::window-popup window))
+        :key #'window::row-text :test (lambda (part row) (search part row))))
+
+(test pointing.the-right-button-offers-lines
+  (in-window (window robot)
+    (without-prompt (window)
+      (let ((pane (painted-world window)))
+        (is (equal '("Cell 15, 2" "Tell what it is" "Go there   go-to 15.50 2.50"
+                     "Put the robot here   pos 15.50 2.50")
+                   (offered pane 124 20)))
+        (is (window::popup-open-p window))
+        (window::choose-row (window::window-popup window) (row-with window "go-to"))
+        (is (not (window::popup-open-p window)))
+        (is (equal '("go-to 15.50 2.50") (lines-given window)))
+        (let ((rows (offered pane 28 36)))
+          (is (member "Go there   go-to 3.50 4.50" rows :test #'equal))
+          (is (find "obj-desig 0 non-local ((:color red))" rows :test #'search)))))))
+
+(test pointing.offers-what-can-be-done-with-a-designator
+  "Track, and what is tracked, grasp."
+  (in-window (window robot)
+    (without-prompt (window)
+      (let ((number (robot:designator-number
+                     (robot:add-designator robot :denotation (world:find-thing "BOX#1")
+                                                 :x 1 :y 0))))
+        (window::publish (window:window-watcher window) (time:current-simulation))
+        (is (find (format nil "cam-track 0 ~D" number) (offered (painted-world window) 28 36)
+                  :test #'search))))))
+
+(test pointing.every-offer-is-a-line-of-the-prompt
+  (in-window (window robot)
+    (let ((names (mapcar #'ars-magna.cli:line-name (ars-magna.cli:all-lines))))
+      (painted-world window)
+      (dolist (subject (append (coerce (display:snapshot-things (window::window-snapshot window))
+                                       'list)
+                               (display:snapshot-robots (window::window-snapshot window))
+                               (loop for reader in (list #'display:robot-image-cameras
+                                                         #'display:robot-image-hands)
+                                     append (funcall reader (window::window-robot window)))))
+        (loop for (nil line) in (window::offers subject window)
+              do (is (or (char= #\( (char line 0))
+                         (member (subseq line 0 (position #\Space line)) names
+                                 :test #'string-equal))))))))
+
+;;; Dragging.
+
+(defun carry (pane from to)
+  "Drag what is at the point FROM of PANE, (x y), to the point TO."
+  (window::press pane :left (first from) (second from))
+  (window::drag pane (first to) (second to))
+  (window::drop pane (first to) (second to)))
+
+(test pointing.things-and-the-robot-can-be-dragged
+  "This run is not live: time stands still between ticks."
+  (in-window (window robot)
+    (without-prompt (window)
+      (let ((pane (painted-world window)))
+        (carry pane '(28 36) '(124 20))
+        (carry pane '(52 52) '(40 60))
+        (is (equal '("(move-thing (find-thing \"BOX#1\") 15.50 2.50)" "pos 5.00 7.50")
+                   (lines-given window)))
+        (is (null (window::pane-ghost pane)))))))
+
+(test pointing.dragging-the-map-moves-the-view
+  (in-window (window robot)
+    (let ((pane (painted-world window)))
+      (setf (window::pane-scale pane) 32)
+      (window::repaint pane)
+      (carry pane '(400 200) '(300 180))
+      (is (equal '(100 20) (list (window::pane-left pane) (window::pane-top pane)))))))
+
+(test pointing.a-small-shake-is-a-click
+  (in-window (window robot)
+    (let ((pane (painted-world window)))
+      (carry pane '(28 36) '(30 37))
+      (is (mentions-p (said-in window) "BOX#1 at 3.50, 4.50")))))
+
+;;; Keys and buttons.
+
+(test keys.do-what-buttons-do
+  (in-window (window robot)
+    (without-prompt (window)
+      (let ((simulation (time:current-simulation)))
+        (run:start-clock simulation :rate 20)
+        (unwind-protect
+             (flet ((key (character) (window::do-key window nil character)))
+               (is (key #\Space))
+               (is (time:paused-p simulation))
+               (is (key #\Space))
+               (is (not (time:paused-p simulation)))
+               (key #\+)
+               (is (= 40 (run:simulation-rate simulation)))
+               (key #\-)
+               (is (= 20 (run:simulation-rate simulation)))
+               (key #\b)
+               (is (equal '("rewind 10") (lines-given window)))
+               (key #\l)
+               (is (window::popup-open-p window))
+               (is (null (key #\x))))
+          (run:stop-clock simulation))))))
+
+(test bar.names-its-keys
+  (in-window (window robot)
+    (lay-out window 640 480)
+    (let ((pane (pane window 'window::bar)))
+      (is (= (length window::*buttons*) (length (window::pane-subjects pane))))
+      (is (equal "Let time stand still, or go on (key: space)"
+                 (window::hover-text pane 20 12)))
+      (loop for (nil left nil right) in (window::pane-subjects pane)
+            do (is (<= 0 left right 640))))))
+
+(test robots.can-be-chosen
+  (in-window (window robot)
+    (without-prompt (window)
+      (is (equal (list "Which robot?" "STUDIO-ROBOT")
+                 (mapcar #'window::row-text (window::robot-rows window))))
+      (funcall (window::row-action (second (window::robot-rows window))))
+      (is (equal '("robot studio-robot") (lines-given window))))))

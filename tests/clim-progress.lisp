@@ -1,0 +1,62 @@
+;;;; clim-progress.lisp -- what the window says of how time goes, and how often it looks.
+
+(in-package :ars-magna.tests)
+
+(in-suite clim)
+
+(defun progress-text-of (simulation &optional (pulse (window::make-pulse)))
+  (window::progress-text (window::progress-of simulation pulse)))
+
+(test progress.says-whether-time-stands-still
+  (in-studio (robot)
+    (let ((simulation (time:current-simulation)))
+      (is (mentions-p (progress-text-of simulation) "not live"))
+      (run:start-clock simulation :rate 50)
+      (unwind-protect
+           (progn
+             (run:await-idle simulation)
+             (is (mentions-p (progress-text-of simulation) "50/s  idle"))
+             (time:pause simulation)
+             (is (mentions-p (progress-text-of simulation) "paused"))
+             (time:resume simulation)
+             (time:set-rate :free simulation)
+             (is (mentions-p (progress-text-of simulation) "as fast as possible")))
+        (run:stop-clock simulation)))))
+
+(test progress.measures-the-rate-over-some-ticks
+  (let ((pulse (window::make-pulse :seconds 100d0)))
+    (is (null (window::measure pulse 3 100.5d0)))
+    (is (= 20 (window::measure pulse 20 101d0)))
+    (is (= 20 (window::measure pulse 21 101.2d0)))
+    (is (= 40 (window::measure pulse 60 102d0)))
+    (is (null (window::measure pulse 5 103d0)))))
+
+(test progress.names-users-code-that-does-not-return
+  (in-studio (robot)
+    (let* ((simulation (time:current-simulation))
+           (there (base:make-semaphore "there")) (on (base:make-semaphore "on"))
+           (pulse (window::make-pulse)))
+      (run:start-clock simulation :rate :free)
+      (unwind-protect
+           (progn
+             (command:robot-turn robot 1/10
+                                 (lambda (err robot angle)
+                                   (declare (ignore err robot angle))
+                                   (base:signal-semaphore there)
+                                   (base:wait-on-semaphore on)))
+             (base:wait-on-semaphore there)
+             (window::progress-of simulation pulse)
+             (is (mentions-p (progress-text-of simulation pulse) "busy in"))
+             (base:signal-semaphore on))
+        (run:stop-clock simulation)))))
+
+(test watcher.tells-of-a-scale-that-was-set
+  (in-studio (robot)
+    (let* ((count 0)
+           (watcher (window:make-watcher 'studio-robot (lambda () (incf count)))))
+      (window::look-at-scale watcher)
+      (is (= 0 count))
+      (let ((canvas:graphics-scale* 13))
+        (window::look-at-scale watcher)
+        (window::look-at-scale watcher)
+        (is (= 1 count))))))
