@@ -138,7 +138,7 @@
    (:module "rpl/seeing" :serial t
     :components ((:file "package") (:file "variables") (:file "subjects") (:file "tree")
                  (:file "describing") (:file "history") (:file "why") (:file "spans")
-                 (:file "breaking") (:file "stepping")))
+                 (:file "breaking") (:file "stepping") (:file "images")))
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
@@ -149,7 +149,7 @@
                  (:file "outcomes") (:file "commands") (:file "runs") (:file "seeing")))
    (:module "rpl/pictures" :serial t
     :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")
-                 (:file "saving")))
+                 (:file "task-tree") (:file "saving")))
    (:module "src/plots" :serial t
     :components ((:file "package") (:file "figures") (:file "axis") (:file "looks")
                  (:file "words") (:file "page") (:file "series") (:file "legend")
