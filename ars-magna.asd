@@ -260,12 +260,13 @@
   :serial t
   :components
   ((:module "src/clim" :serial t
-    :components ((:file "package") (:file "progress") (:file "watcher") (:file "canvas")
+    :components ((:file "package") (:file "progress") (:file "plan-look") (:file "watcher") (:file "canvas")
                  (:file "guarding") (:file "arrangement") (:file "panes")
                  (:file "scrolling") (:file "selection")
                  (:file "view") (:file "world-pane") (:file "transcript") (:file "prompt")
                  (:file "plan-pane") (:file "layout-pane") (:file "bar") (:file "strip")
-                 (:file "popup") (:file "pointing") (:file "offers") (:file "world-mouse")
+                 (:file "popup") (:file "pointing") (:file "offers") (:file "plan-mouse")
+                 (:file "world-mouse")
                  (:file "keys") (:file "help") (:file "robots") (:file "window") (:file "commands")
                  (:file "opening")))))
 

@@ -108,7 +108,7 @@
             (draw-segments canvas draw-gcontext* (list (- x 4) (+ y 3) (+ x 4) (+ y 11)
                                                        (- x 4) (+ y 11) (+ x 4) (+ y 3)))))))))
 
-(defun bar-title (bar)
+(defmethod subject-title ((bar bar))
   (format nil "~A, ticks ~A to ~A~@[, ~(~A~)~]~@[: ~A~]" (bar-label bar) (bar-start bar)
           (bar-end bar) (bar-outcome bar)
           (and (bar-failure bar) (cut (one-line (own-text (bar-failure bar))) 200))))
@@ -116,7 +116,7 @@
 (defun draw-bar (canvas bar y scale)
   "Draw BAR with its upper edge at Y."
   (let ((x (place (bar-start bar) scale)))
-    (with-subject (canvas (bar-title bar))
+    (with-subject (canvas bar)
       (box canvas (look (if (bar-call-p bar) :call :parts))
            x y (- (place (bar-end bar) scale) x) 14)
       (dolist (kind '(:waiting :cleaning :blocked))

@@ -93,12 +93,27 @@ to be seen."
                        (cut plight (max 8 (- room 2))) #x505868)
              2))))
 
+(defun draw-calls (canvas image x y width)
+  "Write the calls that the task of IMAGE is in the middle of from X, Y down. Return how many."
+  (loop for call in (task-image-calls image)
+        for line from 0
+        for left = (+ x (* 7 (1+ (min line 8))))
+        do (write-at canvas left (+ y (* line +line-height+))
+                     (cut call (max 8 (floor (- width left) +character-width+)))
+                     #x505868)
+        finally (return line)))
+
+(defun draw-task-texts (canvas image x y width)
+  "Write all that is to be said of IMAGE, from X on, down from Y. Return how many lines that took."
+  (let ((lines (draw-row-text canvas image x y width)))
+    (+ lines (draw-calls canvas image x (+ y (* lines +line-height+)) width))))
+
 (defun draw-task (canvas image y width)
   "Draw IMAGE with its upper edge at Y. Return how high that is."
   (let ((x (+ 6 (* +indent+ (min +deepest+ (task-image-depth image))))))
     (prog1 (with-subject (canvas image)
              (draw-task-mark canvas (task-image-look image) (+ x 12) (+ y 3))
-             (* +line-height+ (draw-row-text canvas image (+ x 27) (+ y 12) width)))
+             (* +line-height+ (draw-task-texts canvas image (+ x 27) (+ y 12) width)))
       (when (plusp (task-image-parts image))
         (draw-fold-mark canvas image x (+ y 4))))))
 

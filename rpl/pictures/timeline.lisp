@@ -40,7 +40,8 @@ pixels wide. Return where it ends: how far to the right, and how far down."
 
 (defun draw-row (canvas row y scale)
   "Draw ROW with its upper edge at Y, its name left of SCALE."
-  (write-at canvas 10 (+ y 11) (fitted (row-label row) (max 80 (- (scale-left scale) 20))))
+  (with-subject (canvas (first (row-bars row)))
+    (write-at canvas 10 (+ y 11) (fitted (row-label row) (max 80 (- (scale-left scale) 20)))))
   (dolist (bar (row-bars row)) (draw-bar canvas bar y scale))
   (dolist (bar (row-bars row))
     (draw-mark canvas (bar-outcome bar) (place (bar-end bar) scale) y)))

@@ -8,14 +8,16 @@
 
 (defstruct (task-image (:copier nil))
   "What is to be seen of a task. LOOK is :running, :waiting, :blocked, :cleaning, :ending or
-:stepped; STATE says it in words. PARTS is how many tasks it consists of; if it is FOLDED-P, they
-are not among the rows."
+:stepped; STATE says it in words. CALLS are the calls of plans that it is in the middle of, as texts,
+outermost first. PARTS is how many tasks it consists of; if it is FOLDED-P, they are not among the
+rows."
   (serial 0 :type fixnum :read-only t)
   (depth 0 :type fixnum :read-only t)
   (look :running :type keyword :read-only t)
   (state "" :type string :read-only t)
   (name nil :type (or null string) :read-only t)
   (form "" :type string :read-only t)
+  (calls '() :type list :read-only t)
   (awaits nil :type (or null string) :read-only t)
   (since 0 :type real :read-only t)
   (path '() :type list :read-only t)
@@ -39,6 +41,8 @@ parts, PLANS how many plans there are, TASKS how many tasks in all."
   task-image-state "Return in words how the task is."
   task-image-name "Return what the task is called, or NIL."
   task-image-form "Return the expression that the task is at, as text."
+  task-image-calls "Return the calls of plans that the task is in the middle of, as texts, outermost
+first; of many the innermost."
   task-image-awaits "Return in words what the task waits for, or NIL."
   task-image-since "Return the tick at which the task began to wait."
   task-image-path "Return the labels of the tasks from the top of the plan to the task."
@@ -69,11 +73,19 @@ parts, PLANS how many plans there are, TASKS how many tasks in all."
   (loop for part = (task-newest-child task) then (task-older part)
         while part count t))
 
+(defconstant +most-calls+ 10 "How many calls of plans an image of a task shows at most.")
+
+(defun call-texts (task)
+  "Return the calls of plans that TASK is in the middle of, as texts, outermost first."
+  (let ((calls (calls-in (task-stack task))))
+    (loop for call in (last calls +most-calls+) collect (form-text call 100))))
+
 (defun image-of-task (task depth folded-p)
   (make-task-image :serial (task-serial task) :depth depth
                    :look (look-of task) :state (task-state-text task)
                    :name (and (task-name task) (task-label task))
                    :form (form-text (task-form task) 100)
+                   :calls (call-texts task)
                    :awaits (task-awaits task) :since (task-since task)
                    :path (task-path task)
                    :parts (count-parts task) :folded-p folded-p))

@@ -29,7 +29,7 @@ plans nor a simulator.")
   (:export #:agent-text #:answer-p #:answer-error #:answer-issue #:issue-arguments #:issue-name
            #:issue-p #:issue-task #:trace-entry #:trace-entry-agent #:trace-entry-detail
            #:trace-entry-event #:trace-entry-form #:trace-entry-subject #:trace-entry-task
-           #:trace-entry-tick #:trace-entry-value #:write-trace)
+           #:trace-entry-tick #:trace-entry-value #:trace-so-far #:write-trace)
   ;; tracing
   (:export #:note-command #:note-event #:start-trace #:stop-trace #:with-answer #:call-with-answer)
   ;; runner
