@@ -268,7 +268,7 @@
                  (:file "popup") (:file "pointing") (:file "offers") (:file "plan-mouse")
                  (:file "world-mouse")
                  (:file "keys") (:file "help") (:file "robots") (:file "window") (:file "commands")
-                 (:file "opening")))))
+                 (:file "opening") (:file "following")))))
 
 (defsystem "ars-magna/fiveam"
   :description "Checks for regression suites: plans that are held to their rates of success."

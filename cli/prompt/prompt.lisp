@@ -12,6 +12,7 @@
 (defun next-line (session)
   "Read a line of SESSION and do what it says; at the end of input, let the session be over."
   (follow-simulation session)
+  (tell-whereabouts session)
   (when (session-account session) (account-for-last session))
   (let ((text (unless (stopped-p session)
                 (read-input session (if (session-breaks session) "Break> " "Robot> ")))))

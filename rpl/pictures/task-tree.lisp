@@ -97,11 +97,11 @@ to be seen."
   "Write the calls that the task of IMAGE is in the middle of from X, Y down. Return how many."
   (loop for call in (task-image-calls image)
         for line from 0
-        for left = (+ x (* 7 (1+ (min line 8))))
+        for left = (+ x (* +character-width+ (1+ (min line 8))))
         do (write-at canvas left (+ y (* line +line-height+))
                      (cut call (max 8 (floor (- width left) +character-width+)))
-                     #x505868)
-        finally (return line)))
+                     #x505868))
+  (length (task-image-calls image)))
 
 (defun draw-task-texts (canvas image x y width)
   "Write all that is to be said of IMAGE, from X on, down from Y. Return how many lines that took."
@@ -120,8 +120,8 @@ to be seen."
 ;;; The whole.
 
 (defun tree-title (image)
-  (format nil "Tick ~A: ~D plan~:P, ~D task~:P" (tree-image-tick image) (tree-image-plans image)
-          (tree-image-tasks image)))
+  (format nil "~D plan~:P, ~D task~:P; as of tick ~A" (tree-image-plans image)
+          (tree-image-tasks image) (tree-image-tick image)))
 
 (defun unseen-text (image)
   "Return how many tasks of IMAGE are not among its rows, in words; NIL if all are."

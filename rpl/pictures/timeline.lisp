@@ -4,7 +4,7 @@
 
 (defun draw-axis (canvas scale top bottom)
   "Draw lines at round ticks from TOP down to BOTTOM, and the numbers of these above and below."
-  (loop with step = (nice-step (scale-span scale) (clamp (floor (scale-width scale) 70) 2 12))
+  (loop with step = (nice-step (scale-span scale) (clamp (floor (scale-width scale) 50) 2 12))
         for tick from (* step (ceiling (scale-start scale) step)) to (scale-end scale) by step
         for x = (place tick scale)
         for text = (princ-to-string tick)
@@ -38,10 +38,15 @@ pixels wide. Return where it ends: how far to the right, and how far down."
 
 ;;; The rows.
 
+(defun row-name (row width)
+  "Return what ROW is called, WIDTH pixels wide; where that is little, little of it is for how deep
+it is."
+  (fitted (if (< width 250) (row-label row 1 7) (row-label row)) width))
+
 (defun draw-row (canvas row y scale)
   "Draw ROW with its upper edge at Y, its name left of SCALE."
   (with-subject (canvas (first (row-bars row)))
-    (write-at canvas 10 (+ y 11) (fitted (row-label row) (max 80 (- (scale-left scale) 20)))))
+    (write-at canvas 10 (+ y 11) (row-name row (max 80 (- (scale-left scale) 20)))))
   (dolist (bar (row-bars row)) (draw-bar canvas bar y scale))
   (dolist (bar (row-bars row))
     (draw-mark canvas (bar-outcome bar) (place (bar-end bar) scale) y)))
@@ -92,8 +97,8 @@ pixels."
 ;;; In a place of any width.
 
 (defun scale-for (page width)
-  "Return the scale of PAGE in a place WIDTH pixels wide: a third of it is for the names."
-  (let ((left (clamp (floor width 3) 100 +label-width+)))
+  "Return the scale of PAGE in a place WIDTH pixels wide: two fifths of it are for the names."
+  (let ((left (clamp (floor (* 2 width) 5) 100 +label-width+)))
     (make-scale (page-start page) (page-end page) left (max 60 (- width left 24)))))
 
 (defun draw-page (canvas page &key (width 640) (top 0) (from 0) to)

@@ -119,10 +119,20 @@
                         (format nil "display of ~A" (robot-name robot))))
     window))
 
+(defun open-windows ()
+  (with-lock (*windows-lock*) (copy-list *windows*)))
+
+(defun window-of-visit (robot)
+  "Return the window that shows the run of ROBOT if that is a trial or a fork; or NIL."
+  (let ((simulation (robot-simulation robot)))
+    (unless (live-p simulation)
+      (find simulation (open-windows)
+            :key (lambda (window) (watcher-simulation (window-watcher window)))))))
+
 (defun open-window (robot)
-  "Show ROBOT in a window: in the one that it has, or else a new one. Return the window. Signals
-MISUSE where there is no X server."
-  (let ((window (find-window (robot-name robot))))
+  "Show ROBOT in a window: in the one that it has, or that shows the trial that it is in, or else a
+new one. Return the window. Signals MISUSE where there is no X server."
+  (let ((window (or (find-window (robot-name robot)) (window-of-visit robot))))
     (cond (window (watch-simulation (window-watcher window) (robot-simulation robot))
                   window)
           (t (open-new-window robot)))))
@@ -131,7 +141,7 @@ MISUSE where there is no X server."
 
 (defun watch-rewound (old new)
   "Let the windows that show OLD show NEW, which is to go on in its place."
-  (dolist (window (with-lock (*windows-lock*) (copy-list *windows*)))
+  (dolist (window (open-windows))
     (let ((watcher (window-watcher window)))
       (when (eq old (watcher-simulation watcher))
         (remove-observer (watcher-observer watcher) new)
