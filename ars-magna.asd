@@ -260,9 +260,10 @@
   :serial t
   :components
   ((:module "src/clim" :serial t
-    :components ((:file "package") (:file "progress") (:file "plan-look") (:file "watcher") (:file "canvas")
-                 (:file "guarding") (:file "arrangement") (:file "panes")
-                 (:file "scrolling") (:file "selection")
+    :components ((:file "package") (:file "progress") (:file "plan-look") (:file "watcher")
+                 (:file "canvas")
+                 (:file "guarding") (:file "arrangement") (:file "buffering")
+                 (:file "panes") (:file "scrolling") (:file "selection")
                  (:file "view") (:file "world-pane") (:file "transcript") (:file "prompt")
                  (:file "plan-pane") (:file "layout-pane") (:file "bar") (:file "strip")
                  (:file "popup") (:file "pointing") (:file "offers") (:file "plan-mouse")
@@ -298,7 +299,7 @@
   :serial t
   :components ((:module "tests" :serial t
                 :components ((:file "clim-window") (:file "clim-layout") (:file "clim-pointing")
-                             (:file "clim-progress")))))
+                             (:file "clim-progress") (:file "clim-plans")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."

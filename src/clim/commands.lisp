@@ -93,7 +93,9 @@
     "Keep the robot in view, or no longer."
   (let ((pane (pane-named window 'world)))
     (setf (pane-following-p pane) (not (pane-following-p pane)))
-    (repaint-if-changed pane)))
+    (when (and (pane-following-p pane) (pane-fitting-p pane))
+      (hint window "The whole map is in view; the wheel zooms in."))
+    (refresh window)))
 
 (define-window-command (com-color "Colours on or off") (window)
     "Switch between colours and black and white."

@@ -3,8 +3,12 @@
 (in-package :ars-magna.clim)
 
 (defun pane-named (window name)
-  "Return the part of WINDOW called NAME."
-  (clim:find-pane-named window name))
+  "Return the part of WINDOW called NAME, or NIL."
+  (let ((pane (gethash name (window-panes window))))
+    ;; CLIM may have made the panes of the layout anew.
+    (if (and pane (clim:sheet-ancestor-p pane (clim:frame-top-level-sheet window)))
+        pane
+        (setf (gethash name (window-panes window)) (clim:find-pane-named window name)))))
 
 (defclass layout-pane (clim:bboard-pane)
   ((wishes :initform (make-wishes) :reader pane-wishes))

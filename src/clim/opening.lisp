@@ -48,7 +48,7 @@
 
 (defun discard (window)
   "Let the X server forget WINDOW, which has closed, and its pixmaps."
-  (forget-terrain (pane-named window 'world))
+  (forget-pixmaps window)
   (clim:disown-frame (clim:frame-manager window) window))
 
 (defun run-window (window)

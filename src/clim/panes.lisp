@@ -5,7 +5,7 @@
 ;;; A pane paints all of itself, from the window's last snapshot, whenever CLIM or a new snapshot
 ;;; asks for it; it does so only when what it shows has changed. Painting records nothing.
 
-(defclass display-pane (clim:basic-pane)
+(defclass display-pane (buffered-pane clim:basic-pane)
   ((display :initarg :display :initform nil :reader pane-display)
    ;; Boxes of what was painted, for clicks; what was painted, to know whether that has changed.
    (subjects :initform '() :accessor pane-subjects)
@@ -25,12 +25,6 @@
   (:documentation "Return an object that is EQUAL to the one before if PANE would look the same."))
 
 (defun window-of (pane) (clim:pane-frame pane))
-
-(defun pane-size (pane)
-  "Return width and height of PANE, in pixels."
-  (let ((region (clim:sheet-region pane)))
-    (values (floor (clim:bounding-rectangle-width region))
-            (floor (clim:bounding-rectangle-height region)))))
 
 (defun clear (pane &optional (ink clim:+white+))
   "Paint all of PANE with INK."
@@ -65,12 +59,12 @@
   "Paint PANE, all at once."
   (when (shown-p pane)
     (setf (pane-painted pane) (pane-content pane))
-    (clim:with-output-buffered (pane)
+    (buffered (pane)
       (paint pane)
       (when (limit-offset pane) (paint pane))
       (paint-selection pane)
-      (paint-scroll-bar pane)
-      (paint-popup-over pane))))
+      (paint-scroll-bar pane))
+    (paint-popup-over pane)))
 
 (defun repaint-if-changed (pane)
   (when (and (shown-p pane) (not (equal (pane-painted pane) (pane-content pane))))

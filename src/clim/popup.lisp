@@ -68,9 +68,9 @@ away then unless STAYS-P. TICK, a function, says whether a row that is TICK-P is
    (clim:transform-region (clim:sheet-transformation other) (clim:sheet-region other))))
 
 (defun paint-popup-over (pane)
-  "Paint the popup that lies over PANE, if there is one."
+  "Paint the popup that lies over PANE, if there is one and the X server does not keep it there."
   (let ((window (window-of pane)))
-    (unless (typep pane 'popup-pane)
+    (unless (or (typep pane 'popup-pane) (clim:sheet-direct-mirror pane))
       (when (and (popup-open-p window) (places-meet-p pane (window-popup window)))
         (repaint (window-popup window))))))
 

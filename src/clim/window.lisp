@@ -33,7 +33,8 @@
    (robot-name :initform nil :accessor window-robot-name)
    ;; The name of the robot that the displays have been given room for.
    (settled :initform nil :accessor window-settled)
-   (panes-painted :initform '() :accessor window-panes-painted)
+   ;; The parts found so far, by name.
+   (panes-found :initform (make-hash-table :test 'eq) :reader window-panes)
    ;; Its car is true while an event is queued.
    (queued :initform (list nil) :reader window-queued)
    (painted :initform nil :accessor window-painted)
@@ -94,21 +95,25 @@
 (defun window-simulation (window)
   (watcher-simulation (window-watcher window)))
 
-(defun painted-parts ()
-  "Return the names of the parts of the window that we paint."
+(defparameter *painted-parts*
   (append '(world state designators cameras hands bins plan transcript strip bar)
-          (mapcar #'title-name +titled+) +splitters+))
+          (mapcar #'title-name +titled+) +splitters+)
+  "The names of the parts of the window that we paint.")
 
 (defun display-panes (window)
   "Return a list of the panes of WINDOW that are painted."
-  (or (window-panes-painted window)
-      (setf (window-panes-painted window)
-            (remove nil (mapcar (lambda (name) (pane-named window name)) (painted-parts))))))
+  (loop for name in *painted-parts*
+        for pane = (pane-named window name)
+        when pane collect pane))
 
 (defun repaint-all (window)
-  "Paint all of WINDOW, as one picture."
-  (clim:with-output-buffered ((clim:frame-top-level-sheet window))
-    (mapc #'repaint (display-panes window))))
+  "Paint all of WINDOW."
+  (mapc #'repaint (display-panes window)))
+
+(defun forget-pixmaps (window)
+  "Let the X server forget what it keeps of the pictures in WINDOW."
+  (forget-terrain (pane-named window 'world))
+  (mapc #'forget-buffer (cons (window-popup window) (display-panes window))))
 
 ;;; Keeping up to date.
 
@@ -131,9 +136,10 @@
 (defun refresh (window)
   "Paint those panes of WINDOW that would look different now, all at once."
   (let ((snapshot (window-snapshot window)))
-    (clim:with-output-buffered ((clim:frame-top-level-sheet window))
-      (mapc #'repaint-if-changed (display-panes window))
-      (settle window))
+    (mapc #'repaint-if-changed (display-panes window))
+    (settle window)
+    ;; The X server may be slower than we are.
+    (clim:medium-finish-output (clim:sheet-medium (pane-named window 'world)))
     (unless (eq snapshot (window-painted window))
       (setf (window-painted window) snapshot)
       (painted (window-watcher window)))))

@@ -1,0 +1,53 @@
+;;;; buffering.lisp -- a pane is painted out of sight and shown as a whole, without waiting.
+
+(in-package :ars-magna.clim)
+
+;;; CLIM's own buffers ask the X server several questions for each pane and picture. While ticks
+;;; pass as fast as they can, each answer comes late, and pictures with them. So a pane has a pixmap
+;;; of its own, as large as it is; nothing is asked. It takes a pane that the X server knows as a
+;;; window, as CLIM's port to it makes them; others are painted by CLIM's buffers.
+
+(defclass buffered-pane ()
+  ((buffer :initform nil :accessor pane-buffer)
+   ;; Its width and height.
+   (buffer-size :initform nil :accessor pane-buffer-size))
+  (:documentation "What a pane needs in order to be painted out of sight."))
+
+(defun pane-size (pane)
+  "Return width and height of PANE, in pixels."
+  (let ((region (clim:sheet-region pane)))
+    (values (floor (clim:bounding-rectangle-width region))
+            (floor (clim:bounding-rectangle-height region)))))
+
+(defun forget-buffer (pane)
+  (let ((old (shiftf (pane-buffer pane) nil)))
+    (when old (clim:deallocate-pixmap old))))
+
+(defun buffer-of (pane width height)
+  "Return a pixmap of WIDTH times HEIGHT pixels for PANE."
+  (let ((size (list width height)))
+    (unless (and (pane-buffer pane) (equal size (pane-buffer-size pane)))
+      (forget-buffer pane)
+      (setf (pane-buffer pane) (clim:allocate-pixmap pane width height)
+            (pane-buffer-size pane) size))
+    (pane-buffer pane)))
+
+(defun call-in-buffer (function pane width height)
+  "Call FUNCTION, which paints PANE, of WIDTH times HEIGHT pixels; show all of that at once."
+  (let ((buffer (buffer-of pane width height)) (medium (clim:sheet-medium pane)))
+    (setf (clim:medium-drawable medium) buffer)
+    (unwind-protect (funcall function)
+      (setf (clim:medium-drawable medium) nil))
+    (clim:copy-from-pixmap buffer 0 0 width height pane 0 0)
+    (clim:medium-force-output medium)))
+
+(defun call-buffered (function pane)
+  "Call FUNCTION, which paints PANE; nothing is seen of that before it returns."
+  (multiple-value-bind (width height) (pane-size pane)
+    (cond ((not (and (plusp width) (plusp height))))
+          ((clim:sheet-direct-mirror pane) (call-in-buffer function pane width height))
+          (t (clim:with-output-buffered (pane) (funcall function))))))
+
+(defmacro buffered ((pane) &body body)
+  "Run BODY, which paints PANE; nothing is seen of that before its end."
+  `(call-buffered (lambda () ,@body) ,pane))
