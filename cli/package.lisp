@@ -68,7 +68,8 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   ;; arguments
   (:export #:read-argument #:argument-words)
   ;; session, prompt
-  (:export #:*whereabouts-hooks* #:session #:make-session #:session-robot #:session-errors #:run-session #:prompt)
+  (:export #:session #:make-session #:session-robot #:session-errors #:run-session #:prompt
+           #:*whereabouts-hooks*)
   ;; worlds
   (:export #:all-worlds)
   ;; main

@@ -24,7 +24,7 @@
     (is-true (has-words-p (joined (type-batch "(begin-plan 'loiter 4)" "step 2" "trace-plans on"
                                               "step 3" "why 2" "trace-plans off" "trace-plans"
                                               "stop-plan"))
-                          "A trace of plans is kept." "Task 2 " "No trace of plans is kept."))))
+                          "A trace of plans is kept." "Task 2, " "No trace of plans is kept."))))
 
 (test rewind-to.goes-to-a-tick
   (let ((shown (joined (type-batch "(keep-forks)" "step 9" "rewind-to 4" "(simulation-tick)"

@@ -15,7 +15,7 @@
     (is (= 3 (rpl:tree-image-tick image)))
     (is (equal '(0 1) (list (rpl:task-image-depth (first rows))
                             (rpl:task-image-depth (second rows)))))
-    (is (= 5 (rpl:task-image-parts (first rows))))
+    (is (= 4 (rpl:task-image-parts (first rows))))
     (let ((arm (find 3 rows :key #'rpl:task-image-serial)))
       (is (equal "valve arm" (rpl:task-image-awaits arm)))
       (is (= 0 (rpl:task-image-since arm)))

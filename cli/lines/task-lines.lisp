@@ -19,8 +19,8 @@
 (defun task-text (task) (format nil "~D, ~A" (task-serial task) (task-label task)))
 
 (define-line "END-TASK" (session (n :task-number "the number of a task under way")) (:planning)
-    "End the task N of a plan, and all that it consists of: it evaporates, as when what it is part of
-needs it no longer. What it has told the robot to do is interrupted. STOP-PLAN ends whole plans."
+    "End the task N of a plan, and all that it consists of: it evaporates, as when what it is part
+of needs it no longer. What it has told the robot to do is interrupted. STOP-PLAN ends whole plans."
   (let ((task (task-meant n)))
     (end-plan task)
     (format t "Task ~A ends.~%" (task-text task))))
@@ -46,8 +46,8 @@ message."
   (call-with-plans-in-use (lambda (runner) (when runner (stop-trace runner)))))
 
 (define-line "TRACE-PLANS" (session (switch :switch "ON or OFF" :optional)) (:planning)
-    "Keep a trace of what plans do, those under way included, from now on: for WHY, PLAN-TIMELINE and
-the window's timeline. OFF keeps none, and forgets it; without ON or OFF, say which it is."
+    "Keep a trace of what plans do, those under way included, from now on: for WHY, PLAN-TIMELINE
+and the window's timeline. OFF keeps none, and forgets it; without ON or OFF, say which it is."
   (when switch
     (if (setf *trace-plans* (switch-setting "TRACE-PLANS" switch))
         (trace-from-now-on)

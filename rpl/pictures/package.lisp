@@ -11,7 +11,8 @@ canvas.")
                 #:span-end #:span-error #:span-kind #:span-start #:span-text
                 #:plan-trace #:plan-runner-tick #:runner-to-see
                 #:image-of-tasks #:task-image #:task-image-serial #:task-image-depth
-                #:task-image-look #:task-image-state #:task-image-name #:task-image-form #:task-image-calls
+                #:task-image-look #:task-image-state #:task-image-name #:task-image-form
+                #:task-image-calls
                 #:task-image-awaits #:task-image-since #:task-image-path #:task-image-parts
                 #:task-image-folded-p #:tree-image-tick #:tree-image-rows #:tree-image-plans
                 #:tree-image-tasks)

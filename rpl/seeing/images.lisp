@@ -8,9 +8,9 @@
 
 (defstruct (task-image (:copier nil))
   "What is to be seen of a task. LOOK is :running, :waiting, :blocked, :cleaning, :ending or
-:stepped; STATE says it in words. CALLS are the calls of plans that it is in the middle of, as texts,
-outermost first. PARTS is how many tasks it consists of; if it is FOLDED-P, they are not among the
-rows."
+:stepped; STATE says it in words. CALLS are the calls of plans that it is in the middle of, as
+texts, outermost first. PARTS is how many tasks it consists of; if it is FOLDED-P, they are not
+among the rows."
   (serial 0 :type fixnum :read-only t)
   (depth 0 :type fixnum :read-only t)
   (look :running :type keyword :read-only t)

@@ -28,6 +28,7 @@ the debugger's side of plans. Changes nothing.")
   ;; images
   (:export #:image-of-tasks #:runner-mark #:task-image #:task-image-p #:task-image-serial
            #:task-image-depth #:task-image-look #:task-image-state #:task-image-name
-           #:task-image-form #:task-image-calls #:task-image-awaits #:task-image-since #:task-image-path
+           #:task-image-form #:task-image-calls #:task-image-awaits #:task-image-since
+           #:task-image-path
            #:task-image-parts #:task-image-folded-p #:tree-image #:tree-image-p
            #:tree-image-tick #:tree-image-rows #:tree-image-plans #:tree-image-tasks))

@@ -10,7 +10,8 @@ McCLIM's symbols are written with their packages. Manual B.")
   (:import-from :ars-magna.rpl-robot
                 #:plans #:interface-p #:interface-runner #:interface-robot #:interface-simulation)
   (:import-from :ars-magna.rpl
-                #:bar #:bar-serial #:bars #:image-of-tasks #:runner-mark #:runner-trace #:runner-client
+                #:bar #:bar-serial #:bars #:image-of-tasks #:runner-mark #:runner-trace
+                #:runner-client
                 #:trace-so-far #:task-image #:task-image-serial #:task-image-folded-p
                 #:task-image-name #:task-image-state #:task-image-form #:task-image-awaits
                 #:task-image-since #:task-image-path #:task-image-calls #:task-image-parts

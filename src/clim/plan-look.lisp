@@ -3,8 +3,8 @@
 (in-package :ars-magna.clim)
 
 ;;; The pacer makes the images (watcher.lisp): neither the thread that paints nor the one that runs
-;;; the ticks waits for that. It looks only where plans are to be seen, and only if they have gone on
-;;; since; it takes them as they are between two of their reactions, and if they are at work just
+;;; the ticks waits for that. It looks only where plans are to be seen, and only if they have gone
+;;; on since; it takes them as they are between two of their reactions, and if they are at work just
 ;;; then, comes again. What looking costs, plans stand still for: so that is a tenth of the time at
 ;;; most.
 

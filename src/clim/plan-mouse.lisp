@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.clim)
 
-;;; A click on a task of the tree, or on the name of one beside the timeline, tells of it; one on the
-;;; timeline itself takes the run back to that moment. The right button offers lines of the prompt.
+;;; A click on a task of the tree, or on the name of one beside the timeline, tells of it; one on
+;;; the timeline itself takes the run back to that moment. The right button offers lines of the
+;;; prompt.
 
 (defstruct (plan-moment (:constructor make-plan-moment (tick bar)) (:copier nil))
   "The TICK of a timeline, and the BAR or text that is drawn there, or NIL."

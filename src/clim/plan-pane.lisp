@@ -51,7 +51,9 @@
 
 (defun plan-switches (pane)
   "Return the switches of PANE, from left to right."
-  (let* ((look (plan-look-of pane)) (view (plan-look-view look)) (traced-p (plan-look-traced-p look)))
+  (let* ((look (plan-look-of pane))
+         (view (plan-look-view look))
+         (traced-p (plan-look-traced-p look)))
     (list (make-switch "Tree" "Show what the tasks of the plans are at, and wait for"
                        (lambda () (show-plans-as pane :tree)) (eq view :tree))
           (make-switch "Timeline" "Show what the tasks have done, over ticks"
@@ -108,7 +110,9 @@
 (defun say-ending (canvas pane y)
   "Write, from Y down, how the last plan ended, if one has. Return where that ends."
   (let ((ended (plan-look-ended (plan-look-of pane))))
-    (if ended (say-text canvas pane (+ y 4) (format nil "Last: ~A." (string-right-trim "." ended))) y)))
+    (if ended
+        (say-text canvas pane (+ y 4) (format nil "Last: ~A." (string-right-trim "." ended)))
+        y)))
 
 (defun say-no-plan (canvas pane)
   (let ((y (say-text canvas pane +plan-head+ "No plan is under way. PLAN name ... starts one.")))
@@ -141,7 +145,8 @@
         (say-no-plan canvas pane))))
 
 (defparameter *too-long*
-  "The trace is too long to be drawn again and again. PLAN-TIMELINE plans.svg saves it as a picture.")
+  "The trace is too long to be drawn again and again. PLAN-TIMELINE plans.svg saves a picture."
+  "What is said instead of drawing a timeline of very much.")
 
 (defun draw-plan-timeline (canvas pane)
   "Draw the timeline that PANE shows. Return where it ends."
