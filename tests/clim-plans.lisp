@@ -188,3 +188,10 @@
          (run:call-in-fork fork (lambda () (window::follow-prompt nil run fork)))
          (is (eq run (window::watcher-simulation (window:window-watcher window))))))
      robot)))
+
+(test following.buttons-are-lines-where-the-prompt-lets-ticks-pass
+  "The studio's run is not live, as that of a trial."
+  (in-window (window robot)
+    (without-prompt (window)
+      (window::do-key window nil #\.)
+      (is (equal '("step 1") (lines-given window))))))
