@@ -143,7 +143,7 @@
    (:module "rpl/seeing" :serial t
     :components ((:file "package") (:file "variables") (:file "subjects") (:file "tree")
                  (:file "describing") (:file "history") (:file "why") (:file "spans")
-                 (:file "breaking") (:file "stepping")))
+                 (:file "breaking") (:file "stepping") (:file "images")))
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
@@ -154,7 +154,7 @@
                  (:file "outcomes") (:file "commands") (:file "runs") (:file "seeing")))
    (:module "rpl/pictures" :serial t
     :components ((:file "package") (:file "rows") (:file "bars") (:file "timeline")
-                 (:file "saving")))
+                 (:file "task-tree") (:file "saving")))
    (:module "src/plots" :serial t
     :components ((:file "package") (:file "figures") (:file "axis") (:file "looks")
                  (:file "words") (:file "page") (:file "series") (:file "legend")
@@ -252,7 +252,8 @@
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
                    (:file "status-data") (:file "status-lines") (:file "map-lines")
                    (:file "running-lines") (:file "watch-line") (:file "world-lines")
-                   (:file "plan-lines") (:file "plan-views") (:file "manipulate-line")
+                   (:file "plan-lines") (:file "plan-views") (:file "task-lines")
+                   (:file "manipulate-line")
                    (:file "help") (:file "subjects") (:file "topics") (:file "help-lines")
                    (:file "rewind-line") (:file "picture-lines") (:file "film-line")
                    (:file "window-lines") (:file "trial-lines")
@@ -270,15 +271,17 @@
   :serial t
   :components
   ((:module "src/clim" :serial t
-    :components ((:file "package") (:file "progress") (:file "watcher") (:file "canvas")
+    :components ((:file "package") (:file "progress") (:file "plan-look") (:file "watcher")
+                 (:file "canvas")
                  (:file "guarding") (:file "arrangement") (:file "buffering")
                  (:file "panes") (:file "scrolling") (:file "selection")
                  (:file "view") (:file "world-pane") (:file "transcript") (:file "transcript-pane")
                  (:file "prompt") (:file "plan-pane") (:file "layout-pane") (:file "titles")
                  (:file "splitters") (:file "bar") (:file "strip")
                  (:file "popup") (:file "pointing") (:file "interactor") (:file "offers")
-                 (:file "world-mouse") (:file "keys") (:file "help") (:file "robots")
-                 (:file "window") (:file "line-menus") (:file "commands") (:file "opening")))))
+                 (:file "plan-mouse") (:file "world-mouse") (:file "keys") (:file "help")
+                 (:file "robots") (:file "window") (:file "line-menus") (:file "commands")
+                 (:file "opening") (:file "following")))))
 
 (defsystem "ars-magna/fiveam"
   :description "Checks for regression suites: plans that are held to their rates of success."
@@ -308,7 +311,8 @@
   :serial t
   :components ((:module "tests" :serial t
                 :components ((:file "clim-window") (:file "clim-layout") (:file "clim-pointing")
-                             (:file "clim-progress") (:file "clim-talking")))))
+                             (:file "clim-progress") (:file "clim-plans")
+                             (:file "clim-talking")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
@@ -357,6 +361,7 @@
                  (:file "cli-trials") (:file "cli-newcomers") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "experiment-shell") (:file "experiment-shell-code")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")
+                 (:file "rpl-images") (:file "cli-tasks")
                  (:file "rpl-seeing-truth") (:file "thinking") (:file "thinking-runs")
                  (:file "skipping")
                  (:file "kinds") (:file "digests") (:file "runs") (:file "rewinding")

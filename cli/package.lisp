@@ -21,6 +21,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:stop-plan
                 #:find-procedure #:all-procedures #:called-procedures #:procedure-name
                 #:procedure-lambda-list #:task-runner #:print-tasks #:task-numbered
+                #:task-label #:all-tasks #:step-task #:start-trace #:stop-trace
                 #:plan-break-p #:why)
   (:import-from :ars-magna.rpl-robot
                 #:rpl-init-robot #:rpl-robot #:rpl-runner
@@ -75,7 +76,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:export #:read-argument #:argument-words)
   ;; session, prompt
   (:export #:session #:make-session #:session-robot #:session-errors #:session-input
-           #:run-session #:prompt #:*prompt-robot*)
+           #:run-session #:prompt #:*prompt-robot* #:*whereabouts-hooks*)
   ;; sessions
   (:export #:go-to-run #:listen-instead #:run-session-apart #:interrupt-session #:end-session
            #:enter-line #:at-work-on)

@@ -25,14 +25,30 @@
   (setf (session-after-rewind session) nil)
   (take-up-plans session))
 
+(defun check-rewindable (session)
+  "Signal BAD-LINE where SESSION is in what cannot be rewound."
+  (check-run)
+  (when (session-visit session)
+    (reject-line "A trial is what it is. TRIAL begins it anew, at tick 0.")))
+
+(defun rewind-and-tell (session ticks)
+  "Let SESSION go on TICKS ticks back, and say where that is."
+  (rewind-here session ticks)
+  (format t "~A~@[ Plans under way: ~{~(~A~)~^, ~}.~]~%"
+          (time-text session *simulation*) (mapcar #'task-name (plans))))
+
 (define-line "REWIND" (session (n tick-span "how far"))
     (:running)
     "Go back N ticks, plans included, and go on from there; 0 undoes what was done since the last
 tick. What came after has not happened; the journal says that there was something. Programs that
 wait for the end of a command, such as that of GO-TO, do not go on: they are told :INTERRUPT."
-  (check-run)
-  (when (session-visit session)
-    (reject-line "A trial is what it is. TRIAL begins it anew, at tick 0."))
-  (rewind-here session n)
-  (format t "~A~@[ Plans under way: ~{~(~A~)~^, ~}.~]~%"
-          (time-text session *simulation*) (mapcar #'task-name (plans))))
+  (check-rewindable session)
+  (rewind-and-tell session n))
+
+(define-line "REWIND-TO" (session (tick count "the tick to go back to"))
+    (:running)
+    "Go back to the end of TICK, and go on from there, as REWIND does that counts from now."
+  (check-rewindable session)
+  (let ((now (simulation-tick *simulation*)))
+    (unless (<= tick now) (reject-line "It is only tick ~D." now))
+    (rewind-and-tell session (- now tick))))

@@ -48,6 +48,7 @@ tell somebody who sits there."
 
 (defun next-line (session)
   "Read a line of SESSION and do what it says; at the end of input, let the session be over."
+  (tell-whereabouts session)
   (find-place session)
   (when (session-account session) (account-for-last session))
   (let ((text (unless (stopped-p session)

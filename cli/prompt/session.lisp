@@ -40,6 +40,8 @@
   ;; Files to load, and lines to do, before any is read.
   (files '() :type list)
   (lines '() :type list)
+  ;; The run that it was in when it read a line last; see TELL-WHEREABOUTS.
+  (whereabouts nil)
   ;; The thread that reads, and what has entered the debugger in others, newest first.
   (thread nil)
   (breaks '() :type list)
@@ -333,3 +335,15 @@ another, so that nobody waits for the tick to end, which it may never."
                (eq (and *simulation* (live-p *simulation*)) (and (session-observer session) t)))
     (stop-listening session)
     (when *simulation* (listen-to session *simulation*))))
+
+;;; A window follows its user into other runs.
+
+(defvar *whereabouts-hooks* '()
+  "Functions, or their names, of a session, the run that it was in when it read a line last, and the
+one that it is in now, perhaps the same; NIL for none. They are called in its thread before it reads
+a line. A headless run stands still then.")
+
+(defun tell-whereabouts (session)
+  "Let those who want to know hear in which run SESSION is."
+  (let ((old (shiftf (session-whereabouts session) *simulation*)))
+    (dolist (hook *whereabouts-hooks*) (funcall hook session old *simulation*))))

@@ -130,6 +130,7 @@ to say of that."
   "Read a line of SESSION, which is in VISIT, and do what it says."
   (call-aside
    (lambda ()
+     (tell-whereabouts session)
      (begin-visit session visit)
      (let ((before (visit-state)))
        (call-guarded session (lambda ()

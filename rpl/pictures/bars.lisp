@@ -24,24 +24,36 @@
 
 ;;; Ticks and pixels.
 
-(defstruct (scale (:constructor make-scale (start end)) (:copier nil))
-  "The ticks from START to END, which lie beside each other."
+(defstruct (scale (:constructor make-scale (start end &optional (left +label-width+)
+                                                          (width +chart-width+)))
+                  (:copier nil))
+  "The ticks from START to END, which lie beside each other from LEFT on, WIDTH pixels wide."
   (start 0 :type real :read-only t)
-  (end 0 :type real :read-only t))
+  (end 0 :type real :read-only t)
+  (left 0 :type real :read-only t)
+  (width 1 :type real :read-only t))
 
 (defun scale-span (scale)
   (max 1 (- (scale-end scale) (scale-start scale))))
 
 (defun place (tick scale)
   "Return where TICK is, in pixels from the left."
-  (+ +label-width+ (* +chart-width+ (/ (- tick (scale-start scale)) (scale-span scale)))))
+  (+ (scale-left scale)
+     (* (scale-width scale) (/ (- tick (scale-start scale)) (scale-span scale)))))
 
-(defun nice-step (span)
-  "Return how many ticks of SPAN there should be from one label to the next: 1, 2 or 5 times a power
-of ten."
+(defun tick-at (x scale)
+  "Return the tick that is X pixels from the left in SCALE, a whole number; NIL if none is there."
+  (let ((tick (+ (scale-start scale)
+                 (round (* (scale-span scale) (- x (scale-left scale))) (scale-width scale)))))
+    (and (<= (scale-left scale) x) (<= (scale-start scale) tick (scale-end scale))
+         tick)))
+
+(defun nice-step (span &optional (most 12))
+  "Return how many ticks of SPAN there should be from one label to the next, for about MOST of them:
+1, 2 or 5 times a power of ten."
   (loop for power = 1 then (* 10 power)
         thereis (loop for factor in '(1 2 5)
-                      when (<= (/ span (* factor power)) 12) return (* factor power))))
+                      when (<= (/ span (* factor power)) most) return (* factor power))))
 
 (defun box (canvas color x y width height)
   (with-color color
@@ -96,7 +108,7 @@ of ten."
             (draw-segments canvas draw-gcontext* (list (- x 4) (+ y 3) (+ x 4) (+ y 11)
                                                        (- x 4) (+ y 11) (+ x 4) (+ y 3)))))))))
 
-(defun bar-title (bar)
+(defmethod subject-title ((bar bar))
   (format nil "~A, ticks ~A to ~A~@[, ~(~A~)~]~@[: ~A~]" (bar-label bar) (bar-start bar)
           (bar-end bar) (bar-outcome bar)
           (and (bar-failure bar) (cut (one-line (own-text (bar-failure bar))) 200))))
@@ -104,7 +116,7 @@ of ten."
 (defun draw-bar (canvas bar y scale)
   "Draw BAR with its upper edge at Y."
   (let ((x (place (bar-start bar) scale)))
-    (with-subject (canvas (bar-title bar))
+    (with-subject (canvas bar)
       (box canvas (look (if (bar-call-p bar) :call :parts))
            x y (- (place (bar-end bar) scale) x) 14)
       (dolist (kind '(:waiting :cleaning :blocked))

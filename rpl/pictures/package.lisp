@@ -9,8 +9,18 @@ canvas.")
                 #:bar-label #:bar-name
                 #:bar-outcome #:bar-parts #:bar-serial #:bar-spans #:bar-start #:bars
                 #:span-end #:span-error #:span-kind #:span-start #:span-text
-                #:plan-trace #:plan-runner-tick #:runner-to-see)
+                #:plan-trace #:plan-runner-tick #:runner-to-see
+                #:image-of-tasks #:task-image #:task-image-serial #:task-image-depth
+                #:task-image-look #:task-image-state #:task-image-name #:task-image-form
+                #:task-image-calls
+                #:task-image-awaits #:task-image-since #:task-image-path #:task-image-parts
+                #:task-image-folded-p #:tree-image-tick #:tree-image-rows #:tree-image-plans
+                #:tree-image-tasks)
   (:import-from :ars-magna.rpl-robot #:call-with-plans-in-use)
   (:import-from :ars-magna.display #:picture-kind #:save-svg)
+  ;; bars, timeline
+  (:export #:tick-at #:make-page #:page-end #:page-start #:scale-for #:draw-page)
+  ;; task-tree
+  (:export #:draw-task-tree #:fold-mark #:fold-mark-serial #:fold-mark-p)
   ;; saving
-  (:export #:save-plan-timeline))
+  (:export #:save-plan-timeline #:save-plan-tree))

@@ -11,10 +11,11 @@
 
 (defun row-depth (row) (bar-depth (first (row-bars row))))
 
-(defun row-label (row)
-  "Return which tasks are in ROW, indented by how deep they are."
+(defun row-label (row &optional (indent 2) (most 24))
+  "Return which tasks are in ROW, indented by how deep they are: each time by INDENT, by MOST in
+all."
   (let ((more (1- (length (row-bars row)))))
-    (format nil "~V@T~A~@[ (and ~D more)~]" (min 24 (* 2 (row-depth row)))
+    (format nil "~V@T~A~@[ (and ~D more)~]" (min most (* indent (row-depth row)))
             (bar-label (first (row-bars row)))
             (and (plusp more) more))))
 

@@ -1,4 +1,4 @@
-;;;; saving.lisp -- the timeline of plans as a file.
+;;;; saving.lisp -- the timeline of plans, and the tree of their tasks, as files.
 
 (in-package :ars-magna.rpl-pictures)
 
@@ -38,3 +38,23 @@ truename. Signals WRONG-ARGUMENT and MISUSE."
         (bars (call-with-plans-in-use
                (lambda (in-use) (trace-bars (or runner in-use (runner-to-see)))))))
     (save-svg (timeline-svg bars most) file kind)))
+
+(defun tree-svg (image)
+  "Return the tree of tasks of IMAGE as an SVG document."
+  (with-output-to-string (stream)
+    (with-svg (canvas stream)
+      (with-canvas (canvas) (values 640 (draw-task-tree canvas image))))))
+
+(addition save-plan-tree)
+(defun save-plan-tree (file &key runner (most 300))
+  "Save a picture of the tasks of the plans under way in FILE, replacing it: SVG or, where the
+program rsvg-convert is installed, PNG, as its name ends. Each task stands below the one that it is
+part of, with a mark for how it is, what it is at, and what it waits for. RUNNER is the plan runner,
+by default the one in use. At most MOST tasks are drawn, the others counted. Return the file's
+truename. Signals WRONG-ARGUMENT, and MISUSE where no plans have run."
+  (check-argument save-plan-tree most (whole-p most 1 1000000) "an integer from 1 to 1000000")
+  (let ((kind (picture-kind 'save-plan-tree file))
+        (image (call-with-plans-in-use
+                (lambda (in-use)
+                  (image-of-tasks (or runner in-use (runner-to-see)) :most most)))))
+    (save-svg (tree-svg image) file kind)))

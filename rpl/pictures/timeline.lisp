@@ -2,63 +2,113 @@
 
 (in-package :ars-magna.rpl-pictures)
 
-(defun draw-axis (canvas scale bottom)
-  "Draw lines at round ticks down to BOTTOM, and the numbers of these above and below."
-  (loop with step = (nice-step (scale-span scale))
+(defun draw-axis (canvas scale top bottom)
+  "Draw lines at round ticks from TOP down to BOTTOM, and the numbers of these above and below."
+  (loop with step = (nice-step (scale-span scale) (clamp (floor (scale-width scale) 50) 2 12))
         for tick from (* step (ceiling (scale-start scale) step)) to (scale-end scale) by step
         for x = (place tick scale)
         for text = (princ-to-string tick)
         for left = (- x (/ (* +character-width+ (length text)) 2))
         do (with-color #xDCDCDC
-             (draw-line canvas draw-gcontext* x (- +top+ 6) x (+ bottom 2)))
-           (write-at canvas left (- +top+ 10) text #x606060)
+             (draw-line canvas draw-gcontext* x (- top 6) x (+ bottom 2)))
+           (write-at canvas left (- top 10) text #x606060)
            (write-at canvas left (+ bottom 15) text #x606060)))
 
 ;;; The legend.
 
-(defun draw-entry (canvas x text painter)
-  "Write TEXT into the legend after what PAINTER paints at X. Return where the next entry goes."
-  (funcall painter x)
-  (write-at canvas (+ x 24) 38 text)
-  (+ x 46 (* +character-width+ (length text))))
+(defun draw-legend (canvas &key (x 10) (y 27) width)
+  "Draw what colors and marks mean, from X, Y on, in as many lines as it takes if it is to be WIDTH
+pixels wide. Return where it ends: how far to the right, and how far down."
+  (let ((left x))
+    (flet ((entry (text painter)
+             (let ((end (+ x 46 (* +character-width+ (length text)))))
+               (when (and width (> end width) (> x left))
+                 (setf end (+ left (- end x)) x left)
+                 (incf y 18))
+               (funcall painter x y)
+               (write-at canvas (+ x 24) (+ y 11) text)
+               (setf x end))))
+      (loop for (kind color text) in *looks*
+            for low = (member kind '(:command :trouble))
+            do (entry text (lambda (x y)
+                             (box canvas color x (if low (+ y 6) y) 18 (if low 4 14)))))
+      (loop for (outcome nil text) in *end-looks*
+            do (entry text (lambda (x y) (draw-mark canvas outcome (+ x 12) y)))))
+    (values x (+ y 18))))
 
-(defun draw-legend (canvas)
-  "Draw what colors and marks mean. Return how wide that is, in pixels."
-  (let ((x 10))
-    (loop for (kind color text) in *looks*
-          for low = (member kind '(:command :trouble))
-          do (setf x (draw-entry canvas x text
-                                 (lambda (x)
-                                   (box canvas color x (if low 33 27) 18 (if low 4 14))))))
-    (loop for (outcome nil text) in *end-looks*
-          do (setf x (draw-entry canvas x text
-                                 (lambda (x) (draw-mark canvas outcome (+ x 12) 27)))))
-    x))
+;;; The rows.
 
-;;; The whole.
+(defun row-name (row width)
+  "Return what ROW is called, WIDTH pixels wide; where that is little, little of it is for how deep
+it is."
+  (fitted (if (< width 250) (row-label row 1 7) (row-label row)) width))
 
-(defun draw-rows (canvas rows scale)
+(defun draw-row (canvas row y scale)
+  "Draw ROW with its upper edge at Y, its name left of SCALE."
+  (with-subject (canvas (first (row-bars row)))
+    (write-at canvas 10 (+ y 11) (row-name row (max 80 (- (scale-left scale) 20)))))
+  (dolist (bar (row-bars row)) (draw-bar canvas bar y scale))
+  (dolist (bar (row-bars row))
+    (draw-mark canvas (bar-outcome bar) (place (bar-end bar) scale) y)))
+
+(defun draw-rows (canvas rows scale top &key (from 0) to)
+  "Draw ROWS from TOP down, but for those that end above FROM or begin below TO."
   (loop for row in rows
-        for y from (+ +top+ 2) by +row-height+
-        do (write-at canvas 10 (+ y 11)
-                     (fitted (row-label row) (- +label-width+ 20)))
-           (dolist (bar (row-bars row)) (draw-bar canvas bar y scale))
-           (dolist (bar (row-bars row))
-             (draw-mark canvas (bar-outcome bar) (place (bar-end bar) scale) y))))
+        for y from (+ top 2) by +row-height+
+        when (and (>= (+ y +row-height+) from) (or (null to) (<= y to)))
+          do (draw-row canvas row y scale)))
+
+;;; As a page.
+
+(defstruct (page (:constructor %make-page (rows unseen start end)) (:copier nil))
+  "ROWS to be drawn from tick START to END; UNSEEN is how many more there would be."
+  (rows '() :type list :read-only t)
+  (unseen 0 :type fixnum :read-only t)
+  (start 0 :type real :read-only t)
+  (end 0 :type real :read-only t))
+
+(document-functions
+  page-start "Return the tick with which a page begins."
+  page-end "Return the tick with which a page ends.")
+
+(defun make-page (bars most)
+  "Return a page of BARS, of top-level tasks, with at most MOST rows."
+  (let* ((all (rows bars)) (unseen (max 0 (- (length all) most))))
+    (%make-page (subseq all 0 (- (length all) unseen)) unseen
+                (reduce #'min bars :key #'bar-start) (reduce #'max bars :key #'last-tick))))
+
+(defun draw-unseen (canvas page y)
+  (when (plusp (page-unseen page))
+    (write-at canvas 10 y (format nil "~D more rows are left out." (page-unseen page)))))
 
 (defun draw-timeline (canvas bars most)
   "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows. Return width and height in
 pixels."
-  (let* ((all (rows bars))
-         (rows (subseq all 0 (min most (length all))))
-         (scale (make-scale (reduce #'min bars :key #'bar-start)
-                            (reduce #'max bars :key #'last-tick)))
-         (bottom (+ +top+ (* +row-height+ (length rows)))))
-    (write-at canvas 10 16 (format nil "Plans from tick ~A to ~A" (scale-start scale)
-                                   (scale-end scale)))
-    (draw-axis canvas scale bottom)
-    (draw-rows canvas rows scale)
-    (when (< most (length all))
-      (write-at canvas 10 (+ bottom 34)
-                (format nil "~D more rows are left out." (- (length all) most))))
+  (let* ((page (make-page bars most))
+         (scale (make-scale (page-start page) (page-end page)))
+         (bottom (+ +top+ (* +row-height+ (length (page-rows page))))))
+    (write-at canvas 10 16 (format nil "Plans from tick ~A to ~A" (page-start page)
+                                   (page-end page)))
+    (draw-axis canvas scale +top+ bottom)
+    (draw-rows canvas (page-rows page) scale +top+)
+    (draw-unseen canvas page (+ bottom 34))
     (values (max (draw-legend canvas) (+ +label-width+ +chart-width+ 40)) (+ bottom 42))))
+
+;;; In a place of any width.
+
+(defun scale-for (page width)
+  "Return the scale of PAGE in a place WIDTH pixels wide: two fifths of it are for the names."
+  (let ((left (clamp (floor (* 2 width) 5) 100 +label-width+)))
+    (make-scale (page-start page) (page-end page) left (max 60 (- width left 24)))))
+
+(defun draw-page (canvas page &key (width 640) (top 0) (from 0) to)
+  "Draw PAGE on CANVAS, WIDTH pixels wide, from TOP down; of its rows only those between FROM and
+TO, in pixels from the top, need be seen. Return where it ends, in pixels."
+  (let* ((scale (scale-for page width))
+         (first (+ top 26))
+         (bottom (+ first (* +row-height+ (length (page-rows page))))))
+    (draw-axis canvas scale first bottom)
+    (draw-rows canvas (page-rows page) scale first :from from :to to)
+    (draw-unseen canvas page (+ bottom 34))
+    (nth-value 1 (draw-legend canvas :y (+ bottom (if (plusp (page-unseen page)) 44 24))
+                                     :width width))))

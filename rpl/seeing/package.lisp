@@ -8,7 +8,7 @@ the debugger's side of plans. Changes nothing.")
   ;; variables
   (:export #:task-stack #:task-variables)
   ;; subjects
-  (:export #:*runner-in-use* #:*still* #:runner-to-see #:task-numbered #:task-with)
+  (:export #:*runner-in-use* #:*still* #:runner-to-see #:all-tasks #:task-numbered #:task-with)
   ;; tree
   (:export #:print-tasks)
   ;; history
@@ -24,4 +24,11 @@ the debugger's side of plans. Changes nothing.")
   (:export #:*break-on-plan-failures* #:plan-break #:plan-break-p #:plan-break-frame
            #:plan-break-task)
   ;; stepping
-  (:export #:*step-plans* #:step-task))
+  (:export #:*step-plans* #:step-task)
+  ;; images
+  (:export #:image-of-tasks #:runner-mark #:task-image #:task-image-p #:task-image-serial
+           #:task-image-depth #:task-image-look #:task-image-state #:task-image-name
+           #:task-image-form #:task-image-calls #:task-image-awaits #:task-image-since
+           #:task-image-path
+           #:task-image-parts #:task-image-folded-p #:tree-image #:tree-image-p
+           #:tree-image-tick #:tree-image-rows #:tree-image-plans #:tree-image-tasks))

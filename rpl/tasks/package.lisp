@@ -22,14 +22,14 @@ plans nor a simulator.")
            #:task-over-p #:task-p #:task-parent #:task-path #:task-result #:task-runner
            #:task-serial #:task-signal #:task-state #:task-status-fluent #:task-timer #:task-top
            #:evaporating-p #:part-of-p #:under-way-p #:frame-p #:node-names #:task-since
-           #:task-doomed #:task-node #:task-uncounted-p)
+           #:task-doomed #:task-node #:task-uncounted-p #:task-older)
   ;; awaiting
   (:export #:awaited-text)
   ;; trace
   (:export #:agent-text #:answer-p #:answer-error #:answer-issue #:issue-arguments #:issue-name
            #:issue-p #:issue-task #:trace-entry #:trace-entry-agent #:trace-entry-detail
            #:trace-entry-event #:trace-entry-form #:trace-entry-subject #:trace-entry-task
-           #:trace-entry-tick #:trace-entry-value #:write-trace)
+           #:trace-entry-tick #:trace-entry-value #:trace-so-far #:write-trace)
   ;; tracing
   (:export #:note-command #:note-event #:start-trace #:stop-trace #:with-answer #:call-with-answer)
   ;; runner
@@ -38,7 +38,7 @@ plans nor a simulator.")
            #:plan-runner-tasks #:plan-runner-tick #:plan-time #:plan-trace #:runner-blocks
            #:runner-dice #:runner-tick
            #:runner-ticks-per-second #:runner-timers #:runner-current #:runner-stepper
-           #:runner-note #:runner-serial #:client-forked-p
+           #:runner-note #:runner-serial #:runner-alive #:client-forked-p
            #:runner-trace #:runner-client #:*plan-task-limit*)
   ;; words
   (:export #:note-word #:task-now)

@@ -109,6 +109,7 @@ what it waits for before it starts, VARIABLES what it has set."
  task-uncounted-p "True if the task's steps are not charged for, as what it does has a price."
  task-blocked "Return by how many the task is blocked now."
  task-status-fluent "Return the fluent that follows the task's status, or NIL: see TASK-STATUS."
+ task-older "Return the part of the same task that started before the task, or NIL."
  task-newest-child "Return that part of the task which started last of those not over, or NIL.")
 
 (addition task-p task-name task-state task-serial task-parent task-result task-since)

@@ -178,13 +178,21 @@ each in a list with its own FILL."
                                       (if (logbitp 1 code) (next) nil)
                                       (if (logbitp 0 code) (next) task))))))
 
+(defun trace-so-far (trace)
+  "Return a function of no arguments that returns the entries that TRACE, a chronicle, has now, as a
+vector; for any thread and time: what has been noted stays. Return as well, roughly, how many these
+are."
+  (let ((chunk (chronicle-chunk trace)) (fill (chronicle-fill trace)) (full (chronicle-full trace)))
+    (values (lambda ()
+              (coerce (append (loop for (chunk fill) in (reverse full)
+                                    append (chunk-entries chunk fill))
+                              (chunk-entries chunk fill))
+                      'simple-vector))
+            (floor (reduce #'+ full :key #'second :initial-value fill) 5))))
+
 (defun trace-entries (trace)
   "Return the entries of TRACE, a chronicle, as a vector."
-  (let ((fill (chronicle-fill trace)))
-    (coerce (append (loop for (chunk fill) in (reverse (chronicle-full trace))
-                          append (chunk-entries chunk fill))
-                    (chunk-entries (chronicle-chunk trace) fill))
-            'simple-vector)))
+  (values (funcall (trace-so-far trace))))
 
 (defun write-trace-entry (entry stream)
   (format stream "~6@A ~(~9A~) ~5D ~A~@[  ; ~A~]~%"

@@ -12,15 +12,22 @@
          (with-guarded-command (,window ,title) ,@body)))
      (setf (documentation ',name 'function) ,documentation)))
 
-;;; Running.
+;;; Running. In a fork or trial, which is not live, it is the prompt that lets ticks pass.
+
+(defun steer (window function line)
+  "Call FUNCTION with the simulation of WINDOW if that is live; else give LINE to the prompt."
+  (let ((simulation (window-simulation window)))
+    (if (live-p simulation)
+        (funcall function simulation)
+        (give-line (window-conversation window) line))))
 
 (define-window-command (com-pause "Pause") (window)
     "Let time stand still."
-  (pause (window-simulation window)))
+  (steer window #'pause "pause"))
 
 (define-window-command (com-resume "Resume") (window)
     "Let time go on."
-  (resume (window-simulation window)))
+  (steer window #'resume "resume"))
 
 (define-window-command (com-pause-or-resume "Pause or go on") (window)
     "Let time stand still, or go on."
@@ -34,7 +41,7 @@
 
 (define-window-command (com-step "Step") (window)
     "Pass one tick and pause."
-  (step-ticks 1 (window-simulation window)))
+  (steer window (lambda (simulation) (step-ticks 1 simulation)) "step 1"))
 
 (defun change-rate (window factor)
   (let* ((simulation (window-simulation window)) (rate (simulation-rate simulation)))

@@ -163,17 +163,28 @@ close."
                         (format nil "display of ~A" (robot-name robot))))
     window))
 
+(defun open-windows ()
+  (with-lock (*windows-lock*) (copy-list *windows*)))
+
+(defun window-of-visit (robot)
+  "Return the window that shows the run of ROBOT if that is a trial or a fork; or NIL."
+  (let ((simulation (robot-simulation robot)))
+    (unless (live-p simulation)
+      (find simulation (open-windows)
+            :key (lambda (window) (watcher-simulation (window-watcher window)))))))
+
 (defun window-left ()
   "Return an open window whose run is over, or NIL."
   (find-if (lambda (window)
              (let ((simulation (window-simulation window)))
                (and simulation (simulation-over simulation))))
-           (with-lock (*windows-lock*) *windows*)))
+           (open-windows)))
 
 (defun open-window (robot)
-  "Show ROBOT in a window: in the one that it has, in one whose run is over, or else in a new one.
-Return the window. Signals MISUSE where there is no X server."
-  (let ((window (or (find-window (robot-name robot)) (window-left))))
+  "Show ROBOT in a window: in the one that it has, or that shows the trial or fork that it is in, in
+one whose run is over, or else in a new one. Return the window. Signals MISUSE where there is no X
+server."
+  (let ((window (or (find-window (robot-name robot)) (window-of-visit robot) (window-left))))
     (cond ((null window) (open-new-window robot))
           ((and (eq (watcher-robot (window-watcher window)) (robot-name robot))
                 (eq (window-simulation window) (robot-simulation robot)))
@@ -192,7 +203,7 @@ Return the window. Signals MISUSE where there is no X server."
 
 (defun watch-rewound (old new)
   "Let the windows that show OLD show NEW, which is to go on in its place."
-  (dolist (window (with-lock (*windows-lock*) (copy-list *windows*)))
+  (dolist (window (open-windows))
     (let ((watcher (window-watcher window)))
       (when (eq old (watcher-simulation watcher))
         (remove-observer (watcher-observer watcher) new)

@@ -7,7 +7,20 @@ McCLIM's symbols are written with their packages. Manual B.")
         :ars-magna.run :ars-magna.canvas
         :ars-magna.display)
   (:shadowing-import-from :ars-magna.world #:map)
-  (:import-from :ars-magna.rpl-robot #:plans)
+  (:import-from :ars-magna.rpl-robot
+                #:plans #:interface-p #:interface-runner #:interface-robot #:interface-simulation)
+  (:import-from :ars-magna.rpl
+                #:bar #:bar-serial #:bars #:image-of-tasks #:runner-mark #:runner-trace
+                #:runner-client
+                #:trace-so-far #:task-image #:task-image-serial #:task-image-folded-p
+                #:task-image-name #:task-image-state #:task-image-form #:task-image-awaits
+                #:task-image-since #:task-image-path #:task-image-calls #:task-image-parts
+                #:task-image-look #:tree-image-rows #:tree-image-tasks #:tree-image-plans
+                #:plan-runner-tasks #:plan-runner-tick #:task-label #:task-state #:task-result
+                #:task-runner #:failure-text #:*plan-end-hooks*)
+  (:import-from :ars-magna.rpl-pictures
+                #:draw-task-tree #:fold-mark #:fold-mark-serial #:draw-page #:make-page
+                #:page-start #:page-end #:scale-for #:tick-at)
   (:import-from :ars-magna.cli
                 #:fundamental-character-output-stream #:fundamental-character-input-stream
                 #:stream-line-column #:stream-write-char #:stream-write-string

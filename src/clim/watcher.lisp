@@ -39,6 +39,8 @@ is watched has been over for a while."
   ;; How time goes, and how it was found to go so far.
   (progress (make-progress) :type progress)
   (pulse (make-pulse) :type pulse)
+  ;; What is known of the plans.
+  (plans (make-plan-look) :type plan-look :read-only t)
   ;; What GRAPHICS-SCALE* was when that was looked at last.
   (scale graphics-scale*))
 (setf (documentation 'watcher-robot 'function) "Return the name of the robot that is watched."
@@ -116,8 +118,14 @@ itself: it will come with the next tick."
   (unless (eql graphics-scale* (shiftf (watcher-scale watcher) graphics-scale*))
     (funcall (watcher-news watcher))))
 
+(defun look-for-plans (watcher)
+  "Look at the plans, and tell if they have gone on."
+  (when (look-at-plans (watcher-plans watcher))
+    (funcall (watcher-news watcher))))
+
 (defun look-around (watcher)
   "Look for what no observer tells of."
+  (look-for-plans watcher)
   (look-at-progress watcher)
   (look-at-scale watcher)
   (fetch-if-changed watcher)
@@ -129,6 +137,7 @@ itself: it will come with the next tick."
         do (when (wait-on-semaphore (watcher-painted watcher)
                                     (max 0.001 (- next (seconds-now))))
              (wait-on-semaphore (watcher-over watcher) +pause+)
+             (look-for-plans watcher)
              (setf (watcher-wanted-p watcher) t)
              (when (watcher-stale-p watcher) (fetch watcher)))
            (when (<= next (seconds-now))
@@ -149,6 +158,7 @@ itself: it will come with the next tick."
     (keep-history simulation)
     (setf (watcher-simulation watcher) simulation
           (watcher-observer watcher) (observer-of watcher))
+    (direct-look (watcher-plans watcher) simulation)
     (asking (simulation)
       (add-observer (watcher-observer watcher) simulation)
       (publish watcher simulation)))
@@ -167,6 +177,7 @@ itself: it will come with the next tick."
   (setf (watcher-over-p watcher) t)
   (signal-semaphore (watcher-over watcher))
   (signal-semaphore (watcher-painted watcher))
+  (direct-look (watcher-plans watcher) nil)
   (leave-simulation watcher)
   (let ((pacer (watcher-pacer watcher)))
     ;; When Lisp exits, the pacer may have been ended before.

@@ -1,0 +1,143 @@
+;;;; task-tree.lisp -- the tasks of plans that are under way as a tree, on any canvas.
+
+(in-package :ars-magna.rpl-pictures)
+
+(defconstant +indent+ 12 "How far the parts of a task are to the right of it, in pixels.")
+(defconstant +deepest+ 14 "From what depth on parts are indented no further.")
+(defconstant +mark+ 9 "How wide the mark is that says how a task is, in pixels.")
+
+(defparameter *task-looks*
+  '((:running #x1E8232 "runs") (:waiting #x3C64B4 "waits") (:blocked #x6E6E78 "is blocked")
+    (:cleaning #xAF6400 "cleans up") (:ending #xC8281E "ends")
+    (:stepped #x8C3CB4 "stops at each expression"))
+  "Lists (look color text): the marks of tasks, and what the legend says.")
+
+(defstruct (fold-mark (:constructor make-fold-mark (serial folded-p)) (:copier nil))
+  "What folds the parts of the task SERIAL away, or shows them again."
+  (serial 0 :type fixnum :read-only t)
+  (folded-p nil :type boolean :read-only t))
+
+(document-functions
+  fold-mark-p "True of marks that fold the parts of tasks away."
+  fold-mark-serial "Return the number of the task whose parts a mark folds away.")
+
+(defmethod subject-title ((mark fold-mark))
+  (format nil "~:[Fold the parts of task ~D away~;Show the parts of task ~D~]"
+          (fold-mark-folded-p mark) (fold-mark-serial mark)))
+
+(defmethod subject-title ((image task-image))
+  (format nil "Task ~D ~A: ~A~@[, waits for ~A since tick ~A~]" (task-image-serial image)
+          (or (task-image-name image) (task-image-form image))
+          (task-image-state image) (task-image-awaits image) (task-image-since image)))
+
+;;; Marks.
+
+(defun draw-shape (canvas look x y)
+  "Draw the shape of LOOK, +MARK+ pixels wide and high, at X, Y: no two differ by colour alone."
+  (let* ((size +mark+) (right (+ x size)) (low (+ y size)) (middle (floor size 2)))
+    (ecase look
+      (:running (draw-lines canvas draw-gcontext* (list x y right (+ y middle) x low) :fill-p t))
+      (:waiting (draw-arc canvas draw-gcontext* x y size size 0 (* 2 pi)))
+      (:blocked (draw-rectangle canvas draw-gcontext* x y size size t))
+      (:cleaning (draw-lines canvas draw-gcontext*
+                             (list (+ x middle) y right (+ y middle) (+ x middle) low x
+                                   (+ y middle))
+                             :fill-p t))
+      (:ending (draw-segments canvas draw-gcontext* (list x y right low x low right y)))
+      (:stepped (draw-rectangle canvas draw-gcontext* x y (1- size) (1- size))))))
+
+(defun draw-task-mark (canvas look x y)
+  (with-color (second (assoc look *task-looks*))
+    (with-lines (:width 2) (draw-shape canvas look x y))))
+
+(defun draw-fold-mark (canvas image x y)
+  "Draw a triangle that points down at the parts of the task of IMAGE, or right if there are none
+to be seen."
+  (let ((folded-p (task-image-folded-p image)))
+    (with-subject (canvas (make-fold-mark (task-image-serial image) folded-p))
+      (with-color #x404048
+        (draw-lines canvas draw-gcontext*
+                    (if folded-p
+                        (list x y x (+ y 8) (+ x 6) (+ y 4))
+                        (list (- x 1) (+ y 1) (+ x 7) (+ y 1) (+ x 3) (+ y 7)))
+                    :fill-p t)))))
+
+;;; Rows.
+
+(defun task-head (image)
+  "Return which task IMAGE is of, and what it is at."
+  (format nil "~D ~@[~A ~]~A~@[  (~D part~:P folded)~]" (task-image-serial image)
+          (task-image-name image) (task-image-form image)
+          (and (task-image-folded-p image) (task-image-parts image))))
+
+(defun task-plight (image)
+  "Return what the task of IMAGE waits for, or how else it is, if that is to be said; or NIL."
+  (cond ((task-image-awaits image)
+         (format nil "waits for ~A since tick ~A~:[, ~A~;~]" (task-image-awaits image)
+                 (task-image-since image)
+                 (string= "waiting" (task-image-state image)) (task-image-state image)))
+        ((member (task-image-look image) '(:waiting :running)) nil)
+        (t (task-image-state image))))
+
+(defun draw-row-text (canvas image x y width)
+  "Write the text of IMAGE from X on, down from Y. Return how many lines that took."
+  (let* ((head (task-head image)) (plight (task-plight image))
+         (room (max 8 (floor (- width x) +character-width+)))
+         (one-p (and plight (<= (+ 2 (length head) (length plight)) room))))
+    (write-at canvas x y (cut head room))
+    (cond ((null plight) 1)
+          (one-p (write-at canvas (+ x (* +character-width+ (+ 2 (length head)))) y plight
+                           #x505868)
+                 1)
+          (t (write-at canvas (+ x (* 2 +character-width+)) (+ y +line-height+)
+                       (cut plight (max 8 (- room 2))) #x505868)
+             2))))
+
+(defun draw-calls (canvas image x y width)
+  "Write the calls that the task of IMAGE is in the middle of from X, Y down. Return how many."
+  (loop for call in (task-image-calls image)
+        for line from 0
+        for left = (+ x (* +character-width+ (1+ (min line 8))))
+        do (write-at canvas left (+ y (* line +line-height+))
+                     (cut call (max 8 (floor (- width left) +character-width+)))
+                     #x505868))
+  (length (task-image-calls image)))
+
+(defun draw-task-texts (canvas image x y width)
+  "Write all that is to be said of IMAGE, from X on, down from Y. Return how many lines that took."
+  (let ((lines (draw-row-text canvas image x y width)))
+    (+ lines (draw-calls canvas image x (+ y (* lines +line-height+)) width))))
+
+(defun draw-task (canvas image y width)
+  "Draw IMAGE with its upper edge at Y. Return how high that is."
+  (let ((x (+ 6 (* +indent+ (min +deepest+ (task-image-depth image))))))
+    (prog1 (with-subject (canvas image)
+             (draw-task-mark canvas (task-image-look image) (+ x 12) (+ y 3))
+             (* +line-height+ (draw-task-texts canvas image (+ x 27) (+ y 12) width)))
+      (when (plusp (task-image-parts image))
+        (draw-fold-mark canvas image x (+ y 4))))))
+
+;;; The whole.
+
+(defun tree-title (image)
+  (format nil "~D plan~:P, ~D task~:P; as of tick ~A" (tree-image-plans image)
+          (tree-image-tasks image) (tree-image-tick image)))
+
+(defun unseen-text (image)
+  "Return how many tasks of IMAGE are not among its rows, in words; NIL if all are."
+  (let ((unseen (- (tree-image-tasks image) (length (tree-image-rows image)))))
+    (and (plusp unseen)
+         (format nil "~D more task~:P, folded away or too many to be shown." unseen))))
+
+(defun draw-task-tree (canvas image &key (width 640) (top 0))
+  "Draw IMAGE, as IMAGE-OF-TASKS returns it, on CANVAS, WIDTH pixels wide, from TOP down. Return
+where it ends, in pixels."
+  (let ((y (+ top 4)))
+    (write-at canvas 6 (+ y 11) (tree-title image))
+    (incf y (+ 4 +line-height+))
+    (dolist (row (tree-image-rows image)) (incf y (draw-task canvas row y width)))
+    (let ((unseen (unseen-text image)))
+      (when unseen
+        (write-at canvas 6 (+ y 12) unseen #x606060)
+        (incf y +line-height+)))
+    (+ y 4)))

@@ -1,0 +1,48 @@
+;;;; following.lisp -- a window goes along when its user's prompt goes into another run, and back.
+
+(in-package :ars-magna.clim)
+
+;;; TRIAL and FORK lead the prompt into another run, and out again; REWIND and WORLD put another in
+;;; the place of one. The window whose own prompt that is goes along; if none is, as when the user
+;;; types at a terminal, those that show the run which is left. Such a run is headless, so that the
+;;; pacer cannot ask it for a snapshot between ticks: what lines have changed is looked at here,
+;;; before the next is read.
+
+(defun goes-along-p (window old)
+  "True if WINDOW goes along with the prompt of this thread, which has been in OLD."
+  (let ((thread (conversation-thread (window-conversation window))))
+    (if thread
+        (eq thread (current-thread))
+        (eq old (watcher-simulation (window-watcher window))))))
+
+(defun shown-elsewhere-p (simulation window)
+  "True if another window than WINDOW shows SIMULATION."
+  (some (lambda (other)
+          (and (not (eq other window))
+               (eq simulation (watcher-simulation (window-watcher other)))))
+        (open-windows)))
+
+(defun take-along (window new)
+  "Let WINDOW show NEW from now on."
+  (watch-simulation (window-watcher window) new)
+  (request-refresh window))
+
+(defun show-what-lines-did (watcher simulation)
+  "Let WATCHER have SIMULATION, which stands still, as it is now, if that may be news."
+  (when (or (watcher-stale-p watcher)
+            (/= (watcher-traces watcher) (traces-of-change simulation)))
+    (publish watcher simulation)))
+
+(defun follow-prompt (session old new)
+  "Let the windows that go along with SESSION, which was in the run OLD, show NEW, in which it is."
+  (declare (ignore session))
+  (when new
+    (dolist (window (open-windows))
+      (let ((watcher (window-watcher window)))
+        (cond ((eq new (watcher-simulation watcher))
+               (unless (live-p new) (show-what-lines-did watcher new)))
+              ((and old (not (eq old new)) (goes-along-p window old)
+                    (not (shown-elsewhere-p new window)))
+               (take-along window new)))))))
+
+(pushnew 'follow-prompt ars-magna.cli:*whereabouts-hooks*)

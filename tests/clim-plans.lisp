@@ -1,0 +1,191 @@
+;;;; clim-plans.lisp -- plans in the window, and windows that go along into other runs.
+
+(in-package :ars-magna.tests)
+
+(in-suite clim)
+
+(rpl:def-interp-proc ars-user::window-plan ()
+  (rpl:par (rpl:wait-time 20)
+           (:tag ars-user::second-part (rpl:wait-time 40))))
+
+(defun seen-plans (window &optional (view :tree))
+  "Return the pane of plans in WINDOW, which shows them as VIEW, as they are now."
+  (let ((pane (pane window 'window::plan)))
+    (lay-out window 1600 900)
+    (window::fold window 'window::plan nil)
+    (window::show-plans-as pane view)
+    (window::repaint pane)
+    (setf (window::plan-look-due (window::plan-look-of pane)) 0d0)
+    (window::look-at-plans (window::plan-look-of pane))
+    (window::repaint-if-changed pane)
+    pane))
+
+(defun drawn-in (pane test)
+  "Return what is drawn in PANE and satisfies TEST, and its box."
+  (let ((entry (find-if test (reverse (window::pane-subjects pane)) :key #'first)))
+    (values (first entry) (rest entry))))
+
+(defun click-on (pane test &optional (button :left))
+  "Click with BUTTON on what is drawn in PANE and satisfies TEST."
+  (destructuring-bind (left top right bottom) (nth-value 1 (drawn-in pane test))
+    (window::click pane button (/ (+ left right) 2) (/ (+ top bottom) 2))))
+
+(defun task-with-number (serial)
+  (lambda (subject)
+    (and (typep subject 'rpl:task-image) (= serial (rpl:task-image-serial subject)))))
+
+(test plan-pane.says-that-there-is-no-plan-and-how-to-start-one
+  (in-window (window robot)
+    (let ((pane (seen-plans window)))
+      (click-on pane (lambda (subject)
+                       (and (window::switch-p subject)
+                            (string= "Which plans are there?" (window::switch-label subject)))))
+      (is (equal '("plan") (lines-given window))))))
+
+(test plan-pane.shows-the-tasks
+  (in-window (window robot)
+    (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
+    (run:run-ticks 3)
+    (let ((pane (seen-plans window)))
+      (is (drawn-in pane (task-with-number 1)))
+      (is (drawn-in pane (task-with-number 3)))
+      (click-on pane (task-with-number 3))
+      (is (mentions-p (said-in window) "Task 3, second-part: waiting"))
+      (is (mentions-p (said-in window) "waits for tick")))))
+
+(test plan-pane.offers-lines
+  (in-window (window robot)
+    (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
+    (run:run-ticks 3)
+    (let ((pane (seen-plans window)))
+      (click-on pane (task-with-number 3) :right)
+      (dolist (line '("plan-tree 3" "why 3" "step-task 3" "end-task 3"))
+        (is (row-with window line)))
+      (window::choose-row (window::window-popup window) (row-with window "end-task"))
+      (is (equal '("end-task 3") (lines-given window))))))
+
+(test plan-pane.folds
+  (in-window (window robot)
+    (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
+    (run:run-ticks 3)
+    (let ((pane (seen-plans window)))
+      (click-on pane (lambda (subject) (typep subject 'ars-magna.rpl-pictures:fold-mark)))
+      (seen-plans window)
+      (is (drawn-in pane (task-with-number 1)))
+      (is (null (drawn-in pane (task-with-number 3)))))))
+
+(test plan-pane.is-not-looked-at-while-nothing-goes-on
+  (in-window (window robot)
+    (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
+    (run:run-ticks 3)
+    (let* ((pane (seen-plans window)) (look (window::plan-look-of pane)))
+      (setf (window::plan-look-due look) 0d0)
+      (is (not (window::look-at-plans look)))
+      (run:run-ticks 30)
+      (is (window::look-at-plans look))
+      (window::fold window 'window::plan)
+      (run:run-ticks 30)
+      (setf (window::plan-look-due look) 0d0)
+      (is (not (window::look-at-plans look)) "what nobody sees is not looked at"))))
+
+(test plan-pane.tells-how-the-last-plan-ended
+  (in-window (window robot)
+    (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
+    (run:run-ticks 60)
+    (let ((look (window::plan-look-of (seen-plans window))))
+      (is (mentions-p (window::plan-look-ended look) "window-plan succeeded at tick")))))
+
+(test plan-pane.does-not-wait-for-plans-at-work
+  (in-window (window robot)
+    (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
+    (run:run-ticks 3)
+    (let* ((look (window::plan-look-of (seen-plans window)))
+           (interface (window::interface-of (time:current-simulation)))
+           (before (window::plan-look-tree look)))
+      (run:run-ticks 40)
+      (setf (window::plan-look-due look) 0d0)
+      (ars-magna.rpl-robot:call-with-plans
+       (lambda ()
+         (base:join-thread (base:start-thread (lambda () (window::look-at-plans look)) "look")))
+       interface)
+      (is (eq before (window::plan-look-tree look)))
+      (is (window::look-at-plans look)))))
+
+;;; The timeline.
+
+(test plan-timeline.a-click-goes-back-to-that-moment
+  (in-window (window robot)
+    (let ((ars-magna.rpl-robot:*trace-plans* t))
+      (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
+      (run:run-ticks 30)
+      (window::publish (window:window-watcher window) (time:current-simulation))
+      (let* ((pane (seen-plans window :timeline))
+             (page (window::plan-look-page (window::plan-look-of pane)))
+             (x (ars-magna.rpl-pictures::place
+                 10 (ars-magna.rpl-pictures:scale-for page (window::content-width pane)))))
+        (is (mentions-p (window::hover-text pane x 60) "Tick 10"))
+        (window::click pane :left x 60)
+        (is (equal '("rewind-to 10") (lines-given window)))
+        (window::click pane :right x 60)
+        (is (row-with window "rewind-to 10"))))))
+
+(test plan-timeline.says-how-to-get-a-trace
+  (in-window (window robot)
+    (let ((ars-magna.rpl-robot:*trace-plans* nil))
+      (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
+      (run:run-ticks 3)
+      (let ((pane (seen-plans window :timeline)))
+        (is (eq :untraced (window::plan-look-page (window::plan-look-of pane))))
+        (click-on pane (lambda (subject)
+                         (and (window::switch-p subject)
+                              (search "from now on" (window::switch-label subject)))))
+        (is (equal '("trace-plans on") (lines-given window)))))))
+
+(test plan-switches.are-lines-of-the-prompt
+  (let ((names (mapcar #'ars-magna.cli:line-name (ars-magna.cli:all-lines))))
+    (dolist (name '("TRACE-PLANS" "END-TASK" "STEP-TASK" "PLAN-TREE" "WHY" "PLAN" "REWIND-TO"))
+      (is (member name names :test #'string=)))))
+
+;;; Going along.
+
+(defun call-with-open-window (function robot)
+  "Call FUNCTION as CALL-WITH-WINDOW does, while the window counts as open."
+  (call-with-window (lambda (window)
+                      (let ((window::*windows* (list window))) (funcall function window)))
+                    robot))
+
+(test following.goes-into-a-fork-and-back
+  (in-studio (robot)
+    (call-with-open-window
+     (lambda (window)
+       (let ((run (time:current-simulation)) (fork (run:fork-simulation))
+             (watcher (window:window-watcher window)))
+         (window::follow-prompt nil nil run)
+         (run:call-in-fork
+          fork
+          (lambda ()
+            (window::follow-prompt nil run fork)
+            (is (eq fork (window::watcher-simulation watcher)))
+            (run:run-ticks 5)
+            (window::follow-prompt nil fork fork)
+            (is (= (run:simulation-tick fork)
+                   (display:snapshot-tick (window:watcher-snapshot watcher))))))
+         (window::follow-prompt nil fork run)
+         (is (eq run (window::watcher-simulation watcher)))))
+     robot)))
+
+(test following.leaves-windows-of-other-prompts-alone
+  (in-studio (robot)
+    (call-with-open-window
+     (lambda (window)
+       (setf (window::conversation-thread (window::window-conversation window)) t)
+       (let ((run (time:current-simulation)) (fork (run:fork-simulation)))
+         (run:call-in-fork fork (lambda () (window::follow-prompt nil run fork)))
+         (is (eq run (window::watcher-simulation (window:window-watcher window))))))
+     robot)))
+
+(test following.buttons-are-lines-where-the-prompt-lets-ticks-pass
+  "The studio's run is not live, as that of a trial."
+  (in-window (window robot)
+    (window::do-key window nil #\.)
+    (is (equal '("step 1") (lines-given window)))))
