@@ -25,9 +25,8 @@
 
 ;;; Layers.
 
-(defun title-of-layer (layer)
-  "Return what a menu calls LAYER."
-  (string-capitalize (substitute #\Space #\- (string-downcase layer)) :end 1))
+(defparameter *layers-shown* (set-difference +picture-layers+ '(:legend :title))
+  "The layers that a window can show. It has a title, and what the mouse points at tells what it is.")
 
 (defun switch-layer (window layer)
   "Show LAYER in WINDOW, or no longer."
@@ -37,14 +36,15 @@
     (repaint-if-changed (pane-named window 'world))))
 
 (defun layer-row (window layer)
-  (make-row (title-of-layer layer)
+  (make-row (layer-title layer)
             :tick-p t :stays-p t
             :tick (lambda () (member layer (window-layers window)))
             :action (lambda () (switch-layer window layer))))
 
 (defun layer-rows (window)
   "Return the rows of the panel of layers."
-  (append (loop for layer in +picture-layers+ collect (layer-row window layer))
+  (append (loop for layer in +picture-layers+
+                when (member layer *layers-shown*) collect (layer-row window layer))
           (list (make-row "In colour" :tick-p t :stays-p t
                                       :tick (lambda () (window-color-p window))
                                       :action (lambda () (switch-color window))))))

@@ -26,7 +26,8 @@
 (defun terrain-key (pane width height)
   (let* ((window (window-of pane)) (map (window-map window)))
     (list (pane-left pane) (pane-top pane) (pane-scale pane) width height
-          (window-color-p window) map (map-places map) (place-graphics map))))
+          (window-color-p window) (window-layers window) map (map-places map)
+          (place-graphics map))))
 
 (defun place-graphics (map)
   "Return a list of the functions that draw the places of MAP."
@@ -44,7 +45,7 @@
 
 (defun paint-terrain (pane medium width height)
   "Paint on MEDIUM the terrain that is in view in PANE."
-  (let* ((scale (pane-scale pane)) (map (window-map (window-of pane))))
+  (let* ((scale (pane-scale pane)) (window (window-of pane)) (map (window-map window)))
     (flet ((cell (pixels) (floor pixels scale)))
       (clim:draw-rectangle* medium 0 0 width height :ink clim:+gray92+)
       (call-in-view (lambda (canvas)
@@ -52,6 +53,7 @@
                         (draw-rectangle canvas draw-gcontext* 0 0 (* scale (map-width map))
                                         (* scale (map-height map)) t))
                       (draw-terrain canvas map
+                                    :layers (window-layers window)
                                     :left (cell (pane-left pane)) :top (cell (pane-top pane))
                                     :right (1+ (cell (+ (pane-left pane) width)))
                                     :bottom (1+ (cell (+ (pane-top pane) height)))))
@@ -81,7 +83,11 @@
           (setf (pane-subjects pane)
                 (canvas-subjects
                  (call-in-view (lambda (canvas)
-                                 (draw-movers canvas snapshot (window-layers window)))
+                                 (draw-movers canvas snapshot (window-layers window))
+                                 (draw-view-margins canvas (snapshot-map snapshot)
+                                                    (window-layers window)
+                                                    (pane-left pane) (pane-top pane)
+                                                    width height))
                                pane pane)))
           (paint-ghost pane))))))
 
