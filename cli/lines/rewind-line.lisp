@@ -34,5 +34,5 @@ wait for the end of a command, such as that of GO-TO, do not go on: they are tol
   (when (session-visit session)
     (reject-line "A trial is what it is. TRIAL begins it anew, at tick 0."))
   (rewind-here session n)
-  (format t "~A~@[ Plans under way: ~{~(~A~)~^, ~}.~]~%"
-          (time-text session *simulation*) (mapcar #'task-name (plans))))
+  (format t "~A~@[ Plans under way: ~{~A~^, ~}.~]~%"
+          (time-text session *simulation*) (mapcar #'task-label (plans))))
