@@ -155,6 +155,20 @@
           (is (equal next (run:call-in-fork (run:fork-simulation (run:load-simulation file))
                                             #'rolls))))))))
 
+(test saving.rolls-nothing
+  "Neither do journals, nor all else that is written in a run: it goes on as if it had not been."
+  (with-temporary-file (file)
+    (let ((plain (with-rover (:seed 1) (rolls) (rolls))))
+      (is (equal plain (with-rover (:seed 1 :journal t) (rolls) (run:save-journal file) (rolls))))
+      (delete-file file)
+      (is (equal plain (with-rover (:seed 1) (rolls) (run:save-simulation file) (rolls))))
+      (is (equal plain (run:with-loaded-simulation (file) (rolls))))))
+  (with-rover (:seed 1)
+    (rolls)
+    (with-temporary-file (file)
+      (run:save-simulation file)
+      (is (equal (run:with-fork () (rolls)) (run:with-loaded-simulation (file) (rolls)))))))
+
 (test loaded.rolls-again-when-rewound
   (with-temporary-file (file)
     (with-rover (:seed 1) (rolls) (run:save-simulation file))
