@@ -109,6 +109,19 @@
   (is-false (has-words-p (joined (type-batch "plan stumble :thin-ice" "plan dawdle 1" "plans"))
                          "last plan")))
 
+(test plans.that-lisp-has-begun-are-not-waited-for
+  "Not even while they keep commanding the robot; what Lisp itself commands is."
+  (let ((lines (type-batch "(begin-plan (interp-lambda () (loop (rpl-robot-turn 1)
+                                                                (wait-for robot-stopped*))))"
+                           "(simulation-tick)" "step 4" "(+ 1 1)" "(simulation-tick)"
+                           "fork" "(simulation-tick)" "step 2" "(simulation-tick)"
+                           "(camera-turn (robot-camera butler 0) 1)" "(< 6 (simulation-tick) 99)"
+                           "fork off" "(simulation-tick)")))
+    (is (equal '("0" "2" "4" "4" "6" "4")
+               (remove-if-not (lambda (line) (every #'digit-char-p line)) lines)))
+    (is (member "T" lines :test #'string=))
+    (is-true (has-words-p (joined lines) "Plans under way: (loop (rpl-robot-turn 1)"))))
+
 (test stop-plan.ends-one-or-all
   (let ((lines (type-batch "(begin-plan 'mope)" "(begin-plan 'mope)" "step"
                            "stop-plan 99" "stop-plan 1" "(length (plans))")))

@@ -24,6 +24,12 @@
     (is-true (has-words-p (joined lines) "Plans under way: drone"))
     (is (equal "3" (car (last lines))))))
 
+(test rewind.says-what-plans-without-names-are
+  (is-true (has-words-p (joined (type-batch "(keep-forks)"
+                                            "(begin-plan (interp-lambda () (wait-time 99)))"
+                                            "step 5" "rewind 2"))
+                        "Plans under way: (wait-time 99)")))
+
 (test rewind.live-plans-are-watched-again
   "Of the plan of the run that is over nothing is told."
   (let ((text (let ((run:*forks-to-keep* t))

@@ -155,6 +155,80 @@
     (is (equal (values-by 1) (values-by 2)))
     (is (= 20 (length (remove-duplicates (values-by 1)))))))
 
+;;; Fluents that a global variable holds.
+
+(defvar *laps* (rpl:create-fluent 'laps 0))
+
+(rpl:def-interp-proc laps (n)
+  (rpl:set-value *laps* 0)
+  (rpl:n-times n
+    (driver:rpl-robot-turn 1)
+    (rpl:wait-for driver:robot-stopped*)
+    (rpl:set-value *laps* (+ 1 (rpl:fluent-value *laps*))))
+  (rpl:fluent-value *laps*))
+
+(defun define-lapping ()
+  (define-for-test (:robots ars-worlds:dot)
+    (:run (driver:run-plan 'laps 3))
+    (:success (= 3 (rpl:fluent-value *laps*)))
+    (:measure (laps (rpl:fluent-value *laps*)))))
+
+(test trials.have-fluents-of-their-own
+  (define-lapping)
+  (rpl:set-value *laps* 7)
+  (flet ((values-by (workers)
+           (measured (experiment:run-experiment 'question :trials 300 :workers workers :stream nil)
+                     'laps)))
+    (dolist (workers '(1 2 4))
+      (is (equal (make-list 300 :initial-element 3) (values-by workers)))))
+  (is (= 7 (rpl:fluent-value *laps*)) "outside it is what it was"))
+
+(test trials.begin-with-fluents-as-they-are
+  (rpl:set-value *laps* 7)
+  (define-for-test (:robots ars-worlds:dot)
+    (:run (rpl:set-value *laps* (1+ (rpl:fluent-value *laps*))) (run:run-ticks 3))
+    (:measure (laps (rpl:fluent-value *laps*))))
+  (is (equal (make-list 20 :initial-element 8)
+             (measured (experiment:run-experiment 'question :trials 20 :workers 2 :stream nil)
+                       'laps))))
+
+(test trials.opened-again-have-fluents-of-their-own
+  (define-lapping)
+  (rpl:set-value *laps* 7)
+  (let* ((seen nil)
+         (replay (experiment:replay-trial 'question 1 1
+                                          :then (lambda ()
+                                                  (setf seen (rpl:fluent-value *laps*))))))
+    (is (equal '((laps 3)) (getf replay :measures)))
+    (is (= 3 seen) "who looks at the trial sees that of the trial")
+    (is (= 7 (rpl:fluent-value *laps*)))))
+
+(test trials.can-be-forked-with-fluents-of-their-own
+  (rpl:set-value *laps* 7)
+  (define-for-test (:robots ars-worlds:dot)
+    (:run (rpl:set-value *laps* 1)
+          (run:with-fork () (driver:run-plan 'laps 3))
+          (rpl:fluent-value *laps*))
+    (:measure (laps (rpl:fluent-value *laps*))
+              (ahead (run:with-fork () (driver:run-plan 'laps 2) (rpl:fluent-value *laps*)))))
+  (let ((results (experiment:run-experiment 'question :trials 20 :workers 2 :stream nil)))
+    (is (equal (make-list 20 :initial-element 1) (measured results 'laps)))
+    (is (equal (make-list 20 :initial-element 2) (measured results 'ahead)))))
+
+(test trials.can-be-rewound-with-fluents-of-their-own
+  (rpl:set-value *laps* 7)
+  (define-for-test (:robots ars-worlds:dot)
+    (:run (run:keep-forks t)
+          (rpl:set-value *laps* 1)
+          (run:run-ticks 5)
+          (driver:run-plan 'laps 3)
+          (run:rewind (- (run:simulation-tick) 5)))
+    (:measure (laps (rpl:fluent-value *laps*))))
+  (is (equal (make-list 5 :initial-element 1)
+             (measured (experiment:run-experiment 'question :trials 5 :workers 2 :stream nil)
+                       'laps)))
+  (is (= 7 (rpl:fluent-value *laps*))))
+
 (test outcomes.are-those-of-plans
   (eval '(rpl:def-interp-proc outcome-plan (what)
           (case what

@@ -226,6 +226,14 @@
     (is (string= (reason 1) (reason 2)))
     (is (string= (reason 1) (reason 3)))))
 
+(test is-success-rate.has-fluents-of-each-trials-own
+  (rpl:set-value *laps* 7)
+  (dolist (workers '(1 2))
+    (is-true (check-of (rates:is-success-rate
+                           (progn (driver:run-plan 'laps 3) (= 3 (rpl:fluent-value *laps*)))
+                         :robots ars-worlds:dot :at-least 1 :trials 100 :workers workers))))
+  (is (= 7 (rpl:fluent-value *laps*))))
+
 (test is-success-rate.checks-experiments-that-there-are
   (define-walk)
   (is-true (check-of (rates:is-success-rate (:experiment 'walk :condition 1) :at-least 1/2

@@ -156,6 +156,19 @@ condition of ours that loading signals."
       (write-saved-texts (append texts '("(end 9)")) file)
       (is-true (says-p "behind its end" (loading-outcome file))))))
 
+(test saved-forgery.of-dice-is-named
+  "SBCL trusts what is in its dice: a place behind their end would read what is not theirs."
+  (with-temporary-file (file)
+    (flet ((says-p (old new)
+             (says-when-forged-p "dice make no sense" file (saved-texts file) old new)))
+      (dolist (new '("(-1)" "(4294967296)" "(1 2)" "(nil)" "7" "t"))
+        (with-rover (:seed 3) (run:save-simulation file))
+        (let* ((head (first (saved-texts file))) (start (+ 6 (search " dice (" head))))
+          (is-true (says-p (subseq head start (1+ (position #\) head :start start))) new))))
+      (dolist (new '("dice (625 " "dice (1.5 " "dice (" "dice (0 0 "))
+        (with-rover (:seed 3) (random 9) (run:save-simulation file))
+        (is-true (says-p "dice (1 " new))))))
+
 (test saved-files.that-are-none
   (with-temporary-file (file)
     (loop for (text words) in `(("" "end is missing") ("hello" "damaged")

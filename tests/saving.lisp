@@ -136,6 +136,72 @@
         (is (= 0.25d0 base:motion-noise*)))
       (is (/= 7 base:braking*)))))
 
+;;; What programs roll.
+
+(defun rolls () (loop repeat 5 collect (random 1000)))
+
+(test loaded.rolls-on-as-a-fork-does
+  "Dice that have been rolled, not yet, until all words were read, and seeded anew."
+  (with-temporary-file (file)
+    (with-rover (:seed 1)
+      (dolist (prepare (list (constantly nil) #'rolls
+                             (lambda () (loop repeat 700 do (random 1000)))
+                             (lambda () (run:set-seed 8))))
+        (funcall prepare)
+        (let ((next (run:with-fork () (rolls))))
+          (run:save-simulation file)
+          (is (equal next (run:with-loaded-simulation (file) (rolls))))
+          (is (equal next (run:with-loaded-simulation (file) (run:with-fork () (rolls)))))
+          (is (equal next (run:call-in-fork (run:fork-simulation (run:load-simulation file))
+                                            #'rolls))))))))
+
+(test saving.rolls-nothing
+  "Neither do journals, nor all else that is written in a run: it goes on as if it had not been."
+  (with-temporary-file (file)
+    (let ((plain (with-rover (:seed 1) (rolls) (rolls))))
+      (is (equal plain (with-rover (:seed 1 :journal t) (rolls) (run:save-journal file) (rolls))))
+      (delete-file file)
+      (is (equal plain (with-rover (:seed 1) (rolls) (run:save-simulation file) (rolls))))
+      (is (equal plain (run:with-loaded-simulation (file) (rolls))))))
+  (with-rover (:seed 1)
+    (rolls)
+    (with-temporary-file (file)
+      (run:save-simulation file)
+      (is (equal (run:with-fork () (rolls)) (run:with-loaded-simulation (file) (rolls)))))))
+
+(test loaded.rolls-again-when-rewound
+  (with-temporary-file (file)
+    (with-rover (:seed 1) (rolls) (run:save-simulation file))
+    (run:with-loaded-simulation (file :keep t)
+      (run:run-ticks 2)
+      (let ((first (rolls)))
+        (run:run-ticks 2)
+        (rolls)
+        (run:rewind 3)
+        (is (equal first (rolls)))))))
+
+(test loaded.and-saved-at-once-has-the-same-dice
+  (with-temporary-file (file)
+    (with-temporary-file (again)
+      (with-rover (:seed 1) (rolls) (run:save-simulation file))
+      (run:save-simulation again (run:load-simulation file))
+      (is (equal (journal-lines file) (journal-lines again)))
+      (let ((seeded (run:load-simulation file)))
+        (run:set-seed 4 seeded)
+        (is (equal (with-rover (:seed 4) (rolls)) (run::call-inside seeded #'rolls)))))))
+
+(test loaded.without-dice-rolls-by-the-seed
+  "As files of old, and those of live runs, say none."
+  (with-temporary-file (file)
+    (with-rover (:seed 1) (run:save-simulation file))
+    (let* ((texts (saved-texts file)) (head (first texts)) (place (search " dice (" head)))
+      (setf (first texts)
+            (concatenate 'string (subseq head 0 place)
+                         (subseq head (1+ (position #\) head :start place)))))
+      (write-saved-texts texts file)
+      (is (equal (with-rover (:seed 1) (rolls))
+                 (run:with-loaded-simulation (file) (rolls)))))))
+
 (test loaded.keeps-the-journal
   (with-temporary-file (file)
     (with-rover (:seed 31 :journal t)

@@ -24,8 +24,8 @@
 (defun tell-fork (session)
   (format (session-console session)
           "~&In a fork, at tick ~D. STEP lets time pass, FORK OFF leads back.~@[ Plans under way: ~
-           ~{~(~A~)~^, ~}.~]~%"
-          (simulation-tick *simulation*) (mapcar #'task-name (plans))))
+           ~{~A~^, ~}.~]~%"
+          (simulation-tick *simulation*) (mapcar #'task-label (plans))))
 
 (defun call-with-errands-of-its-own (session function)
   "Call FUNCTION, while SESSION waits for nothing that it has asked for before."

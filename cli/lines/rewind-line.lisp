@@ -34,8 +34,8 @@
 (defun rewind-and-tell (session ticks)
   "Let SESSION go on TICKS ticks back, and say where that is."
   (rewind-here session ticks)
-  (format t "~A~@[ Plans under way: ~{~(~A~)~^, ~}.~]~%"
-          (time-text session *simulation*) (mapcar #'task-name (plans))))
+  (format t "~A~@[ Plans under way: ~{~A~^, ~}.~]~%"
+          (time-text session *simulation*) (mapcar #'task-label (plans))))
 
 (define-line "REWIND" (session (n tick-span "how far"))
     (:running)

@@ -80,26 +80,35 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
   "Return what SESSION has issued and has not ended, newest first."
   (remove-if #'errand-done-p (session-errands session)))
 
-;;; Lisp may have issued commands too.
+;;; Lisp may have issued commands too. Plans that it has begun go on by themselves: nobody waits for
+;;; what they ask for, of which there may be no end.
+
+(defun awaited-p (request)
+  "True if REQUEST was not asked for by a plan."
+  (not (request-forked-p request)))
 
 (defun at-work-p (resource)
   "True if RESOURCE, a robot or part, carries out a command that is expected to complete."
   (let ((event (resource-event resource)))
     (and (typep event 'operation) (not (endless-p (operation-command event))))))
 
-(defun robot-at-work-p (robot)
-  (or (at-work-p robot)
-      (some #'at-work-p (robot-cameras robot))
-      (some #'at-work-p (robot-hands robot))
-      (some #'at-work-p (robot-bins robot))))
+(defun busy-p (resource)
+  "True if RESOURCE carries out a command that is waited for."
+  (and (at-work-p resource) (awaited-p (resource-event resource))))
+
+(defun robot-busy-p (robot)
+  (or (busy-p robot)
+      (some #'busy-p (robot-cameras robot))
+      (some #'busy-p (robot-hands robot))
+      (some #'busy-p (robot-bins robot))))
 
 (defun settled-p ()
-  "True if no command waits to begin, or goes on, in the current simulation."
-  (and (null (timeline-inbox (timeline-of *simulation*)))
-       (notany #'robot-at-work-p (simulation-robots *simulation*))))
+  "True if no command but those of plans waits to begin, or goes on, in the current simulation."
+  (and (notany #'awaited-p (timeline-inbox (timeline-of *simulation*)))
+       (notany #'robot-busy-p (simulation-robots *simulation*))))
 
 (defun settle ()
-  "Let time pass until no robot carries out a command, within patience."
+  "Let time pass until no robot carries out a command that Lisp has issued, within patience."
   (let ((simulation *simulation*))
     (await (lambda () (let ((*simulation* simulation)) (settled-p))))))
 

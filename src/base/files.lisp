@@ -87,12 +87,15 @@ when FUNCTION has returned; if that or anything else fails, FILE is as it was. R
 What FUNCTION writes does not follow the printer's variables. In the EXTERNAL-FORMAT :LATIN-1 each
 character that is written is an octet."
   (let ((path (new-file-for file)))
-    (uiop:with-temporary-file (:stream out :pathname new :external-format external-format
-                               :directory (uiop:pathname-directory-pathname path)
-                               :prefix "ars-magna" :type :unspecific)
-      (printing-plainly () (funcall function out))
-      :close-stream
-      (replace-file path new))
+    ;; The new file's name is rolled for: whoever writes a file rolls on as if he had not.
+    (call-with-own-lisps-dice
+     (lambda ()
+       (uiop:with-temporary-file (:stream out :pathname new :external-format external-format
+                                  :directory (uiop:pathname-directory-pathname path)
+                                  :prefix "ars-magna" :type :unspecific)
+         (printing-plainly () (funcall function out))
+         :close-stream
+         (replace-file path new))))
     (truename path)))
 
 ;;; Text of whatever octets. (SBCL's streams of UTF-8 loop at some that are none.)

@@ -44,12 +44,17 @@
         for index from (1+ +first-word+)
         do (setf (aref words index) mark)))
 
+(defun marked-p (words)
+  "True if the WORDS of a random state bear the mark."
+  (declare (type words words))
+  (loop for mark of-type (unsigned-byte 32) across +mark+
+        for index from (1+ +first-word+)
+        always (= mark (aref words index))))
+
 (defun fill-if-marked (words)
   "Fill the WORDS of a random state if they bear the mark."
   (declare (type words words))
-  (when (loop for mark of-type (unsigned-byte 32) across +mark+
-              for index from (1+ +first-word+)
-              always (= mark (aref words index)))
+  (when (marked-p words)
     (funcall *fill-words* (aref words +first-word+) words)))
 
 (defun fill-and-renew (renew words)
@@ -70,12 +75,16 @@
 
 (defparameter *seeding-waits-p* (seeding-waits-p) "Whether seeding may wait for the first roll.")
 
-(defun reseed (state seed)
-  "Let the random state STATE be what SEEDED-LISPS-DICE returns for SEED, an integer."
+(defun seed-state (state short)
+  "Return the random state STATE, seeded by SHORT, a number of 32 bits."
   (let ((words (funcall *words-of-state* state)))
-    (mark-seeded words (short-seed (ldb (byte 64 0) seed)))
+    (mark-seeded words short)
     (unless *seeding-waits-p* (fill-if-marked words))
     state))
+
+(defun reseed (state seed)
+  "Let the random state STATE be what SEEDED-LISPS-DICE returns for SEED, an integer."
+  (seed-state state (short-seed (ldb (byte 64 0) seed))))
 
 (defun seeded-lisps-dice (seed)
   "Return a random state for CL:RANDOM that depends on the integer SEED only."
@@ -122,10 +131,36 @@ seeded by the integers SEED and TICK."
           (mix-word (ldb (byte 64 0) (tick-dice-tick dice)))))
 
 ;; The state itself is changed: while users' code is called it is bound once more.
-(defun reseed-lisps-dice (seed)
-  "Let what CL:RANDOM says to programs here depend on the integer SEED from now on. Code that
-changes a world rolls other dice."
-  (unless *tick-dice* (reseed *random-state* seed)))
+(defun reseed-lisps-dice (seed &optional (state *random-state*))
+  "Let what CL:RANDOM says to programs here, who roll STATE, depend on the integer SEED from now on.
+Code that changes a world rolls other dice."
+  (unless *tick-dice* (reseed state seed)))
+
+;;; In files. SBCL trusts what is in a random state, so that what comes from outside is looked at.
+
+(defun lisps-dice-numbers (state)
+  "Return what is in the random state STATE, a list of whole numbers of 32 bits: what it is seeded
+by, if nobody has rolled it since; or else the place in its words, and these."
+  (let ((words (funcall *words-of-state* state)))
+    (if (marked-p words)
+        (list (aref words +first-word+))
+        (coerce (subseq words +place-of-place+) 'list))))
+
+(defun lisps-dice-numbers-p (datum)
+  "True if DATUM can be what LISPS-DICE-NUMBERS returns."
+  (and (proper-list-p datum)
+       (every (lambda (number) (typep number '(unsigned-byte 32))) datum)
+       (or (= 1 (length datum))
+           (and (= (1+ +all-read+) (length datum))
+                (<= (first datum) +all-read+)))))
+
+(defun lisps-dice-of-numbers (numbers)
+  "Return a random state for which LISPS-DICE-NUMBERS returns NUMBERS."
+  (let ((state (make-random-state nil)))
+    (if (rest numbers)
+        (replace (the words (funcall *words-of-state* state)) numbers :start1 +place-of-place+)
+        (seed-state state (first numbers)))
+    state))
 
 ;;; What the dice are at a moment, for who is to repeat what is rolled next. Each roll changes the
 ;;; place at which the words are read or, when all have been, the words.

@@ -21,6 +21,7 @@ on with, on as many cores and machines as there are. Names lparallel.")
                 #:procedure #:procedure-p #:procedure-source
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
+  (:import-from :ars-magna.rpl.fluents #:*realm* #:fork-realm)
   (:import-from :ars-magna.rpl-robot #:*plan-limit* #:*trace-plans*)
   ;; defexperiment, experiment
   (:export #:defexperiment #:define-experiment #:find-experiment #:all-experiments

@@ -43,12 +43,19 @@ it last said so. Can be set."
   "Let SIMULATION, in which this thread works, know what its variables are."
   (setf (known-environment simulation) (environment-here simulation)))
 
+(defun environment-with-dice (simulation)
+  "Return what ENVIRONMENT-HERE does, with the dice that SIMULATION has brought with it, if any."
+  (let ((environment (environment-here simulation)) (dice (simulation-dice simulation)))
+    (if (and dice (not (assoc *lisps-dice* environment)))
+        (acons *lisps-dice* dice environment)
+        environment)))
+
 (defun environment-of (simulation)
   "Return a list (symbol . value) of what the variables of SIMULATION are, wherever this is."
   (or (and (headless-p simulation)
            (not (eq simulation *simulation*))
            (known-environment simulation))
-      (environment-here simulation)))
+      (environment-with-dice simulation)))
 
 (defun take-up-environment (simulation)
   "Set the variables of SIMULATION, to which this thread comes back, to what they have become."

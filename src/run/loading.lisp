@@ -30,6 +30,8 @@
   "Return what is wrong with HEAD besides what HEADER-TROUBLE finds, or NIL."
   (cond ((not (settings-p (getf head :noise))) "its noise makes no sense")
         ((settings-trouble (getf head :noise)))
+        ((not (or (null (getf head :dice)) (lisps-dice-numbers-p (getf head :dice))))
+         "its dice make no sense")
         ((not (typep (getf head :tick) 'tick-count)) "its tick is none")
         ((not (typep (getf head :digest) '(unsigned-byte 64))) "its digest is none")))
 
@@ -161,6 +163,8 @@
     (setf (timeline-inbox timeline) (reverse requests)
           (timeline-run timeline) simulation
           (simulation-messages simulation) (make-message-queue)
+          (simulation-dice simulation) (and (getf head :dice)
+                                            (lisps-dice-of-numbers (getf head :dice)))
           (simulation-known-parameters simulation)
           (renamed-parameters (simulation-known-parameters simulation) (getf head :parameters))
           (world-kicker-generation world) (- *kicker-generation*

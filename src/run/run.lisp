@@ -18,6 +18,8 @@
    (variables '() list "the symbols that are bound for the headless simulation")
    (environment '() list "what they are, a list (symbol . value), in a fork")
    (left '() list "what they were when a thread at work in the simulation last said so")
+   (dice nil (or null random-state)
+         "what its programs roll by CL:RANDOM, if it comes from a file that says that, or NIL")
    (past nil t "what is kept of the past, or NIL")
    (line nil list "the simulation that goes on, in a list that all share of which one was rewound
 to the next, or NIL if there was no rewinding")
@@ -176,8 +178,8 @@ SEED. See reading 218."
     (seed-world (simulation-world simulation) seed)
     (dolist (participant (simulation-participants simulation))
       (participant-reseed participant seed))
-    (when (member *lisps-dice* (simulation-variables simulation))
-      (reseed-lisps-dice seed)))
+    (cond ((member *lisps-dice* (simulation-variables simulation)) (reseed-lisps-dice seed))
+          ((simulation-dice simulation) (reseed-lisps-dice seed (simulation-dice simulation)))))
   seed)
 
 (define-operator 'set-seed '(integer) #'set-seed)

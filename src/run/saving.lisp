@@ -106,19 +106,32 @@ to."
         when (and entry (users-p entry))
           collect (definition-of :command entry)))
 
-(defun head-of (simulation noise journal)
-  "Return the head of the file in which SIMULATION is saved. NOISE is what may come back."
+(defun dice-to-go-on (simulation)
+  "Return what is in the dice that programs of SIMULATION roll, as numbers, or NIL. A live run has
+none: each of its threads has its own."
+  (let ((dice (and (headless-p simulation)
+                   (cdr (assoc *lisps-dice* (environment-of simulation))))))
+    (and dice (lisps-dice-numbers dice))))
+
+(defun programs-head (simulation)
+  "Return, as a part of the head, what programs of SIMULATION go on with."
+  (let ((dice (dice-to-go-on simulation)))
+    (list* :noise (noise-to-come-back simulation)
+           (and dice (list :dice dice)))))
+
+(defun head-of (simulation programs journal)
+  "Return the head of the file in which SIMULATION is saved, with PROGRAMS, see PROGRAMS-HEAD."
   (let ((used (append (definitions-of simulation) (at-hand (commands-under-way simulation)))))
-    (list :map (qualified-name (map-name (world-map (simulation-world simulation))))
-          :robots (robot-names simulation)
-          :tick (simulation-tick simulation)
-          :digest (state-digest simulation)
-          :kickers-old-p (/= *kicker-generation*
-                             (world-kicker-generation (simulation-world simulation)))
-          :parameters (settings-of simulation)
-          :noise noise
-          :journal (and journal t)
-          :definitions (remove-duplicates used :test #'same-definition-p :from-end t))))
+    (list* :map (qualified-name (map-name (world-map (simulation-world simulation))))
+           :robots (robot-names simulation)
+           :tick (simulation-tick simulation)
+           :digest (state-digest simulation)
+           :kickers-old-p (/= *kicker-generation*
+                              (world-kicker-generation (simulation-world simulation)))
+           :parameters (settings-of simulation)
+           :journal (and journal t)
+           :definitions (remove-duplicates used :test #'same-definition-p :from-end t)
+           programs)))
 
 (defun journal-lines-of (journal seal)
   "Call SEAL with each line of JOURNAL in a saved run."
@@ -126,15 +139,15 @@ to."
                                   (journal-header journal))))
   (dolist (entry (journal-entries journal)) (funcall seal (datum-text (entry-datum entry)))))
 
-(defun write-saved (simulation journal noise out)
-  "Write to OUT what SIMULATION is and its JOURNAL, or NIL."
+(defun write-saved (simulation journal programs out)
+  "Write to OUT what SIMULATION is and its JOURNAL, or NIL. PROGRAMS is for the head."
   (let* ((requests (requests-waiting simulation))
          (inventory (take-inventory simulation requests))
          (sum 0))
     (flet ((seal (text) (setf sum (write-sealed text sum out))))
       (write-line +saved-title+ out)
       (seal (datum-text (list :ars-magna-run +saved-version+
-                              (head-of simulation noise journal))))
+                              (head-of simulation programs journal))))
       (inventory-lines inventory #'seal)
       (with-plain-syntax
         (dolist (request requests)
@@ -163,10 +176,10 @@ be told."
     (reject-use "save-simulation: a tick is under way. Save the run between ticks."))
   (check-not-over simulation 'save-simulation)
   (when (eq simulation *simulation*) (follow-settings simulation))
-  (let ((noise (noise-to-come-back simulation)))
+  (let ((programs (programs-head simulation)))
     (call-with-savable
      (lambda (simulation journal)
-       (write-file-anew (lambda (out) (write-saved simulation journal noise out)) file
+       (write-file-anew (lambda (out) (write-saved simulation journal programs out)) file
                         "the run"))
      simulation)))
 
@@ -174,8 +187,9 @@ be told."
 (defun save-simulation (file &optional (simulation (current-simulation)))
   "Write the state of SIMULATION, between two ticks, to FILE, from which LOAD-SIMULATION has it go
 on as it would have: world, things, kickers, robots and their parts, designators, tracks, odometers,
-commands under way and asked for, parameters, seed and dice; and the journal, so that a replay
-still repeats all of the run. Who is told of the ends of commands and tracks, as programs of
+commands under way and asked for, parameters, seed and dice, of a headless run also those that its
+programs roll by CL:RANDOM; and the journal, so that a replay still repeats all of the run. Who is
+told of the ends of commands and tracks, as programs of
 continuations are, observers and messages are left out. FILE is replaced when all is written. Return
 its truename. Signals UNSAVABLE, with the restart SAVE-WITHOUT, where plans or events of SCHEDULE
 are under way or the journal has functions in it; MISUSE if the run is over or inside a tick, has

@@ -60,12 +60,14 @@
 (defun write-words (words path)
   "Write WORDS to the file PATH, which is whole at every moment: it is a new file's name at last."
   (ensure-directories-exist path)
-  (uiop:with-temporary-file (:stream out :pathname new :element-type '(unsigned-byte 64)
-                             :directory (uiop:pathname-directory-pathname path)
-                             :prefix "map-cache" :type :unspecific)
-    (write-sequence words out)
-    :close-stream
-    (replace-file path new)))
+  (call-with-own-lisps-dice
+   (lambda ()
+     (uiop:with-temporary-file (:stream out :pathname new :element-type '(unsigned-byte 64)
+                                :directory (uiop:pathname-directory-pathname path)
+                                :prefix "map-cache" :type :unspecific)
+       (write-sequence words out)
+       :close-stream
+       (replace-file path new)))))
 
 ;;; Reading.
 

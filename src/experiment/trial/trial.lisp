@@ -60,6 +60,7 @@ it was looked up: what a trial sets, no other sees."
       (mapcar #'second (condition-variables condition))
     (funcall function)))
 
+;; Fluents and valves have states of their own in each trial, as in forks, whatever leads to them.
 (defun call-in-trial (function experiment condition trial &key gate journal)
   "Call FUNCTION in the fresh simulation of TRIAL of CONDITION of EXPERIMENT. GATE, if given, is a
 gate to be asked besides that of the limit. With JOURNAL the simulation keeps one."
@@ -70,7 +71,7 @@ gate to be asked besides that of the limit. With JOURNAL the simulation keeps on
        (call-with-parameter-values
         (copy-seq (condition-parameters condition))
         (lambda ()
-          (let ((*plan-limit* limit))
+          (let ((*plan-limit* limit) (*realm* (fork-realm *realm*)))
             (call-with-simulation
              (lambda ()
                (setf (simulation-gate (current-simulation)) (limit-gate limit gate))
