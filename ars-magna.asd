@@ -241,13 +241,14 @@
                    (:file "search") (:file "tabbing") (:file "standard")
                    (:file "handed-text")))
      (:module "prompt" :serial t
-      :components ((:file "user-names") (:file "reporting") (:file "session") (:file "line")
+      :components ((:file "user-names") (:file "reporting") (:file "session")
+                   (:file "company") (:file "listening") (:file "line")
                    (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")
                    (:file "comments") (:file "robot-lines") (:file "finding")
                    (:file "evaluation") (:file "carrying-out") (:file "guarding")
                    (:file "plans") (:file "loading") (:file "worlds") (:file "choices")
-                   (:file "debugger") (:file "sessions")
-                   (:file "window-system") (:file "completing") (:file "prompt") (:file "visits")))
+                   (:file "debugger") (:file "window-system") (:file "completing")
+                   (:file "prompt") (:file "sessions") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
                    (:file "status-data") (:file "status-lines") (:file "map-lines")

@@ -242,6 +242,14 @@ threads, until that goes on."
       (debug-here (first sessions) breakage)
       (debug-elsewhere sessions breakage)))
 
+(defun sessions-to-ask ()
+  "Return the sessions whose users can say how what has broken in this thread is to go on: the one
+of this thread, or all that listen to its simulation, or the newest."
+  (let ((own *session*))
+    (cond ((and own (eq (session-thread own) (current-thread))) (list own))
+          ((remove-if-not #'terminal-p (sessions-hearing *simulation*)))
+          ((and own (terminal-p own)) (list own)))))
+
 (defun enter-debugger (condition hook)
   "Let the user of the prompt say how to go on after CONDITION. Called instead of Lisp's debugger."
   ;; What asks needs the room that is not there.

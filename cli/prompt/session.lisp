@@ -234,9 +234,6 @@ DISPLAY says so."
               count
               (loop for next = 10 then (* 10 next) when (< count next) return next)))))
 
-(defvar *showing-p* nil
-  "True while this thread shows messages; what the showing itself reports is left for later.")
-
 (defun messages-for (session messages)
   "Count the errors among MESSAGES, and return those that SESSION is to show."
   (incf (session-errors session)
@@ -258,92 +255,3 @@ DISPLAY says so."
           (write-fresh (fitted text console) console)))
       (restore-prompt console)
       (finish-output console))))
-
-(defvar *showing-lock* (make-lock "showing messages"))
-
-(defun show-messages (session)
-  "Show all queued messages, in SESSION or in those that listen to the runs that they are of, and
-the prompts again."
-  (unless *showing-p*
-    (with-lock (*showing-lock*)
-      (let ((*showing-p* t))
-        (tell-hearers session (take-all-messages))))))
-
-;;; Listening to a simulation.
-
-(defun show-after-changes (session simulation)
-  "Show messages when all changes of this tick are made, before programs are told of them."
-  (unless (session-news-p session)
-    (setf (session-news-p session) t)
-    (notify-later (timeline-of simulation) (lambda () (show-messages session)))))
-
-(defun hear (session simulation)
-  "Show the messages of SIMULATION, of which one is new."
-  (cond ((not (simulation-ticking-p simulation)) (show-messages session))
-        ((in-simulation-p simulation) (show-after-changes session simulation))
-        (t (setf (session-news-p session) t)
-           ;; The tick may have ended just now, without seeing the news.
-           (unless (simulation-ticking-p simulation) (look session)))))
-
-(defun in-simulation-p (simulation)
-  (or (not (live-p simulation))
-      (eq (simulation-thread simulation) (current-thread))))
-
-(defun look (session)
-  "Show what has not been shown at the end of a tick."
-  (when (or (session-news-p session) (spoilt-p (session-console session)))
-    (show-messages session)))
-
-(defun observer-for (session)
-  "Return an observer that shows what SESSION has not shown. It takes itself back when SESSION has
-another, so that nobody waits for the tick to end, which it may never."
-  (let ((observer nil))
-    (setf observer (lambda (simulation)
-                     (if (eq observer (session-observer session))
-                         (look session)
-                         (remove-observer observer simulation))))))
-
-(defun set-listener (session simulation)
-  "Let SESSION, or nobody if that is NIL, be told when SIMULATION has something to say."
-  (setf (message-queue-listener (simulation-messages simulation))
-        (and session (lambda () (hear session simulation)))))
-
-(defun listen-to (session simulation)
-  "Let SESSION show what SIMULATION has to say when it says it."
-  (setf (session-simulation session) simulation)
-  (set-listener session simulation)
-  (keep-history simulation)
-  (when (live-p simulation)
-    (let ((observer (observer-for session)))
-      (setf (session-observer session) observer)
-      (asking (simulation) (add-observer observer simulation)))))
-
-(defun stop-listening (session)
-  (let ((simulation (shiftf (session-simulation session) nil)))
-    (setf (session-observer session) nil)
-    (when simulation
-      (set-listener (first (sessions-hearing simulation)) simulation))))
-
-(defun listen-instead (session simulation)
-  "Let SESSION, which waits for a line, listen to SIMULATION from now on. Any thread may ask."
-  (stop-listening session)
-  (listen-to session simulation))
-
-(defun follow-simulation (session)
-  "Let SESSION listen to the simulation that is current now."
-  (unless (and (eq *simulation* (session-simulation session))
-               (eq (and *simulation* (live-p *simulation*)) (and (session-observer session) t)))
-    (stop-listening session)
-    (when *simulation* (listen-to session *simulation*))))
-
-;;; A window follows its user into other runs.
-
-(defvar *whereabouts-hooks* '()
-  "Functions, or their names, of a session, the run that it was in when it read a line last, and the
-one that it is in now, perhaps the same; NIL for none. They are called in its thread before it reads
-a line. A headless run stands still then.")
-
-(defun tell-whereabouts (session)
-  "Let those who want to know hear in which run SESSION is."
-  (let ((old (shiftf (session-whereabouts session) *simulation*)))
-    (dolist (hook *whereabouts-hooks*) (funcall hook session old *simulation*))))

@@ -26,7 +26,7 @@
 ;;; Layers.
 
 (defparameter *layers-shown* (set-difference +picture-layers+ '(:legend :title))
-  "The layers that a window can show. It has a title, and what the mouse points at tells what it is.")
+  "The layers that a window can show. It has a title, and the mouse is told what things are.")
 
 (defun switch-layer (window layer)
   "Show LAYER in WINDOW, or no longer."

@@ -1,0 +1,53 @@
+;;;; company.lisp -- which prompts are at work, and which of them listen to a simulation.
+
+(in-package :ars-magna.cli)
+
+;;; Each has a thread, a robot and a current simulation of its own. What a simulation has to say is
+;;; shown by all that listen to it, and each of them can answer what breaks in its thread.
+
+(defvar *sessions* '() "The sessions at work, the newest first.")
+(defvar *sessions-lock* (make-lock "sessions"))
+
+(defun call-among-sessions (session function)
+  "Call FUNCTION, while SESSION is at work."
+  (with-lock (*sessions-lock*) (push session *sessions*))
+  (unwind-protect (funcall function)
+    (with-lock (*sessions-lock*) (removef *sessions* session))))
+
+(defun hears-p (session simulation)
+  "True if SESSION listens to SIMULATION, or to what it was before it was rewound."
+  (let ((heard (session-simulation session)))
+    (and heard (eq (latest heard) (latest simulation)))))
+
+(defun sessions-hearing (simulation)
+  "Return the sessions at work that listen to SIMULATION."
+  (and simulation
+       (remove-if-not (lambda (session) (hears-p session simulation))
+                      (with-lock (*sessions-lock*) *sessions*))))
+
+(defun hearers (message session)
+  "Return the sessions that are to show MESSAGE, which SESSION has taken: those that listen to its
+run, or if nobody does, SESSION."
+  (or (sessions-hearing (or (message-run message) (session-simulation session)))
+      (list session)))
+
+(defun tell-hearers (session messages)
+  "Show MESSAGES, which SESSION has taken, in those sessions that they are for."
+  (let ((hearers (mapcar (lambda (message) (hearers message session)) messages)))
+    (dolist (hearer (remove-duplicates (cons session (apply #'append hearers))))
+      (tell-messages hearer (loop for message in messages
+                                  for those in hearers
+                                  when (member hearer those) collect message)))))
+
+;;; What users' programs print in a simulator's thread, as continuations do, goes to the terminal,
+;;; and to the windows of that simulation.
+
+(defun session-of-thread ()
+  (find (current-thread) (with-lock (*sessions-lock*) *sessions*) :key #'session-thread))
+
+(defun consoles-beside (console)
+  "Return the other consoles that show what this thread writes to CONSOLE."
+  (when (and *simulation* (rest *sessions*) (not (session-of-thread)))
+    (remove console (mapcar #'session-console (sessions-hearing *simulation*)))))
+
+(setf *mirrors* 'consoles-beside)
