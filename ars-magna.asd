@@ -251,8 +251,8 @@
                    (:file "prompt") (:file "sessions") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
-                   (:file "status-data") (:file "status-lines") (:file "map-lines")
-                   (:file "running-lines") (:file "watch-line") (:file "world-lines")
+                   (:file "status-data") (:file "running-lines") (:file "status-lines")
+                   (:file "map-lines") (:file "watch-line") (:file "world-lines")
                    (:file "plan-lines") (:file "plan-views") (:file "task-lines")
                    (:file "manipulate-line")
                    (:file "help") (:file "subjects") (:file "topics") (:file "help-lines")

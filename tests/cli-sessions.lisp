@@ -254,7 +254,7 @@ status."
 (test window.what-to-do-without-mcclim-is-said-in-full
   (dolist (part '("sudo apt-get install cl-quicklisp" "(quicklisp-quickstart:install)"
                   "ocicl install mcclim"))
-    (is (mentions-p (cli::text-called "usage-window.txt") part))))
+    (is (mentions-p cli::*how-to-get-windows* part))))
 
 (test window.robot-has-to-be-in-a-run-that-lives
   (in-studio (robot)

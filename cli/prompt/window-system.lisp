@@ -48,6 +48,11 @@ is of no interest."
   "True if the environment names an X server."
   (not (member (environment-value "DISPLAY") '(nil "") :test #'equal)))
 
+;; Read when this file is loaded, so that a saved program has it with it.
+(defparameter *how-to-get-windows*
+  (file-text (asdf:system-relative-pathname "ars-magna" "cli/prompt/usage-window.txt"))
+  "What is to be done where McCLIM is not installed.")
+
 (defun ensure-windows ()
   "Let there be something that opens windows. Signals BAD-LINE if there is no X server or McCLIM."
   (unless *display-opener*
@@ -57,7 +62,7 @@ is of no interest."
     (configure-asdf)
     (let ((loader (window-loader)))
       (unless loader
-        (write-string (text-called "usage-window.txt"))
+        (write-string *how-to-get-windows*)
         (reject-line "No window: McCLIM is not installed; what is to be done stands above."))
       (format t "Loading what windows need; the first time that takes some minutes.~%")
       (finish-output)

@@ -6,7 +6,7 @@
 
 (defparameter *texts*
   (loop for name in '("usage.txt" "usage-experiment.txt" "usage-merge.txt" "usage-compare.txt"
-                      "usage-window.txt" "spread-parallel.sh" "spread-slurm.sh")
+                      "spread-parallel.sh" "spread-slurm.sh")
         collect (list name (file-text (asdf:system-relative-pathname
                                        "ars-magna" (format nil "cli/shell/~A" name)))))
   "Lists (name text).")
