@@ -37,6 +37,8 @@
   ;; True if there are messages that somebody will show soon.
   (news-p nil)
   (errors 0 :type fixnum)
+  ;; A line has been read of what is typed.
+  (typed-p nil :type boolean)
   ;; Files to load, and lines to do, before any is read.
   (files '() :type list)
   (lines '() :type list)
