@@ -44,7 +44,7 @@
   (lines '() :type list)
   ;; The run that it was in when it read a line last; see TELL-WHEREABOUTS.
   (whereabouts nil)
-  ;; The thread that reads, and what has entered the debugger in others, newest first.
+  ;; The thread that reads, and what has entered the debugger in others, oldest first.
   (thread nil)
   (breaks '() :type list)
   ;; True while it reads lines for what has entered the debugger in its own thread.
