@@ -234,7 +234,7 @@ of lines, and the number of errors."
 
 (test lines.that-begin-with-a-sharp-are-comments-words-or-lisp
   (is-true (answers-p '("#(1 2)" "3" "5" "31" "7" "2")
-                      '("#" "  #	note" "#(1 2)" "#.(+ 1 2)" "#+sbcl (+ 2 3)" "#x1F"
+                      '("#" "  #  note" "#(1 2)" "#.(+ 1 2)" "#+sbcl (+ 2 3)" "#x1F"
                         "#-sbcl (oops)" "#+(or)" "(oops)" "#-sbcl" "#| |# (oops) (+ 3 4)"
                         "(length #+(or) 1 '(1 2)) #-sbcl (oops)")))
   (is-true (has-words-p (first (type-batch "#'car")) "#<" "CAR"))
