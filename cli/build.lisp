@@ -1,7 +1,7 @@
 ;;;; build.lisp -- compiles the project, warnings being errors, for ./cli/ars-magna and ./tests/run.
 
 ;;; Loaded into a bare SBCL by those scripts, which say in the environment where compiled files
-;;; go. A warning of any kind, undefined functions included, ends the build with status 1 and
+;;; go. A warning of any kind, undefined functions included, ends the build with status 2 and
 ;;; leaves none of the project's compiled files behind, so that the next build finds it again.
 
 (require "asdf")
@@ -79,6 +79,16 @@
   (format t "~&*** ~A~@[ in ~A~]: ~A~%" (type-of condition)
           (or *compile-file-truename* *load-truename*) condition))
 
+(defvar *began* (get-universal-time) "When this Lisp has begun.")
+
+(defvar *damaged-p* nil "True if what was compiled before cannot be loaded.")
+
+(defun loading-old-p ()
+  "True while a file is loaded that was compiled before this Lisp began."
+  (and *load-truename*
+       (equal "fasl" (pathname-type *load-truename*))
+       (< (file-write-date *load-truename*) *began*)))
+
 (defun interesting-p (warning)
   "True unless WARNING is only about compiling and loading in the same Lisp: that a macro is
 defined twice, that a package has grown since it was defined."
@@ -96,13 +106,15 @@ defined twice, that a package has grown since it was defined."
                                   (when (interesting-p warning) (note warning))))
                        (error (lambda (condition)
                                 (note condition)
+                                (setf *damaged-p* (loading-old-p))
                                 (return))))
           (funcall function))))
     count))
 
 (defun give-up ()
+  "End this Lisp, with status 2 if sources are at fault; else it may be that compiling helps."
   (forget (project-fasls))
-  (uiop:quit 1))
+  (uiop:quit (if *damaged-p* 1 2)))
 
 (defun load-libraries (names)
   "Compile and load the libraries called NAMES; anew, if what was compiled of them is damaged."

@@ -150,10 +150,23 @@ forget_halves() {
     find "$cache" -name '*-tmp*.fasl' -exec rm -f {} +
 }
 
+# What was compiled before may be damaged, so much that Lisp dies of it. With status 2 sources are.
+compile_anew() {  # COMMAND...: do it, and once more without what was compiled before if that fails.
+    "$@" && return
+    [ $? -ne 2 ] || return
+    say "what was compiled before is damaged; compiling again"
+    rm -rf "$cache/project"
+    "$@"
+}
+
+evaluate_building() {  # LOG LISP-FORM
+    plain_sbcl --load "$root/cli/build.lisp" --eval "$2" >"$1" 2>&1
+}
+
 compile() {  # LOG LISP-FORM: evaluate the form of build.lisp; show its troubles if that fails.
     forget_halves
     forget_changed || say "what has changed cannot be told; is $cache full?"
-    plain_sbcl --load "$root/cli/build.lisp" --eval "$2" >"$1" 2>&1 && return
+    compile_anew evaluate_building "$@" && return
     grep -a -v -e '^; compil' -e '^; wrote' -e '^$' "$1" | tail -n 60 >&2
     say "that did not compile; all of it is in $1"
     return 1

@@ -7,7 +7,8 @@
 ;;;   :fine      it was done, and nobody minded
 ;;;   :warned    it was done, and somebody was told
 ;;;   :refused   one of our conditions says what is wrong, in few words
-;;;   :typed     Lisp says that something is not of a type of ours: a reader was given another thing
+;;;   :typed     Lisp says that something is not of a type of ours (a reader was given another
+;;;              thing), or that arguments by keyword are no pairs
 ;;;   :foreign   something signalled that is no condition of ours
 ;;;   :disguised one of our conditions says no more than what Lisp says of its own insides
 ;;;   :wordy     one of our conditions takes thousands of characters
@@ -79,6 +80,12 @@ nobody has damaged."
          (and type (symbolp type)
               (eql 0 (search "ARS-MAGNA." (package-name (symbol-package type))))))))
 
+(defun odd-keywords-p (condition)
+  "True if CONDITION says that arguments by keyword, of whose function Lisp itself sees to them, are
+no pairs."
+  (and (typep condition 'program-error)
+       (search "odd number of &KEY" (text-of condition))))
+
 (defun call-noting-warnings (function)
   "Call FUNCTION. Return true if it warned of anything, or if a message says so."
   (let ((base:*message-queue* (base:make-message-queue)) (warned nil))
@@ -103,7 +110,9 @@ nobody has damaged."
               (sb-ext:timeout () (values :hung "while its message is printed"))
               (serious-condition (trouble) (values :foreign (list 'in-its-message trouble)))))
           (serious-condition (condition)
-            (values (if (of-our-type-p condition) :typed :foreign)
+            (values (if (or (of-our-type-p condition) (odd-keywords-p condition))
+                        :typed
+                        :foreign)
                     (let ((*print-circle* t) (*print-length* 40))
                       (list (type-of condition) (text-of condition))))))
       (if (plusp *sprung*) (values :executed text) (values outcome text)))))

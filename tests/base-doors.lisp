@@ -27,6 +27,25 @@
                    (princ-to-string condition))))
     (:no-error (path) (is (null path)))))
 
+(defun exit-in-thread ()
+  "Return what is said, a string, when another thread would end this Lisp."
+  (let ((said nil))
+    (base:join-thread (base:start-thread
+                       (lambda ()
+                         (handler-case (uiop:quit 5)
+                           (base:misuse (condition) (setf said (princ-to-string condition)))))
+                       "exiting"))
+    said))
+
+(test exits.are-refused-in-all-threads
+  (unwind-protect (progn (base:refuse-exits "EXIT? ~A. QUIT.")
+                         (is (equal "EXIT? ~A. QUIT." (exit-in-thread)))
+                         (is (equal "other" (handler-case
+                                                (base:call-refusing-exits #'sb-ext:exit "other")
+                                              (base:misuse (condition)
+                                                (princ-to-string condition))))))
+    (base:refuse-exits nil)))
+
 (defvar *bound* :at-top "For GLOBALS.ARE-BENEATH-BINDINGS.")
 
 (test globals.are-beneath-bindings

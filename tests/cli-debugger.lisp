@@ -161,6 +161,46 @@
                       written))
     (is-true (written-p "5" written))))
 
+(defun menus-and-waits (written)
+  "Return, of the lines WRITTEN, those that tell of a break, in few words."
+  (loop for line in written
+        when (search "*BREAK* -> " line)
+          collect (list (if (search "there" line) :there :typed)
+                        (if (search "waits until" line) :waits :menu))))
+
+(test break.waits-until-those-before-are-answered
+  (let ((written (type-at-terminal "(progn (ars-magna.tests::break-elsewhere) (break \"typed\") 7)"
+                                   "turn" "0" "(+ 2 3)")))
+    (base:join-thread *breaking*)
+    (is (equal '(:turned-back) *went-on*))
+    ;; Both threads may tell at the same time.
+    (is (null (set-exclusive-or '((:there :menu) (:typed :waits) (:typed :menu))
+                                (remove '(:there :waits) (menus-and-waits written) :test #'equal)
+                                :test #'equal)))
+    (is (equal '(:typed :menu) (first (last (menus-and-waits written)))))
+    (is-true (written-p "7" written))
+    (is-true (written-p "5" written))))
+
+(defun break-twice-elsewhere ()
+  "Let two other threads break, one after the other."
+  (break-elsewhere)
+  (let ((first *breaking*))
+    (setf *breaking* (base:start-thread
+                      (lambda ()
+                        (restart-case (break "there too")
+                          (go-back () (base:join-thread first) (push 2 *went-on*))))
+                      "breaking, too")))
+  (loop until (rest (cli::session-breaks cli::*session*)) do (base:yield-thread)))
+
+(test break.of-other-threads-is-answered-in-order
+  (let ((written (type-at-terminal "(ars-magna.tests::break-twice-elsewhere)" "go-b" "turn" "go-b"
+                                   "(+ 2 3)")))
+    (base:join-thread *breaking*)
+    (is (equal '(2 :turned-back) *went-on*))
+    (is (equal '((:there :menu) (:there :waits) (:there :menu)) (menus-and-waits written)))
+    (is-true (find-if (lambda (line) (search "go-b is no way to go on" line)) written))
+    (is-true (written-p "5" written))))
+
 (defun break-elsewhere-and-wait ()
   "Let another thread break, and wait until it has gone on, as RUN-PLAN does for a plan."
   (break-elsewhere)

@@ -140,6 +140,25 @@ name, in Nisp's syntax and with a decimal fraction."
    rm -r \"$root\""
   "A script that changes one of two sources, gives it an old date, and lists what is compiled.")
 
+(defparameter *damaging*
+  "root=$(mktemp -d)
+   cache=$root/cache
+   mkdir -p \"$cache/project\"
+   . \"$1\"
+   build() { echo build; [ ! -e \"$cache/project\" ] || return $1; }
+   compile_anew build 2 2>&1; echo $?
+   compile_anew build 1 2>&1; echo $?
+   rm -r \"$root\""
+  "A script that compiles where sources are at fault, and where what was compiled is damaged.")
+
+(test compiled-files.that-are-damaged-are-made-again-at-once
+  (is (equal '("build" "1" "build"
+               "ars-magna: what was compiled before is damaged; compiling again" "build" "0")
+             (lines-of (nth-value 1 (base:run-command
+                                     "sh" (list "-c" *damaging* "sh"
+                                                (base:native-name (project-file "cli/setup.sh")))
+                                     :output :string))))))
+
 (test sources.with-an-old-date-count-as-changed
   (multiple-value-bind (status text)
       (base:run-command "sh" (list "-c" *forgetting* "sh"

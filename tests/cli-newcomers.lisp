@@ -217,6 +217,9 @@
 
 (test mistakes.name-what-would-do
   (is-true (has-words-p (complaint "step 0") "from 1 to 1e9"))
+  (is-true (has-words-p (complaint "step 2e9") "from 1 to 1e9"))
+  (is-true (has-words-p (complaint "step 1.5") "from 1 to 1e9"))
+  (is-true (answers-p '("Tick 10." "Tick 12.") '("step 1e1" "step 2.0 ticks")))
   (is-true (has-words-p (complaint "plan travel-to") "given no arguments" "PLAN TRAVEL-TO me"))
   (is-true (has-words-p (first (type-batch "obj-desig 0 non-local ((:substance banana))"))
                         "No substance is called banana"))

@@ -54,6 +54,17 @@ written."
     (is-true (has-words-p (third lines) "*ERROR* -> SCRIPT, line 6: There is no command"))
     (is-true (has-words-p (fourth lines) "robot-turn: Robot turned"))))
 
+(test scripts.are-not-swallowed-by-what-clears-input
+  (is (equal '("NIL" "3" "(T NIL)" "5")
+             (loop for line in (run-script "(clear-input)
+(+ 1 2)
+(list (y-or-n-p) (y-or-n-p))
+y
+n
+(+ 2 3)")
+                   when (or (search "NIL" line) (every #'digit-char-p line))
+                     collect (subseq line (or (search "(T" line) 0))))))
+
 (test scripts.have-comments-over-lines
   (multiple-value-bind (lines status)
       (run-script "#| One, #| and another in it,

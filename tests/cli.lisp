@@ -225,12 +225,21 @@ of lines, and the number of errors."
   (is-true (has-words-p (complaint "help frobnicate") "frobnicate")))
 
 (test lines.may-be-blank-or-comments
-  (is-true (answers-p '("3" "Tick 1.") '("" "   " "; nothing" "#!/bin/sh" "(+ 1 2) ; three"
+  (is-true (answers-p '("3" "Tick 1.") '("#!/bin/sh" "" "   " "; nothing" "(+ 1 2) ; three"
                                          "step 1 ; one")))
   (is-true (answers-p '("3" "Tick 1." "Tick 3." "(T #(1) #\\#)")
                       '("# note" "(+ 1 2) # three (" "step 1 # one" "step 2 #"
                         "(list #t #(1) #\\#) # syntax" "quit # bye" "(+ 4 4)")))
   (is-true (has-words-p (complaint "step 1 #no") "STEP")))
+
+(test lines.that-begin-with-a-sharp-are-comments-words-or-lisp
+  (is-true (answers-p '("#(1 2)" "3" "5" "31" "7" "2")
+                      '("#" "  #  note" "#(1 2)" "#.(+ 1 2)" "#+sbcl (+ 2 3)" "#x1F"
+                        "#-sbcl (oops)" "#+(or)" "(oops)" "#-sbcl" "#| |# (oops) (+ 3 4)"
+                        "(length #+(or) 1 '(1 2)) #-sbcl (oops)")))
+  (is-true (has-words-p (first (type-batch "#'car")) "#<" "CAR"))
+  (dolist (line '("#foo" "#!foo" "#b2" "#car (+ 1 2)"))
+    (is-true (has-words-p (joined (type-batch "#" line)) "There is no command #") "~A" line)))
 
 ;;; The prompt's own commands.
 

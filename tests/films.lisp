@@ -122,6 +122,12 @@
         (signals base:wrong-argument
           (display:save-animation journal "run.html" :moments moments)))
       (signals base:wrong-argument (display:save-animation journal "no-such-place/run.html"))
+      (loop for (file series words) in '(("run.gif" nil ".html or .svg")
+                                         ("run" nil ".html or .svg")
+                                         ("run.gif" t ".svg or .png"))
+            do (is-true (search words
+                                (handler-case (display:save-animation journal file :series series)
+                                  (base:wrong-argument (condition) (text-of condition))))))
       (signals base:wrong-argument (display:save-animation journal "run.html" :series t))
       (signals base:wrong-argument (ars:save-run-picture "run.gif" :journal journal))
       (signals base:wrong-argument (ars:save-run-picture "run.svg" :journal journal :title 7)))

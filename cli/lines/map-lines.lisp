@@ -34,7 +34,7 @@ lines; NIL if there is none."
 (defun number-typed (text)
   "Return the number that TEXT is, or NIL."
   (let ((datum (ignore-errors (values (read-data-from-string text 0)))))
-    (and (realp datum) datum)))
+    (and (realp datum) (whole-if-whole datum))))
 
 (defun map-part (numbers)
   "Return what NUMBERS, as typed, say of the part that is to be shown, as options of TEXT-MAP."

@@ -135,6 +135,19 @@ and goes on to the end of TEXT if there is no second one."
                                  (condition-text condition)))
                    (takes line)))))
 
+(defun whole-if-whole (value)
+  "Return VALUE, or the integer that it is if it is a float such as 1e3."
+  (if (and (floatp value) (quantity-p value) (= value (round value)))
+      (round value)
+      value))
+
+(defun fitting (value type)
+  "Return VALUE, as typed, or the integer that it is, if only that is of the argument TYPE."
+  (if (argument-of-type-p value type)
+      value
+      (let ((whole (whole-if-whole value)))
+        (if (argument-of-type-p whole type) whole value))))
+
 (defun check-read (value slot line)
   (unless (argument-of-type-p value (slot-type slot))
     (reject-line "~A cannot be ~S. ~A" (slot-name slot) value (takes line))))
@@ -155,7 +168,9 @@ and goes on to the end of TEXT if there is no second one."
                (values (token-value (slot-type slot) (without-quotes (subseq text start end)))
                        end)))
     (t (multiple-value-bind (datum end) (read-number-or-datum slot text start line)
-         (let ((value (read-argument (type-key (slot-type slot)) datum (reading-robot line))))
+         (let ((value (fitting (read-argument (type-key (slot-type slot)) datum
+                                              (reading-robot line))
+                               (slot-type slot))))
            (check-read value slot line)
            (values value end))))))
 

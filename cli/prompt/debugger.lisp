@@ -15,6 +15,8 @@
   (restarts '() :type list :read-only t)
   (thread nil :read-only t)
   (order nil :type (or null function))
+  ;; How to go on has been shown.
+  (told-p nil :type boolean)
   (ordered (make-semaphore "order") :read-only t)
   (done (make-semaphore "order done") :read-only t))
 
@@ -82,10 +84,21 @@ may be expected to. Only the thread that has the prompt can ask him for a value.
 (defun tell-break (session breakage)
   "Show what has happened, and let the prompt that stands be the debugger's."
   (let ((console (session-console session)))
+    (setf (breakage-told-p breakage) t)
     (write-fresh (fitted (break-text session breakage) console) console)
     (if (console-prompt console)
         (show-prompt console "Break> ")
         (finish-output console))))
+
+(defun tell-waiting (session breakage)
+  "Show that BREAKAGE has come while another is being answered."
+  (let ((console (session-console session)))
+    (write-fresh (fitted (format nil "*BREAK* -> ~A~@[ (in ~A)~]. It waits until the one before is ~
+                                      answered.~%"
+                                 (break-words (breakage-condition breakage))
+                                 (whereabouts session breakage))
+                         console)
+                 console)))
 
 ;;; What the user says.
 
@@ -172,10 +185,25 @@ meanwhile comes after that."
       (when (and (session-breaks session) (not before) (not (session-over-p session)))
         (tell-break session (first (session-breaks session)))))))
 
+(defun read-lines-for (session breakage)
+  "Read lines for BREAKAGE, of another thread, until that goes on."
+  (loop while (member breakage (session-breaks session))
+        do (when (session-over-p session) (invoke-restart 'end-line))
+           (call-complaining session (lambda () (read-debug-line session breakage)))))
+
+(defun answer-those-before (session breakage)
+  "Read lines for what has broken in other threads before BREAKAGE, which has in this one."
+  (let ((breaks (copy-list (session-breaks session))))
+    (when breaks (tell-waiting session breakage))
+    (dolist (other breaks)
+      (unless (breakage-told-p other) (tell-break session other))
+      (read-lines-for session other))))
+
 (defun debug-here (session breakage)
   "Read lines for BREAKAGE, of this thread, until one says how to go on."
-  (tell-break session breakage)
   (flet ((read-lines ()
+           (answer-those-before session breakage)
+           (tell-break session breakage)
            (loop until (session-over-p session)
                  do (call-guarded session (lambda () (read-debug-line session breakage))))))
     (call-debugging session (lambda ()
@@ -186,29 +214,27 @@ meanwhile comes after that."
 
 (defun announce-break (session breakage)
   "Tell of BREAKAGE, of another thread than the one of SESSION: all, if it can be answered now."
-  (if (session-debugging-p session)
-      (let ((console (session-console session)))
-        (write-fresh (fitted (format nil "*BREAK* -> ~A (in ~A). It waits until this one here is ~
-                                          answered.~%"
-                                     (break-words (breakage-condition breakage))
-                                     (whereabouts session breakage))
-                             console)
-                     console))
+  (if (or (session-debugging-p session)
+          (not (eq breakage (first (session-breaks session)))))
+      (tell-waiting session breakage)
       (tell-break session breakage)))
 
 (defun forget-break (session breakage)
   "Let BREAKAGE, which goes on, wait for SESSION no longer, whose prompt that was perhaps not."
-  (let ((console (session-console session)))
+  (let ((console (session-console session))
+        (next (second (member breakage (session-breaks session))))
+        (first-p (eq breakage (first (session-breaks session)))))
     (removef (session-breaks session) breakage)
-    (signal-semaphore (breakage-done breakage))
-    (when (and (console-prompt console)
-               (null (session-breaks session))
-               (not (session-debugging-p session)))
-      (show-prompt console "Robot> "))))
+    (unless (or (session-debugging-p session) (session-over-p session))
+      (cond ((and next first-p) (tell-break session next))
+            ((and (console-prompt console) (null (session-breaks session)))
+             (show-prompt console "Robot> "))))
+    (signal-semaphore (breakage-done breakage))))
 
 (defun debug-elsewhere (sessions breakage)
   "Do what the thread of one of SESSIONS orders for BREAKAGE, until that is to go on."
-  (dolist (session sessions) (push breakage (session-breaks session)))
+  (dolist (session sessions) 
+    (setf (session-breaks session) (append (session-breaks session) (list breakage))))
   (unwind-protect (progn (dolist (session sessions) (announce-break session breakage))
                          (loop
                            (wait-on-semaphore (breakage-ordered breakage))

@@ -2,10 +2,10 @@
 
 (in-package :ars-magna.cli)
 
-;;; A line that begins with a parenthesis is Lisp, in the package ARS-USER and the syntax of the
-;;; readtable :NISP; IN-PACKAGE holds for the lines that follow. A form may go on over lines.
-;;; Numbers typed are exact, double-floats. What runs, files that it loads included, finds what Lisp
-;;; has for it everywhere else.
+;;; A line that begins with a parenthesis, or with # as forms do, is Lisp, in the package ARS-USER
+;;; and the syntax of the readtable :NISP; IN-PACKAGE holds for the lines that follow. A form may go
+;;; on over lines. Numbers typed are exact, double-floats. What runs, files that it loads included,
+;;; finds what Lisp has for it everywhere else.
 
 (defun blank-from-p (text start)
   (= (skip-blanks text start) (length text)))
@@ -97,12 +97,25 @@ what Lisp says of a full stack, of which users are told."
   "Call FUNCTION, in which what ends this Lisp, such as (sb-ext:exit), is an error."
   (call-refusing-exits function "EXIT would end the simulator amid a line. QUIT leaves."))
 
+(defun left-out-p (text start)
+  "True if TEXT has from START on no form but one that Lisp leaves out, as after #-sbcl."
+  (let ((start (position-if-not #'blank-p text :start start)))
+    (and start
+         (< (1+ start) (length text))
+         (char= #\# (char text start))
+         (find (char text (1+ start)) "+-")
+         ;; Then what is put behind it is what is read.
+         (eql 0 (ignore-errors (read-from-string (format nil "~A~%0" text) t nil :start start))))))
+
 (defun read-form (session text &optional (start 0))
   "Return the form in TEXT at START, reading on in SESSION while it is incomplete; where it ends;
-and TEXT with what was read."
+and TEXT with what was read. Where Lisp leaves out what is there, the form is one without values."
   (loop
     (handler-case (read-from-string text t nil :start start)
-      (end-of-file () (setf text (read-more session text)))
+      (end-of-file ()
+        (when (left-out-p text start)
+          (return (values '(values) (length text) text)))
+        (setf text (read-more session text)))
       (:no-error (form end) (return (values form end text))))))
 
 (defun check-parenthesis (text position)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.cli)
 
 (defun do-next (session text)
-  "Do what TEXT, a line, says, or let it answer the newest break, if a program waits for that."
+  "Do what TEXT, a line, says, or let it answer the oldest break, if a program waits for that."
   (let ((breakage (first (session-breaks session))))
     (if breakage
         (debug-line session breakage text)

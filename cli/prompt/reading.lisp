@@ -37,6 +37,14 @@ on from another."
 (defvar *completion* (constantly nil)
   "A function of a session, a text and a place in it: what *COMPLETER* returns of the text.")
 
+(defun without-program (session text)
+  "Return TEXT, a line as typed, but an empty one if it says, as the first line of SESSION, what
+program runs a script."
+  (if (and (not (shiftf (session-typed-p session) t))
+           (starts-with-subseq "#!" text))
+      ""
+      text))
+
 (defun read-typed (session before)
   "Return the next line that is typed in SESSION, or NIL at the end. Whoever edits it can complete
 it, and have it again; if BEFORE is a text, together with that, which it goes on from."
@@ -45,7 +53,7 @@ it, and have it again; if BEFORE is a text, together with that, which it goes on
                  ;; What goes on over lines is kept whole.
                  (unless before (keep-lines (session-input session)))
                  (read-line (session-input session) nil)))
-         (line (and line (line-pasted line before))))
+         (line (and line (line-pasted (without-program session line) before))))
     (when line (remember-line (session-input session) line before))
     line))
 
@@ -72,18 +80,34 @@ that."
       line)))
 
 (defun comment-p (text)
-  "True if there is nothing to do in TEXT: it is blank, or a comment after ; or #, but not after #|,
-which may end in it."
+  "True if there is nothing to do in TEXT: it is blank, or a comment after ; or a # that stands
+alone."
   (let ((start (position-if-not #'blank-p text)))
-    (or (null start)
-        (and (find (char text start) ";#")
-             (not (block-at-p text start))))))
+    (or (null start) (comment-at-p text start))))
+
+;; #|, which may end in the line, is for others, and #FOO is a word like others.
+(defun sharp-form-p (text start)
+  "True if a form of Lisp begins in TEXT at START with #, such as #'car, #(1 2), #xFF or #p\"f\"."
+  (flet ((char-at (position) (and (< position (length text)) (char text position))))
+    (let ((first (char-at (1+ start))) (second (char-at (+ 2 start))))
+      (and (eql #\# (char-at start))
+           first
+           (not (find first "|!"))
+           (not (blank-p first))
+           (or (not (alpha-char-p first))
+               (find second "(\"")
+               (and (char-equal #\b first) (find second "01+-"))
+               (and (char-equal #\o first) (find second "01234567+-"))
+               (and (char-equal #\x first) (find second "0123456789+-abcdefABCDEF")))
+           t))))
 
 ;; As reading 205 says.
 (defun lisp-p (text)
-  "True if TEXT is Lisp: it begins with a parenthesis, or with Nisp's mark of a slot."
+  "True if TEXT is Lisp: it begins with a parenthesis, with # and what follows that in a form, or
+with Nisp's mark of a slot."
   (let ((start (position-if-not #'blank-p text)))
     (or (find (char text start) "()")
+        (sharp-form-p text start)
         (eql start (search "!>" text)))))
 
 (defun split-line (text)

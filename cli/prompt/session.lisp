@@ -37,12 +37,14 @@
   ;; True if there are messages that somebody will show soon.
   (news-p nil)
   (errors 0 :type fixnum)
+  ;; A line has been read of what is typed.
+  (typed-p nil :type boolean)
   ;; Files to load, and lines to do, before any is read.
   (files '() :type list)
   (lines '() :type list)
   ;; The run that it was in when it read a line last; see TELL-WHEREABOUTS.
   (whereabouts nil)
-  ;; The thread that reads, and what has entered the debugger in others, newest first.
+  ;; The thread that reads, and what has entered the debugger in others, oldest first.
   (thread nil)
   (breaks '() :type list)
   ;; True while it reads lines for what has entered the debugger in its own thread.

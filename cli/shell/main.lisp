@@ -221,6 +221,7 @@ only asks whether the core starts."
   (when (equal (process-arguments) '("--probe")) (end-process 0))
   (die-of-termination)
   (mind-interrupts)
+  (refuse-exits "EXIT would end the whole program amid a run. QUIT at the prompt leaves.")
   ;; An interrupt that still waits when all is done is not to be taken then.
   (call-holding-interrupts (lambda () (end-process (run-process)))))
 

@@ -87,9 +87,12 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
 (defmethod stream-listen ((stream typed-text))
   (or (typed-ahead-p stream) (listen (typed-octets stream))))
 
+;; Somebody may have typed too much; what a script or another program says is meant.
 (defmethod stream-clear-input ((stream typed-text))
-  (setf (typed-position stream) (length (typed-line stream)))
-  (clear-input (typed-octets stream)))
+  (when (typed-by-hand-p stream)
+    (setf (typed-position stream) (length (typed-line stream)))
+    (clear-input (typed-octets stream)))
+  nil)
 
 ;;; Whether something has been typed can be found out, without waiting for it, of this process's own
 ;;; streams only.

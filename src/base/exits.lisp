@@ -18,6 +18,11 @@
   "Call FUNCTION, in which EXIT signals MISUSE, with TEXT."
   (let ((*refusal* (format nil text))) (funcall function)))
 
+(defun refuse-exits (text)
+  "Let EXIT signal MISUSE with TEXT in each thread of this Lisp, where nothing else is said; or with
+NIL end this Lisp again."
+  (setf (global-value '*refusal*) text))
+
 (defun call-allowing-exits (function)
   "Call FUNCTION, in which EXIT ends this Lisp, whatever goes on around it."
   (let ((*refusal* nil)) (funcall function)))

@@ -80,7 +80,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:definition-warning #:definition-warning-text #:warn-of-definition #:doubt-definition
            #:unknown-name #:plain-name #:misuse #:reject-use)
   ;; exits
-  (:export #:call-refusing-exits #:call-allowing-exits)
+  (:export #:call-refusing-exits #:refuse-exits #:call-allowing-exits)
   ;; threads
   (:export #:make-lock #:with-lock #:call-if-free #:make-weak #:weak-value
            #:make-semaphore #:signal-semaphore #:wait-on-semaphore

@@ -131,8 +131,9 @@ the lines of SVG MOVERS."
   (and (typep file '(or string pathname))
        (string-equal "html" (or (pathname-type file) ""))))
 
-(defun animation-kind (file)
-  "Return :HTML, :SVG or :PNG, as the name of FILE ends. Signals WRONG-ARGUMENT for other names."
+(defun animation-kind (file series)
+  "Return :HTML, :SVG or :PNG, as the name of FILE ends. Signals WRONG-ARGUMENT for other names, and
+says what is for a film, or for a SERIES."
   (if (film-file-p file)
       (let ((missing (missing-directory file)))
         (when missing
@@ -140,7 +141,7 @@ the lines of SVG MOVERS."
                            (format nil "a name in a directory that there is; make ~A first"
                                    missing)))
         :html)
-      (picture-kind 'save-animation file)))
+      (picture-kind 'save-animation file (if series ".svg or .png" ".html or .svg"))))
 
 ;;; A series.
 
@@ -162,7 +163,7 @@ ends in .svg, it is an animated picture of the world. With SERIES, pictures of D
 series of files, as FILE ends: for run.png, run-0001.png and so on. The other arguments are those of
 SVG-PICTURE. Return the truename, or a list of them. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY
 does."
-  (let ((kind (animation-kind file))
+  (let ((kind (animation-kind file series))
         (moments (checked-moments 'save-animation moments))
         (journal (journal-meant journal))
         ;; The tick, which the title has, is told of by frames.

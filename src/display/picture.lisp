@@ -51,16 +51,16 @@ IN-COLOR is false for a picture in black and white. Signals WRONG-ARGUMENT."
            (reject-use "rsvg-convert could not write ~A." file)))
     (truename file)))
 
-(defun picture-kind (operator file)
+(defun picture-kind (operator file &optional (endings ".svg or .png"))
   "Return :SVG or :PNG, as the name of FILE ends. Signals WRONG-ARGUMENT if OPERATOR cannot save a
-picture there."
+picture there; then it says that a name has one of ENDINGS."
   (flet ((reject (expected) (reject-argument operator 'file file expected)))
     (unless (typep file '(or string pathname)) (reject "the name of a file"))
     (let ((missing (missing-directory file)))
       (when missing (reject (format nil "a name in a directory that there is; make ~A first"
                                     missing))))
     (or (find (pathname-type file) '(:svg :png) :test #'string-equal)
-        (reject "a name that ends in .svg or .png"))))
+        (reject (format nil "a name that ends in ~A" endings)))))
 
 (defun save-svg (svg file kind)
   "Write the SVG document SVG to FILE, as SVG or PNG by KIND. Return the truename."
