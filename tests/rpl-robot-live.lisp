@@ -56,6 +56,21 @@
         (is (not (eq plan-thread simulator-thread)))
         (is (eq simulator-thread (run:simulation-thread simulation)))))))
 
+(test live.a-plan-begins-in-the-tick-that-it-is
+  "No plan has reacted meanwhile."
+  (live (simulation)
+    (let ((ticks '()))
+      (flet ((begin ()
+               (driver:begin-plan (rpl:interp-lambda () (rpl:wait-time 1)))
+               (push (rpl:plan-runner-tick (driver:rpl-runner)) ticks)))
+        (begin)
+        (awaiting (null (driver:plans)))
+        (command:robot-turn (symbol-value 'fitter) 3)
+        (let ((before (run:simulation-tick simulation)))
+          (awaiting (< (+ before 5) (run:simulation-tick simulation)))
+          (begin)
+          (is (< (+ before 5) (first ticks))))))))
+
 (test live.waiting-costs-nothing
   "While its plans wait, the thread does not run, whatever number of ticks pass."
   (live (simulation)

@@ -29,7 +29,7 @@
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:fluent-value
                 #:apply-settings #:*home-in-use* #:*runner* #:post-call #:react-to-all
-                #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers
+                #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers #:note-tick
                 #:next-wake-time #:needs-tick-p #:set-charges #:make-plan-runner #:start-plan
                 #:rest-in-tick #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:plan-runner-steps #:current-task #:task #:task-p

@@ -34,6 +34,9 @@ called with that before anything else can happen."
   (check-not-secluded (interface-simulation interface))
   (apply #'note-of-plans interface #'begin-plan plan arguments)
   (prog1 (with-plans (interface)
+           ;; Live, plans may not have reacted for long.
+           (note-tick (interface-runner interface)
+                      (simulation-tick (interface-simulation interface)))
            (let ((task (apply #'start-plan (interface-runner interface) plan arguments)))
              (funcall note task)
              task))

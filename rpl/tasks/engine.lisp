@@ -189,6 +189,10 @@ and nothing heard."
 
 ;;; Time.
 
+(defun note-tick (runner tick)
+  "Let it be TICK for RUNNER, outside of reactions. Who waits for it is woken in the next one."
+  (setf (runner-tick runner) tick))
+
 (defun advance-timers (runner tick)
   "Let it be TICK for RUNNER and wake those who waited for it."
   (setf (runner-tick runner) tick)

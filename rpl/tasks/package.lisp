@@ -71,7 +71,8 @@ plans nor a simulator.")
            #:task-awaits #:*plan-start-hooks* #:blocker-of #:task-state-text #:write-task-line
            #:write-task-tree)
   ;; engine
-  (:export #:advance-timers #:apply-next-batch #:close-runner #:tell-at-rest #:digest-runner
+  (:export #:advance-timers #:note-tick #:apply-next-batch #:close-runner #:tell-at-rest
+           #:digest-runner
            #:idle-p #:make-plan-runner #:next-wake-time #:plan-deadlocked-p #:post-batch
            #:needs-tick-p #:rest-in-tick #:post-call #:react #:react-to-all #:reseed-runner
            #:start-plan #:stop-plan)

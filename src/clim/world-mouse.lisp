@@ -49,7 +49,7 @@
   "True if SUBJECT can be dragged in PANE: a thing or a robot, while time stands still."
   (and (typep subject '(or thing-image robot-image))
        (let ((simulation (window-simulation (window-of pane))))
-         (or (paused-p simulation) (not (live-p simulation))))))
+         (or (paused-p simulation) (not (live-p simulation)) (idle-p simulation)))))
 
 (defun beyond-shake-p (x y from-x from-y)
   (> (max (abs (- x from-x)) (abs (- y from-y))) +shake+))
