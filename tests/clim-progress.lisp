@@ -31,6 +31,25 @@
     (is (= 40 (window::measure pulse 60 102d0)))
     (is (null (window::measure pulse 5 103d0)))))
 
+(test progress.says-that-a-program-has-broken
+  (in-studio (robot)
+    (let ((simulation (time:current-simulation))
+          (there (base:make-semaphore "there")) (on (base:make-semaphore "on")))
+      (run:start-clock simulation :rate :free)
+      (unwind-protect
+           (progn
+             (command:robot-turn robot 1/10
+                                 (lambda (err robot angle)
+                                   (declare (ignore err robot angle))
+                                   ;; As whoever enters a debugger does.
+                                   (base:note-waiting)
+                                   (base:signal-semaphore there)
+                                   (base:wait-on-semaphore on)))
+             (base:wait-on-semaphore there)
+             (is (mentions-p (progress-text-of simulation) "a program has broken"))
+             (base:signal-semaphore on))
+        (run:stop-clock simulation)))))
+
 (test progress.names-users-code-that-does-not-return
   (in-studio (robot)
     (let* ((simulation (time:current-simulation))

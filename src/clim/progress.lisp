@@ -27,7 +27,8 @@ had been; the tick and second from which on the rate is being measured, and that
     (:over "over")
     (:idle "idle: time stands still until there is something to do")
     (:waiting "waiting for a plan")
-    (:busy "busy in")))
+    (:busy "busy in")
+    (:broken "stopped: a program has broken, and the prompt asks how to go on")))
 
 (defun rate-text (rate)
   (cond ((eq rate :free) "as fast as possible")
@@ -58,6 +59,7 @@ had been; the tick and second from which on the rate is being measured, and that
   (let ((busy (busy-p simulation pulse)))
     (cond ((simulation-over simulation) :over)
           ((not (live-p simulation)) :still)
+          ((users-code-broken-p simulation) :broken)
           (busy (values :busy busy))
           ((paused-p simulation) :paused)
           ((not (idle-p simulation)) :running)

@@ -29,6 +29,12 @@ code it has begun; NIL if it is in none, or one that waits in a debugger."
          (origin (and calls (not (user-calls-waiting-p calls)) (user-calls-origin calls))))
     (and origin (values (text-of-origin origin) (user-calls-count calls)))))
 
+(defun users-code-broken-p (simulation)
+  "True if the thread of the live SIMULATION is in users' code that waits in a debugger."
+  (let* ((pacing (timeline-pacing (timeline-of simulation)))
+         (calls (and pacing (pacing-calls pacing))))
+    (and calls (user-calls-origin calls) (user-calls-waiting-p calls) t)))
+
 (defun abort-hog (simulation)
   "Abort the users' code that keeps the live SIMULATION waiting, if it has been named for that. True
 if there is such."

@@ -41,7 +41,8 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
   (:export #:timeline-thread #:pacer-p #:check-rate #:live-p #:paused-p #:pause #:resume
            #:let-pass #:pace #:set-rate #:*default-rate* #:*hog-seconds*
            #:hog-seconds
-           #:seconds-now #:users-code-under-way #:abort-hog #:stop-pacing #:call-alone
+           #:seconds-now #:users-code-under-way #:users-code-broken-p #:abort-hog #:stop-pacing
+           #:call-alone
            #:start-pacing)
   ;; schedule
   (:export #:schedule #:call-scheduled #:abandon #:grab-resource #:release-resource
