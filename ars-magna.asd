@@ -237,9 +237,10 @@
                    (:file "escapes") (:file "columns") (:file "drawn-line") (:file "console")
                    (:file "progress") (:file "json") (:file "layout")))
      (:module "editing" :serial t
-      :components ((:file "keys") (:file "changes") (:file "history") (:file "editor")
+      :components ((:file "keys") (:file "changes") (:file "history") (:file "pasting")
+                   (:file "editor")
                    (:file "search") (:file "tabbing") (:file "standard")
-                   (:file "handed-text")))
+                   (:file "ahead") (:file "handed-text")))
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "reporting") (:file "session")
                    (:file "company") (:file "listening") (:file "line")

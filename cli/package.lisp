@@ -62,9 +62,9 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:export #:painted-spans #:unpainted-text #:broken-text
            #:drawn-line-label #:drawn-line-text #:drawn-line-point #:drawn-line-shown
            #:rows-to-show
-           #:console #:console-line #:wipe #:draw #:leave-line #:clear-screen)
+           #:console #:console-line #:wipe #:draw #:leave-line #:clear-screen #:fitted)
   ;; handed-text
-  (:export #:make-handed-text #:press-key)
+  (:export #:make-handed-text #:press-key #:typed-ahead)
   ;; line, names
   (:export #:line #:line-name #:line-parameters #:line-sentence #:define-line #:all-lines
            #:all-line-names #:find-line #:bad-line

@@ -24,6 +24,94 @@
       (dolist (part '("(ONE 2)" "*BREAK* -> oh" "0  continue" "33"))
         (is (mentions-p said part))))))
 
+(defun entries-of (window)
+  "Return what the history of the prompt of WINDOW has, newest first."
+  (cli::history-entries (cli::edited-history (cli:session-input (window::conversation-session
+                                                                 (window::window-conversation
+                                                                  window))))))
+
+(test talking.answers-to-breaks-are-not-in-the-history
+  (in-window (window robot)
+    (talk-in window "(break \"oh\")" "(list 7" "8)" "0" "turn 1" "quit")
+    (is (equal (list "quit" "turn 1" (format nil "(list 7~%8)") "(break \"oh\")")
+               (subseq (entries-of window) 0 4)))))
+
+(test talking.pasted-lines-are-done-one-after-the-other
+  (in-window (window robot)
+    (window::give-key (window::window-conversation window)
+                      (list :paste (format nil "Robot> (+ 20 22)~%42~%Robot> (+ 1 1)~%2~%~
+                                                Robot> quit")))
+    (window::give-key (window::window-conversation window) :return)
+    (is (mentions-p (talk-in window) (format nil "~{~A~%~}" '("Robot> (+ 20 22)" "42"
+                                                              "Robot> (+ 1 1)" "2"
+                                                              "Robot> quit"))))))
+
+;;; Typing ahead: nobody reads yet.
+
+(defun typed-ahead-in (window)
+  "Return how many lines wait in WINDOW, what is being typed after them, and where the cursor is."
+  (multiple-value-list (window::waiting-in (window::window-conversation window))))
+
+(defun give-keys (window &rest keys)
+  (dolist (key keys) (window::give-key (window::window-conversation window) key)))
+
+(test ahead.is-seen-and-edited
+  (in-window (window robot)
+    (give-keys window "t" "u" "rx" :rubout "n" :control-a :right)
+    (is (equal '(0 "turn" 1) (typed-ahead-in window)))
+    (give-keys window :return "go" :return "größer" :tab :left)
+    (is (equal '(2 "größer" 5) (typed-ahead-in window)))
+    (give-keys window :up)
+    (is (equal '(2 "größer" 5) (typed-ahead-in window)) "what is being typed is not lost")
+    (give-keys window :control-e :control-u :up)
+    (is (equal '(1 "go" 2) (typed-ahead-in window)))
+    (give-keys window :control-u (list :paste (format nil "a~%b")) :return)
+    (is (equal '(3 "" 0) (typed-ahead-in window)))))
+
+(test ahead.is-read-in-its-order
+  (in-window (window robot)
+    (give-keys window "(+ 20 22)" :return "(+ 30 33)" :return "qui")
+    (let ((conversation (window::window-conversation window)))
+      (window::give-key conversation "t")
+      (window::give-key conversation :return))
+    (is (mentions-p (talk-in window) (format nil "~{~A~%~}" '("Robot> (+ 20 22)" "42"
+                                                              "Robot> (+ 30 33)" "63"
+                                                              "Robot> quit"))))))
+
+(test ahead.what-waits-is-dropped-into-the-history
+  (in-window (window robot)
+    (give-keys window "turn 1" :return "turn 2" :return "tur")
+    (let ((input (cli:session-input (window::conversation-session
+                                     (window::window-conversation window)))))
+      (is (= 2 (cli::drop-waiting input)))
+      (is (equal '(0 "tur" 3) (typed-ahead-in window)))
+      (is (equal (format nil "turn 1~%turn 2") (first (entries-of window))))
+      (is (= 0 (cli::drop-waiting input))))))
+
+(test ahead.says-how-many-lines-wait
+  (is (equal "Next> " (window::waiting-label 0)))
+  (is (mentions-p (window::waiting-label 1) "1 line waits"))
+  (is (mentions-p (window::waiting-label 2) "2 lines wait;"))
+  (is (mentions-p (cli::dropped-text 1) "1 line that waited was dropped"))
+  (is (mentions-p (cli::dropped-text 2) "2 lines that waited were dropped; the arrow up brings them"))
+  (is (equal "" (cli::dropped-text 0))))
+
+(test ahead.an-interrupt-says-what-it-drops
+  "The line that is ended is one that never does."
+  (in-window (window robot)
+    (let* ((conversation (window::window-conversation window))
+           (there (base:make-semaphore "there")) (*package* (find-package :ars-user)))
+      (setf (symbol-value (intern "+THERE+" :ars-user)) there)
+      (window::start-conversation conversation (time:current-simulation) 'studio-robot)
+      (give-keys window "(progn (ars-magna.base:signal-semaphore +there+) (loop))" :return)
+      (base:wait-on-semaphore there)
+      (give-keys window "turn 1" :return "quit")
+      (is (equal '(1 "quit" 4) (typed-ahead-in window)))
+      (window::interrupt-conversation conversation)
+      (window::give-key conversation :return)
+      (base:join-thread (window::conversation-thread conversation))
+      (is (mentions-p (said-in window) "Interrupted. 1 line that waited was dropped")))))
+
 ;;; Keys.
 
 (defun press-in (window name char &rest modifiers)
@@ -40,8 +128,7 @@
     (press-in window :|a| #\a clim:+control-key+)
     (press-in window :return #\Return)
     (press-in window :shift-left nil)
-    (is (equal (format nil "t~A~C~C" (cli::octets-of-key :up) (code-char 1) #\Return)
-               (keys-given window)))))
+    (is (equal (cli::octets-of-key '(:entry "t")) (keys-given window)))))
 
 (test talking.keys-go-to-the-window-that-has-them
   "The null port gives keys to nobody, so this is only about which window has them."
@@ -73,6 +160,22 @@
   (is (equal '((0 10) (10 18) (18 26))
              (mapcar (lambda (row) (list (window::text-row-start row) (window::text-row-stop row)))
                      (window::rows-of-line 0 "0123456789abcdefg hi there" 10)))))
+
+(test transcript.long-lines-are-whole
+  "An error stays red in all its rows, is copied as one line, and is broken anew with the window."
+  (in-window (window robot)
+    (let* ((console (window::conversation-console (window::window-conversation window)))
+           (text (format nil "*ERROR* -> ~{~A~^ ~}" (loop repeat 60 collect "trouble")))
+           (painted (cli::paint text :red)))
+      (is (equal painted (cli:fitted painted console)))
+      (dolist (columns '(40 80))
+        (let ((rows (window::rows-of-line 0 painted columns)))
+          (is (< 2 (length rows)))
+          (loop for row in rows
+                do (is (<= (- (window::text-row-stop row) (window::text-row-start row)) columns))
+                   (is (equal '(:red) (mapcar #'second (window::text-row-spans row)))))))
+      (window::say (window::window-transcript window) (format nil "~A~%" painted))
+      (is (mentions-p (window::selected-text (pane window 'window::transcript)) text)))))
 
 (test transcript.what-is-counted-stands-in-one-line
   (let ((transcript (window::make-transcript (constantly nil))))

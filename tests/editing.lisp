@@ -134,6 +134,37 @@ name in *KEY-CODES*."
         (is (search "Robot> two" shown))
         (is (char= #\Newline (char shown (1- (length shown)))))))))
 
+(test editing.leaves-the-answers-out-of-what-is-pasted
+  "Prompts tell which lines were typed; without any, all were."
+  (types-p ("Robot> turn 1" "Robot> (list 1" "     > 2)" "Break> 0")
+           :paste (format nil "Robot> turn 1~%Robot> robot-turn: Robot turned 1.00~%~
+                               *WARNING* -> Removing Designator 0~%Robot> (list 1~%     > 2)~%~
+                               (1 2)~%Break> 0~%33~%Robot> ")
+           :pasted :enter)
+  (types-p ("rn 1" "Robot> go 1")
+           :paste (format nil "rn 1~%Robot> go 1~%on") :pasted :enter)
+  (types-p ("turn 1" "33") :paste (format nil "turn 1~%33") :pasted :enter))
+
+(test editing.takes-many-lines-and-long-ones
+  (let ((lines (loop for i below 500 collect (format nil "turn ~D" i)))
+        (long (make-string 100000 :initial-element #\x)))
+    (is (equal lines (keyed-in :paste (format nil "~{~A~%~}" lines) :pasted :enter)))
+    (is (equal (list long) (keyed-in :paste long :pasted :enter)))))
+
+;;; Tab.
+
+(test tab.lists-again-only-what-has-changed
+  (flet ((listings (&rest keys)
+           (multiple-value-bind (console out) (terminal-console)
+             (let ((cli::*completer* (lambda (text point)
+                                       (declare (ignore text point))
+                                       (values 0 '("camera" "cam-track") " "))))
+               (read-line (typed-text-for (keyboard-for keys) console) nil))
+             (occurrences "cam-track" (get-output-stream-string out)))))
+    (is (= 1 (listings "cam" :tab :enter)))
+    (is (= 1 (listings "cam" :tab :tab :tab :enter)))
+    (is (= 2 (listings "cam" :tab "x" :rubout :tab :enter)))))
+
 ;;; Control C and D.
 
 (defun interrupted-p (keys &rest options)
@@ -160,7 +191,8 @@ name in *KEY-CODES*."
                                                 "three" :enter))
                                 (terminal-console))))
     (is (equal "one" (read-line stream)))
-    (cli::forget-pasted stream)
+    (is (= 1 (cli::drop-waiting stream)))
+    (is (equal '("two") (cli::history-entries (cli::edited-history stream))))
     (is (equal "three" (read-line stream)))))
 
 (test editing.keeps-what-is-typed-ahead

@@ -14,6 +14,8 @@
    (ahead :initform '() :accessor edited-ahead)
    (lines :initform '() :accessor edited-lines)
    (killed :initform "" :accessor edited-killed)
+   ;; What Tab listed last, if nothing has changed since, or NIL.
+   (listed :initform nil :accessor edited-listed)
    ;; What was being typed when another line was entered, as a list of text and point, or NIL.
    (put-off :initform nil :accessor edited-put-off)
    ;; The entries of the history before the one that is shown, and those after it, the nearest
@@ -81,11 +83,16 @@ control C and its like, which are signals.")
 
 (defparameter *control-c* (code-char 3))
 
+(defgeneric keep-ahead (stream octets)
+  (:documentation "Let OCTETS, a list, be read before others of STREAM.")
+  (:method ((stream edited-text) octets)
+    (setf (edited-ahead stream) octets)))
+
 (defun look-ahead (stream)
   "Take what has been typed after the line that has ended. Control C in it is for that line."
   (let* ((octets (append (edited-ahead stream) (octets-come stream)))
          (interrupt (position *control-c* octets :from-end t)))
-    (setf (edited-ahead stream) (nthcdr (if interrupt (1+ interrupt) 0) octets))
+    (keep-ahead stream (nthcdr (if interrupt (1+ interrupt) 0) octets))
     (when interrupt (heed-interrupt))))
 
 (defun tell-pastes-apart (console on)
@@ -104,6 +111,7 @@ control C and its like, which are signals.")
 
 (defun change-to (stream text point)
   "Let the line that is typed be TEXT, the cursor at POINT."
+  (setf (edited-listed stream) nil)
   (change-line (edited-console stream)
                (lambda (line)
                  (setf (drawn-line-text line) text
@@ -180,7 +188,8 @@ control C and its like, which are signals.")
 (defun enter-history (stream)
   "Let the whole history be older than the line that begins."
   (setf (edited-older stream) (history-entries (edited-history stream))
-        (edited-newer stream) '()))
+        (edited-newer stream) '()
+        (edited-listed stream) nil))
 
 (defun show-entry (stream from to)
   "Show the entry that the place FROM of STREAM begins with; what is shown goes before those at TO."
@@ -230,7 +239,7 @@ control C and its like, which are signals.")
 (defun press-given (stream kind text)
   "Take TEXT as what KIND says: it was pasted, or it is a line that has been chosen elsewhere."
   (ecase kind
-    (:paste (insert-typed stream text) nil)
+    (:paste (insert-typed stream (without-answers text)) nil)
     (:entry (enter-given stream text))))
 
 (defun press (stream key)
@@ -284,10 +293,6 @@ of the input."
     (look-ahead stream)))
 
 ;;; As a stream.
-
-(defun lines-in (text)
-  "Return the lines of TEXT, at least one."
-  (or (uiop:split-string text :separator '(#\Newline)) (list "")))
 
 (defmethod next-typed-line ((stream edited-text))
   (let ((line (pop (edited-lines stream))))

@@ -29,10 +29,42 @@ prompt at the terminal has."
   "True if a line is being typed into STREAM: nothing is under way that would have to end first."
   (and (line-of stream) t))
 
+(defmethod keep-ahead ((stream handed-text) octets)
+  (setf (edited-ahead stream) '())
+  (revise-octets (typed-octets stream)
+                 (lambda (left) (uiop:strcat (coerce octets 'string) left))))
+
+(defun with-key (stream octets key)
+  "Return OCTETS, which STREAM has not read yet, with those of KEY. Until it reads, they are what is
+typed ahead."
+  (cond ((being-typed-p stream) (uiop:strcat octets (octets-of-key key)))
+        (t (let ((ahead (ahead-in octets)))
+             (press-ahead ahead key)
+             (octets-of-ahead ahead)))))
+
 (defun press-key (stream key)
   "Let whoever reads STREAM read KEY, as in keys.lisp."
-  (hand-over (typed-octets stream) (octets-of-key key)))
+  (revise-octets (typed-octets stream) (lambda (octets) (with-key stream octets key))))
 
 (defun end-keys (stream)
   "Let STREAM end after the keys that were pressed."
-  (hand-over (typed-octets stream) nil))
+  (end-octets (typed-octets stream)))
+
+;;; What waits.
+
+(defun typed-ahead (stream)
+  "Return how many lines wait to be read of STREAM, and what is being typed after them: its text,
+and where in it the cursor is."
+  (let ((ahead (ahead-in (handed-left (typed-octets stream)))))
+    (values (+ (length (edited-lines stream)) (length (ahead-lines ahead)))
+            (ahead-text ahead)
+            (ahead-point ahead))))
+
+(defmethod take-waiting ((stream handed-text))
+  (let ((lines '()))
+    (revise-octets (typed-octets stream)
+                   (lambda (octets)
+                     (let ((ahead (ahead-in octets)))
+                       (setf lines (shiftf (ahead-lines ahead) '()))
+                       (octets-of-ahead ahead))))
+    (append (call-next-method) lines)))

@@ -57,10 +57,18 @@ that is not NIL.")
         (amend-entry (edited-history input) (format nil "~A~%~A" before line))
         (add-entry (edited-history input) line))))
 
-(defgeneric forget-pasted (input)
-  (:documentation "Leave what was pasted into INPUT and has not been read.")
+(defgeneric take-waiting (input)
+  (:documentation "Return the lines that wait to be read of INPUT, and leave them unread.")
   (:method (input)
-    (declare (ignore input)))
+    (declare (ignore input))
+    '())
   (:method ((input edited-text))
-    (setf (edited-lines input) '()
-          (typed-position input) (length (typed-line input)))))
+    (setf (typed-position input) (length (typed-line input)))
+    (shiftf (edited-lines input) '())))
+
+(defun drop-waiting (input)
+  "Leave the lines that wait to be read of INPUT; the history has them as one entry. Return how many
+there were."
+  (let ((lines (take-waiting input)))
+    (when lines (remember-line input (format nil "~{~A~^~%~}" lines) nil))
+    (length lines)))

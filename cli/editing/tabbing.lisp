@@ -44,6 +44,12 @@ only one.")
                    (edited-console stream))
       (finish-output (edited-console stream)))))
 
+(defun list-choices-once (stream texts)
+  "Show TEXTS, unless they have been shown and nothing has been typed since."
+  (unless (equal texts (edited-listed stream))
+    (list-choices stream texts)
+    (setf (edited-listed stream) texts)))
+
 ;;; Completing.
 
 (defun replace-typed (stream start string)
@@ -64,7 +70,7 @@ and AFTER if it is one; list them if that is no more than there is."
            (replace-typed stream start
                           (uiop:strcat common (if (ends-like-p common "/") "" after))))
           ((< (length typed) (length common)) (replace-typed stream start common))
-          (t (list-choices stream texts)))))
+          (t (list-choices-once stream texts)))))
 
 (define-action (:tab) (stream)
   "Complete what was begun."

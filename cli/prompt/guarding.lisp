@@ -66,15 +66,22 @@ and how it can be ended; if nothing does, how the prompt is left. In a trial, no
                                     (format nil "stopped~@[ in ~A~]." whose)))
   (throw 'leave 130))
 
+(defun dropped-text (count)
+  "Return what is said of COUNT lines that were to be read after the one that was interrupted."
+  (format nil "~[~:; ~:*~D line~:P that waited ~:*~[~;was~:;were~] dropped; the arrow up brings ~
+               ~:*~[~;it~:;them~] back.~]"
+          count))
+
 (defun interrupted (session whose)
   "Tell the user of SESSION that his interrupt has ended the line, in code of WHOSE, a text or NIL.
 Users' code that keeps the simulator waiting is aborted, too."
   (when (session-batch-p session) (leave-batch session whose))
   (when *simulation* (abort-hog *simulation*))
-  (forget-pasted (session-input session))
-  (let ((console (session-console session)))
+  (let ((console (session-console session)) (dropped (drop-waiting (session-input session))))
     (answered console)
-    (write-fresh (fitted (format nil "Interrupted.~A~%" (what-goes-on session)) console)
+    (write-fresh (fitted (format nil "Interrupted.~A~A~%" (dropped-text dropped)
+                                 (what-goes-on session))
+                         console)
                  console)))
 
 (defun call-guarded (session function)

@@ -2,37 +2,6 @@
 
 (in-package :ars-magna.cli)
 
-;;; Somebody may paste what a page shows, prompts and all. They are taken off. What stands after one
-;;; may also be a message of the robot's, such as "robot-turn: Robot turned 1.00": its first word
-;;; ends with a colon. Other answers cannot be told from lines.
-
-(defparameter *labels* '("Robot>" "Break>") "What prompts look like.")
-
-(defun message-p (text)
-  "True if TEXT, what stands after a prompt, is a message."
-  (let* ((start (position-if-not #'blank-p text))
-         (end (and start (position-if #'blank-p text :start start))))
-    (and end (< start (1- end)) (char= #\: (char text (1- end))))))
-
-(defun without-label (text)
-  "Return TEXT, a line as typed, without the prompts that it begins with; nothing of a message."
-  (let* ((start (or (position-if-not #'blank-p text) 0))
-         (label (find-if (lambda (label) (starts-with-subseq label (subseq text start))) *labels*))
-         (rest (and label (subseq text (+ start (length label))))))
-    (cond ((null rest) text)
-          ((message-p rest) "")
-          (t (without-label (string-left-trim " " rest))))))
-
-(define-constant +going-on+ "     > " :test #'string=
-  :documentation "The prompt for what goes on from the line before.")
-
-(defun line-pasted (text before)
-  "Return TEXT, a line as typed, without a prompt that was pasted with it. BEFORE is true if it goes
-on from another."
-  (cond ((null before) (without-label text))
-        ((starts-with-subseq +going-on+ text) (subseq text (length +going-on+)))
-        (t text)))
-
 ;; What knows what can be typed where sets it.
 (defvar *completion* (constantly nil)
   "A function of a session, a text and a place in it: what *COMPLETER* returns of the text.")
@@ -45,6 +14,12 @@ program runs a script."
       ""
       text))
 
+(defun answer-p (session line)
+  "True if LINE, of SESSION, answers a program that has broken: it makes no sense later."
+  (and (or (session-breaks session) (session-debugging-p session))
+       (not (comment-p line))
+       (not (lisp-p line))))
+
 (defun read-typed (session before)
   "Return the next line that is typed in SESSION, or NIL at the end. Whoever edits it can complete
 it, and have it again; if BEFORE is a text, together with that, which it goes on from."
@@ -54,7 +29,8 @@ it, and have it again; if BEFORE is a text, together with that, which it goes on
                  (unless before (keep-lines (session-input session)))
                  (read-line (session-input session) nil)))
          (line (and line (line-pasted (without-program session line) before))))
-    (when line (remember-line (session-input session) line before))
+    (unless (or (null line) (and (null before) (answer-p session line)))
+      (remember-line (session-input session) line before))
     line))
 
 (defun read-input (session prompt &optional before)

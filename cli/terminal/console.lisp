@@ -256,12 +256,13 @@ below.")
             ((string/= "" (drawn-line-text line)) (put-fresh text console stream))
             (t (put-fresh (concatenate 'string (drawn-line-label line) text) console stream))))))
 
-(defun fitted (text console &optional (prompt ""))
-  "Return TEXT as it is written after PROMPT: on a terminal, with lines that are broken between
-words."
-  (if (console-window console)
-      (broken-text text (1- (funcall (console-window console))) (text-columns prompt))
-      text))
+(defgeneric fitted (text console &optional prompt)
+  (:documentation "Return TEXT as it is written after PROMPT: on a terminal, with lines that are
+broken between words.")
+  (:method (text (console console) &optional (prompt ""))
+    (if (console-window console)
+        (broken-text text (1- (funcall (console-window console))) (text-columns prompt))
+        text)))
 
 (defmethod stream-write-char ((console console) char)
   (stream-write-string console (string char))

@@ -8,28 +8,41 @@
 (defclass handed-octets (fundamental-character-input-stream)
   ((lock :initform (make-lock "octets") :reader handed-lock)
    (ready :initform (make-semaphore "octets") :reader handed-ready)
-   ;; Those not read yet, and whether more may come.
-   (octets :initform "" :accessor handed-left)
+   ;; Those handed over last, how many of them have been read, and whether more may come.
+   (octets :initform "" :accessor handed-text)
+   (start :initform 0 :accessor handed-start)
    (over-p :initform nil :accessor handed-over-p))
-  (:documentation "An input stream of the octets given to HAND-OVER; reading waits for them."))
+  (:documentation "An input stream of the octets that REVISE-OCTETS leaves; reading waits for them."))
 
-(defun hand-over (stream octets)
-  "Let whoever reads STREAM read OCTETS, a string, after what was handed over before; NIL ends it."
+(defun handed-left (stream)
+  "Return the octets of STREAM that have not been read yet, a string."
+  (subseq (handed-text stream) (handed-start stream)))
+
+(defun leave-octets (stream octets)
+  "Let OCTETS, a string, be all that is left to be read of STREAM, whose lock is held."
+  (setf (handed-text stream) octets
+        (handed-start stream) 0))
+
+(defun revise-octets (stream function)
+  "Let what FUNCTION makes of the octets that are left of STREAM, a string, take their place. Nobody
+reads any meanwhile."
   (with-lock ((handed-lock stream))
-    (if octets
-        (setf (handed-left stream) (uiop:strcat (handed-left stream) octets))
-        (setf (handed-over-p stream) t)))
+    (leave-octets stream (funcall function (handed-left stream))))
+  (signal-semaphore (handed-ready stream))
+  (values))
+
+(defun end-octets (stream)
+  "Let STREAM end after the octets that are left."
+  (with-lock ((handed-lock stream)) (setf (handed-over-p stream) t))
   (signal-semaphore (handed-ready stream))
   (values))
 
 (defun next-handed (stream)
   "Return the next octet of STREAM, :EOF at its end, or NIL if none has come yet."
   (with-lock ((handed-lock stream))
-    (let ((left (handed-left stream)))
-      (cond ((string/= "" left)
-             (setf (handed-left stream) (subseq left 1))
-             (char left 0))
-            ((handed-over-p stream) :eof)))))
+    (cond ((listen stream) (prog1 (char (handed-text stream) (handed-start stream))
+                             (incf (handed-start stream))))
+          ((handed-over-p stream) :eof))))
 
 (defmethod stream-read-char-no-hang ((stream handed-octets))
   (next-handed stream))
@@ -41,14 +54,14 @@
 
 (defmethod stream-unread-char ((stream handed-octets) char)
   (with-lock ((handed-lock stream))
-    (setf (handed-left stream) (uiop:strcat (string char) (handed-left stream))))
+    (leave-octets stream (uiop:strcat (string char) (handed-left stream))))
   nil)
 
 (defmethod stream-listen ((stream handed-octets))
-  (string/= "" (handed-left stream)))
+  (< (handed-start stream) (length (handed-text stream))))
 
 (defmethod stream-clear-input ((stream handed-octets))
-  (with-lock ((handed-lock stream)) (setf (handed-left stream) ""))
+  (with-lock ((handed-lock stream)) (leave-octets stream ""))
   nil)
 
 (defmethod octets-within-p ((stream handed-octets) seconds)

@@ -3,54 +3,83 @@
 (in-package :ars-magna.clim)
 
 ;;; The line is edited by the prompt (cli/editing); here it is only shown. While a line is under
-;;; way there is none: then that is said. What is typed meanwhile is read after it.
+;;; way, that is said in a row above what is typed meanwhile, which is read after it.
 
 (defclass interactor-pane (display-pane) ()
   (:documentation "A pane that shows the line that is being typed, and takes keys."))
 
 (defun pane-conversation (pane) (window-conversation (window-of pane)))
 
-(defun line-shown (pane)
-  "Return label, text and point of the line that is being typed, or NIL."
-  (let ((line (ars-magna.cli:console-line
-               (conversation-console (pane-conversation pane)))))
-    (and line (ars-magna.cli:drawn-line-shown line))))
-
 (defun focused-p (pane)
   (eq pane (clim:port-keyboard-input-focus (clim:port pane))))
 
-(defmethod pane-content ((pane interactor-pane))
-  (list (line-shown pane) (busy-with (pane-conversation pane)) (focused-p pane)))
+;;; What is to be seen.
 
 (defun busy-text (line)
   (format nil "At work on ~A -- control-C, or Interrupt in the menu Run, ends it."
           (if (< 40 (length line)) (format nil "~A..." (subseq line 0 37)) line)))
+
+(defun waiting-label (count)
+  "Return what stands before what is typed while COUNT lines wait."
+  (format nil "~[~:;~:*~D line~:P wait~:*~[~;s~:;~]; the arrow up takes the last one back. ~]Next> "
+          count))
+
+(defun shown-ahead (conversation)
+  "Return label, text and point of what is typed in CONVERSATION while a line is under way."
+  (multiple-value-bind (count text point) (waiting-in conversation)
+    (list (waiting-label count) text point)))
+
+(defun line-shown (conversation)
+  "Return label, text and point of the line that is being typed in CONVERSATION, or NIL."
+  (let ((line (ars-magna.cli:console-line (conversation-console conversation))))
+    (and line (ars-magna.cli:drawn-line-shown line))))
+
+(defun note-on (text)
+  "Return what is said above TEXT, which is being typed, or NIL."
+  (let ((count (1+ (count #\Newline text))))
+    (when (< 1 count)
+      (format nil "~D lines: return enters them one after the other, control-C drops them." count))))
+
+(defun what-is-shown (pane)
+  "Return what PANE shows: label, text and point, and the row above and its ink, or NIL."
+  (let* ((conversation (pane-conversation pane))
+         (shown (line-shown conversation))
+         (busy (busy-with conversation)))
+    (cond (shown (append shown (list (note-on (second shown)) :grey)))
+          (busy (append (shown-ahead conversation) (list (busy-text busy) :red))))))
+
+(defmethod pane-content ((pane interactor-pane))
+  (list (what-is-shown pane) (focused-p pane)))
+
+;;; Painting.
 
 (defun paint-cursor (canvas row column focused-p)
   "Paint the cursor at ROW and COLUMN: hollow where keys go elsewhere."
   (draw-rectangle canvas draw-gcontext* (column-x column) (+ 2 (* row +line-height+))
                   (if focused-p 2 (1- +character-width+)) (- +line-height+ 2) focused-p))
 
-(defun paint-line (canvas pane label text point)
-  "Paint what is being typed, TEXT, with LABEL before it and the cursor at POINT."
+(defun paint-line (canvas pane label text point top)
+  "Paint what is being typed, TEXT, with LABEL before it and the cursor at POINT, from row TOP on."
   (multiple-value-bind (columns height) (columns-and-rows pane)
     (multiple-value-bind (rows row column)
         (ars-magna.cli:rows-to-show (ars-magna.cli:unpainted-text label) text point
-                                    columns height)
+                                    columns (max 1 (- height top)))
       (loop for (string) in rows
-            for y from 14 by +line-height+
+            for y from (+ 14 (* top +line-height+)) by +line-height+
             do (paint-words canvas string 0 y nil))
-      (paint-cursor canvas row column (focused-p pane)))))
+      (paint-cursor canvas (+ top row) column (focused-p pane)))))
+
+(defun paint-shown (canvas pane label text point note ink)
+  (when note (paint-words canvas note 0 14 ink))
+  (paint-line canvas pane label text point (if note 1 0)))
 
 (defmethod paint ((pane interactor-pane))
   (let ((canvas (make-instance 'clim-canvas :medium pane))
-        (shown (line-shown pane))
-        (busy (busy-with (pane-conversation pane))))
+        (shown (what-is-shown pane)))
     (clear pane)
     (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))
       (with-canvas (canvas)
-        (cond (shown (apply #'paint-line canvas pane shown))
-              (busy (paint-words canvas (busy-text busy) 0 14 :red)))))))
+        (when shown (apply #'paint-shown canvas pane shown))))))
 
 ;;; Keys.
 

@@ -49,6 +49,11 @@ there is room."
     (format stream "~A~A~%" (ars-magna.cli:drawn-line-label line)
             (ars-magna.cli:drawn-line-text line))))
 
+;; The transcript breaks its lines itself, anew whenever its width changes.
+(defmethod ars-magna.cli:fitted (text (console window-console) &optional prompt)
+  (declare (ignore prompt))
+  text)
+
 (defmethod ars-magna.cli:clear-screen ((console window-console) stream)
   (declare (ignore stream))
   (empty-transcript (console-transcript console)))
@@ -83,11 +88,14 @@ returns. PLACE is called before each line; OVER when its user leaves it."
 
 (defun give-line (conversation line)
   "Let the prompt do what LINE, a string, says, as if it had been typed; what is being typed stays."
-  (ars-magna.cli:enter-line (conversation-session conversation) line))
+  (ars-magna.cli:enter-line (conversation-session conversation) line)
+  (tell-news (conversation-console conversation)))
 
 (defun give-key (conversation key)
   "Let the prompt have KEY, as in cli/editing/keys.lisp."
-  (ars-magna.cli:press-key (ars-magna.cli:session-input (conversation-session conversation)) key))
+  (ars-magna.cli:press-key (ars-magna.cli:session-input (conversation-session conversation)) key)
+  ;; Where nobody reads it yet, it is to be seen all the same.
+  (tell-news (conversation-console conversation)))
 
 (defun begin-line-with (conversation text)
   "Let TEXT stand where the user types, who is to add what it lacks."
@@ -103,6 +111,11 @@ returns. PLACE is called before each line; OVER when its user leaves it."
   (and (conversation-thread conversation)
        (ars-magna.cli:at-work-on (conversation-session conversation))
        (console-entered (conversation-console conversation))))
+
+(defun waiting-in (conversation)
+  "Return how many lines wait for the one that is under way to end, and what is being typed after
+them: its text, and where in it the cursor is."
+  (ars-magna.cli:typed-ahead (ars-magna.cli:session-input (conversation-session conversation))))
 
 (defun end-conversation (conversation)
   "Let the prompt end, whatever it is at. Return nothing."

@@ -96,7 +96,8 @@
     (if (cell-at pane x y)
         (multiple-value-bind (x y) (point-at pane x y)
           (give-line (window-conversation window)
-                     (carrying-line subject (coordinate-text x) (coordinate-text y) window)))
+                     (carrying-line subject (coordinate-text x) (coordinate-text y) window))
+          (hint window ""))
         (hint window "That is not on the map."))
     (repaint-if-changed pane)))
 

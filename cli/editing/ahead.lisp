@@ -1,0 +1,76 @@
+;;;; ahead.lisp -- what is typed in a window while a line is under way: seen, and edited, before it is read.
+
+(in-package :ars-magna.cli)
+
+;;; Nobody reads the keys then. So they are kept as what they come to: lines that wait, each as a
+;;; line that was chosen elsewhere, and after those what is being typed, as if it had been pasted.
+;;; Whoever reads next finds keys like others. What needs the prompt, such as Tab, does nothing.
+
+(defstruct (ahead (:copier nil))
+  "What was typed ahead. LINES wait, the oldest first; TEXT is being typed, the cursor at POINT."
+  (lines '() :type list)
+  (text "" :type string)
+  (point 0 :type (integer 0)))
+
+(defun change-ahead (ahead text point &optional killed)
+  (declare (ignore killed))
+  (setf (ahead-text ahead) text
+        (ahead-point ahead) point))
+
+(defun insert-ahead (ahead text)
+  (multiple-value-call #'change-ahead ahead
+    (inserted text (ahead-text ahead) (ahead-point ahead))))
+
+(defun enter-ahead (ahead lines)
+  "Let LINES wait after those of AHEAD."
+  (setf (ahead-lines ahead) (append (ahead-lines ahead) lines)))
+
+(defun edit-last (ahead)
+  "Let the last line of AHEAD that waits be typed again, if nothing is being typed."
+  (let ((line (first (last (ahead-lines ahead)))))
+    (when (and line (string= "" (ahead-text ahead)))
+      (setf (ahead-lines ahead) (butlast (ahead-lines ahead)))
+      (change-ahead ahead line (length line)))))
+
+(defun press-given-ahead (ahead kind text)
+  (ecase kind
+    (:paste (insert-ahead ahead (without-answers text)))
+    (:entry (enter-ahead ahead (list text)))))
+
+(defun press-ahead (ahead key)
+  "Do to AHEAD what KEY does."
+  (cond ((stringp key) (insert-ahead ahead key))
+        ((consp key) (press-given-ahead ahead (first key) (second key)))
+        ((change-of key) (multiple-value-call #'change-ahead ahead
+                           (funcall (change-of key) (ahead-text ahead) (ahead-point ahead))))
+        (t (case key
+             (:return (enter-ahead ahead (lines-in (ahead-text ahead)))
+              (change-ahead ahead "" 0))
+             ((:up :control-p) (edit-last ahead))
+             (:control-c (change-ahead ahead "" 0))))))
+
+;;; From octets, and to octets.
+
+(defun text-reader (text)
+  "Return a function that returns the next character of TEXT, or NIL, or is given one to return
+first."
+  (let ((position 0))
+    (lambda (&optional again)
+      (cond (again (decf position) nil)
+            ((< position (length text)) (prog1 (char text position) (incf position)))))))
+
+(defun ahead-in (octets)
+  "Return what OCTETS, a string that has not been read yet, come to."
+  (loop with ahead = (make-ahead)
+        with next = (text-reader octets)
+        for key = (read-key next)
+        while key do (press-ahead ahead key)
+        finally (return ahead)))
+
+(defun octets-of-ahead (ahead)
+  "Return octets that come to AHEAD."
+  (let ((text (ahead-text ahead)))
+    (format nil "~{~A~}~A~V@{~A~:*~}"
+            (loop for line in (ahead-lines ahead) collect (octets-of-key (list :entry line)))
+            (if (string= "" text) "" (octets-of-key (list :paste text)))
+            (- (length text) (ahead-point ahead)) (octets-of-key :left))))

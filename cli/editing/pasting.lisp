@@ -1,0 +1,64 @@
+;;;; pasting.lisp -- what is pasted: lines, perhaps with the prompts and answers around them.
+
+(in-package :ars-magna.cli)
+
+;;; Somebody may paste what a page or the window shows, prompts and all. They are taken off. What
+;;; stands after one may also be a message of the robot's, such as "robot-turn: Robot turned 1.00":
+;;; its first word ends with a colon. Other answers are known by having no prompt where lines have.
+
+(defparameter *labels* '("Robot>" "Break>") "What prompts look like.")
+
+(defun message-p (text)
+  "True if TEXT, what stands after a prompt, is a message."
+  (let* ((start (position-if-not #'blank-p text))
+         (end (and start (position-if #'blank-p text :start start))))
+    (and end (< start (1- end)) (char= #\: (char text (1- end))))))
+
+(defun without-label (text)
+  "Return TEXT, a line as typed, without the prompts that it begins with; nothing of a message."
+  (let* ((start (or (position-if-not #'blank-p text) 0))
+         (label (find-if (lambda (label) (starts-with-subseq label (subseq text start))) *labels*))
+         (rest (and label (subseq text (+ start (length label))))))
+    (cond ((null rest) text)
+          ((message-p rest) "")
+          (t (without-label (string-left-trim " " rest))))))
+
+(define-constant +going-on+ "     > " :test #'string=
+  :documentation "The prompt for what goes on from the line before.")
+
+(defun line-pasted (text before)
+  "Return TEXT, a line as typed, without a prompt that was pasted with it. BEFORE is true if it goes
+on from another."
+  (cond ((null before) (without-label text))
+        ((starts-with-subseq +going-on+ text) (subseq text (length +going-on+)))
+        (t text)))
+
+;;; Where several lines were pasted, prompts tell which of them were typed.
+
+(defun going-on-p (text)
+  (starts-with-subseq +going-on+ text))
+
+(defun labelled-p (text)
+  "True if TEXT, a line, begins with a prompt."
+  (let ((start (or (position-if-not #'blank-p text) 0)))
+    (some (lambda (label) (starts-with-subseq label (subseq text start))) *labels*)))
+
+(defun typed-lines (lines)
+  "Return those of LINES, as pasted, that were typed: all up to the first with a prompt, which may
+be the rest of one, and those with prompts, but for messages; as they are if no line has any."
+  (if (notany #'labelled-p lines)
+      lines
+      (let ((start (position-if #'labelled-p lines)))
+        (append (subseq lines 0 start)
+                (loop for line in (nthcdr start lines)
+                      when (or (going-on-p line)
+                               (and (labelled-p line) (string/= "" (without-label line))))
+                        collect line)))))
+
+(defun lines-in (text)
+  "Return the lines of TEXT, at least one."
+  (or (uiop:split-string text :separator '(#\Newline)) (list "")))
+
+(defun without-answers (text)
+  "Return TEXT, as pasted, without the answers to what was typed in it."
+  (format nil "~{~A~^~%~}" (typed-lines (lines-in text))))
