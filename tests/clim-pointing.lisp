@@ -146,7 +146,7 @@
              (is (not (window::popup-open-p window)))
              (is (key #\x))
              (is (key #\b))
-             (is (equal '("x" "b") (last (keys-handed window) 2))))
+             (is (equal '((:paste "xb")) (last (keys-handed window)))))
         (run:stop-clock simulation)))))
 
 (test bar.names-its-keys

@@ -1,4 +1,4 @@
-;;;; ahead.lisp -- what is typed in a window while a line is under way: seen, and edited, before it is read.
+;;;; ahead.lisp -- what is typed in a window before it is read, while a line is under way.
 
 (in-package :ars-magna.cli)
 
