@@ -106,7 +106,8 @@
       (carry pane '(52 52) '(40 60))
       (is (equal '("(move-thing (find-thing \"BOX#1\") 15.50 2.50)" "pos 5.00 7.50")
                  (lines-given window)))
-      (is (null (window::pane-ghost pane))))))
+      (is (null (window::pane-ghost pane)))
+      (is (equal "" (window::window-hint window)) "the strip says no longer where it would be"))))
 
 (test pointing.dragging-the-map-moves-the-view
   (in-window (window robot)
