@@ -12,7 +12,7 @@
    (octets :initform "" :accessor handed-text)
    (start :initform 0 :accessor handed-start)
    (over-p :initform nil :accessor handed-over-p))
-  (:documentation "An input stream of the octets that REVISE-OCTETS leaves; reading waits for them."))
+  (:documentation "An input stream of the octets that REVISE-OCTETS leaves; it waits for them."))
 
 (defun handed-left (stream)
   "Return the octets of STREAM that have not been read yet, a string."

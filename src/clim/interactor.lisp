@@ -21,8 +21,8 @@
 
 (defun waiting-label (count)
   "Return what stands before what is typed while COUNT lines wait."
-  (format nil "~[~:;~:*~D line~:P wait~:*~[~;s~:;~]; the arrow up takes the last one back. ~]~
-               Next> "
+  (format nil "~[~:;~:*~D line~:P wait~:*~[~;s~:;~]; the arrow up takes the last one ~
+               back. ~]Next> "
           count))
 
 (defun shown-ahead (conversation)
