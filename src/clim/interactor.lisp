@@ -39,7 +39,7 @@
   "Return what is said above TEXT, which is being typed, or NIL."
   (let ((count (1+ (count #\Newline text))))
     (when (< 1 count)
-      (format nil "~D lines: return enters them one after the other, control-C drops them." count))))
+      (format nil "~D lines: return enters them one by one, control-C drops them." count))))
 
 (defun what-is-shown (pane)
   "Return what PANE shows: label, text and point, and the row above and its ink, or NIL."
