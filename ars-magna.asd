@@ -9,7 +9,7 @@
   :serial t
   :components
   ((:module "src/base" :serial t
-    :components ((:file "package") (:file "policy") (:file "public") (:file "floats")
+    :components ((:file "package") (:file "policy") (:file "wrapping") (:file "public") (:file "floats")
                  (:file "numbers") (:file "globals") (:file "tables") (:file "atomic")
                  (:file "classes") (:file "closures") (:file "instances") (:file "packages")
                  (:file "printing") (:file "files") (:file "code")
@@ -17,8 +17,8 @@
                  (:file "compiling") (:file "interrupts")
                  (:file "stacks") (:file "debuggers") (:file "abridging") (:file "conditions")
                  (:file "exits")
-                 (:file "telling") (:file "writing") (:file "threads") (:file "weak")
-                 (:file "dice") (:file "random") (:file "names")
+                 (:file "telling") (:file "threads") (:file "weak")
+                 (:file "dice") (:file "random") (:file "writing") (:file "names")
                  (:file "digest") (:file "sources") (:file "places-in-text")
                  (:file "variables") (:file "definitions") (:file "user-macros")
                  (:file "registry") (:file "own-definitions") (:file "messages")

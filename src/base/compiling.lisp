@@ -187,10 +187,6 @@ is not true, or else another."
 
 ;;; SBCL has no hook for the end of a unit.
 
-(defun wrap-function (name wrapper)
-  "Let WRAPPER be called instead of SBCL's function NAME, with that and its arguments."
-  (sb-int:encapsulate name 'ars-magna wrapper))
-
 (defun watch-units ()
   "Let what SBCL compiles or loads be a unit."
   (wrap-function 'compile-file

@@ -68,36 +68,6 @@ nothing."
   (when (find +illegible+ (native-name path))
     (error "its name has bytes that are not UTF-8; give it a name in UTF-8")))
 
-(defun new-file-for (file)
-  "Return the absolute path of the file that is to be written for FILE: where a link leads to, if it
-is one. Signals an error if there is something that is no file of bytes, or no directory for it, or
-the name is illegible."
-  (check-name-legible file)
-  (let ((path (or (probe-file file)
-                  (uiop:ensure-absolute-pathname (merge-pathnames file) #'uiop:getcwd))))
-    (when (and (probe-file path) (not (plain-file-p path)))
-      (error "it is a directory or a device"))
-    (unless (probe-file (uiop:pathname-directory-pathname path))
-      (error "there is no such directory"))
-    path))
-
-(defun call-replacing-file (function file &key (external-format :utf-8))
-  "Call FUNCTION with a stream to a new file of UTF-8, which takes the place of FILE at one stroke
-when FUNCTION has returned; if that or anything else fails, FILE is as it was. Return its truename.
-What FUNCTION writes does not follow the printer's variables. In the EXTERNAL-FORMAT :LATIN-1 each
-character that is written is an octet."
-  (let ((path (new-file-for file)))
-    ;; The new file's name is rolled for: whoever writes a file rolls on as if he had not.
-    (call-with-own-lisps-dice
-     (lambda ()
-       (uiop:with-temporary-file (:stream out :pathname new :external-format external-format
-                                  :directory (uiop:pathname-directory-pathname path)
-                                  :prefix "ars-magna" :type :unspecific)
-         (printing-plainly () (funcall function out))
-         :close-stream
-         (replace-file path new))))
-    (truename path)))
-
 ;;; Text of whatever octets. (SBCL's streams of UTF-8 loop at some that are none.)
 
 (defun encoded (text)

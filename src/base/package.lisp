@@ -54,12 +54,12 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:native-name #:native-path #:path-called #:existing-path #:missing-directory
            #:replace-file #:plain-file-p
            #:unusable-file-text #:shown-name
-           #:call-replacing-file #:encoded #:decoded #:file-text #:cut-file
+           #:encoded #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
            #:host-name #:process-number
            #:environment-value #:real-microseconds #:run-command #:run-attached)
   ;; writing
-  (:export #:write-file-anew)
+  (:export #:call-replacing-file #:write-file-anew)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
            #:local-function-p #:known-function-p #:macro-expander
@@ -70,7 +70,9 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:undefined-name #:still-undefined-p)
   ;; compiling
   (:export #:show-lambda-list #:nested-p #:keep-place #:in-source-p #:call-at-place #:at-end-of-unit
-           #:call-as-unit #:wrap-function)
+           #:call-as-unit)
+  ;; wrapping
+  (:export #:wrap-function)
   ;; abridging
   (:export #:abridged #:unqualified-text #:+more+)
   ;; conditions
