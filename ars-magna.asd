@@ -68,7 +68,8 @@
                  (:file "asking") (:file "pacing") (:file "stopping") (:file "hogs")
                  (:file "clock") (:file "schedule") (:file "soundness")))
    (:module "src/robot" :serial t
-    :components ((:file "package") (:file "blueprint") (:file "parts") (:file "odometer")
+    :components ((:file "package") (:file "blueprint") (:file "parts") (:file "planned-way")
+                 (:file "odometer")
                  (:file "corners") (:file "sweeping") (:file "motion") (:file "reach")
                  (:file "designator") (:file "place-sense") (:file "sight") (:file "tracks")
                  (:file "new-designators") (:file "inside") (:file "making") (:file "retiring")

@@ -59,6 +59,13 @@
       (is (= (plan-left 1200) (state-left 1200)))
       (is (< (plan-left 1920) (state-left 1920))))))
 
+(test layout.the-column-of-plans-can-be-made-larger
+  (let ((wishes (window::make-wishes :folded '() :plan-width 700)))
+    (is (= 700 (third (place-of 'window::plan (places-at 1920 1080 wishes)))))
+    (let ((places (places-at 1500 900 (window::make-wishes :folded '() :plan-width 5000))))
+      (is (every (lambda (place) (inside-p place 1500 900)) (mapcar #'rest places)))
+      (is (<= 120 (third (place-of 'window::world places)))))))
+
 ;;; In a window.
 
 (defun lay-out (window width height)
@@ -91,6 +98,26 @@
         (is (= (+ (second transcript) 50) (second (size 'window::transcript))))
         (pull 'window::low-splitter 0 -5000)
         (is (plusp (second (size 'window::world))))))))
+
+(test layout.the-splitters-of-the-plans-column-move
+  (in-window (window robot)
+    (lay-out window 1600 900)
+    (window::fold window 'window::plan nil)
+    (flet ((width (name) (window::pane-size (pane window name)))
+           (pull (name x)
+             (let ((pane (pane window name)))
+               (window::press pane :left 1 1)
+               (window::drag pane x 0))))
+      (let ((world (width 'window::world)) (plan (width 'window::plan))
+            (state (width 'window::state)))
+        (pull 'window::side-splitter -100)
+        (is (equal (list (- world 100) (+ plan 100) state)
+                   (mapcar #'width '(window::world window::plan window::state))))
+        (pull 'window::plan-splitter 80)
+        (is (equal (list (- world 100) (+ plan 180) (- state 80))
+                   (mapcar #'width '(window::world window::plan window::state))))
+        (window::fold window 'window::plan)
+        (is (not (window::shown-p (pane window 'window::plan-splitter))))))))
 
 (defun show-many-designators (window robot)
   "Let ROBOT have 40 designators; return the pane of WINDOW that shows them."

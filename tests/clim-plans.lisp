@@ -129,6 +129,20 @@
         (window::click pane :right x 60)
         (is (row-with window "rewind-to 10"))))))
 
+(test plan-timeline.names-have-the-room-that-they-need
+  (in-window (window robot)
+    (let ((ars-magna.rpl-robot:*trace-plans* t))
+      (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
+      (run:run-ticks 30)
+      (let ((page (window::plan-look-page (window::plan-look-of (seen-plans window :timeline)))))
+        (flet ((names (width)
+                 (let ((left (ars-magna.rpl-pictures::scale-left
+                              (ars-magna.rpl-pictures:scale-for page width))))
+                   (loop for row in (ars-magna.rpl-pictures::page-rows page)
+                         collect (ars-magna.rpl-pictures::row-name row (- left 20))))))
+          (is (some (lambda (name) (search "..." name)) (names 200)))
+          (is (notany (lambda (name) (search "..." name)) (names 700))))))))
+
 (test plan-timeline.says-how-to-get-a-trace
   (in-window (window robot)
     (let ((ars-magna.rpl-robot:*trace-plans* nil))

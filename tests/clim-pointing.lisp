@@ -90,6 +90,29 @@
                          (member (subseq line 0 (position #\Space line)) names
                                  :test #'string-equal))))))))
 
+(test pointing.reaches-all-that-lies-under-the-mouse
+  "A box on which another one and the robot stand."
+  (in-window (window robot)
+    (robot:place-robot robot 3.5 4.5 0)
+    (world:make-new-thing 'ars-user::lid (list (robot:robot-world robot) 3.5 4.5) '((:size 1)))
+    (window::publish (window:window-watcher window) (time:current-simulation))
+    (let ((pane (painted-world window)))
+      (dolist (name '("LID" "BOX#1" "STUDIO-ROBOT" "Cell 3, 4"))
+        (is (mentions-p (window::hover-text pane 28 36) name)))
+      (let ((picked (loop repeat 5
+                          do (window::click pane :left 28 36)
+                          collect (window::window-selection window))))
+        (is (= 4 (length (remove-duplicates picked :test #'equal))))
+        (is (equal (first picked) (fifth picked)) "after the last comes the first"))
+      (window::click pane :left 124 20)
+      (is (= 3 (count-if (lambda (text) (search "Also here" text)) (offered pane 28 36))))
+      (window::choose-row (window::window-popup window)
+                          (row-with window "Also here: STUDIO-ROBOT"))
+      (is (window::popup-open-p window))
+      (is (row-with window "about-face"))
+      (is (row-with window "Also here: BOX#1"))
+      (is (equal (list :robot (robot:robot-name robot)) (window::window-selection window))))))
+
 ;;; Dragging.
 
 (defun carry (pane from to)

@@ -159,5 +159,5 @@
              ("trial choosing-by-" "trial choosing-by-rollouts")))
 
 (test completing.knows-the-words-of-maps
-  (completes ("map " "map belief" "map cones" "map legend" "map way")
+  (completes ("map " "map belief" "map cones" "map legend" "map plan" "map way")
              ("map 5 co" "map 5 cones") ("watch 5 way b" "watch 5 way belief")))

@@ -256,6 +256,21 @@
       (is (shows-p '(:odometer) (web (display::layer-ink :odometer)))))
     (signals base:wrong-argument (display:svg-picture robot :layers '(:aura)))))
 
+(test world-display.shows-the-planned-way
+  (in-studio (robot)
+    (let ((ink (web (display::layer-ink :planned-way))))
+      (flet ((shown-p (&rest layers) (mentions-p (plain-picture robot :layers layers) ink)))
+        (is (not (shown-p :planned-way)))
+        (robot:publish-way robot '((6.5 6.5) (8.5 6.5) (8.5 2.5)))
+        (is (shown-p :planned-way))
+        (is (not (shown-p :names)))
+        (is (mentions-p (plain-picture robot :layers '(:planned-way))
+                        "<polyline points=\"52.5,52.5 68.5,52.5 68.5,20.5\""))
+        (is (mentions-p (display:svg-picture robot :layers '(:planned-way :legend))
+                        ">planned way<"))
+        (robot:publish-way robot '())
+        (is (not (shown-p :planned-way)))))))
+
 (test world-display.scale-is-what-is-asked-for-or-set
   (in-studio (robot)
     (let ((canvas:graphics-scale* 4))

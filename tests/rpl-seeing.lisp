@@ -167,7 +167,7 @@
 (test task-history.is-of-tasks-that-are-over-too
   (multiple-value-bind (runner task) (seen-until 30)
     (is (eq :succeeded (rpl:task-state task)))
-    (is (equal '(:start :wait :clean :wait :wake :evaporate)
+    (is (equal '(:start :wait :clean :wait :wake :cleaned :evaporate)
                (mapcar #'rpl:trace-entry-event (rpl:task-history 8 :runner runner))))
     (is (equal '((8 nil (rpl:evap-protect (rpl:wait-time 50) (rpl:wait-time 20)))
                  (5 nil (rpl:pursue (rpl:wait-time 2)

@@ -25,6 +25,17 @@
       (is (eq :evaporated (rpl:bar-outcome cleaning)))
       (is (equal '((2 22 nil)) (span-list cleaning :cleaning))))))
 
+(test bars.clean-up-no-longer-than-that-takes
+  (let* ((runner (rpl:make-plan-runner :trace t :on-end #'identity))
+         (bar (progn (rpl:run-plan-alone
+                      (rpl:make-plan '(rpl:seq (rpl:evap-protect (rpl:wait-time 2)
+                                                (rpl:wait-time 3))
+                                       (rpl:wait-time 4)))
+                      :runner runner)
+                     (first (rpl:bars (rpl:plan-trace runner))))))
+    (is (equal '((2 5 nil)) (span-list bar :cleaning)))
+    (is (= 9 (rpl:bar-end bar)))))
+
 (test bars.of-tasks-under-way-go-on-until-now
   (multiple-value-bind (bar parts) (bars-until 5)
     (is (null (rpl:bar-outcome bar)))

@@ -156,6 +156,15 @@
       (is (legend-has-p lines "+ way of CLERK")))
     (is (char= #\Space (shown-at (map-lines robot :columns 200) 11 20)))))
 
+(test text-map.shows-the-planned-way
+  (in-depot (robot)
+    (robot:publish-way robot '((10.5 20.5) (14.5 20.5)))
+    (let ((lines (map-lines robot :columns 200 :layers '(:plan))))
+      (is (char= #\: (shown-at lines 13 20)))
+      (is (char= #\Space (shown-at lines 15 20)))
+      (is (legend-has-p lines ": planned way of CLERK")))
+    (is (char= #\Space (shown-at (map-lines robot :columns 200) 13 20)))))
+
 (test text-map.shows-what-the-robot-believes
   (in-depot (robot)
     (is (legend-has-p (map-lines robot :layers '(:belief)) "@ believed (10.50,20.50)"))

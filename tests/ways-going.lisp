@@ -27,6 +27,56 @@
         do (loop for seed from 1 to 5
                  do (is-true (there-p x y seed) "(~A,~A), seed ~D" x y seed))))
 
+(defun way-of-marvin ()
+  "Return how many points the way has that MARVIN is about to go."
+  (length (robot:robot-planned-way ars-worlds:marvin)))
+
+(test going.shows-its-way-until-it-is-over
+  (let ((answers '()))
+    (run:with-simulation (ars-worlds:marvin :seed 1)
+      (ars-worlds:robot-go-to ars-worlds:marvin 109 24
+                              (lambda (err robot) (push (list err robot) answers)))
+      (is (< 2 (way-of-marvin)))
+      (run:run-ticks 10)
+      (let ((fork (run:fork-simulation)) (digest (run:state-digest)))
+        (run:call-in-fork fork (lambda () (is (< 2 (way-of-marvin)) "forks have it, too")))
+        (robot:publish-way ars-worlds:marvin '())
+        (is (= digest (run:state-digest)) "it decides nothing"))
+      (run:run-until (lambda () answers) :limit 2000)
+      (is (zerop (way-of-marvin))))))
+
+(test going.shows-no-way-after-an-interruption
+  (run:with-simulation (ars-worlds:marvin :seed 1)
+    (ars-worlds:robot-go-to ars-worlds:marvin 109 24 nil)
+    (run:run-ticks 10)
+    (is (< 2 (way-of-marvin)))
+    (command:robot-turn ars-worlds:marvin 1 nil)
+    (run:run-ticks 1)
+    (is (zerop (way-of-marvin)))))
+
+(test publish-way.is-taken-back-by-what-interrupts-the-robot
+  "Also where the program that published it has not noticed."
+  (run:with-simulation (ars-worlds:marvin :seed 1)
+    (command:robot-go-forward ars-worlds:marvin 20 nil)
+    (run:run-ticks 5)
+    (robot:publish-way ars-worlds:marvin (list '(1 2) (geo:make-pt 3 4)))
+    (run:run-ticks 5)
+    (is (equal '((1d0 2d0) (3d0 4d0)) (robot:robot-planned-way ars-worlds:marvin)))
+    (command:robot-turn ars-worlds:marvin 1 nil)
+    (run:run-ticks 1)
+    (is (zerop (way-of-marvin)))
+    (signals base:wrong-argument (robot:publish-way ars-worlds:marvin '((1 2 3))))
+    (signals base:wrong-argument (robot:publish-way nil '()))))
+
+(test travel-to.shows-its-way-until-it-is-killed
+  (run:with-simulation (ars-worlds:marvin :seed 1)
+    (let ((plan (ars-magna.rpl-robot:begin-plan 'ars-worlds:patrol-places '((109 24)))))
+      (run:run-ticks 10)
+      (is (< 2 (way-of-marvin)))
+      (ars-magna.rpl-robot:end-plan plan)
+      (run:run-ticks 2)
+      (is (zerop (way-of-marvin))))))
+
 (test going.arrives-without-noise-as-near-as-wanted
   (multiple-value-bind (answer distance)
       (going-trial 109 24 1 :clean t :options '(:tolerance 1/10))

@@ -87,6 +87,7 @@ one, and for arguments that are none."
 
 (defun end-journey (journey err)
   "End JOURNEY with the error code ERR, or NIL for success."
+  (show-way (journey-me journey) '())
   (funcall (journey-continuation journey) err (journey-robot journey)))
 
 (defun after-command (journey err next otherwise)

@@ -187,6 +187,11 @@ map. True if so."
 metres, through doorways and round obstacles. Fails with :CANNOT-GET-THERE after PATIENCE
 troubles, or at once if there is no way, with a WRONG-ARGUMENT if an argument is none."
   (check-travel me point tolerance patience)
+  (evap-protect (travel-step-by-step me point tolerance patience camera)
+                (show-way me '())))
+
+(def-interp-proc travel-step-by-step (me point tolerance patience camera)
+  "Do as TRAVEL-TO does, and leave the way to be seen."
   (let ((limit (+ patience (reckoning-trouble me)))
         (steps 0))
     (loop UNTIL (<= (distance-left me point) tolerance)

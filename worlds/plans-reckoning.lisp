@@ -122,9 +122,18 @@ more."
       (bar-on-chart me)))
   (reckoning-chart me))
 
+(defun show-way (me points)
+  "Let pictures show POINTS as the way that the robot of ME is about to take; () for none."
+  (publish-way (ars-magna.robot:odometer-robot (reckoning-odometer me)) points))
+
 (defun next-step-of (me goal)
-  "Return the next step, as NEXT-STEP, of the robot of ME on its way to GOAL."
-  (next-step (chart-now me) (reckon me) goal))
+  "Return the next step, as NEXT-STEP, of the robot of ME on its way to GOAL, which pictures show
+from now on: see SHOW-WAY."
+  (let* ((chart (chart-now me))
+         (start (nearest-free-point chart (reckon me)))
+         (end (nearest-free-point chart goal)))
+    (show-way me (and start end (find-way chart start end)))
+    (next-step chart (reckon me) goal)))
 
 ;;; Corrections.
 

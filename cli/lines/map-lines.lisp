@@ -16,7 +16,8 @@ lines; NIL if there is none."
 
 ;;; What of it.
 
-(defparameter *map-words* '("CONES" "WAY" "BELIEF" "LEGEND") "The words that MAP understands.")
+(defparameter *map-words* '("CONES" "WAY" "PLAN" "BELIEF" "LEGEND")
+  "The words that MAP understands.")
 
 (defun map-word (text)
   "Return the keyword of *MAP-WORDS* that begins with TEXT. Signals BAD-LINE if there is none."
@@ -82,10 +83,11 @@ LINES-BELOW lines."
   (mapcar #'string-downcase *map-words*))
 
 (define-line "MAP" (session (what :map-words
-                                  "a radius or LEFT TOP RIGHT BOTTOM; CONES WAY BELIEF LEGEND"
+                                  "a radius or LEFT TOP RIGHT BOTTOM; CONES WAY PLAN BELIEF LEGEND"
                                   :optional))
     (:seeing)
     "Show the world as characters: all of it, what is within a radius of the robot, or a region.
-CONES shows what the robot's cameras have in view, WAY where it went, BELIEF where it believes
-itself and what its designators denote to be, LEGEND only what the characters mean."
+CONES shows what the robot's cameras have in view, WAY where it went, PLAN which way it is about to
+go, BELIEF where it believes itself and what its designators denote to be, LEGEND only what the
+characters mean."
   (write-string (map-text session (map-options what))))

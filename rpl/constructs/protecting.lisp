@@ -14,6 +14,7 @@
 
 (defun end-cleanup (task frame)
   (setf (task-cleaning task) (remove frame (task-cleaning task)))
+  (unless (task-cleaning task) (note-event task :cleaned))
   (shiftf (frame-data frame) nil))
 
 (defun after-cleanup (first signal task)

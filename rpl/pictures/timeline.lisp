@@ -38,10 +38,13 @@ pixels wide. Return where it ends: how far to the right, and how far down."
 
 ;;; The rows.
 
+(defun name-to-fit (row width)
+  "Return what ROW is called; where WIDTH, in pixels, is little, little of it says how deep it is."
+  (if (< width 250) (row-label row 1 7) (row-label row)))
+
 (defun row-name (row width)
-  "Return what ROW is called, WIDTH pixels wide; where that is little, little of it is for how deep
-it is."
-  (fitted (if (< width 250) (row-label row 1 7) (row-label row)) width))
+  "Return what ROW is called, as far as WIDTH pixels have room for it."
+  (fitted (name-to-fit row width) width))
 
 (defun draw-row (canvas row y scale)
   "Draw ROW with its upper edge at Y, its name left of SCALE."
@@ -96,9 +99,15 @@ pixels."
 
 ;;; In a place of any width.
 
+(defun names-width (rows room)
+  "Return how many pixels the names of ROWS take where ROOM is for them."
+  (* +character-width+ (loop for row in rows maximize (length (name-to-fit row room)))))
+
 (defun scale-for (page width)
-  "Return the scale of PAGE in a place WIDTH pixels wide: two fifths of it are for the names."
-  (let ((left (clamp (floor (* 2 width) 5) 100 +label-width+)))
+  "Return the scale of PAGE in a place WIDTH pixels wide: of it the names have what they need, up to
+half."
+  (let* ((most (max 100 (floor width 2)))
+         (left (clamp (+ 24 (names-width (page-rows page) most)) 100 most)))
     (make-scale (page-start page) (page-end page) left (max 60 (- width left 24)))))
 
 (defun draw-page (canvas page &key (width 640) (top 0) (from 0) to)

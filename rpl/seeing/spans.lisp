@@ -90,6 +90,7 @@ of a procedure within the task, as far as commands were issued in it."
       (:unblock (close-spans bar '(:blocked) tick))
       (:clean (close-spans bar '(:waiting :parts) tick)
        (open-span bar :cleaning entry))
+      (:cleaned (close-spans bar '(:cleaning) tick))
       (:succeed (end-bar bar :succeeded tick))
       (:fail (setf (bar-failure bar) (trace-entry-subject entry))
        (end-bar bar :failed tick))

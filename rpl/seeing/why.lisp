@@ -146,6 +146,7 @@
                       (if (eql (trace-entry-agent entry) (trace-entry-task entry))
                           "it had come to that"
                           (end-reason entry index trace))))
+      (:cleaned "had cleaned up")
       (:command (format nil "issued ~A" (trace-entry-detail entry)))
       (:block (format nil "was blocked by ~A" (agent-words (trace-entry-agent entry) trace)))
       (:unblock "was blocked no longer"))))

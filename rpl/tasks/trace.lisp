@@ -12,7 +12,7 @@ doing of AGENT: a task's number, an ANSWER, or another asker (see *ASKER*). What
 are: :start: name and parent's number; :wait and :wake: what the task waits for; :succeed: NIL and
 the value; :failure (where it happens) and :fail (it ends the task): the failure; :set and :pulse:
 fluent and value; :command: an ISSUE and the STACKS; :answer: the ISSUE and the error code;
-:evaporate, :clean, :block and :unblock: nothing."
+:evaporate, :clean, :cleaned, :block and :unblock: nothing."
   (tick 0 :type real :read-only t)
   (event :start :type keyword :read-only t)
   (task 0 :type fixnum :read-only t)
@@ -38,8 +38,8 @@ fluent and value; :command: an ISSUE and the STACKS; :answer: the ISSUE and the 
 (document-functions
   trace-entry-tick "Return the tick of a trace entry."
   trace-entry-event "Return what happened: :start, :wait, :wake, :succeed, :fail, :evaporate,
-:failure (whatever becomes of it), :clean (a cleanup begins), :block or :unblock; :set or :pulse (a
-fluent), :command or :answer."
+:failure (whatever becomes of it), :clean (a cleanup begins), :cleaned (no cleanup is under way any
+more), :block or :unblock; :set or :pulse (a fluent), :command or :answer."
   trace-entry-task "Return the number of the task that it happened to, or that did it; 0: none."
   trace-entry-form "Return the plan's expression that the task was at."
   trace-entry-subject "Return what it is about, an object that depends on the event."
@@ -109,7 +109,7 @@ value a fluent was given and by whom, which command was issued or answered, and 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defparameter *trace-events*
     #(:start :wait :wake :succeed :fail :evaporate :failure :clean :block :unblock
-      :set :pulse :command :answer)
+      :set :pulse :command :answer :cleaned)
     "All events of traces.")
 
   (defun event-code (event)

@@ -4,8 +4,9 @@
 
 ;;; Rows from top to bottom: the bar, the displays, a splitter, the transcript, the line that is
 ;;; typed, the strip. In the row of displays the world is on the left, then a splitter, then a
-;;; column of sections, each a title with a display below it. Nothing here knows CLIM: a part is a
-;;; name, a place is (name left top width height), in pixels.
+;;; column of sections, each a title with a display below it; where there is room, plans have a
+;;; column of their own before that, and a splitter. Nothing here knows CLIM: a part is a name, a
+;;; place is (name left top width height), in pixels.
 
 (define-constant +title-height+ 17 :documentation "How high titles of displays are, in pixels.")
 (define-constant +bar-height+ 26 :documentation "How high the tool bar is, in pixels.")
@@ -23,14 +24,16 @@
   :test #'equal
   :documentation "The parts of the window that have titles.")
 
-(define-constant +splitters+ '(side-splitter low-splitter)
+(define-constant +splitters+ '(side-splitter plan-splitter low-splitter)
   :test #'equal
   :documentation "The parts of the window that can be dragged to make others larger.")
 
 (defstruct (wishes (:copier nil))
-  "What the user wants of an arrangement. DETAILS-WIDTH and TRANSCRIPT-HEIGHT are in pixels, or NIL
-for what suits the window; FOLDED lists sections of which only the title is to be seen."
+  "What the user wants of an arrangement. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are in
+pixels, or NIL for what suits the window; FOLDED lists sections of which only the title is to be
+seen."
   (details-width nil :type (or null real))
+  (plan-width nil :type (or null real))
   (transcript-height nil :type (or null real))
   (folded '(plan) :type list))
 
@@ -45,6 +48,18 @@ for what suits the window; FOLDED lists sections of which only the title is to b
   "Return how wide the column of sections is in a window WIDTH pixels wide."
   (let ((wish (or (wishes-details-width wishes) (clamp (floor width 3) 200 360))))
     (clamp (round wish) 120 (max 120 (- width 160)))))
+
+(defun plan-column-p (wishes width)
+  "True if plans have a column of their own in a window WIDTH pixels wide."
+  (and (>= width +wide+) (not (member 'plan (wishes-folded wishes)))))
+
+(defun plan-width (wishes width)
+  "Return how wide the column of plans is in a window WIDTH pixels wide; 0 if there is none."
+  (let ((details (details-width wishes width)))
+    (if (plan-column-p wishes width)
+        (clamp (round (or (wishes-plan-width wishes) (+ details 60)))
+               120 (max 120 (- width details 160)))
+        0)))
 
 (defun transcript-height (wishes height)
   "Return how high the transcript, with its title, is in a window HEIGHT pixels high."
@@ -99,16 +114,24 @@ is left over goes to the designators, or the plan; or else what is fair."
 
 ;;; The whole.
 
+(defun place-plan-column (wishes width left top height)
+  "Return the places of the column of plans, which begins at LEFT, and of the splitter behind it."
+  (let ((plan (plan-width wishes width)))
+    (if (plusp plan)
+        (append (place-section 'plan left top plan (- height +title-height+))
+                (list (list 'plan-splitter (+ left plan) top +splitter+ height)))
+        (list (list 'plan-splitter left top 0 0)))))
+
 (defun place-displays (wishes needs width top height)
   "Return the places of the row of displays, which begins at TOP and is HEIGHT pixels high."
   (let* ((column (details-width wishes width))
-         (own-p (and (>= width +wide+) (not (member 'plan (wishes-folded wishes)))))
-         (plan (if own-p (+ column 60) 0))
+         (own-p (plan-column-p wishes width))
+         (plan (if own-p (+ (plan-width wishes width) +splitter+) 0))
          (world (- width column plan +splitter+))
          (left (+ world +splitter+)))
     (append (place-section 'world 0 top world (- height +title-height+))
             (list (list 'side-splitter world top +splitter+ height))
-            (and own-p (place-section 'plan left top plan (- height +title-height+)))
+            (place-plan-column wishes width left top height)
             (place-sections (if own-p (remove 'plan +sections+) +sections+) needs
                             (wishes-folded wishes) (+ left plan) top column height))))
 

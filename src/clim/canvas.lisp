@@ -151,14 +151,14 @@ it is inside the box X, Y, WIDTH, HEIGHT of pixels."
 
 (define-constant +aim+ 3 :documentation "By how many pixels a click may miss a subject.")
 
+(defun subjects-at (subjects x y)
+  "Return what was drawn at X, Y, or near it, the smallest first. SUBJECTS are those of a canvas."
+  (let ((found (loop for (subject left top right bottom) in subjects
+                     when (and (<= (- left +aim+) x (+ right +aim+))
+                               (<= (- top +aim+) y (+ bottom +aim+)))
+                       collect (cons (* (- right left) (- bottom top)) subject))))
+    (cl:map 'list #'cdr (stable-sort found #'< :key #'car))))
+
 (defun subject-at (subjects x y)
-  "Return the subject that was drawn at X, Y, or near it; the smallest if there are several.
-SUBJECTS are those of a canvas."
-  (let ((best nil) (least nil))
-    (loop for (subject left top right bottom) in subjects
-          for area = (* (- right left) (- bottom top))
-          when (and (<= (- left +aim+) x (+ right +aim+))
-                    (<= (- top +aim+) y (+ bottom +aim+))
-                    (or (null least) (< area least)))
-            do (setf best subject least area))
-    best))
+  "Return the smallest of SUBJECTS that was drawn at X, Y, or near it, or NIL."
+  (first (subjects-at subjects x y)))

@@ -176,3 +176,18 @@ connected, if there is one."
                           :action (lambda () (describe-to window subject))))
           (loop for offer in (offers subject window)
                 collect (apply #'offer-row window offer))))
+
+(defun also-rows (window subjects x y)
+  "Return rows that lead to the menus, at X, Y of WINDOW, of SUBJECTS but for the first."
+  (loop for rest on (rest subjects)
+        collect (let ((turned (append rest (ldiff subjects rest))))
+                  (make-row (format nil "Also here: ~A" (subject-heading (first turned)))
+                            :action (lambda ()
+                                      (select window (first turned))
+                                      (offer-at window turned x y))))))
+
+(defun offer-at (window subjects x y)
+  "Show at X, Y of WINDOW what can be done with the first of SUBJECTS, and ways to the others."
+  (open-popup window
+              (append (offer-rows window (first subjects)) (also-rows window subjects x y))
+              x y))

@@ -13,6 +13,8 @@
    ;; How far down the picture the pane begins, in pixels, and how high the picture is.
    (offset :initform 0 :accessor pane-offset)
    (extent :initform 0 :accessor pane-extent)
+   ;; Where the mouse was clicked last, as (x y).
+   (clicked :initform nil :accessor pane-clicked)
    ;; What the mouse drags, with its button down: NIL for nothing.
    (drag :initform nil :accessor pane-drag))
   (:default-initargs :background clim:+white+)

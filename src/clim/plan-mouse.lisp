@@ -96,6 +96,6 @@
   (let ((subject (plan-subject-at pane x y)))
     (cond ((switch-p subject) (funcall (switch-action subject)))
           ((typep subject 'fold-mark) (fold-task pane (fold-mark-serial subject)))
-          ((eq button :right) (offer pane subject x y))
+          ((eq button :right) (offer pane (and subject (list subject)) x y))
           ((plan-moment-p subject) (go-back-to pane (plan-moment-tick subject)))
           (t (pick (window-of pane) subject)))))

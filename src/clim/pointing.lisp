@@ -36,19 +36,36 @@
   (select window subject)
   (describe-to window subject))
 
-(defun offer (pane subject x y)
-  "Show what can be done with SUBJECT, which lies at X, Y of PANE."
+(define-constant +shake+ 4 :documentation "By how many pixels the mouse may move in a click.")
+
+(defun beyond-shake-p (x y from-x from-y)
+  (> (max (abs (- x from-x)) (abs (- y from-y))) +shake+))
+
+(defun clicked-before-p (pane x y)
+  "True if the click before in PANE was at X, Y, too. Note that there is one now."
+  (let ((before (shiftf (pane-clicked pane) (list x y))))
+    (and before (not (apply #'beyond-shake-p x y before)))))
+
+(defun pick-next (pane x y)
+  "Pick what lies at X, Y of PANE; if it was clicked there before, what lies there, too."
+  (let* ((window (window-of pane)) (subjects (subjects-under pane x y))
+         (picked (and (clicked-before-p pane x y)
+                      (member (window-selection window) subjects
+                              :key #'subject-key :test #'equal))))
+    (pick window (or (second picked) (first subjects)))))
+
+(defun offer (pane subjects x y)
+  "Show what can be done with the first of SUBJECTS, which lie at X, Y of PANE; name the others."
   (let ((window (window-of pane)))
-    (when subject
-      (select window subject)
+    (when subjects
+      (select window (first subjects))
       (multiple-value-bind (x y) (clim:transform-position (clim:sheet-transformation pane) x y)
-        (open-popup window (offer-rows window subject) x y)))))
+        (offer-at window subjects x y)))))
 
 (defmethod click ((pane display-pane) button x y)
-  (let ((subject (subject-at (pane-subjects pane) x y)))
-    (if (eq button :right)
-        (offer pane subject x y)
-        (pick (window-of pane) subject))))
+  (if (eq button :right)
+      (offer pane (picked-first (window-of pane) (subjects-under pane x y)) x y)
+      (pick-next pane x y)))
 
 ;;; In the display of designators, the right button scrolls up and the left one down where there is
 ;;; more than fits (manual B); then the middle one offers. As readings 26 and 28 say.
@@ -57,7 +74,7 @@
 
 (defmethod click ((pane designators-pane) button x y)
   (cond ((eq button :middle)
-         (offer pane (subject-at (pane-subjects pane) x y) x y))
+         (offer pane (subjects-under pane x y) x y))
         ((not (scrollable-p pane)) (call-next-method))
         ((eq button :right) (scroll pane (- +scroll-step+)))
         (t (scroll pane +scroll-step+))))

@@ -11,6 +11,23 @@ of what cannot be picked.")
   (:method ((image designator-image)) (list :designator (designator-image-number image)))
   (:method ((cell cell)) (list :cell (cell-x cell) (cell-y cell))))
 
+(defun same-subject-p (one other)
+  "True if ONE and OTHER are images of the same."
+  (or (eq one other)
+      (let ((key (subject-key one))) (and key (equal key (subject-key other))))))
+
+(defgeneric subjects-under (pane x y)
+  (:documentation "Return what lies at X, Y of PANE, what is meant most likely first.")
+  (:method (pane x y)
+    (remove-duplicates (subjects-at (pane-subjects pane) x y)
+                       :test #'same-subject-p :from-end t)))
+
+(defun picked-first (window subjects)
+  "Return SUBJECTS in turn from the one on that is picked in WINDOW, if one of them is."
+  (let* ((key (window-selection window))
+         (picked (and key (member key subjects :key #'subject-key :test #'equal))))
+    (append picked (ldiff subjects picked))))
+
 (defun selected-boxes (pane)
   "Return the boxes, (left top right bottom), in which what is picked was painted in PANE."
   (let ((key (window-selection (window-of pane))))

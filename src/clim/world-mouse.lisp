@@ -21,38 +21,32 @@
     (multiple-value-bind (x y) (point-at pane x y)
       (and (map-index map x y) (map-cell map x y)))))
 
-(defun what-lies-at (pane x y)
-  "Return the thing or robot at X, Y of PANE, or else the cell, or NIL."
-  (or (subject-at (pane-subjects pane) x y) (cell-at pane x y)))
+(defmethod subjects-under ((pane world-pane) x y)
+  (let ((cell (cell-at pane x y)))
+    (append (call-next-method) (and cell (list cell)))))
 
 (defmethod hover-text ((pane world-pane) x y)
-  (let ((subject (subject-at (pane-subjects pane) x y)) (cell (cell-at pane x y)))
-    (format nil "~@[~A~]~@[; ~A~]" (and cell (subject-text cell))
-            (and subject (subject-text subject)))))
-
-(defmethod click ((pane world-pane) button x y)
-  (let ((subject (what-lies-at pane x y)))
-    (if (eq button :right)
-        (offer pane subject x y)
-        (pick (window-of pane) subject))))
+  (let* ((subjects (subjects-under pane x y)) (cell (find-if #'cell-p subjects)))
+    (format nil "~{~A~^; ~}"
+            (cl:mapcar #'subject-text (if cell (cons cell (remove cell subjects)) subjects)))))
 
 (defmethod press ((pane world-pane) button x y)
   (if (eq button :left)
-      (setf (pane-drag pane) (list (subject-at (pane-subjects pane) x y) x y nil))
+      (setf (pane-drag pane) (list (grip-at pane x y) x y nil))
       (click pane button x y)))
 
 ;;; Dragging.
 
-(define-constant +shake+ 4 :documentation "By how many pixels the mouse may move in a click.")
+(defun grip-at (pane x y)
+  "Return the thing or robot that a drag from X, Y of PANE takes along, or NIL."
+  (find-if (lambda (subject) (typep subject '(or thing-image robot-image)))
+           (picked-first (window-of pane) (subjects-under pane x y))))
 
 (defun movable-p (pane subject)
   "True if SUBJECT can be dragged in PANE: a thing or a robot, while time stands still."
   (and (typep subject '(or thing-image robot-image))
        (let ((simulation (window-simulation (window-of pane))))
          (or (paused-p simulation) (not (live-p simulation)) (idle-p simulation)))))
-
-(defun beyond-shake-p (x y from-x from-y)
-  (> (max (abs (- x from-x)) (abs (- y from-y))) +shake+))
 
 (defmethod drag ((pane world-pane) x y)
   (destructuring-bind (subject from-x from-y moved-p) (pane-drag pane)

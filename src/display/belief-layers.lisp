@@ -1,4 +1,4 @@
-;;;; belief-layers.lisp -- layers of what robots believe, and of where they have been.
+;;;; belief-layers.lisp -- layers of what robots believe, of where they have been and will go.
 
 (in-package :ars-magna.display)
 
@@ -61,3 +61,11 @@ that the bounds of its heading."
                   (loop for (x y) on points by #'cddr
                         repeat +trail-length+
                         collect (to-pixels x) collect (to-pixels y))))))
+
+(defun draw-planned-way (canvas points)
+  "Draw the way through POINTS, lists (x y), with a spot where it ends."
+  (when (rest points)
+    (let ((color (layer-ink :planned-way)) (end (pixels-of (first (last points)))))
+      (inked (color :width 2 :style :dash)
+        (draw-lines canvas draw-gcontext* (pixels-of (apply #'append points))))
+      (inked (color :width 2) (draw-circle canvas (first end) (second end) 4 nil)))))

@@ -23,6 +23,8 @@
       "Where the main odometer puts the robot, and between which headings.")
      (:trail :movers nil "Trail"
       "Where each robot has been.")
+     (:planned-way :movers t "Planned way"
+      "Which way each robot is about to go, as far as its program has told: see PUBLISH-WAY.")
      (:reach :movers nil "What moves by itself"
       "A dashed ring around each thing that has kickers. How far these take it nobody knows.")
      (:names :movers t "Names"

@@ -123,7 +123,7 @@
 
 (define-constant +line-words+
     '((:wedges . "in view") (:tracks . "tracked") (:designators . "believed, true")
-      (:odometer . "odometer") (:reach . "may move"))
+      (:odometer . "odometer") (:planned-way . "planned way") (:reach . "may move"))
   :test #'cl:equal
   :documentation "What lines of layers are called in legends.")
 
@@ -135,6 +135,7 @@
                     (:tracks (some #'camera-image-track (robot-image-cameras robot)))
                     (:designators (robot-image-designators robot))
                     (:odometer (robot-image-odometer robot))
+                    (:planned-way (robot-image-planned-way robot))
                     (:reach (find-if #'thing-image-moving-p (snapshot-things snapshot))))))
 
 (defun line-entries (snapshot layers)

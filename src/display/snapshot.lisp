@@ -24,7 +24,7 @@ MOVING-P if it has kickers."
   (name nil) (x 0d0) (y 0d0) (angle 0d0) (speed 0d0) (place nil)
   (under-way nil) (interruption nil)
   (cameras '()) (hands '()) (bins '())
-  (designators '()) (odometer nil) (trail '()))
+  (designators '()) (odometer nil) (trail '()) (planned-way '()))
 
 (define-image camera-image "What a snapshot knows of a camera; ANGLE is relative to the robot. Its
 last VIEW was taken VIEW-AGE ticks ago."
@@ -206,7 +206,8 @@ what it holds of each."
        :bins (images #'image-of-bin (robot-bins robot))
        :designators (images #'image-of-designator (live-designators robot))
        :odometer (and (robot-main-odometer robot) (image-of-odometer robot))
-       :trail (and trail (trail-points trail))))))
+       :trail (and trail (trail-points trail))
+       :planned-way (robot-planned-way robot)))))
 
 ;;; The whole.
 

@@ -4,11 +4,12 @@
 
 ;;; A layer is a list of pairs of the number of a block and of the glyph that is to be seen there.
 
-(define-constant +text-layers+ '(:cones :way :belief)
+(define-constant +text-layers+ '(:cones :way :plan :belief)
   :test #'cl:equal
   :documentation "What a text map shows on demand: CONES, what is in the fields of view of the
-robot's cameras; WAY, where the robot went, as far as a history was kept; BELIEF, where it believes
-itself and what its designators denote to be.")
+robot's cameras; WAY, where the robot went, as far as a history was kept; PLAN, which way it is
+about to go, as far as its program has told; BELIEF, where it believes itself and what its
+designators denote to be.")
 
 (defun glyph-at (view x y glyph)
   "Return a list of the pair of the block of VIEW at X, Y and of GLYPH, or NIL if it is outside."
@@ -61,6 +62,23 @@ itself and what its designators denote to be.")
             repeat +trail-length+
             append (glyph-at view x y glyph)))))
 
+(defconstant +way-spacing+ 0.2d0
+  "How far apart the points of a planned way are that are shown, in metres.")
+
+(defun points-between (from to)
+  "Return points, lists (x y), on the line between the points FROM and TO, both with it."
+  (destructuring-bind ((x y) (dx dy)) (list from (mapcar #'- to from))
+    (let ((count (max 1 (ceiling (sqrt (+ (* dx dx) (* dy dy))) +way-spacing+))))
+      (loop for i to count
+            collect (list (+ x (* dx (/ i count))) (+ y (* dy (/ i count))))))))
+
+(defun plan-layer (view robot)
+  (let ((glyph (make-glyph :layer #\: (format nil "planned way of ~A" robot) :cyan)))
+    (loop for (from to) on (robot-planned-way robot)
+          while to
+          append (loop for (x y) in (points-between from to)
+                       append (glyph-at view x y glyph)))))
+
 ;;; Beliefs.
 
 (defun own-position-layer (view robot)
@@ -92,4 +110,5 @@ itself and what its designators denote to be.")
   (ecase layer
     (:cones (cones-layer view robot))
     (:way (way-layer view robot))
+    (:plan (plan-layer view robot))
     (:belief (belief-layer view robot))))

@@ -88,8 +88,9 @@ COLUMNS characters, if that can be."
 places, things by letters, robots as arrows, and what it all means. With ROWS, it is made to fit
 into so many lines, as far as possible. With REGION, a list (left top right bottom) in metres, it
 shows only that; with RADIUS, a number of cells, only the surroundings of ROBOT. LAYERS are some of
-:CONES (what its cameras have in view), :WAY (where it went since KEEP-HISTORY) and :BELIEF (where
-it believes itself and what its designators denote to be). PAINT is a function of a string and of
+:CONES (what its cameras have in view), :WAY (where it went since KEEP-HISTORY), :PLAN (which way it
+is about to go, see PUBLISH-WAY) and :BELIEF (where it believes itself and what its designators
+denote to be). PAINT is a function of a string and of
 the name of a colour, or NIL, that returns the string in that colour. ONLY-LEGEND leaves the map
 out. Call it where the world stands still. Signals WRONG-ARGUMENT."
   (check-argument text-map robot (robot-p robot) "a robot")

@@ -50,6 +50,7 @@ first the one that shows."
     (or (mapcar (lambda (robot) (robot-glyph robot things)) (robots-in view indices))
         (marked sheet :belief number)
         (things-glyphs things (sheet-letters sheet))
+        (marked sheet :plan number)
         (marked sheet :way number)
         (wall-glyphs map indices (sheet-colored-p sheet))
         (place-glyphs map indices)

@@ -18,6 +18,7 @@
   "Draw what LAYERS lists of ROBOT and lies below things."
   (flet ((shown-p (layer) (member layer layers)))
     (when (shown-p :trail) (draw-trail canvas (robot-image-trail robot) color))
+    (when (shown-p :planned-way) (draw-planned-way canvas (robot-image-planned-way robot)))
     (dolist (camera (robot-image-cameras robot))
       (draw-camera-layers canvas snapshot robot camera layers))
     (when (and (shown-p :odometer) (robot-image-odometer robot))

@@ -30,6 +30,8 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:storage-bin #:storage-bin-p #:storage-bin-robot #:storage-bin-index
            #:storage-bin-capacity #:storage-bin-closed-p #:storage-bin-contents)
   (:export #:world-tick #:ensure-timeline)
+  ;; planned-way
+  (:export #:publish-way #:robot-planned-way)
   ;; odometer
   (:export #:odometer #:odometer-p #:odometer-name #:odometer-robot #:odometer-estimate
            #:odometer-origin-angle #:make-odometer #:robot-main-odometer

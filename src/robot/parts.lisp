@@ -49,7 +49,9 @@
    (start-y 0d0 double-float "where the last movement began, the y coordinate in metres")
    (estimate-x 0d0 double-float "how far the robot believes it has moved since, in x, in metres")
    (estimate-y 0d0 double-float "how far the robot believes it has moved since, in y, in metres")
-   (failure nil t "what is known of the command that failed last on the robot or a part, or NIL"))
+   (failure nil t "what is known of the command that failed last on the robot or a part, or NIL")
+   (published-way nil t "the way that the robot's program said last it would take, or NIL"
+                  :shared))
   (:scratch
    (moved 0d0 double-float "the metres that the last step of driving really took the robot")
    (turned-low 0d0 double-float "the lower bound read for the last step of turning, in radians")
