@@ -242,7 +242,8 @@
                    (:file "handed-text")))
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "reporting") (:file "session")
-                   (:file "company") (:file "listening") (:file "line")
+                   (:file "company") (:file "listening") (:file "going-on")
+                   (:file "line")
                    (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")
                    (:file "comments") (:file "robot-lines") (:file "finding")
                    (:file "evaluation") (:file "carrying-out") (:file "guarding")

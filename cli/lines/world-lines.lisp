@@ -12,12 +12,21 @@
          (reject-line "A fork has one world. FORK OFF leads out of it."))
         (t (reject-line "This prompt is in a headless simulation, which has one world."))))
 
+(defun leave-run-for (session old robot)
+  "Let the run OLD, from which SESSION has gone to ROBOT, be over, and who was there come along."
+  (note-replaced old robot)
+  (end-simulation old "the prompt has gone elsewhere")
+  (tell-others-of-run session old))
+
 (defun start-live (session robot-name)
-  (let ((rate (and *simulation* (simulation-rate *simulation*))))
+  "Let the world of ROBOT-NAME start anew, at the pace of the run that SESSION is in; that ends."
+  (let ((old *simulation*))
     (when (plans) (format t "The plans under way end.~%"))
-    (when *simulation* (end-simulation *simulation* "the prompt has gone elsewhere"))
-    (simulator robot-name :rate (or rate *default-rate*) :display (display-wanted-p session)))
-  (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))
+    (let ((robot (simulator robot-name :display nil
+                                       :rate (if old (simulation-rate old) *default-rate*))))
+      (when old (leave-run-for session old robot))
+      (when (display-wanted-p session) (announce-display robot '()))
+      (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))))
 
 (defun robot-among (names name)
   "Return which of NAMES, of robots of one world, is NAME, or the first if that is NIL."

@@ -44,6 +44,8 @@
   (lines '() :type list)
   ;; The run that it was in when it read a line last; see TELL-WHEREABOUTS.
   (whereabouts nil)
+  ;; The name of the robot that it commanded then.
+  (robot-name nil :type symbol)
   ;; The thread that reads, and what has entered the debugger in others, oldest first.
   (thread nil)
   (breaks '() :type list)
