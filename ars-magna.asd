@@ -314,7 +314,7 @@
   :components ((:module "tests" :serial t
                 :components ((:file "clim-window") (:file "clim-layout") (:file "clim-pointing")
                              (:file "clim-progress") (:file "clim-plans")
-                             (:file "clim-talking")))))
+                             (:file "clim-talking") (:file "clim-going-on")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
@@ -359,7 +359,8 @@
                  (:file "ways-going") (:file "cli-plans") (:file "cli-colour")
                  (:file "cli-rewinding")
                  (:file "cli-robots") (:file "cli-hostile")
-                 (:file "cli-debugger") (:file "cli-sessions") (:file "experiment-replay")
+                 (:file "cli-debugger") (:file "cli-sessions") (:file "cli-going-on")
+                 (:file "experiment-replay")
                  (:file "cli-trials") (:file "cli-newcomers") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "experiment-shell") (:file "experiment-shell-code")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")

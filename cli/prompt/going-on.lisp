@@ -33,6 +33,10 @@ SIMULATION, which is over, and the name of the robot that it commands there; NIL
 
 ;;; Others are told.
 
+(defun away-p (session)
+  "True if SESSION is in a trial or a fork."
+  (or (session-visit session) (plusp (session-forks session))))
+
 (defun say-in (session text)
   "Show TEXT, a line, in SESSION, and the prompt again. Any thread may ask."
   (with-lock ((session-lock session))
@@ -50,8 +54,9 @@ to that. If it listens there already, it knows. Any thread may ask."
     (listen-instead session simulation)))
 
 (defun tell-others-of-run (session old)
-  "Let the other sessions that were in OLD, which SESSION has ended, know where they go on."
-  (dolist (other (remove session (sessions-hearing old)))
+  "Let the other sessions that were in OLD, which SESSION has ended, know where they go on. Those of
+windows hear it from these."
+  (dolist (other (remove-if #'session-place (remove session (sessions-hearing old))))
     (multiple-value-bind (simulation name) (run-after old (session-robot-name other))
       (when simulation (tell-of-run other simulation name)))))
 

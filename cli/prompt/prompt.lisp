@@ -42,8 +42,8 @@ tell somebody who sits there."
 
 (defun find-place (session)
   "Let SESSION command the robot that it is for, in a run that goes on, and listen to that."
-  (unless (or (session-visit session) (plusp (session-forks session)))
-    (funcall (session-place session))
+  (unless (away-p session)
+    (when (session-place session) (funcall (session-place session)))
     (move-on session))
   (setf (session-robot-name session) *prompt-robot*)
   (follow-simulation session))

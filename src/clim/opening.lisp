@@ -190,29 +190,33 @@ else, if its user has chosen another one of the same run, that that is shown."
                         (format nil "display of ~A" (robot-name robot))))
     window))
 
-(defun window-of-visit (robot)
-  "Return the window that shows the run of ROBOT if that is a trial or a fork; or NIL."
-  (let ((simulation (robot-simulation robot)))
-    (unless (live-p simulation)
-      (find simulation (open-windows)
-            :key (lambda (window) (watcher-simulation (window-watcher window)))))))
+(defun own-window ()
+  "Return the window whose prompt this thread is, or NIL."
+  (find (current-thread) (open-windows)
+        :key (lambda (window) (conversation-thread (window-conversation window)))))
+
+(defun windows-to-lead ()
+  "Return the open windows that this thread may lead elsewhere, its own first: no other whose prompt
+is in a trial or fork."
+  (let ((own (own-window)))
+    (append (and own (list own))
+            (remove-if (lambda (window)
+                         (or (eq window own)
+                             (ars-magna.cli:away-p (window-session window))))
+                       (open-windows)))))
 
 (defun over-p (window)
   "True if the run that WINDOW shows is over."
   (let ((simulation (window-simulation window)))
     (and simulation (simulation-over simulation) t)))
 
-(defun own-window ()
-  "Return the window whose prompt this thread is, or NIL."
-  (find (current-thread) (open-windows)
-        :key (lambda (window) (conversation-thread (window-conversation window)))))
-
-(defun window-left ()
-  "Return a window whose run is over, the one of the prompt of this thread if it can be; or NIL."
-  (let ((own (own-window)))
-    (if (and own (over-p own))
-        own
-        (find-if #'over-p (open-windows)))))
+(defun window-for (robot)
+  "Return the open window that is to show ROBOT, as OPEN-WINDOW says, or NIL."
+  (let ((windows (windows-to-lead)) (simulation (robot-simulation robot)))
+    (or (find (robot-name robot) windows :key #'shown-robot)
+        (and (not (live-p simulation))
+             (find simulation windows :key #'window-simulation))
+        (find-if #'over-p windows))))
 
 (defun lead-window (window robot)
   "Let WINDOW show ROBOT, and its prompt say so unless that has been asked for there."
@@ -225,7 +229,7 @@ else, if its user has chosen another one of the same run, that that is shown."
   "Show ROBOT in a window: in the one that it has, or that shows the trial or fork that it is in, in
 one whose run is over, or else in a new one. Return the window. Signals MISUSE where there is no X
 server."
-  (let ((window (or (find-window (robot-name robot)) (window-of-visit robot) (window-left))))
+  (let ((window (window-for robot)))
     (cond ((null window) (open-new-window robot))
           (t (unless (shows-p window (robot-name robot) (robot-simulation robot))
                (lead-window window robot))
