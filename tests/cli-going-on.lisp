@@ -5,7 +5,7 @@
 (in-suite cli-sessions)
 
 (rpl:def-interp-proc ars-user::plan-that-stumbles ()
-  (rpl:fail :why ars-user::thin-ice))
+  (rpl:fail :thin-ice))
 
 (defmacro in-shed (&body body)
   "Run BODY where the robot MOLE lives in a shed, and COW in a barn; no windows open."
