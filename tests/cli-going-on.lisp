@@ -8,13 +8,13 @@
   (rpl:fail :thin-ice))
 
 (defmacro in-shed (&body body)
-  "Run BODY where the robot MOLE lives in a shed, and COW in a barn; no windows open."
+  "Run BODY where the robot MOLE lives in a woodshed, and HEIFER in a hayloft; no windows open."
   `(with-own-definitions
      (setf display:*display-opener* nil)
-     (eval '(world:defmap shed (30 9)))
-     (eval '(robot:defrobot mole (shed (6 6) 0)))
-     (eval '(world:defmap barn (30 9)))
-     (eval '(robot:defrobot cow (barn (6 6) 0)))
+     (eval '(world:defmap woodshed (30 9)))
+     (eval '(robot:defrobot mole (woodshed (6 6) 0)))
+     (eval '(world:defmap hayloft (30 9)))
+     (eval '(robot:defrobot heifer (hayloft (6 6) 0)))
      (let ((*standard-output* (make-broadcast-stream)))
        (unwind-protect (progn (run:simulator 'mole :rate :free :display nil) ,@body)
          (stop-all)))))
@@ -39,9 +39,9 @@
 (test going-on.a-prompt-goes-where-another-has-led
   (in-shed
     (call-with-talk (lambda (talk)
-                      (do-in talk "world barn")
+                      (do-in talk "world hayloft")
                       (let ((text (type-here "robot" "step 2")))
-                        (is (search "From here on: COW in BARN." text) "~A" text)
+                        (is (search "From here on: HEIFER in HAYLOFT." text) "~A" text)
                         (is (search "Tick 2." text) "~A" text)
                         (is (= 1 (occurrences "From here on" text)))))
                     'mole)))
@@ -49,20 +49,20 @@
 (test going-on.others-follow-the-prompt-of-this-thread
   (in-shed
     (call-with-talk (lambda (talk)
-                      (type-here "world barn")
+                      (type-here "world hayloft")
                       (do-in talk "robot")
                       (let ((text (told-to talk)))
-                        (is (search "From here on: COW in BARN." text) "~A" text)
-                        (is (search "COW  " text) "~A" text)
+                        (is (search "From here on: HEIFER in HAYLOFT." text) "~A" text)
+                        (is (search "HEIFER  " text) "~A" text)
                         (is (not (search "is over" text)) "~A" text)))
                     'mole)))
 
 (test going-on.own-robots-new-run-comes-first
   (in-shed
     (call-with-talk (lambda (talk)
-                      (type-here "world barn" "world shed")
+                      (type-here "world hayloft" "world woodshed")
                       (do-in talk "robot")
-                      (is (search "From here on: MOLE in SHED." (told-to talk))))
+                      (is (search "From here on: MOLE in WOODSHED." (told-to talk))))
                     'mole)))
 
 (test going-on.who-waits-for-a-line-is-told-at-once
@@ -73,16 +73,16 @@
        waiting
        (lambda ()
          (cli::listen-to waiting time:*simulation*)
-         (type-here "world barn")
-         (is (search "From here on: COW in BARN." (get-output-stream-string output)))
+         (type-here "world hayloft")
+         (is (search "From here on: HEIFER in HAYLOFT." (get-output-stream-string output)))
          (is (eq time:*simulation* (cli::session-simulation waiting)))
          (cli::stop-listening waiting))))))
 
 (test world.starts-anew-what-has-passed-no-tick
   (in-shed
-    (type-here "pause" "world shed" "pause")
+    (type-here "pause" "world woodshed" "pause")
     (let ((first time:*simulation*))
-      (type-here "world shed")
+      (type-here "world woodshed")
       (is (not (eq first time:*simulation*)))
       (is (time:live-p time:*simulation*)))))
 
@@ -91,7 +91,7 @@
   (in-shed
     (call-with-talk (lambda (talk)
                       (let ((text ""))
-                        (do-in talk "world barn" "plan plan-that-stumbles")
+                        (do-in talk "world hayloft" "plan plan-that-stumbles")
                         (awaiting (search "failed"
                                           (setf text (concatenate 'string text (told-to talk)))))
                         (is (search "plan-that-stumbles failed: " text) "~A" text)

@@ -17,11 +17,11 @@
 (test going-on.a-window-goes-where-world-has-led-and-says-so-once
   (in-shed
     (with-window-of (window 'mole)
-      (type-here "world barn")
+      (type-here "world hayloft")
       (window::leave-run window "it was left")
       (window::agree-on-robot window)
-      (is (equal (list 'cow time:*simulation*) (shown-in window)))
-      (is (= 1 (occurrences "COW in BARN." (said-in window)))))))
+      (is (equal (list 'heifer time:*simulation*) (shown-in window)))
+      (is (= 1 (occurrences "HEIFER in HAYLOFT." (said-in window)))))))
 
 (test going-on.the-line-world-is-all-that-tells-of-its-own-window
   (in-shed
@@ -29,20 +29,20 @@
       (let ((old time:*simulation*)
             (conversation (window::window-conversation window)))
         (setf (window::conversation-thread conversation) (base:current-thread))
-        (type-here "world barn")
-        (window::lead-window window (robot:find-robot 'cow))
+        (type-here "world hayloft")
+        (window::lead-window window (robot:find-robot 'heifer))
         (window::follow-prompt nil old time:*simulation*)
         (window::agree-on-robot window)
-        (is (equal (list 'cow time:*simulation*) (shown-in window)))
-        (is (= 0 (occurrences "COW in BARN." (said-in window))))))))
+        (is (equal (list 'heifer time:*simulation*) (shown-in window)))
+        (is (= 0 (occurrences "HEIFER in HAYLOFT." (said-in window))))))))
 
 (test going-on.a-window-closes-where-another-shows-the-only-robot
   (in-shed
     (with-window-of (left 'mole)
-      (type-here "world barn")
-      (is (eq 'cow (window::robot-to-show left)))
-      (with-window-of (other 'cow)
-        (is (eq other (window::window-for (robot:find-robot 'cow))))
+      (type-here "world hayloft")
+      (is (eq 'heifer (window::robot-to-show left)))
+      (with-window-of (other 'heifer)
+        (is (eq other (window::window-for (robot:find-robot 'heifer))))
         (is (null (window::robot-to-show left)))))))
 
 (test going-on.a-window-is-not-led-out-of-the-trial-of-its-prompt
