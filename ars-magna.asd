@@ -244,7 +244,8 @@
                    (:file "ahead") (:file "handed-text")))
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "reporting") (:file "session")
-                   (:file "company") (:file "listening") (:file "line")
+                   (:file "company") (:file "listening") (:file "going-on")
+                   (:file "line")
                    (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")
                    (:file "comments") (:file "robot-lines") (:file "finding")
                    (:file "evaluation") (:file "carrying-out") (:file "guarding")
@@ -315,7 +316,7 @@
   :components ((:module "tests" :serial t
                 :components ((:file "clim-window") (:file "clim-layout") (:file "clim-pointing")
                              (:file "clim-progress") (:file "clim-plans")
-                             (:file "clim-talking")))))
+                             (:file "clim-talking") (:file "clim-going-on")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
@@ -360,7 +361,8 @@
                  (:file "ways-going") (:file "cli-plans") (:file "cli-colour")
                  (:file "cli-rewinding")
                  (:file "cli-robots") (:file "cli-hostile")
-                 (:file "cli-debugger") (:file "cli-sessions") (:file "experiment-replay")
+                 (:file "cli-debugger") (:file "cli-sessions") (:file "cli-going-on")
+                 (:file "experiment-replay")
                  (:file "cli-trials") (:file "cli-newcomers") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "experiment-shell") (:file "experiment-shell-code")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")

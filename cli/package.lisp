@@ -78,9 +78,10 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   ;; session, prompt
   (:export #:session #:make-session #:session-robot #:session-errors #:session-input
            #:run-session #:prompt #:*prompt-robot* #:*whereabouts-hooks*)
+  ;; listening, going-on
+  (:export #:listen-instead #:go-to-run #:run-after #:tell-of-run #:away-p)
   ;; sessions
-  (:export #:go-to-run #:listen-instead #:run-session-apart #:interrupt-session #:end-session
-           #:enter-line #:at-work-on)
+  (:export #:run-session-apart #:interrupt-session #:end-session #:enter-line #:at-work-on)
   ;; worlds
   (:export #:all-worlds)
   ;; main

@@ -93,6 +93,29 @@ name, in Nisp's syntax and with a decimal fraction."
                                                    (uiop:native-namestring path))))
         (is-true (search "is that meant?" (get-output-stream-string *standard-output*)))))))
 
+(defun prompt-loading (text &rest arguments)
+  "Return what the program writes with ARGUMENTS, when --load gives a file with TEXT."
+  (uiop:with-temporary-file (:pathname path :stream out :type "lisp")
+    (write-string text out)
+    :close-stream
+    (base:with-own-definitions ()
+      (let ((*standard-output* (make-string-output-stream))
+            (base:*message-queue* (base:make-message-queue)))
+        (cli::run-prompt (cli::parse-options (list* "--load" (uiop:native-namestring path)
+                                                    arguments)))
+        (get-output-stream-string *standard-output*)))))
+
+(test files.may-define-the-world-that-the-options-ask-for
+  (let ((text "(defmap late-barn (9 9)) (defrobot late-cow (late-barn (4 4) 0))"))
+    (dolist (options '(("--world" "late-barn") ("--robot" "late-cow")))
+      (is (search "no plan NO-SUCH"
+                  (apply #'prompt-loading text "--batch" "--plan" "no-such" options))))
+    (signals cli::usage-error
+      (prompt-loading text "--batch" "--plan" "no-such" "--world" "nowhere"))
+    (is (search "line 1"
+                (handler-case (prompt-loading "(car 5)" "--batch" "--world" "late-barn")
+                  (cli::usage-error (condition) (princ-to-string condition)))))))
+
 ;;; The shell script.
 
 (defun status-of-script (arguments)

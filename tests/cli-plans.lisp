@@ -160,6 +160,10 @@
   (let ((base:*break-on-user-error* t))
     (is (equal '("careful succeeded: :HANDLED") (type-batch "plan careful 5")))))
 
+(test plan.what-it-takes-may-have-the-quote-that-lisp-would-want
+  (is (equal '("dawdle succeeded: (A B)") (type-batch "plan dawdle '4 '(a b)")))
+  (is (equal '("robot-turn: Robot turned 1.00") (type-batch "turn '1"))))
+
 ;;; Live. The prompt in these tests is in this thread; it waits for facts.
 
 (defun type-live (lines &rest options)

@@ -135,7 +135,8 @@ package; NIL if there is none."
                   datum)))
 
 (define-line "PLAN" (session (name :plan "the name of a plan" :optional)
-                             (args :rest "what the plan takes, not evaluated" :optional))
+                             (args :rest "what the plan takes, not evaluated: no quote is needed"
+                                   :optional))
     (:planning)
     "List the plans that there are, or let the robot carry out the plan NAME with ARGS. A live
 prompt is back at once; any other waits until the plan is over."

@@ -12,12 +12,28 @@
          (reject-line "A fork has one world. FORK OFF leads out of it."))
         (t (reject-line "This prompt is in a headless simulation, which has one world."))))
 
+(defun end-left (old)
+  "Let the run OLD, which the prompt has left, be over."
+  (unless (simulation-over old)
+    (end-simulation old "the prompt has gone elsewhere")))
+
+(defun come-from (session old robot)
+  "Let the run OLD, from which SESSION has come to ROBOT, be over, and who was there come along."
+  (note-replaced old robot)
+  (end-left old)
+  (tell-others-of-run session old))
+
 (defun start-live (session robot-name)
-  (let ((rate (and *simulation* (simulation-rate *simulation*))))
+  "Let the world of ROBOT-NAME start anew, at the pace of the run that SESSION is in; that ends."
+  (let ((old *simulation*))
     (when (plans) (format t "The plans under way end.~%"))
-    (when *simulation* (end-simulation *simulation* "the prompt has gone elsewhere"))
-    (simulator robot-name :rate (or rate *default-rate*) :display (display-wanted-p session)))
-  (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))
+    ;; In a run that has passed no tick, that world would just go on.
+    (when (member robot-name (robots-here)) (end-left old))
+    (let ((robot (simulator robot-name :display nil
+                                       :rate (if old (simulation-rate old) *default-rate*))))
+      (when old (come-from session old robot))
+      (when (display-wanted-p session) (announce-display robot '()))
+      (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))))
 
 (defun robot-among (names name)
   "Return which of NAMES, of robots of one world, is NAME, or the first if that is NIL."

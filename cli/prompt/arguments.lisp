@@ -122,9 +122,17 @@ and goes on to the end of TEXT if there is no second one."
   (let ((*read-eval* nil) (*readtable* (data-readtable)))
     (read-from-string text t nil :start start :preserve-whitespace t)))
 
+(defun unquoted (datum)
+  "Return DATUM, without the quote that who is used to Lisp has put before it."
+  (if (typep datum '(cons (eql quote) (cons t null)))
+      (second datum)
+      datum))
+
 (defun read-datum (text start line)
-  "Return the Lisp datum in TEXT at START and where it ends (reading 196)."
-  (handler-case (read-data-from-string text start)
+  "Return the Lisp datum in TEXT at START and where it ends (reading 196). It is not evaluated, so
+that a quote before it says nothing."
+  (handler-case (multiple-value-bind (datum end) (read-data-from-string text start)
+                  (values (unquoted datum) end))
     (end-of-file ()
       (reject-line "~A is not complete: a parenthesis or quote is missing. ~A"
                    (subseq text start) (takes line)))

@@ -25,10 +25,30 @@
        (remove-if-not (lambda (session) (hears-p session simulation))
                       (with-lock (*sessions-lock*) *sessions*))))
 
+(defun session-with-queue (queue)
+  "Return a session at work that listens to a run whose messages come in QUEUE, or NIL."
+  (find-if (lambda (session)
+             (let ((heard (session-simulation session)))
+               (and heard (eq queue (simulation-messages heard)))))
+           (with-lock (*sessions-lock*) *sessions*)))
+
+(defgeneric session-meant (item)
+  (:documentation "Return the session that is to show, whatever run it is in, a message that begins
+with ITEM; or NIL.")
+  (:method (item) (declare (ignore item)) nil))
+
+(defun session-addressed (message)
+  "Return the session at work that MESSAGE is for in any case, in a list, or NIL."
+  (let ((session (session-meant (first (message-items message)))))
+    (and session
+         (member session (with-lock (*sessions-lock*) *sessions*))
+         (list session))))
+
 (defun hearers (message session)
-  "Return the sessions that are to show MESSAGE, which SESSION has taken: those that listen to its
-run, or if nobody does, SESSION."
-  (or (sessions-hearing (or (message-run message) (session-simulation session)))
+  "Return the sessions that are to show MESSAGE, which SESSION has taken: the one that it is for,
+and those that listen to its run; or if there is none, SESSION."
+  (or (union (session-addressed message)
+             (sessions-hearing (or (message-run message) (session-simulation session))))
       (list session)))
 
 (defun tell-hearers (session messages)

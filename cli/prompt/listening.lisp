@@ -64,11 +64,17 @@ another, so that nobody waits for the tick to end, which it may never."
       (setf (session-observer session) observer)
       (asking (simulation) (add-observer observer simulation)))))
 
+(defun listener-after (simulation)
+  "Return a session that listens to SIMULATION, or else to a run with the same messages; or NIL."
+  (or (first (sessions-hearing simulation))
+      (session-with-queue (simulation-messages simulation))))
+
 (defun stop-listening (session)
   (let ((simulation (shiftf (session-simulation session) nil)))
     (setf (session-observer session) nil)
     (when simulation
-      (set-listener (first (sessions-hearing simulation)) simulation))))
+      (let ((next (listener-after simulation)))
+        (set-listener next (if next (session-simulation next) simulation))))))
 
 (defun listen-instead (session simulation)
   "Let SESSION, which waits for a line, listen to SIMULATION from now on. Any thread may ask."

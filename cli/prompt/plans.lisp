@@ -75,16 +75,22 @@
               (mapcar #'safe-text (failure-data failure)))
       (condition-text failure)))
 
-(defstruct (verdict (:constructor make-verdict (text)) (:copier nil))
-  "That a plan has failed, as an item of a message. Prints as TEXT."
-  (text "" :type string :read-only t))
+(defstruct (verdict (:constructor make-verdict (text &optional session)) (:copier nil))
+  "How what SESSION, if that is known, has started comes to its end, such as a plan, as an item of a
+message. Prints as TEXT."
+  (text "" :type string :read-only t)
+  (session nil :type (or null session) :read-only t))
 
 (defmethod print-object ((verdict verdict) stream)
   (write-string (verdict-text verdict) stream))
 
-(defun tell-failure (errand control &rest arguments)
-  "Queue an error message that begins with the name of the plan of ERRAND."
-  (error-set (make-verdict (format nil "~(~A~) ~?" (plan-errand-plan errand) control arguments))))
+(defmethod session-meant ((verdict verdict))
+  (verdict-session verdict))
+
+(defun verdict-of (errand control &rest arguments)
+  "Return a verdict that begins with the name of the plan of ERRAND."
+  (make-verdict (format nil "~(~A~) ~?" (plan-errand-plan errand) control arguments)
+                (plan-errand-session errand)))
 
 (defmacro with-messages-to ((errand) &body body)
   "Run BODY, whose messages are of the simulation of ERRAND."
@@ -107,29 +113,33 @@ that a plan, or GO-TO, gives are its own."
 
 (setf *error-counts-p* 'error-counts-p)
 
+(defun note-failure (errand failure)
+  "Let PLANS tell of FAILURE, of the plan of ERRAND, wherever that is told."
+  (dolist (session (adjoin (plan-errand-session errand)
+                           (sessions-hearing (plan-errand-simulation errand))))
+    (setf (session-failure session) (list failure (plan-errand-plan errand)))))
+
 (defun tell-end (errand)
   "Queue a message that says how the plan of ERRAND has ended."
-  (let ((name (string-downcase (plan-errand-plan errand)))
-        (result (task-result (plan-errand-task errand))))
+  (let ((result (task-result (plan-errand-task errand))))
     (with-messages-to (errand)
       (case (task-state (plan-errand-task errand))
-        (:succeeded (message-set name " succeeded: " (user-text #'safe-text result)))
-        (:failed (setf (session-failure (plan-errand-session errand))
-                       (list result (plan-errand-plan errand)))
-                 (tell-failure errand "failed: ~A. PLANS tells more."
-                               (string-right-trim "." (user-text #'reason-text result))))
-        (t (message-set name " was stopped."))))))
+        (:succeeded (message-set (verdict-of errand "succeeded: ~A"
+                                             (user-text #'safe-text result))))
+        (:failed (note-failure errand result)
+                 (error-set (verdict-of errand "failed: ~A. PLANS tells more."
+                                        (string-right-trim "." (user-text #'reason-text result)))))
+        (t (message-set (verdict-of errand "was stopped.")))))))
 
 (defun tell-stuck (errand)
   "Queue a message that says what the plan of ERRAND waits for in vain."
   (with-messages-to (errand)
     (let ((stuck (plan-errand-stuck errand)))
       (if (session-patient-p (plan-errand-session errand))
-          (tell-failure errand "is in a deadlock: it ~A, which nothing can bring about; it was ~
-                                stopped." stuck)
-          (warning-set (string-downcase (plan-errand-plan errand)) " " stuck
-                       ", which neither the robot nor time will bring about, but you may. "
-                       "STOP-PLAN ends it.")))))
+          (error-set (verdict-of errand "is in a deadlock: it ~A, which nothing can bring about; ~
+                                         it was stopped." stuck))
+          (warning-set (verdict-of errand "~A, which neither the robot nor time will bring about, ~
+                                           but you may. STOP-PLAN ends it." stuck))))))
 
 (defun close-errand (errand)
   "Count ERRAND, whose end has been told, as done."
@@ -189,9 +199,18 @@ answer to the last such question."
                   (tell-end errand)))
   (close-errand errand))
 
+(defun call-in-run (function simulation)
+  "Call FUNCTION where SIMULATION is the current one."
+  (let ((*simulation* simulation)
+        (*world* (simulation-world simulation)))
+    (funcall function)))
+
 (defun start-watching-plan (errand)
   (let ((runner (plan-runner-now)))
-    (start-thread (lambda () (watch-plan errand runner))
+    ;; The thread would see the run of the terminal's prompt, and this may be that of a window.
+    (start-thread (lambda ()
+                    (call-in-run (lambda () (watch-plan errand runner))
+                                 (plan-errand-simulation errand)))
                   (format nil "prompt's watch of ~A" (plan-errand-plan errand)))))
 
 ;;; Headless.

@@ -41,9 +41,11 @@ tell somebody who sits there."
                    (session-errors session)))
 
 (defun find-place (session)
-  "Let SESSION command the robot that it is for, and listen to its simulation."
-  (unless (or (session-visit session) (plusp (session-forks session)))
-    (funcall (session-place session)))
+  "Let SESSION command the robot that it is for, in a run that goes on, and listen to that."
+  (unless (away-p session)
+    (when (session-place session) (funcall (session-place session)))
+    (move-on session))
+  (setf (session-robot-name session) *prompt-robot*)
   (follow-simulation session))
 
 (defun next-line (session)
@@ -54,7 +56,7 @@ tell somebody who sits there."
   (let ((text (unless (stopped-p session)
                 (read-input session (if (session-breaks session) "Break> " "Robot> ")))))
     (cond (text
-           ;; While it was typed, a window may have gone on to another run.
+           ;; While it was typed, its run may have ended and another begun.
            (unless (session-breaks session) (find-place session))
            (begin-line-of session text)
            (let ((rest (without-blocks session text)))

@@ -44,6 +44,8 @@
   (lines '() :type list)
   ;; The run that it was in when it read a line last; see TELL-WHEREABOUTS.
   (whereabouts nil)
+  ;; The name of the robot that it commanded then.
+  (robot-name nil :type symbol)
   ;; The thread that reads, and what has entered the debugger in others, oldest first.
   (thread nil)
   (breaks '() :type list)
@@ -72,8 +74,8 @@
   ;; The robot to go on with, in batch mode, when this one's lines are over.
   (next-robot nil)
   ;; A function that is called before each line is read, outside of trials and forks: it sees to it
-  ;; that the right robot is commanded.
-  (place (constantly nil) :type function :read-only t))
+  ;; that the right robot is commanded, as a window does for its own; or NIL.
+  (place nil :type (or null function) :read-only t))
 
 (defmethod print-object ((session session) stream)
   (print-unreadable-object (session stream :type t)))
@@ -85,13 +87,13 @@ error messages, but not those of a plan that goes on."
 
 (defun make-session (&key (input *standard-input*) (output *standard-output*) batch
                        (patient batch) echo files lines account stop (color :auto)
-                       (place (constantly nil)))
+                       place)
   "Return a session that loads FILES, does the list LINES, then reads others from INPUT, and writes
 to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes
 before the next is read; with ECHO, it shows what it reads. ACCOUNT, if any, is an account of its
-lines. With STOP, it is over when one of them is an error. PLACE is called before each. COLOR,
-which is :AUTO, :ALWAYS or :NEVER, says whether it writes in colours: by default on a terminal,
-unless the environment has NO_COLOR."
+lines. With STOP, it is over when one of them is an error. PLACE, if any, is called before each.
+COLOR, which is :AUTO, :ALWAYS or :NEVER, says whether it writes in colours: by default on a
+terminal, unless the environment has NO_COLOR."
   (let ((console (make-console output)))
     (setf (console-colored-p console) (color-wanted-p color (console-stream console)))
     (%make-session :input input :console console :batch-p (and batch t)

@@ -31,11 +31,6 @@
 
 ;;; A session beside others.
 
-(defun go-to-run (simulation)
-  "Let SIMULATION be the current one in this thread."
-  (setf *simulation* simulation
-        *world* (simulation-world simulation)))
-
 (defun call-apart (simulation robot-name function)
   "Call FUNCTION, in whose thread a prompt commands the robot ROBOT-NAME of SIMULATION, whatever
 others do."

@@ -17,11 +17,22 @@
           ((find robot robots :test #'same-name-p))
           (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world robots)))))
 
-(defun robot-asked-for (options)
-  "Return the name of the robot that OPTIONS ask for. Signals USAGE-ERROR if there is none."
+(defun load-before (names)
+  "Load the Lisp files NAMES before there is a prompt. Signals USAGE-ERROR."
+  (dolist (name names)
+    (handler-case (load-lisp (file-called name))
+      (ars-magna-error (condition) (reject-usage "~A" (condition-text condition))))))
+
+(defun robot-asked-for (session options)
+  "Return the name of the robot that OPTIONS ask for. If there is none, the files that SESSION begins
+with are loaded now, as they may define it. Signals USAGE-ERROR if they do not."
   (handler-case (first-robot options)
     (bad-line (condition)
-      (reject-usage "~A --list lists the worlds and their robots." (bad-line-text condition)))))
+      (let ((files (shiftf (session-files session) '())))
+        (cond (files (load-before files)
+                     (robot-asked-for session options))
+              (t (reject-usage "~A --list lists the worlds and their robots."
+                               (bad-line-text condition))))))))
 
 (defun run-headless (session robot-name seed)
   "Run the lines of SESSION, a batch, in a fresh world. Return the robot to go on with, or NIL."
@@ -115,8 +126,8 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
 (defun run-prompt (options)
   "Do what OPTIONS say. Return the status to exit with."
   (check-window options)
-  (let ((robot-name (robot-asked-for options))
-        (session (standard-session options)))
+  (let* ((session (standard-session options))
+         (robot-name (robot-asked-for session options)))
     (when (option-value :json options) (write-all-as-objects session))
     (report-beginning session robot-name options)
     (call-typing (lambda () (run-in-world session robot-name options)) (session-input session))
@@ -126,6 +137,7 @@ E. A batch that has plans to carry out does not wait for lines to be typed."
 (defun run-options (options)
   "Do what OPTIONS say. Return the status to exit with."
   (cond ((option-value :list options)
+         (load-before (option-values :load options))
          (when (option-value :world options) (world-robots-called (option-value :world options)))
          (write-worlds)
          0)

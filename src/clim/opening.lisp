@@ -14,6 +14,9 @@
     (find name *windows* :key (lambda (window) (watcher-robot (window-watcher window)))
                          :test #'same-name-p)))
 
+(defun open-windows ()
+  (with-lock (*windows-lock*) (copy-list *windows*)))
+
 (defun close-window (window)
   "Close WINDOW, from whatever thread. The simulator goes on. Return nothing."
   (let ((sheet (clim:frame-top-level-sheet window)))
@@ -48,6 +51,10 @@
 
 ;;; Which robot a window shows.
 
+(defun window-session (window)
+  "Return the session of the prompt of WINDOW."
+  (conversation-session (window-conversation window)))
+
 (defun show-robot-called (window name simulation)
   "Let WINDOW show the robot called NAME of SIMULATION from now on."
   (setf (watcher-robot (window-watcher window)) name)
@@ -55,37 +62,57 @@
   (ignore-errors (setf (clim:frame-pretty-name window) (window-title name)))
   (unless (eq simulation (window-simulation window))
     (watch-simulation (window-watcher window) simulation)
-    (setf (pane-fitting-p (pane-named window 'world)) t)
-    (ars-magna.cli:listen-instead (conversation-session (window-conversation window)) simulation))
-  (say (window-transcript window)
-       (format nil "~A in ~A.~%" name (simulation-name simulation)))
+    (setf (pane-fitting-p (pane-named window 'world)) t))
   (request-refresh window))
+
+(defun shows-p (window name simulation)
+  "True if WINDOW shows the robot called NAME of SIMULATION."
+  (and (eq name (watcher-robot (window-watcher window)))
+       (eq simulation (window-simulation window))))
+
+(defun shown-beside-p (window name simulation)
+  "True if another window than WINDOW shows the robot called NAME of SIMULATION."
+  (some (lambda (other) (shows-p other name simulation))
+        (remove window (open-windows))))
+
+(defun robot-to-show (window)
+  "Return the name of a robot that WINDOW, whose run is over, can go on with, and its run: the one
+that a prompt would, or another of the same run if that is shown in another window; or NIL."
+  (multiple-value-bind (simulation name)
+      (ars-magna.cli:run-after (window-simulation window) (watcher-robot (window-watcher window)))
+    (when simulation
+      (let ((names (mapcar #'robot-name (simulation-robots simulation))))
+        (values (find-if-not (lambda (name) (shown-beside-p window name simulation))
+                             (cons name names))
+                simulation)))))
+
+(defun leave-run (window reason)
+  "Let WINDOW, which shows a run that is over for REASON, go on in another one, or close."
+  (multiple-value-bind (name simulation) (robot-to-show window)
+    (cond (name
+           (show-robot-called window name simulation)
+           (ars-magna.cli:tell-of-run (window-session window) simulation name))
+          (t (warn-of-closing window (format nil "its run is over, ~A" reason))
+             (close-window window)))))
+
+(defun leave-run-if-over (window)
+  (let ((reason (simulation-over (window-simulation window))))
+    (when reason (leave-run window reason))))
 
 (defun agree-on-robot (window)
   "See to it that the prompt of WINDOW, in whose thread this is, commands the robot shown there; or
 else, if its user has chosen another one of the same run, that that is shown."
-  (let ((simulation (window-simulation window)) (watcher (window-watcher window)))
-    (cond ((null simulation))
-          ((not (eq simulation *simulation*))
-           (ars-magna.cli:go-to-run simulation)
-           (setf ars-magna.cli:*prompt-robot* (watcher-robot watcher)))
-          ((not (eq (watcher-robot watcher) ars-magna.cli:*prompt-robot*))
-           (show-robot-called window ars-magna.cli:*prompt-robot* simulation)))))
-
-(defun run-of-robot (name)
-  "Return the live run that the robot called NAME is in now, or NIL."
-  (let* ((robot (find-robot name nil))
-         (simulation (and robot (robot-simulation robot))))
-    (and simulation (live-p simulation) (not (simulation-over simulation)) simulation)))
-
-(defun leave-run (window reason)
-  "Let WINDOW, which shows a run that is over for REASON, show the one in which its robot is now, or
-close."
-  (let ((simulation (run-of-robot (watcher-robot (window-watcher window)))))
-    (cond (simulation
-           (show-robot-called window (watcher-robot (window-watcher window)) simulation))
-          (t (warn-of-closing window (format nil "its run is over, ~A" reason))
-             (close-window window)))))
+  (when (window-simulation window)
+    (leave-run-if-over window)
+    (let ((simulation (window-simulation window)) (watcher (window-watcher window)))
+      (cond ((not (eq simulation *simulation*))
+             (ars-magna.cli:go-to-run simulation)
+             (setf ars-magna.cli:*prompt-robot* (watcher-robot watcher)))
+            ((not (eq (watcher-robot watcher) ars-magna.cli:*prompt-robot*))
+             (show-robot-called window ars-magna.cli:*prompt-robot* simulation)
+             (say (window-transcript window)
+                  (format nil "~A in ~A.~%" ars-magna.cli:*prompt-robot*
+                          (simulation-name simulation))))))))
 
 (defun discard (window)
   "Let the X server forget WINDOW, which has closed, and its pixmaps."
@@ -163,33 +190,49 @@ close."
                         (format nil "display of ~A" (robot-name robot))))
     window))
 
-(defun open-windows ()
-  (with-lock (*windows-lock*) (copy-list *windows*)))
+(defun own-window ()
+  "Return the window whose prompt this thread is, or NIL."
+  (find (current-thread) (open-windows)
+        :key (lambda (window) (conversation-thread (window-conversation window)))))
 
-(defun window-of-visit (robot)
-  "Return the window that shows the run of ROBOT if that is a trial or a fork; or NIL."
-  (let ((simulation (robot-simulation robot)))
-    (unless (live-p simulation)
-      (find simulation (open-windows)
-            :key (lambda (window) (watcher-simulation (window-watcher window)))))))
+(defun windows-to-lead ()
+  "Return the open windows that this thread may lead elsewhere, its own first: no other whose prompt
+is in a trial or fork."
+  (let ((own (own-window)))
+    (append (and own (list own))
+            (remove-if (lambda (window)
+                         (or (eq window own)
+                             (ars-magna.cli:away-p (window-session window))))
+                       (open-windows)))))
 
-(defun window-left ()
-  "Return an open window whose run is over, or NIL."
-  (find-if (lambda (window)
-             (let ((simulation (window-simulation window)))
-               (and simulation (simulation-over simulation))))
-           (open-windows)))
+(defun over-p (window)
+  "True if the run that WINDOW shows is over."
+  (let ((simulation (window-simulation window)))
+    (and simulation (simulation-over simulation) t)))
+
+(defun window-for (robot)
+  "Return the open window that is to show ROBOT, as OPEN-WINDOW says, or NIL."
+  (let ((windows (windows-to-lead)) (simulation (robot-simulation robot)))
+    (or (find (robot-name robot) windows :key #'shown-robot)
+        (and (not (live-p simulation))
+             (find simulation windows :key #'window-simulation))
+        (find-if #'over-p windows))))
+
+(defun lead-window (window robot)
+  "Let WINDOW show ROBOT, and its prompt say so unless that has been asked for there."
+  (let ((simulation (robot-simulation robot)) (name (robot-name robot)))
+    (show-robot-called window name simulation)
+    (unless (eq window (own-window))
+      (ars-magna.cli:tell-of-run (window-session window) simulation name))))
 
 (defun open-window (robot)
   "Show ROBOT in a window: in the one that it has, or that shows the trial or fork that it is in, in
 one whose run is over, or else in a new one. Return the window. Signals MISUSE where there is no X
 server."
-  (let ((window (or (find-window (robot-name robot)) (window-of-visit robot) (window-left))))
+  (let ((window (window-for robot)))
     (cond ((null window) (open-new-window robot))
-          ((and (eq (watcher-robot (window-watcher window)) (robot-name robot))
-                (eq (window-simulation window) (robot-simulation robot)))
-           window)
-          (t (show-robot-called window (robot-name robot) (robot-simulation robot))
+          (t (unless (shows-p window (robot-name robot) (robot-simulation robot))
+               (lead-window window robot))
              window))))
 
 (defun await-windows ()

@@ -1,0 +1,78 @@
+;;;; going-on.lisp -- where a prompt goes on whose run is over.
+
+(in-package :ars-magna.cli)
+
+;;; One prompt may end the run that others are in: by WORLD, or by starting a robot anew in Lisp.
+;;; One rule says where these go on, in a terminal or a window: with their robot, if that is in a
+;;; live run now; else where WORLD has led, with the robot that it has led to. Those that wait for a
+;;; line say so at once, and listen there; each goes there before it does the next line.
+
+(defvar *replacements* (make-hash-table :test 'eq :weakness :key :synchronized t)
+  "For each run that WORLD has led out of, the one that it has led to and the name of the robot
+there, in a list.")
+
+(defun note-replaced (old robot)
+  "Note that WORLD has led from the run OLD to ROBOT."
+  (setf (gethash old *replacements*) (list (robot-simulation robot) (robot-name robot))))
+
+(defun run-of-robot (name)
+  "Return the live run that the robot called NAME is in now, or NIL."
+  (let* ((robot (and name (find-robot name nil)))
+         (simulation (and robot (robot-simulation robot))))
+    (and simulation (live-p simulation) (not (simulation-over simulation)) simulation)))
+
+(defun run-after (simulation robot-name)
+  "Return the live run in which a prompt goes on that has commanded the robot ROBOT-NAME of
+SIMULATION, which is over, and the name of the robot that it commands there; NIL if there is none."
+  (let ((own (run-of-robot robot-name))
+        (next (gethash simulation *replacements*)))
+    (cond (own (values own robot-name))
+          ((null next) nil)
+          ((simulation-over (first next)) (apply #'run-after next))
+          (t (values-list next)))))
+
+;;; Others are told.
+
+(defun away-p (session)
+  "True if SESSION is in a trial or a fork."
+  (or (session-visit session) (plusp (session-forks session))))
+
+(defun say-in (session text)
+  "Show TEXT, a line, in SESSION, and the prompt again. Any thread may ask."
+  (with-lock ((session-lock session))
+    (let ((console (session-console session)))
+      (write-fresh (fitted text console) console)
+      (restore-prompt console)
+      (finish-output console))))
+
+(defun tell-of-run (session simulation robot-name)
+  "Let SESSION, which somebody else leads to the robot ROBOT-NAME of SIMULATION, say so, and listen
+to that. If it listens there already, it knows. Any thread may ask."
+  (unless (eq simulation (session-simulation session))
+    (say-in session (format nil "From here on: ~A in ~A.~%" robot-name
+                            (simulation-name simulation)))
+    (listen-instead session simulation)))
+
+(defun tell-others-of-run (session old)
+  "Let the other sessions that were in OLD, which SESSION has ended, know where they go on. Those of
+windows hear it from these."
+  (dolist (other (remove-if #'session-place (remove session (sessions-hearing old))))
+    (multiple-value-bind (simulation name) (run-after old (session-robot-name other))
+      (when simulation (tell-of-run other simulation name)))))
+
+;;; Going there.
+
+(defun go-to-run (simulation)
+  "Let SIMULATION be the current one in this thread."
+  (setf *simulation* simulation
+        *world* (simulation-world simulation)))
+
+(defun move-on (session)
+  "If the run of SESSION, in whose thread this is, is over, go on in another if there is one."
+  (when (and *simulation* (simulation-over *simulation*))
+    (multiple-value-bind (simulation name) (run-after *simulation* *prompt-robot*)
+      (when simulation
+        (tell-of-run session simulation name)
+        (go-to-run simulation)
+        (setf *prompt-robot* name)
+        (call-by-name (mapcar #'robot-name (simulation-robots simulation)))))))

@@ -1,0 +1,54 @@
+;;;; clim-going-on.lisp -- where windows go on when their run is over, on CLIM's null port.
+
+(in-package :ars-magna.tests)
+
+(in-suite clim)
+
+(defmacro with-window-of ((window robot-name) &body body)
+  "Run BODY with WINDOW bound to a window of the live robot ROBOT-NAME that counts as open."
+  `(call-with-window (lambda (,window)
+                       (let ((window::*windows* (cons ,window window::*windows*))) ,@body))
+                     (robot:find-robot ,robot-name)))
+
+(defun shown-in (window)
+  "Return the name of the robot that WINDOW shows, and its run."
+  (list (window::shown-robot window) (window::window-simulation window)))
+
+(test going-on.a-window-goes-where-world-has-led-and-says-so-once
+  (in-shed
+    (with-window-of (window 'mole)
+      (type-here "world hayloft")
+      (window::leave-run window "it was left")
+      (window::agree-on-robot window)
+      (is (equal (list 'heifer time:*simulation*) (shown-in window)))
+      (is (= 1 (occurrences "HEIFER in HAYLOFT." (said-in window)))))))
+
+(test going-on.the-line-world-is-all-that-tells-of-its-own-window
+  (in-shed
+    (with-window-of (window 'mole)
+      (let ((old time:*simulation*)
+            (conversation (window::window-conversation window)))
+        (setf (window::conversation-thread conversation) (base:current-thread))
+        (type-here "world hayloft")
+        (window::lead-window window (robot:find-robot 'heifer))
+        (window::follow-prompt nil old time:*simulation*)
+        (window::agree-on-robot window)
+        (is (equal (list 'heifer time:*simulation*) (shown-in window)))
+        (is (= 0 (occurrences "HEIFER in HAYLOFT." (said-in window))))))))
+
+(test going-on.a-window-closes-where-another-shows-the-only-robot
+  (in-shed
+    (with-window-of (left 'mole)
+      (type-here "world hayloft")
+      (is (eq 'heifer (window::robot-to-show left)))
+      (with-window-of (other 'heifer)
+        (is (eq other (window::window-for (robot:find-robot 'heifer))))
+        (is (null (window::robot-to-show left)))))))
+
+(test going-on.a-window-is-not-led-out-of-the-trial-of-its-prompt
+  (in-shed
+    (with-window-of (window 'mole)
+      (let ((session (window::window-session window)))
+        (is (eq window (window::window-for (robot:find-robot 'mole))))
+        (setf (cli::session-forks session) 1)
+        (is (null (window::window-for (robot:find-robot 'mole))))))))
