@@ -44,6 +44,7 @@
    (:module "src/world" :serial t
     :components ((:file "package") (:file "clauses") (:file "attributes")
                  (:file "asked-values") (:file "built-in-attributes") (:file "substances")
+                 (:file "draw-functions")
                  (:file "map") (:file "grid-walk") (:file "match-forms") (:file "place-types")
                  (:file "places") (:file "trying-places") (:file "def-place-type")
                  (:file "built-in-places") (:file "walls") (:file "map-cache")

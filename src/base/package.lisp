@@ -44,7 +44,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:define-function-class #:generic-name #:class-ancestors #:class-slot-names
            #:class-slot-types
            #:code-references #:method-code #:methods-on-class
-           #:lambda-list-of #:function-file #:files-besides-functions
+           #:lambda-list-of #:callable-with-p #:function-file #:files-besides-functions
            #:call-as-from-file #:date-of-file
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)

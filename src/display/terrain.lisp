@@ -109,7 +109,8 @@ substance parameter, tinted by the substance; black on a display without colours
 
 (defun draw-by-user (canvas function origin x y width height &rest arguments)
   "Have FUNCTION draw in a box of CANVAS, called with CANVAS and ARGUMENTS. ORIGIN, an item or list
-of items, says whose it is (reading 214)."
+of items, says whose it is (reading 214). Return true if it can; if not, it has been said why, and
+what it has drawn is to be drawn over."
   (unless (gethash function *broken-graphics*)
     (let ((finished-p nil))
       (with-clipping (canvas x y width height)
@@ -119,16 +120,16 @@ of items, says whose it is (reading 214)."
                             (setf finished-p t))
                           origin)))
       (unless finished-p (setf (gethash function *broken-graphics*) t))))
-  (when (gethash function *broken-graphics*)
-    (draw-mark canvas x y width height)))
+  (not (gethash function *broken-graphics*)))
 
 ;;; Places.
 
 (defun draw-place-at (canvas type x y)
   "Draw the mark of TYPE in the cell whose upper left corner is at X, Y."
-  (draw-by-user canvas (place-type-graphics type)
-                (list "the :graphics of place type " (place-type-name type))
-                x y graphics-scale* graphics-scale* x y))
+  (or (draw-by-user canvas (place-type-graphics type)
+                    (list "the :graphics of place type " (place-type-name type))
+                    x y graphics-scale* graphics-scale* x y)
+      (draw-mark canvas x y graphics-scale* graphics-scale*)))
 
 (defun draw-place (canvas type column row)
   (draw-place-at canvas type (* column graphics-scale*) (* row graphics-scale*)))
