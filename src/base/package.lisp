@@ -88,7 +88,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:start-thread #:join-thread #:interrupt-thread #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; interrupts, debuggers
-  (:export #:time-limit #:deferring-interrupts #:allowing-interrupts
+  (:export #:time-limit #:call-with-limit #:deferring-interrupts #:allowing-interrupts
            #:call-holding-interrupts #:call-open-to-interrupts
            #:regain-room #:debugger-p #:answering-debugger #:calls-under-way
            #:debugger-hook #:common-debugger-hook #:disabled-p
