@@ -21,12 +21,15 @@
 (defmacro with-hand-that-holds ((thing robot value) &body body)
   "Run BODY; the hand of ROBOT holds THING, whose :draw-function a map gives as VALUE."
   `(with-own-definitions
-     (eval '(world:defmap drawing-room (9 9) (obj pin (3.5 3.5) ((:size 2) (:draw-function ,value)))))
+     (eval '(world:defmap drawing-room (9 9)
+             (obj pin (3.5 3.5) ((:size 2) (:draw-function ,value)))))
      (eval '(robot:defrobot drawer (drawing-room (5.5 5.5) 0) :hands (9)))
-     (run:with-simulation ((robot:find-robot 'drawer) :journal t)
-       (let* ((,robot (robot:find-robot 'drawer)) (,thing (held-thing ,robot 'pin)))
-         (declare (ignorable ,robot ,thing))
-         ,@body))))
+     (run::call-with-simulation
+      (lambda ()
+        (let* ((,robot (robot:find-robot 'drawer)) (,thing (held-thing ,robot 'pin)))
+          (declare (ignorable ,robot ,thing))
+          ,@body))
+      (list 'drawer) :journal t)))
 
 (test draw-functions.a-map-says-them-as-code
   "Manual B, reading 211: a lambda, a name or both with #' stand in a descriptor."
@@ -55,7 +58,7 @@
 
 (test draw-functions.what-cannot-draw-is-refused-where-it-enters
   (with-hand-that-holds (thing robot draw-word)
-    (loop for value in '((lambda (window) window) no-such-function :draw-word "draw-word" 7 (lambda))
+    (loop for value in '((lambda (window) window) no-such-function :draw-word "draw-word" 7)
           do (handler-case (progn (world:set-attribute thing :draw-function value)
                                   (fail "~S is taken" value))
                (base:wrong-argument (trouble)
@@ -84,7 +87,7 @@
                          (canvas:draw-glyphs window canvas:draw-gcontext* x y text)
                          (error "no pen"))))))
       (draws "first")
-      (world:set-attribute thing :draw-function #'draw-it-anew)
+      (world:set-attribute thing :draw-function 'draw-it-anew)
       (is (mentions-p (detail robot :hands) ">first<"))
       (draws nil)
       (detail robot :hands)
@@ -95,6 +98,11 @@
       (detail robot :hands)
       (is (not (mentions-p (detail robot :hands) ">mended<")))
       (is (= 1 (length (base:take-messages)))))))
+
+(test draw-functions.a-function-that-has-a-name-is-kept-by-it
+  (with-hand-that-holds (thing robot nil)
+    (world:set-attribute thing :draw-function #'draw-word)
+    (is (eq 'draw-word (world:get-attribute thing :draw-function)))))
 
 (test draw-functions.what-fails-is-told-once-and-drawn-plainly
   (with-hand-that-holds (thing robot draw-word)

@@ -259,7 +259,7 @@ faces the end of the wall."
 
 ;;; What can never be a place.
 
-(defun warning-of (form)
+(defun definition-warning-of (form)
   "Return the text of the first warning about the definition FORM, or NIL."
   (handler-case (progn (eval form) nil)
     (base:definition-warning (warning) (base:definition-warning-text warning))))
@@ -267,7 +267,8 @@ faces the end of the wall."
 (defun type-warning (matchers &rest options)
   "Return what is warned of in a place type with MATCHERS and OPTIONS, or NIL."
   (with-own-definitions
-    (warning-of `(world:def-place-type nook (cell) :check-matchers ,matchers ,@options))))
+    (definition-warning-of `(world:def-place-type nook (cell)
+                              :check-matchers ,matchers ,@options))))
 
 (test place-types.a-form-whose-place-is-a-wall-is-warned-of
   (flet ((warned-p (matcher) (search "only free cells" (type-warning (list matcher)))))

@@ -106,7 +106,7 @@ that their widths are in proportion.")
     (error-set (subject-title image) " is drawn plainly: " trouble)))
 
 (defun draw-by-itself (canvas image x y)
-  "Have the thing drawn by its own :draw-function (reading 211). Return true if it has one that can."
+  "Have the thing drawn by its own :draw-function (reading 211). True if it has one that can."
   (let ((value (thing-image-draw-function image)))
     (multiple-value-bind (function trouble) (drawing-code value)
       (when trouble (note-undrawable image value trouble))

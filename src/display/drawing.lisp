@@ -11,7 +11,7 @@
 (defun count-call ()
   (when *calls-left*
     (when (minusp (decf *calls-left*))
-      (reject-use "It has drawn too many things for one place. Mend what goes on without an end."))))
+      (reject-use "It has drawn too many things for one place. Mend what goes on without end."))))
 
 (defun check-drawing (operator canvas gcontext numbers)
   (count-call)

@@ -1,4 +1,4 @@
-;;;; user-drawing.lisp -- calling users' drawing code: bodies of :graphics, values of :draw-function.
+;;;; user-drawing.lisp -- calling users' code that draws: :graphics and :draw-function.
 
 (in-package :ars-magna.display)
 

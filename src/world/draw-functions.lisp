@@ -3,9 +3,9 @@
 (in-package :ars-magna.world)
 
 ;;; A value is a function, or a symbol that names one, which then may be defined anew. Code says
-;;; it: a definition, or a program that sets the attribute. Only names that code has said are called:
-;;; so no file that holds data, such as a journal, can have any function called by its name. Manual
-;;; B, reading 211.
+;;; it: a definition, or a program that sets the attribute. Only names that code has said are
+;;; called: so no file that holds data, such as a journal, can have any function called by its name.
+;;; Manual B, reading 211.
 
 (define-constant +draw-arguments+ "(window thing x y width height)" :test #'string=
   :documentation "How the arguments of a :draw-function are written.")

@@ -66,9 +66,8 @@
          (takers (and (place-type-table type)
                       (takers rules (ldiff types (member type types))))))
     (when takers
-      (doubt-definition "~A: all that it fits is of the type ~{~(~A~)~^ or ~} already; types defined ~
-                         before win, so it never will be a place; to let this one win, say ~
-                         :before ~(~A~)"
+      (doubt-definition "~A: all that it fits is of the type ~{~(~A~)~^ or ~} already; what was ~
+                         defined before wins; to let this one win, say :before ~(~A~)"
                         definition (mapcar #'place-type-name takers)
                         (place-type-name (find-if (lambda (other) (member other takers))
                                                   types))))))
