@@ -256,3 +256,38 @@ faces the end of the wall."
       (is (= 1 (length warnings)))
       (is (search "BROKEN" (string-upcase (first warnings))))
       (is (equal "ANYWHERE" (first (place-at (world:find-map 'test-map) 1 1)))))))
+
+;;; What can never be a place.
+
+(defun definition-warning-of (form)
+  "Return the text of the first warning about the definition FORM, or NIL."
+  (handler-case (progn (eval form) nil)
+    (base:definition-warning (warning) (base:definition-warning-text warning))))
+
+(defun type-warning (matchers &rest options)
+  "Return what is warned of in a place type with MATCHERS and OPTIONS, or NIL."
+  (with-own-definitions
+    (definition-warning-of `(world:def-place-type nook (cell)
+                              :check-matchers ,matchers ,@options))))
+
+(test place-types.a-form-whose-place-is-a-wall-is-warned-of
+  (flet ((warned-p (matcher) (search "only free cells" (type-warning (list matcher)))))
+    (is (warned-p '(((- - -) (- * -) (- - -)) 0)))
+    (is (warned-p '(((- - -) (- - *) (- - -)) 0 1 0)))
+    (is (warned-p '(((*)) 0)))
+    (is (null (type-warning '((((- - -) (- * -) (- - -)) 0 1 0)))))
+    (is (null (type-warning '((((- - -) (- * -) (- - -)) 0 2 0)))))
+    (is (null (type-warning '((((x * x) (* x *) (x - x)) 0)))))))
+
+(test place-types.one-of-which-all-is-taken-is-warned-of
+  (let ((doorway '((((- - -) (* - *) (- - -)) 0))))
+    (is (search "say :before doorway" (type-warning doorway)))
+    (is (null (type-warning doorway :before 'doorway)))
+    (is (null (type-warning (append doorway '((((* * *) (* - *) (* * *)) 0))))))
+    (is (null (type-warning '((((x - -) (* - *) (- - -)) 0)))))))
+
+(test place-types.the-shipped-ones-are-not-warned-of
+  (with-own-definitions
+    (dolist (type (world:all-place-types))
+      (finishes (handler-bind ((warning #'error))
+                  (world::warn-of-vain-rules "it" type))))))

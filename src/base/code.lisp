@@ -31,8 +31,15 @@ numbers."
                (when (closure-p function) (closure-values function))))))
 
 (defun lambda-list-of (name)
-  "Return the lambda list of the function or macro called NAME, a symbol."
+  "Return the lambda list of the function or macro called NAME, a symbol, or of a function itself."
   (sb-introspect:function-lambda-list name))
+
+(defun callable-with-p (function count)
+  "True if FUNCTION, or the one so called, can be called with COUNT arguments, as far as is known."
+  (multiple-value-bind (required optional rest-p keys) (parse-ordinary-lambda-list
+                                                        (lambda-list-of function))
+    (and (<= (length required) count)
+         (or rest-p keys (<= count (+ (length required) (length optional)))))))
 
 ;;; From which file functions are. Where the forms of one are evaluated one by one, that must be
 ;;; said.

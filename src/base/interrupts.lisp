@@ -19,6 +19,14 @@
   "Run BODY, in which this thread can be interrupted."
   `(sb-sys:with-interrupts ,@body))
 
+(defun call-with-limit (function seconds give-up)
+  "Call FUNCTION. Should it not have returned after SECONDS, call GIVE-UP in this thread, which may
+leave it; and so again and again."
+  (let ((timer (sb-ext:make-timer give-up)))
+    (sb-ext:schedule-timer timer seconds :repeat-interval seconds)
+    (unwind-protect (funcall function)
+      (sb-ext:unschedule-timer timer))))
+
 ;;; The same for functions, and strictly: what happens to be called in between cannot let any in.
 
 (defvar *open-to-interrupts* #'funcall

@@ -44,7 +44,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:define-function-class #:generic-name #:class-ancestors #:class-slot-names
            #:class-slot-types
            #:code-references #:method-code #:methods-on-class
-           #:lambda-list-of #:function-file #:files-besides-functions
+           #:lambda-list-of #:callable-with-p #:function-file #:files-besides-functions
            #:call-as-from-file #:date-of-file
            #:package-locked-p #:lock-package #:unlock-package #:lock-violation #:locked-symbol
            #:copy-nicknames)
@@ -90,7 +90,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:start-thread #:join-thread #:interrupt-thread #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; interrupts, debuggers
-  (:export #:time-limit #:deferring-interrupts #:allowing-interrupts
+  (:export #:time-limit #:call-with-limit #:deferring-interrupts #:allowing-interrupts
            #:call-holding-interrupts #:call-open-to-interrupts
            #:regain-room #:debugger-p #:answering-debugger #:calls-under-way
            #:debugger-hook #:common-debugger-hook #:disabled-p

@@ -122,10 +122,13 @@ it is inside the box X, Y, WIDTH, HEIGHT of pixels."
 ;;; Where.
 
 (defmethod call-with-clipping (function (canvas clim-canvas) x y width height)
-  (clim:with-drawing-options ((canvas-medium canvas)
-                              :clipping-region (clim:make-rectangle* x y (+ x width)
-                                                                     (+ y height)))
-    (funcall function)))
+  (let ((reach (shiftf (canvas-reach canvas) nil)) (right (+ x width)) (bottom (+ y height)))
+    (unwind-protect
+         (clim:with-drawing-options ((canvas-medium canvas)
+                                     :clipping-region (clim:make-rectangle* x y right bottom))
+           (funcall function))
+      (setf (canvas-reach canvas) reach)
+      (extend-reach canvas x y right bottom))))
 
 (defmethod call-with-origin (function (canvas clim-canvas) x y)
   (incf (canvas-dx canvas) x)

@@ -21,6 +21,7 @@
            #:call-with-origin #:with-origin #:call-with-subject #:with-subject
            #:subject-title #:call-on-canvas #:with-canvas #:+character-width+ #:+line-height+)
   ;; drawing
+  (:export #:*calls-left*)
   (:export #:draw-rectangle #:draw-rectangles #:draw-arc #:draw-arcs #:draw-line #:draw-lines
            #:draw-segments #:draw-point #:draw-points #:draw-glyph #:draw-glyphs
            #:draw-image-glyph #:draw-image-glyphs #:clear-area)

@@ -99,19 +99,35 @@ that their widths are in proportion.")
                                                      black*))
         (draw-segments canvas draw-gcontext* (list x y right bottom x bottom right y))))))
 
+(defun note-undrawable (image value trouble)
+  "Say once that TROUBLE keeps the thing from being drawn by VALUE, its :draw-function."
+  (unless (gethash value *broken-graphics*)
+    (setf (gethash value *broken-graphics*) t)
+    (error-set (subject-title image) " is drawn plainly: " trouble)))
+
+(defun draw-by-itself (canvas image x y)
+  "Have the thing drawn by its own :draw-function (reading 211). True if it has one that can."
+  (let ((value (thing-image-draw-function image)))
+    (multiple-value-bind (function trouble) (drawing-code value)
+      (when trouble (note-undrawable image value trouble))
+      (and function
+           (or (draw-by-user canvas function (list "the :draw-function of " (subject-title image))
+                             x y +object-width+ +object-height+
+                             (thing-image-thing image) x y +object-width+ +object-height+)
+               (wipe canvas x y +object-width+ +object-height+))))))
+
+(defun wipe (canvas x y width height)
+  "Draw over what is in a box. Return NIL."
+  (with-gcontext (draw-gcontext* :foreground white*)
+    (draw-rectangle canvas draw-gcontext* x y width height t)))
+
 (defun draw-object (canvas image x y width)
-  "Draw the thing whose image is IMAGE, by its own :draw-function if it has one, and its
-name (reading 211)."
-  (let ((function (thing-image-draw-function image)))
-    (with-subject (canvas image)
-      (if (typep function '(or function (and symbol (not null))))
-          (draw-by-user canvas function
-                        (list "the :draw-function of " (subject-title image))
-                        x y +object-width+ +object-height+
-                        (thing-image-thing image) x y +object-width+ +object-height+)
-          (draw-block canvas image x y))
-      (draw-line-of-text canvas (+ x (if function +object-width+ (thing-width image)) +margin+)
-                         (- y 2) width (subject-title image)))))
+  "Draw the thing whose image is IMAGE, and its name."
+  (with-subject (canvas image)
+    (let ((wide (cond ((draw-by-itself canvas image x y) +object-width+)
+                      (t (draw-block canvas image x y)
+                         (thing-width image)))))
+      (draw-line-of-text canvas (+ x wide +margin+) (- y 2) width (subject-title image)))))
 
 (defun draw-location (canvas location x y width)
   "Draw what a part is inside of: a thing, or the text that LOCATION is."

@@ -5,7 +5,16 @@
 ;;; Signatures and meanings are CLX's, so that code written for it runs. Like CLX, they check
 ;;; their arguments here, at the door, and return nothing of use.
 
+(defvar *calls-left* nil
+  "How many times more the code that draws may do so; NIL if nobody counts.")
+
+(defun count-call ()
+  (when *calls-left*
+    (when (minusp (decf *calls-left*))
+      (reject-use "It has drawn too many things for one place. Mend what goes on without end."))))
+
 (defun check-drawing (operator canvas gcontext numbers)
+  (count-call)
   (flet ((reject (name value expected)
            (error 'wrong-argument :operator operator :name name :value value
                                   :expected expected)))

@@ -93,42 +93,14 @@ substance parameter, tinted by the substance; black on a display without colours
           do (with-color color
                (draw-rectangles canvas draw-gcontext* rectangles t)))))
 
-;;; Graphics bodies are user code: one that fails is reported once, and drawn as a mark.
-
-(defvar *broken-graphics* (make-hash-table :test #'eq :weakness :key :synchronized t)
-  "The functions that have signalled an error.")
-
-(defun draw-mark (canvas x y width height)
-  "Draw what stands for graphics that cannot be drawn: a crossed box."
-  (with-color (svref red* 9)
-    (with-clipping (canvas x y width height)
-      (draw-rectangle canvas draw-gcontext* x y (1- width) (1- height))
-      (draw-segments canvas draw-gcontext*
-                     (list x y (+ x width -1) (+ y height -1)
-                           x (+ y height -1) (+ x width -1) y)))))
-
-(defun draw-by-user (canvas function origin x y width height &rest arguments)
-  "Have FUNCTION draw in a box of CANVAS, called with CANVAS and ARGUMENTS. ORIGIN, an item or list
-of items, says whose it is (reading 214)."
-  (unless (gethash function *broken-graphics*)
-    (let ((finished-p nil))
-      (with-clipping (canvas x y width height)
-        (let ((draw-gcontext* (create-gcontext)))
-          (call-user-code (lambda ()
-                            (apply function canvas arguments)
-                            (setf finished-p t))
-                          origin)))
-      (unless finished-p (setf (gethash function *broken-graphics*) t))))
-  (when (gethash function *broken-graphics*)
-    (draw-mark canvas x y width height)))
-
 ;;; Places.
 
 (defun draw-place-at (canvas type x y)
   "Draw the mark of TYPE in the cell whose upper left corner is at X, Y."
-  (draw-by-user canvas (place-type-graphics type)
-                (list "the :graphics of place type " (place-type-name type))
-                x y graphics-scale* graphics-scale* x y))
+  (or (draw-by-user canvas (place-type-graphics type)
+                    (list "the :graphics of place type " (place-type-name type))
+                    x y graphics-scale* graphics-scale* x y)
+      (draw-mark canvas x y graphics-scale* graphics-scale*)))
 
 (defun draw-place (canvas type column row)
   (draw-place-at canvas type (* column graphics-scale*) (* row graphics-scale*)))

@@ -7,9 +7,9 @@
     ("error" 3 "broke off with an error"))
   "Lists (outcome look words), in the order of the legend.")
 
-(defun scale-for (width)
-  "Return how many pixels a metre has in a picture of WIDTH metres."
-  (clamp (floor 720 width) 4 40))
+(defun scale-for (width height)
+  "Return how many pixels a metre has in a picture of WIDTH by HEIGHT metres."
+  (clamp (floor 720 (max width height)) 4 40))
 
 (defun way-opacity (count)
   "Return how much one of COUNT ways hides what is below."
@@ -60,14 +60,14 @@
   "Return a picture of the world in SNAPSHOT with WAYS in it, of its PART (left top right bottom),
 under TITLE and SUBTITLE."
   (destructuring-bind (left top right bottom) part
-    (drawing-chart (lambda (canvas)
-                     (let ((graphics-scale* (scale-for (- right left))))
-                       (draw-ways-on-map canvas snapshot ways left top)))
-                   (* (scale-for (- right left)) (- right left))
-                   (* (scale-for (- right left)) (- bottom top))
-                   :title title
-                   :subtitle subtitle
-                   :entries (ways-entries ways))))
+    (let* ((width (- right left)) (height (- bottom top)) (scale (scale-for width height)))
+      (drawing-chart (lambda (canvas)
+                       (let ((graphics-scale* scale))
+                         (draw-ways-on-map canvas snapshot ways left top)))
+                     (* scale width) (* scale height)
+                     :title title
+                     :subtitle subtitle
+                     :entries (ways-entries ways)))))
 
 (defun part-of-map (operator part map)
   "Return the list (left top right bottom) that PART, an argument of OPERATOR, means of MAP: all if

@@ -82,7 +82,7 @@
 (defun run-chart (snapshot ways moments title)
   "Return a picture of a run that ended as SNAPSHOT shows, with WAYS and MOMENTS, under TITLE."
   (let* ((map (snapshot-map snapshot))
-         (scale (scale-for (map-width map))))
+         (scale (scale-for (map-width map) (map-height map))))
     (drawing-chart (lambda (canvas)
                      (let ((graphics-scale* scale)) (draw-run canvas snapshot ways moments)))
                    (* scale (map-width map)) (* scale (map-height map))

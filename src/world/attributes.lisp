@@ -51,7 +51,9 @@
   "Return the name of a defined attribute for which NAME, of no attribute, may be a slip; or NIL."
   (let ((key (attribute-key name)))
     (unless (attribute-of key)
-      (find-if (lambda (other) (resembles-p key other)) (defined-names *attributes*)))))
+      (unless (eq key :draw-function)
+        (find-if (lambda (other) (resembles-p key other))
+                 (cons :draw-function (defined-names *attributes*)))))))
 
 ;;; Defining.
 
@@ -101,6 +103,10 @@ See reading 120."
   (let ((definition (title "defattribute" name))
         (old (attribute-of name)))
     (check-attribute-clauses definition domain base max-mult supported-by)
+    (when (eq (attribute-key name) :draw-function)
+      (reject-clause definition name
+                     (format nil "no definition of :draw-function, which is the simulator's own; ~
+                                  give it to things: (set-attribute thing :draw-function 'name)")))
     (check-kind-of-built-in definition name domain)
     (dolist (supporter supported-by)
       (let ((like (declared-name-like supporter)))

@@ -120,4 +120,5 @@ CHECKER and DIRECTIONS. KEY stands for the definition in the key of a map's cach
     (try-place-type new)
     (register *place-types* name (if old (become old new) new)
               :before (and (not (eq next old)) next))
+    (warn-of-vain-rules definition (find-place-type name))
     name))

@@ -122,7 +122,7 @@ signals, the user may replace the clause by another, of which COMPILER makes a f
                    "an object descriptor ((attribute value) ...), each attribute once"))
   (destructuring-bind (name &key prototype kickers) (ensure-list head)
     (let ((first (- (length clause) (length contents))))
-      `(clause-recipe ,definition ',clause ',name ',descriptor
+      `(clause-recipe ,definition ',clause ',name ,(descriptor-form name descriptor)
                       :prototype ,(prototype-form definition clause prototype)
                       :kickers ',kickers :x ,x :y ,y
                       :contents (remove nil (list ,@(contents-forms definition contents path

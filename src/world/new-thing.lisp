@@ -69,7 +69,7 @@ hand that holds something."
   "Do as MAKE-NEW-THING does, in the world at hand and in no other."
   (unless (eq *world* (resolve-location location))
     (reject-value 'make-new-thing "location" location "a location in the world of this run"))
-  (apply #'make-new-thing name location descriptor more))
+  (apply #'call-with-data #'make-new-thing name location descriptor more))
 
 (define-operator 'make-new-thing '(name datum datum) #'make-thing-again :rest 'datum)
 
@@ -118,4 +118,4 @@ See readings 12 and 167."
                           ((position-form-p location environment)
                            `(list ,(map-form (first location) environment) ,@(rest location)))
                           (t location))
-                   ',descriptor :prototype ,prototype))
+                   ,(descriptor-form name descriptor) :prototype ,prototype))

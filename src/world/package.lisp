@@ -23,6 +23,8 @@
            #:all-substances #:substance-name #:substance-parameter #:substance-value-type
            #:substance-value-parameter
            #:wood #:metal #:bricks #:slate #:stone #:plaster #:glass #:cloth #:paper #:plastic)
+  ;; draw functions
+  (:export #:drawing-code)
   ;; map
   (:export #:map #:map-p #:map-name #:map-width #:map-height #:map-frame #:map-flags
            #:map-parameters #:map-substances #:map-substance-types #:map-places #:map-directions

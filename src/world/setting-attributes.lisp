@@ -15,7 +15,7 @@
   "Return a list (attribute value) with a keyword as the name. Signals WRONG-ARGUMENT."
   (let ((key (attribute-key name)))
     (check-attribute-value operator key value)
-    (list key value)))
+    (list key (if (eq key :draw-function) (draw-function-said value) value))))
 
 (defun normal-descriptor (operator descriptor)
   "Return the object descriptor DESCRIPTOR with keywords as names, a copy. Signals WRONG-ARGUMENT."
@@ -44,11 +44,15 @@ that the attribute cannot have."
   (let ((descriptor (if (typep new-value '(or symbol number))
                         (list (checked-entry 'set-attribute attribute new-value))
                         (normal-descriptor 'set-attribute (list (list attribute new-value))))))
-    (changing ((world-of-living thing) set-attribute thing attribute new-value)
+    (changing ((world-of-living thing) set-attribute
+               thing attribute (second (first descriptor)))
       (change-attributes thing descriptor)))
   new-value)
 
-(define-operator 'set-attribute '(thing name datum) #'set-attribute)
+(defun set-attribute-again (thing attribute new-value)
+  (call-with-data #'set-attribute thing attribute new-value))
+
+(define-operator 'set-attribute '(thing name datum) #'set-attribute-again)
 
 (defun (setf get-attribute) (new-value thing attribute)
   (set-attribute thing attribute new-value))
@@ -63,4 +67,7 @@ that the attribute cannot have."
       (change-attributes thing descriptor)))
   thing)
 
-(define-operator 'change-attribute '(thing datum) #'change-attribute)
+(defun change-attribute-again (thing descriptor)
+  (call-with-data #'change-attribute thing descriptor))
+
+(define-operator 'change-attribute '(thing datum) #'change-attribute-again)

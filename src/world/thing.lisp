@@ -71,6 +71,8 @@ false, always can."
   (let ((attribute (attribute-of key)))
     (flet ((reject (expected) (reject-value operator key value expected)))
       (cond ((and (floatp value) (not (finite-p value))) (reject (argument-type-text 'quantity)))
+            ((eq key :draw-function)
+             (unless (draw-function-p value) (reject (draw-function-words value))))
             ((or (null value) (null attribute)))
             ((eq key :substance)
              (unless (substance-value-p value)

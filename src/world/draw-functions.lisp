@@ -1,0 +1,118 @@
+;;;; draw-functions.lisp -- what may draw a thing: the values of :draw-function (manual B).
+
+(in-package :ars-magna.world)
+
+;;; A value is a function, or a symbol that names one, which then may be defined anew. Code says
+;;; it: a definition, or a program that sets the attribute. Only names that code has said are
+;;; called: so no file that holds data, such as a journal, can have any function called by its name.
+;;; Manual B, reading 211.
+
+(define-constant +draw-arguments+ "(window thing x y width height)" :test #'string=
+  :documentation "How the arguments of a :draw-function are written.")
+
+(defvar *said-by-code-p* t
+  "True where values of attributes come from code; false where they are data, as of a journal.")
+
+(defun call-with-data (function &rest arguments)
+  "Call FUNCTION with ARGUMENTS, which are data."
+  (let ((*said-by-code-p* nil)) (apply function arguments)))
+
+(defun names-function-p (value)
+  "True if VALUE is a symbol that names a function, no macro."
+  (and value (symbolp value) (fboundp value)
+       (not (macro-function value)) (not (special-operator-p value))))
+
+(defun draw-function-p (value)
+  "True if VALUE can be that of :draw-function."
+  (typecase value
+    (null t)
+    (function (callable-with-p value 6))
+    (symbol (or (not *said-by-code-p*)
+                (and (names-function-p value) (callable-with-p (fdefinition value) 6))))))
+
+(defun draw-function-words (value)
+  "Return what to write instead of VALUE, which cannot be that of :draw-function."
+  (format nil "a function of ~A, or the name of one that is defined before: ~
+               (defun ~(~A~) ~A ...)~:[~;; a list is data, which runs nothing~]"
+          +draw-arguments+
+          (if (and value (symbolp value) (not (keywordp value))) value "draw-it")
+          +draw-arguments+ (consp value)))
+
+(defun name-meant (function)
+  "Return the symbol that names FUNCTION, if it has such a name, or else FUNCTION: so that what is
+drawn goes by the newest definition, and can be saved."
+  (let ((name (nth-value 2 (function-lambda-expression function))))
+    (if (and (names-function-p name) (eq function (fdefinition name))) name function)))
+
+(defun draw-function-said (value)
+  "Return what to keep for VALUE of :draw-function. A name that code says may be called from now
+on."
+  (let ((value (if (functionp value) (name-meant value) value)))
+    (when (and value (symbolp value) *said-by-code-p*) (setf (get value 'said-by-code-p) t))
+    value))
+
+(defun drawing-code (value)
+  "Return the function that VALUE of :draw-function means now, or NIL. If VALUE is a name and means
+none, a second value says why, and what to do."
+  (cond ((null value) nil)
+        ((functionp value) value)
+        ((not (get value 'said-by-code-p))
+         (values nil (format nil "the name ~(~A~) is from a file of data, which runs nothing; if ~
+                                  you trust it, say (set-attribute thing :draw-function '~:*~(~A~))"
+                             value)))
+        ((names-function-p value) (fdefinition value))
+        (t (values nil (format nil "there is no function ~(~A~) any more; define it: ~
+                                    (defun ~:*~(~A~) ~A ...)"
+                               value +draw-arguments+)))))
+
+;;; In definitions a descriptor is not evaluated, but for this: (lambda ...), #'name and name.
+
+(defun lambda-form-p (form)
+  (and (proper-list-p form) (symbolp (first form)) (same-name-p (first form) 'lambda)))
+
+(defun function-form-argument (form)
+  "Return NAME or (lambda ...) if FORM is (function NAME) or (function (lambda ...)), or NIL."
+  (and (proper-list-p form) (= 2 (length form)) (symbolp (first form))
+       (same-name-p (first form) 'function)
+       (second form)))
+
+(defun name-for-lambda (thing-name form)
+  "Return a symbol to call the function that FORM makes for things called THING-NAME."
+  (intern (format nil "DRAW-~A-~36R" thing-name
+                  (ldb (byte 32 0) (digest-value (digest-add (make-digest) form))))
+          *package*))
+
+(defun with-ignorable-arguments (form)
+  "Return FORM, (lambda (window thing ...) ...), that need not use all of its arguments."
+  (destructuring-bind (operator &optional arguments &rest body) form
+    (if (and (proper-list-p arguments)
+             (every #'symbolp arguments)
+             (null (intersection arguments lambda-list-keywords)))
+        `(,operator ,arguments (declare (ignorable ,@arguments)) ,@body)
+        form)))
+
+(defun draw-function-called (name function)
+  "Let NAME be that of FUNCTION, and return it; return FUNCTION itself if it has closed over
+something, so that it is not the only one of its text, or cannot draw."
+  (cond ((or (closure-p function) (not (draw-function-p function))) function)
+        (t (setf (fdefinition name) function)
+           name)))
+
+(defun draw-function-form (thing-name value)
+  "Return a form for VALUE of :draw-function in a definition of the thing THING-NAME."
+  (let ((meant (or (function-form-argument value) value)))
+    (cond ((lambda-form-p meant)
+           `(draw-function-called ',(name-for-lambda thing-name meant)
+                                 (function ,(with-ignorable-arguments meant))))
+          ((symbolp meant) `',meant)
+          (t `',value))))
+
+(defun entry-form (thing-name entry)
+  (destructuring-bind (key value) entry
+    (if (and (consp value) (same-name-p key :draw-function))
+        `(list ',key ,(draw-function-form thing-name value))
+        `',entry)))
+
+(defun descriptor-form (thing-name descriptor)
+  "Return a form for DESCRIPTOR in a definition of the thing THING-NAME."
+  `(list ,@(loop for entry in descriptor collect (entry-form thing-name entry))))
