@@ -265,7 +265,7 @@
         (is (shown-p :planned-way))
         (is (not (shown-p :names)))
         (is (mentions-p (plain-picture robot :layers '(:planned-way))
-                        "<polyline points=\"52.5,52.5 68.5,52.5 68.5,20.5\""))
+                        "<polyline points=\"52.5,52.5 68.5,52.5 68.5,20.5"))
         (is (mentions-p (display:svg-picture robot :layers '(:planned-way :legend))
                         ">planned way<"))
         (robot:publish-way robot '())

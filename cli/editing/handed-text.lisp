@@ -34,12 +34,16 @@ prompt at the terminal has."
   (revise-octets (typed-octets stream)
                  (lambda (left) (uiop:strcat (coerce octets 'string) left))))
 
+(defun ahead-of (stream octets)
+  "Return what OCTETS, which STREAM has not read yet, come to."
+  (ahead-in octets (history-entries (edited-history stream))))
+
 (defun with-key (stream octets key)
   "Return OCTETS, which STREAM has not read yet, with those of KEY. Until it reads, they are what is
 typed ahead."
   (cond ((being-typed-p stream) (uiop:strcat octets (octets-of-key key)))
-        (t (let ((ahead (ahead-in octets)))
-             (press-ahead ahead key)
+        (t (let ((ahead (ahead-of stream octets)))
+             (press-ahead ahead key (history-entries (edited-history stream)))
              (octets-of-ahead ahead)))))
 
 (defun press-key (stream key)
@@ -55,7 +59,7 @@ typed ahead."
 (defun typed-ahead (stream)
   "Return how many lines wait to be read of STREAM, and what is being typed after them: its text,
 and where in it the cursor is."
-  (let ((ahead (ahead-in (handed-left (typed-octets stream)))))
+  (let ((ahead (ahead-of stream (handed-left (typed-octets stream)))))
     (values (+ (length (edited-lines stream)) (length (ahead-lines ahead)))
             (ahead-text ahead)
             (ahead-point ahead))))
@@ -64,7 +68,7 @@ and where in it the cursor is."
   (let ((lines '()))
     (revise-octets (typed-octets stream)
                    (lambda (octets)
-                     (let ((ahead (ahead-in octets)))
+                     (let ((ahead (ahead-of stream octets)))
                        (setf lines (shiftf (ahead-lines ahead) '()))
                        (octets-of-ahead ahead))))
     (append (call-next-method) lines)))

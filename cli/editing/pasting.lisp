@@ -43,17 +43,20 @@ on from another."
   (let ((start (or (position-if-not #'blank-p text) 0)))
     (some (lambda (label) (starts-with-subseq label (subseq text start))) *labels*)))
 
+(defun typed-line-of (line)
+  "Return LINE, as pasted among others with prompts, without its own; NIL if it was not typed."
+  (cond ((going-on-p line) (line-pasted line t))
+        ((labelled-p line) (let ((text (without-label line)))
+                             (and (string/= "" text) text)))))
+
 (defun typed-lines (lines)
-  "Return those of LINES, as pasted, that were typed: all up to the first with a prompt, which may
-be the rest of one, and those with prompts, but for messages; as they are if no line has any."
-  (if (notany #'labelled-p lines)
-      lines
-      (let ((start (position-if #'labelled-p lines)))
+  "Return what was typed of LINES, as pasted: all up to the first with a prompt, which may be the
+rest of one, and those with prompts, but for messages; or LINES if none has any."
+  (let ((start (position-if #'labelled-p lines)))
+    (if start
         (append (subseq lines 0 start)
-                (loop for line in (nthcdr start lines)
-                      when (or (going-on-p line)
-                               (and (labelled-p line) (string/= "" (without-label line))))
-                        collect line)))))
+                (remove nil (mapcar #'typed-line-of (nthcdr start lines))))
+        lines)))
 
 (defun lines-in (text)
   "Return the lines of TEXT, at least one."

@@ -24,8 +24,8 @@
       (ars-magna-error (condition) (reject-usage "~A" (condition-text condition))))))
 
 (defun robot-asked-for (session options)
-  "Return the name of the robot that OPTIONS ask for. If there is none, the files that SESSION begins
-with are loaded now, as they may define it. Signals USAGE-ERROR if they do not."
+  "Return the name of the robot that OPTIONS ask for. If there is none, the files that SESSION
+begins with are loaded now, as they may define it. Signals USAGE-ERROR if they do not."
   (handler-case (first-robot options)
     (bad-line (condition)
       (let ((files (shiftf (session-files session) '())))

@@ -21,7 +21,7 @@
 
 (defun waiting-label (count)
   "Return what stands before what is typed while COUNT lines wait."
-  (format nil "~[~:;~:*~D line~:P wait~:*~[~;s~:;~]; the arrow up takes the last one ~
+  (format nil "~[~:;~:*~D line~:P wait~:*~[~;s~:;~]; backspace takes the last one ~
                back. ~]Next> "
           count))
 
