@@ -282,7 +282,8 @@
                  (:file "popup") (:file "pointing") (:file "interactor") (:file "offers")
                  (:file "plan-mouse") (:file "world-mouse") (:file "keys") (:file "help")
                  (:file "robots") (:file "window") (:file "line-menus") (:file "commands")
-                 (:file "opening") (:file "following")))))
+                 (:file "opening") (:file "x-server")
+                 (:file "following")))))
 
 (defsystem "ars-magna/fiveam"
   :description "Checks for regression suites: plans that are held to their rates of success."

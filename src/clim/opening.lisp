@@ -110,26 +110,6 @@ close."
 (defmethod clim:run-frame-top-level :before ((window robot-window) &key &allow-other-keys)
   (painted (window-watcher window)))
 
-;;; The X server may go. CLIM's thread that reads events from it must not take Lisp along.
-
-(defun windows-on (port)
-  (with-lock (*windows-lock*)
-    (remove port *windows* :key #'clim:port :test-not #'eq)))
-
-(defun lose-port (port condition)
-  "Close the windows on PORT, whose X server has gone; end the thread that reads its events."
-  (let ((windows (windows-on port)))
-    (when windows
-      (dolist (window windows)
-        (warn-of-closing window condition)
-        (close-window window))
-      (ignore-errors (clim:destroy-port port))
-      (abort))))
-
-(defmethod clim:process-next-event :around ((port clim:basic-port) &key &allow-other-keys)
-  (handler-bind ((error (lambda (condition) (lose-port port condition))))
-    (call-next-method)))
-
 ;;; Opening.
 
 (defun x-server-named-p ()
