@@ -314,7 +314,7 @@
   :components ((:module "tests" :serial t
                 :components ((:file "clim-window") (:file "clim-layout") (:file "clim-pointing")
                              (:file "clim-progress") (:file "clim-plans")
-                             (:file "clim-talking")))))
+                             (:file "clim-talking") (:file "clim-x-server")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
