@@ -7,6 +7,7 @@
 
 (defvar *windows* '() "The windows that are open.")
 (defvar *windows-lock* (make-lock "windows"))
+(defvar *ports* '() "CLIM's ports that windows have come to.")
 
 (defun find-window (name)
   "Return the open window of the robot called NAME, or NIL."
@@ -134,6 +135,7 @@ close."
          (watcher (make-watcher (robot-name robot)
                                 (lambda () (when window (request-refresh window)))
                                 (lambda (reason) (when window (leave-run window reason))))))
+    (with-lock (*windows-lock*) (pushnew port *ports*))
     (make-menu-bar)
     (start-watching watcher simulation)
     (setf window (make-robot-window watcher :frame-manager (clim:find-frame-manager :port port)))

@@ -11,15 +11,21 @@
   (with-lock (*windows-lock*)
     (remove port *windows* :key #'clim:port :test-not #'eq)))
 
+(defun forget-port (port)
+  "Count PORT as gone; true if windows had come to it, though they may have closed since."
+  (with-lock (*windows-lock*)
+    (when (member port *ports*)
+      (setf *ports* (remove port *ports*))
+      t)))
+
 (defun lose-port (port condition)
   "Close the windows on PORT, whose X server has gone; end the thread that reads its events."
-  (let ((windows (windows-on port)))
-    (when windows
-      (dolist (window windows)
-        (warn-of-closing window condition)
-        (close-window window))
-      (ignore-errors (clim:destroy-port port))
-      (abort))))
+  (when (forget-port port)
+    (dolist (window (windows-on port))
+      (warn-of-closing window condition)
+      (close-window window))
+    (ignore-errors (clim:destroy-port port))
+    (abort)))
 
 (defun of-one-event-p (condition)
   "True if CONDITION came of a single event, and says nothing of the connection to the X server."
