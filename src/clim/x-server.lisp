@@ -2,10 +2,10 @@
 
 (in-package :ars-magna.clim)
 
-;;; CLIM has one thread that reads the events of all windows. When the X server goes, that thread
-;;; is the first to know; it must not take Lisp along. But not all errors in it mean that. CLIM asks the
-;;; X server about windows that have just been closed, and other programs may send events that
-;;; make no sense: these events are dropped, and all windows stay.
+;;; CLIM has one thread that reads the events of all windows. When the X server goes, that thread is
+;;; the first to know; it must not take Lisp along. But not all errors there mean that: CLIM asks
+;;; the server about windows that have just been closed, and other programs may send events that
+;;; make no sense. These events are dropped, and all windows stay.
 
 (defun windows-on (port)
   (with-lock (*windows-lock*)
