@@ -5,7 +5,7 @@
 (in-suite clim)
 
 ;;; The server is Xvfb, which shows nothing anywhere. The tests look at what is on its screen as a
-;;; second client, and wait by asking the window's thread, never by the clock.
+;;; second client, and wait by asking the window's thread; its start is looked for repeatedly.
 
 (defun start-x-server ()
   "Start an X server; return its process and the number of its display."
@@ -247,7 +247,7 @@
             (run:stop-clock simulation)))))))
 
 (test x-server.windows-can-be-opened-anew-after-it-has-gone
-  "Ten X servers die under two windows of a run, which goes on."
+  "Ten X servers, one after the other, are killed under a window of a run, which goes on."
   (in-studio (robot)
     (let ((simulation (time:current-simulation)) (tick 0))
       (run:start-clock simulation :rate :free)
