@@ -287,7 +287,8 @@
                  (:file "popup") (:file "pointing") (:file "interactor") (:file "offers")
                  (:file "plan-mouse") (:file "world-mouse") (:file "keys") (:file "help")
                  (:file "robots") (:file "window") (:file "line-menus") (:file "commands")
-                 (:file "opening") (:file "following")))))
+                 (:file "opening") (:file "x-server")
+                 (:file "following")))))
 
 (defsystem "ars-magna/fiveam"
   :description "Checks for regression suites: plans that are held to their rates of success."
@@ -318,7 +319,8 @@
   :components ((:module "tests" :serial t
                 :components ((:file "clim-window") (:file "clim-layout") (:file "clim-pointing")
                              (:file "clim-progress") (:file "clim-plans")
-                             (:file "clim-talking") (:file "clim-going-on")))))
+                             (:file "clim-talking") (:file "clim-going-on")
+                             (:file "clim-x-server")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."

@@ -6,8 +6,12 @@
 
 (defun talk-in (window &rest lines)
   "Let LINES be entered in WINDOW, and wait until its prompt is over; QUIT is to be the last."
+  (apply #'talk-as 'studio-robot window lines))
+
+(defun talk-as (robot window &rest lines)
+  "Do what TALK-IN does in WINDOW, which commands ROBOT, the name of one."
   (let ((conversation (window::window-conversation window)))
-    (window::start-conversation conversation (time:current-simulation) 'studio-robot)
+    (window::start-conversation conversation (time:current-simulation) robot)
     (dolist (line lines) (window::give-line conversation line))
     (base:join-thread (window::conversation-thread conversation))
     (said-in window)))
@@ -119,6 +123,48 @@
         (give :return)
         (base:join-thread (window::conversation-thread conversation))
         (is (said-p "quit"))))))
+
+(defvar *typed* nil "A semaphore that a line waits for.")
+
+(defun wait-for-typing () (base:wait-on-semaphore *typed* 60))
+
+(test talking.lines-that-were-entered-are-not-replaced-by-what-is-typed-then
+  (in-window (window robot)
+    (let ((conversation (window::window-conversation window)))
+      (setf *typed* (base:make-semaphore "typed"))
+      (window::start-conversation conversation (time:current-simulation) 'studio-robot)
+      (window::give-line conversation "(ars-magna.tests::wait-for-typing)")
+      (window::give-line conversation "(+ 20 2)")
+      (window::give-key conversation "x")
+      (window::give-line conversation "(+ 30 3)")
+      (base:signal-semaphore *typed*)
+      (window::give-line conversation "quit")
+      (base:join-thread (window::conversation-thread conversation))
+      (let ((said (said-in window)))
+        (dolist (answer '("22" "33"))
+          (is (mentions-p said (format nil "~%~A~%" answer))))))))
+
+(test talking.each-window-commands-its-own-robot
+  "A line that is typed in one window never drives another one's robot."
+  (with-own-definitions
+    (eval '(world:defmap pair-room (9 9) (rect (0 0) (8 8) bricks 10)))
+    (eval '(robot:defrobot castor (pair-room (2.5 2.5) 0)))
+    (eval '(robot:defrobot pollux (pair-room (6.5 6.5) 0)))
+    (run:call-with-simulation
+     (lambda ()
+       (destructuring-bind (one other) (run:simulation-robots)
+         (call-with-window
+          (lambda (first)
+            (call-with-window
+             (lambda (second)
+               (talk-as (robot:robot-name other) second "turn 2" "quit")
+               (talk-as (robot:robot-name one) first "turn 1" "quit")
+               (run:run-ticks 100)
+               (is (near 1 (robot:robot-angle one) 1/2))
+               (is (near 2 (robot:robot-angle other) 1/2)))
+             other))
+          one)))
+     '(castor pollux))))
 
 ;;; Keys.
 

@@ -7,6 +7,7 @@
 
 (defvar *windows* '() "The windows that are open.")
 (defvar *windows-lock* (make-lock "windows"))
+(defvar *ports* '() "CLIM's ports that windows have come to.")
 
 (defun find-window (name)
   "Return the open window of the robot called NAME, or NIL."
@@ -137,26 +138,6 @@ else, if its user has chosen another one of the same run, that that is shown."
 (defmethod clim:run-frame-top-level :before ((window robot-window) &key &allow-other-keys)
   (painted (window-watcher window)))
 
-;;; The X server may go. CLIM's thread that reads events from it must not take Lisp along.
-
-(defun windows-on (port)
-  (with-lock (*windows-lock*)
-    (remove port *windows* :key #'clim:port :test-not #'eq)))
-
-(defun lose-port (port condition)
-  "Close the windows on PORT, whose X server has gone; end the thread that reads its events."
-  (let ((windows (windows-on port)))
-    (when windows
-      (dolist (window windows)
-        (warn-of-closing window condition)
-        (close-window window))
-      (ignore-errors (clim:destroy-port port))
-      (abort))))
-
-(defmethod clim:process-next-event :around ((port clim:basic-port) &key &allow-other-keys)
-  (handler-bind ((error (lambda (condition) (lose-port port condition))))
-    (call-next-method)))
-
 ;;; Opening.
 
 (defun x-server-named-p ()
@@ -181,6 +162,7 @@ else, if its user has chosen another one of the same run, that that is shown."
          (watcher (make-watcher (robot-name robot)
                                 (lambda () (when window (request-refresh window)))
                                 (lambda (reason) (when window (leave-run window reason))))))
+    (with-lock (*windows-lock*) (pushnew port *ports*))
     (make-menu-bar)
     (start-watching watcher simulation)
     (setf window (make-robot-window watcher :frame-manager (clim:find-frame-manager :port port)))

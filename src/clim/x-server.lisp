@@ -1,0 +1,47 @@
+;;;; x-server.lisp -- what goes wrong with the X server, and which of that ends windows.
+
+(in-package :ars-magna.clim)
+
+;;; CLIM has one thread that reads the events of all windows. When the X server goes, that thread is
+;;; the first to know; it must not take Lisp along. But not all errors there mean that: CLIM asks
+;;; the server about windows that have just been closed, and other programs may send events that
+;;; make no sense. These events are dropped, and all windows stay.
+
+(defun windows-on (port)
+  (with-lock (*windows-lock*)
+    (remove port *windows* :key #'clim:port :test-not #'eq)))
+
+(defun forget-port (port)
+  "Count PORT as gone; true if windows had come to it, though they may have closed since."
+  (with-lock (*windows-lock*)
+    (when (member port *ports*)
+      (setf *ports* (remove port *ports*))
+      t)))
+
+(defun lose-port (port condition)
+  "Close the windows on PORT, whose X server has gone; end the thread that reads its events."
+  (when (forget-port port)
+    (dolist (window (windows-on port))
+      (warn-of-closing window condition)
+      (close-window window))
+    (ignore-errors (clim:destroy-port port))
+    (abort)))
+
+(defun of-one-event-p (condition)
+  "True if CONDITION came of a single event, and says nothing of the connection to the X server."
+  (typep condition '(or xlib:request-error xlib:lookup-error type-error)))
+
+;; CLX keeps an event that led to an error, and would come to it again.
+(defgeneric drop-event (port)
+  (:documentation "Forget the event that PORT is reading.")
+  (:method ((port clim:basic-port)))
+  (:method ((port clim-clx:clx-port))
+    (xlib:discard-current-event (clim-clx:clx-port-display port))))
+
+(defmethod clim:process-next-event :around ((port clim:basic-port) &key &allow-other-keys)
+  (handler-bind ((error (lambda (condition)
+                          (cond ((of-one-event-p condition)
+                                 (drop-event port)
+                                 (return-from clim:process-next-event t))
+                                (t (lose-port port condition))))))
+    (call-next-method)))

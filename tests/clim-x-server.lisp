@@ -1,0 +1,265 @@
+;;;; clim-x-server.lisp -- the window on an X server of the tests' own. See clim.lisp.
+
+(in-package :ars-magna.tests)
+
+(in-suite clim)
+
+;;; The server is Xvfb, which shows nothing anywhere. The tests look at what is on its screen as a
+;;; second client, and wait by asking the window's thread; its start is looked for repeatedly.
+
+(defun start-x-server ()
+  "Start an X server; return its process and the number of its display."
+  (let ((process (uiop:launch-program '("Xvfb" "-displayfd" "1" "-screen" "0" "1300x900x24"
+                                        "-nolisten" "tcp")
+                                      :output :stream)))
+    (values process (parse-integer (read-line (uiop:process-info-output process))))))
+
+(defvar *display-number* nil "The number of the X server's display.")
+
+(defun call-with-x-server (function)
+  "Call FUNCTION while an X server runs, which is the one that new windows come to."
+  (multiple-value-bind (process *display-number*) (start-x-server)
+    (let ((before (or (uiop:getenv "DISPLAY") "")))
+      (setf (uiop:getenv "DISPLAY") (format nil ":~D" *display-number*))
+      (unwind-protect (funcall function)
+        (setf (uiop:getenv "DISPLAY") before)
+        (uiop:terminate-process process :urgent t)
+        (uiop:wait-process process)))))
+
+(defun program-found-p (name)
+  (zerop (nth-value 2 (uiop:run-program (list "sh" "-c" (format nil "command -v ~A" name))
+                                        :ignore-error-status t))))
+
+(defmacro with-x-server (() &body body)
+  "Run BODY while an X server runs; where there is no Xvfb, skip the test and say so."
+  `(if (program-found-p "Xvfb")
+       (call-with-x-server (lambda () ,@body))
+       (skip "Xvfb is not installed: what is on the window's screen is not tested.")))
+
+(defun end-window (window)
+  (window:close-window window)
+  (base:join-thread (window::window-thread window)))
+
+(defmacro in-x-window ((window robot) &body body)
+  "Run BODY with WINDOW, of the studio's ROBOT, on the screen of an X server; its run is live."
+  `(with-x-server ()
+     (in-studio (,robot)
+       (run:start-clock (time:current-simulation) :rate :free)
+       (unwind-protect
+            (let ((,window (window:open-window ,robot)))
+              (unwind-protect (progn (await-window ,window) ,@body)
+                (end-window ,window)))
+         (run:stop-clock (time:current-simulation))))))
+
+;;; What the window's thread does for us.
+
+(defclass window-errand (clim:window-manager-event)
+  ((function :initarg :function :reader window-errand-function))
+  (:documentation "Something that the window's thread is to do."))
+
+(defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event window-errand))
+  (funcall (window-errand-function event)))
+
+(defun run-in-window (window function)
+  "Let the thread of WINDOW call FUNCTION, after what it had to do before; return its value."
+  (let ((done (base:make-semaphore "done")) (sheet (clim:frame-top-level-sheet window)) value)
+    (clim:queue-event sheet (make-instance 'window-errand
+                                           :sheet sheet
+                                           :function (lambda ()
+                                                       (setf value (funcall function))
+                                                       (base:signal-semaphore done))))
+    (unless (base:wait-on-semaphore done 60) (error "The window does not answer."))
+    value))
+
+(defmacro inside ((window) &body body)
+  "Let the thread of WINDOW run BODY; return its value."
+  `(run-in-window ,window (lambda () ,@body)))
+
+(defvar *never-comes* (base:make-semaphore "never") "Nobody signals it.")
+
+(defun await-window (window)
+  "Wait until WINDOW can be asked, and is on the screen."
+  (loop until (clim:frame-top-level-sheet window) do (base:wait-on-semaphore *never-comes* 0.01))
+  (loop until (inside (window) (clim:sheet-grafted-p (pane window 'window::world)))))
+
+;;; What is on the screen.
+
+(defun seek-x-window (name x-window)
+  "Return the X window called NAME that is, or is below, X-WINDOW; NIL if there is none."
+  (if (equal name (ignore-errors (xlib:wm-name x-window)))
+      x-window
+      (some (lambda (child) (seek-x-window name child)) (xlib:query-tree x-window))))
+
+(defun call-as-other-client (function window)
+  "Call FUNCTION with the X window of WINDOW, as a second client of the X server knows it."
+  (let ((display (xlib:open-display "" :display *display-number*)))
+    (unwind-protect
+         (funcall function (seek-x-window (clim:frame-pretty-name window)
+                                          (xlib:screen-root (xlib:display-default-screen
+                                                             display))))
+      (xlib:close-display display))))
+
+(defun corner-of (pane)
+  "Return how far right and down in its X window PANE begins, in pixels."
+  (clim:transform-position (clim:sheet-delta-transformation
+                            pane (clim:frame-top-level-sheet (clim:pane-frame pane)))
+                           0 0))
+
+(defun shown-on-screen (window name)
+  "Return the pixels of the pane of WINDOW called NAME, four bytes each, and its width."
+  (let ((pane (pane window name)) (size nil) (corner nil))
+    (inside (window)
+      (window:refresh window)
+      (setf size (multiple-value-list (window::pane-size pane))
+            corner (multiple-value-list (corner-of pane)))
+      (clim:medium-finish-output (clim:sheet-medium pane)))
+    (values (call-as-other-client
+             (lambda (x-window)
+               (xlib:get-raw-image x-window :x (round (first corner)) :y (round (second corner))
+                                            :width (first size) :height (second size)
+                                            :format :z-pixmap))
+             window)
+            (first size))))
+
+(defun pixel-at (image width x y)
+  (loop for position from (* 4 (+ x (* width y))) repeat 3 for shift from 0 by 8
+        sum (ash (aref image position) shift)))
+
+;;; The tests.
+
+(test screen.what-went-leaves-nothing-behind
+  "Designators that have gone are not to be seen any more."
+  (in-x-window (window robot)
+    (inside (window) (lay-out window 640 480))
+    (flet ((look ()
+             (time:asking (robot)
+               (window::publish (window:window-watcher window) (time:current-simulation)))
+             (shown-on-screen window 'window::designators)))
+      (let ((before (look)))
+        (time:asking (robot) (dotimes (count 40) (robot:add-designator robot :x 2 :y 2)))
+        (is (not (equalp before (look))))
+        (time:asking (robot)
+          (mapc #'robot:drop-designator (robot:live-designators robot)))
+        (is (equalp before (look)))))))
+
+(defun resize-from-outside (window width height)
+  "Make WINDOW WIDTH times HEIGHT pixels as a window manager would; wait until it is laid out so."
+  (call-as-other-client (lambda (x-window)
+                          (setf (xlib:drawable-width x-window) width
+                                (xlib:drawable-height x-window) height)
+                          (xlib:display-finish-output (xlib:window-display x-window)))
+                        window)
+  (loop until (= width (inside (window) (window::pane-size (pane window 'window::interactor))))))
+
+(defun share-of-black (window name)
+  (multiple-value-bind (image width) (shown-on-screen window name)
+    (let ((count (floor (length image) 4)))
+      (/ (loop for x below count count (zerop (pixel-at image width x 0))) count))))
+
+(test screen.what-is-widened-is-not-black
+  "Where one types, and elsewhere."
+  (in-x-window (window robot)
+    (loop for (width height) in '((640 480) (1280 880) (700 500) (1200 700))
+          do (resize-from-outside window width height)
+             (dolist (name '(window::interactor window::transcript window::state window::strip
+                             window::bar window::designators))
+               (is (< (share-of-black window name) 1/5))))))
+
+(defun column-inked-p (image width x top bottom)
+  (loop for y from top below bottom thereis (/= #xFFFFFF (pixel-at image width x y))))
+
+(defun row-inked-p (image width y left right)
+  (loop for x from left below right thereis (/= #xFFFFFF (pixel-at image width x y))))
+
+(test screen.a-circle-in-a-cell-has-all-its-sides
+  "Manual B.1: draw-arc with the cell's corner and graphics-scale*, as wide and high as the cell."
+  (in-x-window (window robot)
+    (eval '(world:def-place-type doorway (cell)
+            :check-matchers ((((* - *) (* - *) (* - *)) 0))
+            :graphics ((win cx cy)
+                       (canvas:draw-arc win canvas:draw-gcontext* cx cy canvas:graphics-scale*
+                        canvas:graphics-scale* 0 (* 2 pi)))))
+    (inside (window) (painted-world window))
+    (multiple-value-bind (image width) (shown-on-screen window 'window::world)
+      (is-true (column-inked-p image width 80 32 40))
+      (is-true (column-inked-p image width 87 32 40))
+      (is-true (row-inked-p image width 32 80 88))
+      (is-true (row-inked-p image width 39 80 88)))))
+
+(defun turn-over-and-over (robot)
+  (command:robot-turn robot 3 (lambda (err robot angle)
+                                (declare (ignore angle))
+                                (unless err (turn-over-and-over robot)))))
+
+(test screen.pictures-go-on-while-ticks-pass-as-fast-as-they-can
+  "How many come in a second is measured by tests/benchmarks/window-figures.lisp."
+  (in-x-window (window robot)
+    (turn-over-and-over robot)
+    (loop with seen = nil with count = 0
+          repeat 100000 until (= count 60)
+          do (let ((shown (inside (window) (window::window-painted window))))
+               (unless (eq shown seen) (setf seen shown) (incf count)))
+          finally (is (= 60 count)))))
+
+;;; Trouble with the X server.
+
+(defclass quarrelsome-port (clim:basic-port)
+  ((trouble :initarg :trouble :reader port-trouble))
+  (:documentation "A port in which each event leads to an error."))
+
+(defmethod clim:process-next-event ((port quarrelsome-port) &key &allow-other-keys)
+  (error (port-trouble port)))
+
+(defun window-outlives-p (trouble)
+  "True if a window stays when TROUBLE comes up in the thread that reads its port's events."
+  (let ((port (make-instance 'quarrelsome-port :trouble trouble :server-path '(:quarrel))))
+    (handler-case (clim:process-next-event port)
+      (error () nil))))
+
+(test x-server.events-that-make-no-sense-are-dropped
+  "CLIM asks about windows that have just been closed; other programs send what they like."
+  (is-true (window-outlives-p (make-condition 'xlib:window-error :display nil :error-key 'window)))
+  (is-true (window-outlives-p (make-condition 'type-error :datum 1770009600
+                                                          :expected-type '(unsigned-byte 29))))
+  (is-false (window-outlives-p (make-condition 'xlib:closed-display :display nil)))
+  (is-false (window-outlives-p (make-condition 'end-of-file))))
+
+(test x-server.closing-a-window-leaves-the-others
+  (with-x-server ()
+    (with-own-definitions
+      (eval '(world:defmap pair-room (9 9) (rect (0 0) (8 8) bricks 10)))
+      (eval '(robot:defrobot castor (pair-room (2.5 2.5) 0)))
+      (eval '(robot:defrobot pollux (pair-room (6.5 6.5) 0)))
+      (run:with-simulation ((castor pollux))
+        (let ((simulation (time:current-simulation)) window)
+          (run:start-clock simulation :rate :free)
+          (mapc #'turn-over-and-over (run:simulation-robots simulation))
+          (unwind-protect
+               (destructuring-bind (one other) (run:simulation-robots simulation)
+                 (setf window (window:open-window one))
+                 (await-window window)
+                 (dotimes (count 12)
+                   (let ((second (window:open-window other)))
+                     (await-window second)
+                     (end-window second)))
+                 (is (eq window (window:find-window (robot:robot-name one)))))
+            (end-window window)
+            (run:stop-clock simulation)))))))
+
+(test x-server.windows-can-be-opened-anew-after-it-has-gone
+  "Ten X servers, one after the other, are killed under a window of a run, which goes on."
+  (in-studio (robot)
+    (let ((simulation (time:current-simulation)) (tick 0))
+      (run:start-clock simulation :rate :free)
+      (turn-over-and-over robot)
+      (unwind-protect
+           (dotimes (count 10)
+             (let (window)
+               (with-x-server ()
+                 (setf window (window:open-window robot))
+                 (await-window window))
+               (base:join-thread (window::window-thread window))
+               (is (null (window:find-window 'studio-robot)))
+               (is (time:live-p simulation))
+               (is (< tick (setf tick (run:simulation-tick simulation))))))
+        (run:stop-clock simulation)))))
