@@ -26,7 +26,7 @@
   "Let LINES wait after those of AHEAD."
   (setf (ahead-lines ahead) (append (ahead-lines ahead) lines)))
 
-(defun take-back (ahead)
+(defun type-last-again (ahead)
   "Let the last line of AHEAD that waits be typed again, instead of nothing."
   (let ((line (first (last (ahead-lines ahead)))))
     (when line
@@ -51,7 +51,7 @@ line is before the first."
   "Do to AHEAD what KEY does. ENTRIES, the newest first, were entered before its lines."
   (cond ((stringp key) (insert-ahead ahead key))
         ((consp key) (press-given-ahead ahead (first key) (second key)))
-        ((and (eq key :rubout) (string= "" (ahead-text ahead))) (take-back ahead))
+        ((and (eq key :rubout) (string= "" (ahead-text ahead))) (type-last-again ahead))
         ((change-of key) (multiple-value-call #'change-ahead ahead
                            (funcall (change-of key) (ahead-text ahead) (ahead-point ahead))))
         (t (case key
