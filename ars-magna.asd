@@ -280,7 +280,8 @@
                  (:file "prompt") (:file "plan-pane") (:file "layout-pane") (:file "titles")
                  (:file "splitters") (:file "bar") (:file "strip")
                  (:file "popup") (:file "pointing") (:file "interactor") (:file "offers")
-                 (:file "plan-mouse") (:file "world-mouse") (:file "keys") (:file "help")
+                 (:file "plan-mouse") (:file "world-mouse") (:file "keys") (:file "keyboard")
+                 (:file "help")
                  (:file "robots") (:file "window") (:file "line-menus") (:file "commands")
                  (:file "opening") (:file "following")))))
 
@@ -313,7 +314,7 @@
   :components ((:module "tests" :serial t
                 :components ((:file "clim-window") (:file "clim-layout") (:file "clim-pointing")
                              (:file "clim-progress") (:file "clim-plans")
-                             (:file "clim-talking")))))
+                             (:file "clim-talking") (:file "clim-keyboard")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
