@@ -127,7 +127,10 @@ close."
       (abort))))
 
 (defmethod clim:process-next-event :around ((port clim:basic-port) &key &allow-other-keys)
-  (handler-bind ((error (lambda (condition) (lose-port port condition))))
+  ;; McCLIM warns of what the X server could not do at once, such as to give keys to a window that
+  ;; is just being hidden. That is nobody's fault, and nothing for the terminal.
+  (handler-bind ((error (lambda (condition) (lose-port port condition)))
+                 (warning #'muffle-warning))
     (call-next-method)))
 
 ;;; Opening.
