@@ -24,7 +24,7 @@
   (is (null (symbol-of *symbols-of-two* #x80))))
 
 (test keyboard.mcclim-asks-us
-  (is (eq #'window::read-key (fdefinition 'clim-xcommon:x-event-to-key-name-and-modifiers))))
+  (is (eq #'window::read-key (fdefinition window::*key-reader*))))
 
 (defun typed-with (window &rest keys)
   "Return what WINDOW types when KEYS are pressed, which are characters or names of keys."

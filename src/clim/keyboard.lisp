@@ -29,8 +29,17 @@ own. SYMBOL-AT is a function from the place of a symbol in X's list for the key.
         ;; The symbols of all other characters are made of their codes.
         ((< #x1000000 symbol #x1110000) (code-char (- symbol #x1000000)))))
 
-(defvar *mcclim-reads-key* #'clim-xcommon:x-event-to-key-name-and-modifiers
-  "McCLIM's own function for the character, modifiers and name of a key.")
+(defun key-function (name)
+  "Return the symbol of McCLIM's function NAME about X's keys, or NIL: versions differ."
+  (let* ((package (find-package "CLIM-XCOMMON"))
+         (symbol (and package (find-symbol name package))))
+    (and symbol (fboundp symbol) symbol)))
+
+(defvar *key-reader* (key-function "X-EVENT-TO-KEY-NAME-AND-MODIFIERS")
+  "McCLIM's name for its function for the character, modifiers and name of a key, or NIL.")
+
+(defvar *mcclim-reads-key* (and *key-reader* (fdefinition *key-reader*))
+  "That function itself, as it was.")
 
 (defun read-key (port kind code state)
   "Return character, modifiers and name of the key CODE that was pressed or released, by KIND, in
@@ -41,10 +50,11 @@ STATE."
                                  (or (ignore-errors (xlib:keycode->keysym display code index)) 0))
                                state)))
     (if symbol
-        (values (symbol-character display symbol) 0 (clim-xcommon:keysym-to-keysym-name symbol))
+        (values (symbol-character display symbol) 0
+                (funcall (key-function "KEYSYM-TO-KEYSYM-NAME") symbol))
         (funcall *mcclim-reads-key* port kind code state))))
 
-(setf (fdefinition 'clim-xcommon:x-event-to-key-name-and-modifiers) #'read-key)
+(when *key-reader* (setf (fdefinition *key-reader*) #'read-key))
 
 ;;; Dead keys.
 
