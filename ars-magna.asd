@@ -285,7 +285,8 @@
                  (:file "prompt") (:file "plan-pane") (:file "layout-pane") (:file "titles")
                  (:file "splitters") (:file "bar") (:file "strip")
                  (:file "popup") (:file "pointing") (:file "interactor") (:file "offers")
-                 (:file "plan-mouse") (:file "world-mouse") (:file "keys") (:file "help")
+                 (:file "plan-mouse") (:file "world-mouse") (:file "keys") (:file "keyboard")
+                 (:file "help")
                  (:file "robots") (:file "window") (:file "line-menus") (:file "commands")
                  (:file "opening") (:file "x-server")
                  (:file "following")))))
@@ -320,7 +321,7 @@
                 :components ((:file "clim-window") (:file "clim-layout") (:file "clim-pointing")
                              (:file "clim-progress") (:file "clim-plans")
                              (:file "clim-talking") (:file "clim-going-on")
-                             (:file "clim-x-server")))))
+                             (:file "clim-x-server") (:file "clim-keyboard")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."

@@ -152,8 +152,11 @@ defined twice, that a package has grown since it was defined."
 (defun ensure-window-libraries ()
   "Let ASDF find McCLIM, which Quicklisp fetches if need be."
   (when (missing-p "mcclim/looks")
-    (load (quicklisp-file))
-    (uiop:symbol-call :quicklisp :quickload "mcclim/looks")))
+    (handler-case (progn (load (quicklisp-file))
+                         (uiop:symbol-call :quicklisp :quickload "mcclim/looks"))
+      (error (condition)
+        (format t "~&*** Quicklisp cannot get or load McCLIM: ~A~%" condition)
+        (uiop:quit 2)))))
 
 ;;; The prompt.
 

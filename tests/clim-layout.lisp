@@ -157,6 +157,9 @@
     (let ((pane (pane window 'window::world)))
       (flet ((filled-p ()
                (multiple-value-bind (width height) (window::pane-size pane)
+                 (destructuring-bind (left top bottom) (window::fit-margins pane)
+                   (decf width left)
+                   (decf height (+ top bottom)))
                  (let ((scale (window::pane-scale pane)))
                    (and (<= (* 20 scale) width) (<= (* 10 scale) height)
                         (or (> (* 20 (1+ scale)) width) (> (* 10 (1+ scale)) height)
@@ -170,6 +173,20 @@
           (is (= scale (window::pane-scale pane))))
         (window::fit pane)
         (is (filled-p))))))
+
+(test view.leaves-room-for-what-stands-at-its-edges
+  "Numbers and scale bar cover nothing of a map that is in view as a whole."
+  (in-window (window robot)
+    (let ((pane (pane window 'window::world)))
+      (loop for (width height) in *window-sizes*
+            do (lay-out window width height)
+               (let ((bottom (- (* 10 (window::pane-scale pane)) (window::pane-top pane)))
+                     (room (nth-value 1 (window::pane-size pane))))
+                 (is (<= (window::pane-left pane) -27))
+                 (is (<= (window::pane-top pane) -16))
+                 (is (<= bottom (- room 28)))))
+      (setf (window:window-layers window) '())
+      (is (equal '(0 0 0) (window::fit-margins pane))))))
 
 (test view.follows-the-robot-if-asked
   (in-window (window robot)

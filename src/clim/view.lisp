@@ -56,14 +56,23 @@
   (let ((scale (min (/ width (map-width map)) (/ height (map-height map)))))
     (clamp (if (< scale 4) (/ (floor scale 1/4) 4) (floor scale)) 1 64)))
 
+(defun fit-margins (pane)
+  "Return how many pixels at the left, top and bottom of PANE its coordinates and scale bar take, so
+that they cover nothing of a map that is in view as a whole."
+  (let* ((layers (window-layers (window-of pane)))
+         (numbers-p (member :coordinates layers)))
+    (list (if numbers-p 27 0) (if numbers-p 16 0) (if (member :scale-bar layers) 28 0))))
+
 (defun fit-view (pane)
-  "Let the whole map be in view in the middle of PANE."
+  "Let the whole map be in view in the middle of PANE, but for what stands at its edges."
   (multiple-value-bind (width height) (pane-size pane)
-    (let* ((map (view-map pane)) (scale (fitting-scale map width height)))
-      (flet ((margin (size cells) (- (floor (max 0 (- size (* scale cells))) 2))))
-        (setf (pane-scale pane) scale
-              (pane-left pane) (margin width (map-width map))
-              (pane-top pane) (margin height (map-height map)))))))
+    (destructuring-bind (left top bottom) (fit-margins pane)
+      (let* ((width (- width left)) (height (- height top bottom)) (map (view-map pane))
+             (scale (fitting-scale map width height)))
+        (flet ((rest-of (size cells) (floor (max 0 (- size (* scale cells))) 2)))
+          (setf (pane-scale pane) scale
+                (pane-left pane) (- (+ left (rest-of width (map-width map))))
+                (pane-top pane) (- (+ top (rest-of height (map-height map))))))))))
 
 (defun fit (pane)
   "Let the whole map be in view in PANE, also when its size changes."
@@ -113,7 +122,7 @@
 (defun prepare-view (pane)
   "Let the view of PANE be where it should be for its next picture."
   (multiple-value-bind (width height) (pane-size pane)
-    (let ((key (list width height (view-map pane))))
+    (let ((key (list width height (view-map pane) (fit-margins pane))))
       (obey-scale pane)
       (cond ((pane-fitting-p pane)
              (unless (equal key (pane-fitted pane)) (fit-view pane)))

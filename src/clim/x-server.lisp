@@ -38,8 +38,11 @@
   (:method ((port clim-clx:clx-port))
     (xlib:discard-current-event (clim-clx:clx-port-display port))))
 
+;; McCLIM warns of what the server could not do at once, such as to give keys to a window that is
+;; just being hidden. That is nobody's fault, and nothing for the terminal.
 (defmethod clim:process-next-event :around ((port clim:basic-port) &key &allow-other-keys)
-  (handler-bind ((error (lambda (condition)
+  (handler-bind ((warning #'muffle-warning)
+                 (error (lambda (condition)
                           (cond ((of-one-event-p condition)
                                  (drop-event port)
                                  (return-from clim:process-next-event t))

@@ -1,0 +1,120 @@
+;;;; keyboard.lisp -- what keyboards type that are not American: characters of AltGr, and dead keys.
+
+(in-package :ars-magna.clim)
+
+;;; X lists what a key means: by itself, with shift, the same twice more for a second layout, and
+;;; then with AltGr. McCLIM looks at the first four only, so that a German keyboard would have
+;;; neither { nor |. Nor does it put an accent on the character that follows a dead key. What it
+;;; calls by name is a key symbol, a number, of X.
+
+(define-constant +altgr+ #x80 :documentation "The bit in the state of X's keyboard for AltGr.")
+
+(defun altgr-symbol (symbol-at state)
+  "Return the symbol of a key that is pressed with AltGr, by STATE, or NIL if it has none of its
+own. SYMBOL-AT is a function from the place of a symbol in X's list for the key."
+  (flet ((own (index)
+           (let ((symbol (funcall symbol-at index)))
+             (and (plusp symbol) (/= symbol (funcall symbol-at 0)) symbol))))
+    (and (logtest +altgr+ state)
+         ;; With a second layout, X says by the same bit that it is in use.
+         (eql (funcall symbol-at 0) (funcall symbol-at 2))
+         (or (and (logtest 1 state) (own 5)) (own 4)))))
+
+(define-constant +euro-symbol+ #x20AC :documentation "X's symbol for the sign of the Euro.")
+
+(defun symbol-character (display symbol)
+  "Return the character of a SYMBOL of X, or NIL."
+  (cond ((xlib:keysym->character display symbol))
+        ((= symbol +euro-symbol+) (code-char symbol))
+        ;; The symbols of all other characters are made of their codes.
+        ((< #x1000000 symbol #x1110000) (code-char (- symbol #x1000000)))))
+
+(defun key-function (name)
+  "Return the symbol of McCLIM's function NAME about X's keys, or NIL: versions differ."
+  (let* ((package (find-package "CLIM-XCOMMON"))
+         (symbol (and package (find-symbol name package))))
+    (and symbol (fboundp symbol) symbol)))
+
+(defvar *key-reader* (key-function "X-EVENT-TO-KEY-NAME-AND-MODIFIERS")
+  "McCLIM's name for its function for the character, modifiers and name of a key, or NIL.")
+
+(defvar *mcclim-reads-key* (and *key-reader* (fdefinition *key-reader*))
+  "That function itself, as it was.")
+
+(defun read-key (port kind code state)
+  "Return character, modifiers and name of the key CODE that was pressed or released, by KIND, in
+STATE."
+  (let* ((display (clim-clx:clx-port-display port))
+         (symbol (altgr-symbol (lambda (index)
+                                 ;; The list may be shorter.
+                                 (or (ignore-errors (xlib:keycode->keysym display code index)) 0))
+                               state)))
+    (if symbol
+        (values (symbol-character display symbol) 0
+                (funcall (key-function "KEYSYM-TO-KEYSYM-NAME") symbol))
+        (funcall *mcclim-reads-key* port kind code state))))
+
+(when *key-reader* (setf (fdefinition *key-reader*) #'read-key))
+
+;;; Dead keys.
+
+(defparameter *dead-keys*
+  '((:dead-grave #\` "aàeèiìoòuùAÀEÈIÌOÒUÙ")
+    (:dead-acute #\' "aáeéiíoóuúyýcćnńsśzźAÁEÉIÍOÓUÚYÝCĆNŃSŚZŹ")
+    (:dead-circumflex #\^ "aâeêiîoôuûAÂEÊIÎOÔUÛ")
+    (:dead-tilde #\~ "aãnñoõAÃNÑOÕ")
+    (:dead-diaeresis #\" "aäeëiïoöuüyÿAÄEËIÏOÖUÜ")
+    (:dead-cedilla #\, "cçsşCÇSŞ")
+    (:dead-caron #\^ "cčeěnňrřsšzžCČEĚNŇRŘSŠZŽ")
+    (:dead-abovering #\* "aåuůAÅUŮ"))
+  "Lists (name character pairs): McCLIM's name of a dead key, what it types before a space, and the
+letters that it changes, each before what it becomes.")
+
+(defun dead-key (name) (assoc name *dead-keys*))
+
+(defun composed (dead character)
+  "Return, as a string, what CHARACTER, typed after the dead key of the list DEAD, gives."
+  (destructuring-bind (own pairs) (rest dead)
+    (let ((letter (loop for index from 0 below (length pairs) by 2
+                        when (char= character (char pairs index))
+                          return (char pairs (1+ index)))))
+      (cond (letter (string letter))
+            ((char= character #\Space) (string own))
+            (t (format nil "~C~C" own character))))))
+
+(defvar *dead-key* nil
+  "What *DEAD-KEYS* says of the dead key that waits for a character, or NIL. There is but one
+keyboard.")
+
+(defun key-press (character event)
+  "Return the event that CHARACTER was typed where EVENT was."
+  (make-instance 'clim:key-press-event
+                 :sheet (clim:event-sheet event) :key-name (make-keyword (string character))
+                 :key-character character :modifier-state 0
+                 :x 0 :y 0 :timestamp (clim:event-timestamp event)))
+
+(defun wait-after (name character)
+  "Note whether a dead key waits now that the key NAME, of CHARACTER or NIL, was pressed. Return the
+one that has waited before, and the one that NAME is; of either NIL, if there is none."
+  (let ((before *dead-key*) (now (dead-key name)))
+    ;; Keys like shift have no character, and leave a dead key waiting.
+    (when (or now character)
+      (setf *dead-key* (if (eq now before) nil now)))
+    (values before now)))
+
+(defun after-dead-key (event)
+  "Return the events that EVENT, of a key that was pressed, counts as, since a dead key may wait."
+  (let ((character (clim:keyboard-event-character event)))
+    (multiple-value-bind (before now)
+        (wait-after (clim:keyboard-event-key-name event) character)
+      (flet ((typed (text)
+               (map 'list (lambda (character) (key-press character event)) text)))
+        (cond (now (typed (if before (string (second before)) "")))
+              ((and before character (graphic-char-p character) (not (modified-p event)))
+               (typed (composed before character)))
+              (t (list event)))))))
+
+(defmethod clim:distribute-event :around ((port clim:basic-port) (event clim:key-press-event))
+  (if (robot-window-of (clim:event-sheet event))
+      (dolist (event (after-dead-key event)) (call-next-method port event))
+      (call-next-method)))
