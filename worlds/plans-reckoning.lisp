@@ -84,11 +84,22 @@ MISUSE if ME is over: see BEGIN-RECKONING."
     (list (+ x (* distance (cos (reckoning-heading me))))
           (+ y (* distance (sin (reckoning-heading me)))))))
 
+;;; The way that pictures show.
+
+(defun robot-of (me)
+  "Return the robot of ME."
+  (ars-magna.robot:odometer-robot (reckoning-odometer me)))
+
+(defun show-way (me points)
+  "Let pictures show POINTS as the way that the robot of ME is about to take; () for none."
+  (publish-way (robot-of me) points))
+
 ;;; What is in the way. The chart has the cells as they are barred now, the reckoning until when.
 
 (defun bar-on-chart (me)
-  "Let the chart of ME have what the robot remembers to be barred, up to 90 for a cell, and no
-more."
+  "Let the chart of ME have what the robot remembers to be barred, up to 90 for a cell, and no more.
+The way that was shown need not be the best any more."
+  (show-way me '())
   (let ((chart (reckoning-chart me)) (sums '()))
     (loop for (cell cost) in (reckoning-barred me)
           for sum = (assoc cell sums :test #'equal)
@@ -122,17 +133,22 @@ more."
       (bar-on-chart me)))
   (reckoning-chart me))
 
-(defun show-way (me points)
-  "Let pictures show POINTS as the way that the robot of ME is about to take; () for none."
-  (publish-way (ars-magna.robot:odometer-robot (reckoning-odometer me)) points))
+(defun shown-to-p (me end)
+  "True if pictures show a way of the robot of ME that leads to the point END."
+  (let ((point (first (last (robot-planned-way (robot-of me))))))
+    (and point (= (first point) (pt-x end)) (= (second point) (pt-y end)))))
+
+(defun show-way-to (me chart goal)
+  "Let pictures show the way of the robot of ME on CHART to GOAL, if they do not yet."
+  (let ((end (nearest-free-point chart goal)))
+    (when (and end (not (shown-to-p me end)))
+      (let ((start (nearest-free-point chart (reckon me))))
+        (show-way me (and start (find-way chart start end)))))))
 
 (defun next-step-of (me goal)
-  "Return the next step, as NEXT-STEP, of the robot of ME on its way to GOAL, which pictures show
-from now on: see SHOW-WAY."
-  (let* ((chart (chart-now me))
-         (start (nearest-free-point chart (reckon me)))
-         (end (nearest-free-point chart goal)))
-    (show-way me (and start end (find-way chart start end)))
+  "Return the next step, as NEXT-STEP, of the robot of ME on its way to GOAL, which pictures show."
+  (let ((chart (chart-now me)))
+    (show-way-to me chart goal)
     (next-step chart (reckon me) goal)))
 
 ;;; Corrections.

@@ -207,7 +207,7 @@ what it holds of each."
        :designators (images #'image-of-designator (live-designators robot))
        :odometer (and (robot-main-odometer robot) (image-of-odometer robot))
        :trail (and trail (trail-points trail))
-       :planned-way (robot-planned-way robot)))))
+       :planned-way (robot-way-left robot)))))
 
 ;;; The whole.
 

@@ -74,7 +74,7 @@ designators denote to be.")
 
 (defun plan-layer (view robot)
   (let ((glyph (make-glyph :layer #\: (format nil "planned way of ~A" robot) :cyan)))
-    (loop for (from to) on (robot-planned-way robot)
+    (loop for (from to) on (robot-way-left robot)
           while to
           append (loop for (x y) in (points-between from to)
                        append (glyph-at view x y glyph)))))

@@ -31,7 +31,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:storage-bin-capacity #:storage-bin-closed-p #:storage-bin-contents)
   (:export #:world-tick #:ensure-timeline)
   ;; planned-way
-  (:export #:publish-way #:robot-planned-way)
+  (:export #:publish-way #:robot-planned-way #:robot-way-left)
   ;; odometer
   (:export #:odometer #:odometer-p #:odometer-name #:odometer-robot #:odometer-estimate
            #:odometer-origin-angle #:make-odometer #:robot-main-odometer

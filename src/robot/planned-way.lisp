@@ -45,3 +45,32 @@ PUBLISH-WAY; () if it is on none, or was taken off it."
     (and way
          (eq (planned-way-interruption way) (resource-interruption robot))
          (planned-way-points way))))
+
+;;; What is left of it.
+
+(defun foot-on (from to x y)
+  "Return the point, a list, of the line between the points FROM and TO that is nearest to X, Y, and
+how far that is."
+  (destructuring-bind (x1 y1 x2 y2) (append from to)
+    (let* ((dx (- x2 x1)) (dy (- y2 y1))
+           (square (+ (* dx dx) (* dy dy)))
+           (part (if (zerop square)
+                     0
+                     (clamp (/ (+ (* (- x x1) dx) (* (- y y1) dy)) square) 0 1)))
+           (foot (list (+ x1 (* part dx)) (+ y1 (* part dy)))))
+      (values foot (abs (complex (- x (first foot)) (- y (second foot))))))))
+
+(defun left-of-way (points x y)
+  "Return what is left of the way through POINTS for somebody at X, Y: from where it is nearest."
+  (let ((least nil) (left points))
+    (loop for (from . after) on points
+          while after
+          do (multiple-value-bind (foot distance) (foot-on from (first after) x y)
+               (when (or (null least) (<= distance least))
+                 (setf least distance
+                       left (cons foot after)))))
+    left))
+
+(defun robot-way-left (robot)
+  "Return the points, lists (x y), of what is left of the planned way of ROBOT from where it is."
+  (left-of-way (robot-planned-way robot) (robot-x robot) (robot-y robot)))
