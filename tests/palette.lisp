@@ -83,7 +83,7 @@
 
 (defun wall-colors ()
   "Return the colours of all walls that there can be."
-  (loop for shade from display::+darkest-wall+ to display::+lightest-wall+
+  (loop for shade from display::+least-shade+ to display::+greatest-shade+
         append (loop for hue in (cons nil (remove-if-not #'integerp display::+tints+))
                      collect (display::wall-color shade hue))))
 
@@ -152,7 +152,7 @@
 
 (test contrast.tints-of-walls-leave-them-as-light-as-they-are
   "So the parameter can still be told from the lightness, and on a print in grey."
-  (loop for shade from display::+darkest-wall+ to display::+lightest-wall+
+  (loop for shade from display::+least-shade+ to display::+greatest-shade+
         for light = (canvas:luminance (aref canvas:grey* shade))
         do (is (loop for hue in (remove-if-not #'integerp display::+tints+)
                      always (near light (canvas:luminance (display::wall-color shade hue))

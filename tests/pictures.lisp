@@ -32,13 +32,16 @@
   (is (mentions-p (fourth (drawn-shape :obsview-p t)) "<path d=\"M")))
 
 (test things.grow-with-the-square-root-of-their-size
-  "At least 6 pixels, at most a cell and a half."
+  "From 5 pixels for nothing, to a cell and a half."
+  (dolist (scale '(4 14 40))
+    (let ((canvas:graphics-scale* scale))
+      (flet ((more (size) (- (display::half-width (image-with :size size)) 5/2)))
+        (is (= (* 2 (more 4)) (more 16)))
+        (is (= (* 2 (more 16)) (more 64)))
+        (is (< 0 (more 0.01d0) (more 1) (more 2)))
+        (is (= (more 64) (more 1000))))))
   (let ((canvas:graphics-scale* 40))
-    (flet ((half (size) (display::half-width (image-with :size size))))
-      (is (= (* 2 (half 4)) (half 16)))
-      (is (= (* 2 (half 16)) (half 64)))
-      (is (= 3 (half 0.01d0)))
-      (is (= 30 (half 64) (half 1000))))))
+    (is (= 30 (display::half-width (image-with :size 64))))))
 
 (test things.the-small-lie-above-the-large-and-all-above-the-robot
   (in-studio (robot)

@@ -5,9 +5,10 @@
 (defun write-picture (stream snapshot robot &key (display :world) (layers *picture-layers*)
                                               (in-color t) scale)
   "Write an SVG document of DISPLAY from SNAPSHOT to STREAM; ROBOT is the image of a robot in it."
-  (with-svg (canvas stream :color-p in-color)
-    (with-canvas (canvas)
-      (let ((graphics-scale* (suitable-scale scale snapshot layers)))
+  (let* ((scale (suitable-scale scale snapshot layers))
+         (zoom (if (member display '(:world :all)) (magnification scale snapshot layers) 1)))
+    (with-svg (canvas stream :color-p in-color :zoom zoom)
+      (with-canvas (canvas :scale (/ scale zoom))
         (draw-display canvas display snapshot robot :layers layers)))))
 
 (defun check-picture (operator robot display layers scale)
