@@ -3,8 +3,8 @@
 (in-package :ars-magna.display)
 
 ;;; A box is a list (left top right bottom) in pixels. A name is written near by where its box meets
-;;; no wall, thing, robot, number of a designator or other name, and rather no mark of a place and no
-;;; trail; if there is no such room, not at all. Robots come first, then large things.
+;;; no wall, thing, robot, number of a designator, mark of a place or other name, and rather no trail;
+;;; if there is no such room, not at all. Robots come first, then large things.
 
 (define-constant +name-size+ 10 :documentation "How high the font of names is, in pixels.")
 (define-constant +name-height+ 11 :documentation "How high the box of a name is, in pixels.")
@@ -61,22 +61,20 @@ on it, meets."
                         repeat +trail-length+
                         thereis (and (< left (to-pixels x) right) (< top (to-pixels y) bottom))))))
 
-(defun faults (snapshot layers box)
-  "Return how many reasons there are not to write a name in BOX, as far as LAYERS are shown."
-  (+ (if (and (member :places layers) (on-mark-p (snapshot-map snapshot) box)) 1 0)
-     (if (and (member :trail layers) (on-trail-p snapshot box)) 1 0)))
-
 (defun best-box (snapshot layers boxes taken)
-  "Return the first of BOXES that is on the map of SNAPSHOT, meets no wall and none of TAKEN, and has
-the fewest faults; or NIL."
-  (let ((map (snapshot-map snapshot)) (best nil) (least nil))
-    (dolist (box boxes best)
-      (when (and (on-map-p map box)
-                 (notany (lambda (other) (overlap-p box other)) taken)
-                 (not (on-wall-p map box)))
-        (let ((faults (faults snapshot layers box)))
-          (when (zerop faults) (return box))
-          (when (or (null least) (< faults least)) (setf best box least faults)))))))
+  "Return the first of BOXES that is on the map of SNAPSHOT, meets no wall, none of TAKEN and no mark
+of a place that LAYERS show, and rather no trail; or NIL."
+  (let* ((map (snapshot-map snapshot))
+         (free (remove-if-not
+                (lambda (box)
+                  (and (on-map-p map box)
+                       (notany (lambda (other) (overlap-p box other)) taken)
+                       (not (on-wall-p map box))
+                       (not (and (member :places layers) (on-mark-p map box)))))
+                boxes)))
+    (or (and (member :trail layers)
+             (find-if-not (lambda (box) (on-trail-p snapshot box)) free))
+        (first free))))
 
 (define-constant +longest-name+ 24
   :documentation "How many characters of a name are written beside a sample, or on the map.")

@@ -11,7 +11,7 @@
 (define-constant +least-width+ 5
   :documentation "How wide a thing of size 0 is drawn, in pixels: so one sees it.")
 
-;; As reading 239 says.
+;; As reading 241 says.
 (defun half-width (image)
   "Return half the width of the thing on the map, in pixels: its area grows with its size. Without
 colours all have the same."
