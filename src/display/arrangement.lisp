@@ -47,9 +47,9 @@ suits the map of SNAPSHOT. Signals MISUSE if GRAPHICS-SCALE* is no scale."
       (fitting-scale (snapshot-map snapshot) layers)))
 
 (defun magnification (scale snapshot layers)
-  "Return how much a picture of SNAPSHOT with SCALE pixels to a cell is magnified as a whole, text and
-lines included, 1 at least: as far as SCALE is more than suits the map and than is needed to read
-all."
+  "Return how much a picture of SNAPSHOT with SCALE pixels to a cell is magnified as a whole, text
+and lines included, 1 at least: as far as SCALE is more than suits the map and than is needed to
+read all."
   (max 1 (/ (rational scale)
             (max +readable-scale+ (fitting-scale (snapshot-map snapshot) layers)))))
 

@@ -3,8 +3,8 @@
 (in-package :ars-magna.display)
 
 ;;; A box is a list (left top right bottom) in pixels. A name is written near by where its box meets
-;;; no wall, thing, robot, number of a designator, mark of a place or other name, and rather no trail;
-;;; if there is no such room, not at all. Robots come first, then large things.
+;;; no wall, thing, robot, number of a designator, mark of a place or other name, and rather no
+;;; trail; if there is no such room, not at all. Robots come first, then large things.
 
 (define-constant +name-size+ 10 :documentation "How high the font of names is, in pixels.")
 (define-constant +name-height+ 11 :documentation "How high the box of a name is, in pixels.")
@@ -62,8 +62,8 @@ on it, meets."
                         thereis (and (< left (to-pixels x) right) (< top (to-pixels y) bottom))))))
 
 (defun best-box (snapshot layers boxes taken)
-  "Return the first of BOXES that is on the map of SNAPSHOT, meets no wall, none of TAKEN and no mark
-of a place that LAYERS show, and rather no trail; or NIL."
+  "Return the first of BOXES that is on the map of SNAPSHOT, meets no wall, none of TAKEN and no
+mark of a place that LAYERS show, and rather no trail; or NIL."
   (let* ((map (snapshot-map snapshot))
          (free (remove-if-not
                 (lambda (box)

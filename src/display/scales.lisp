@@ -12,8 +12,8 @@
 MISUSE if that is no scale."
   (cond ((eql graphics-scale* +usual-scale+) nil)
         ((argument-of-type-p graphics-scale* 'picture-scale) graphics-scale*)
-        (t (reject-use "graphics-scale* is ~S, but should be ~A. Set it to such a number, or to ~D: ~
-                        then pictures have the scale that suits their map."
+        (t (reject-use "graphics-scale* is ~S, but should be ~A. Set it to such a number, or to ~
+                        ~D: then pictures have the scale that suits their map."
                        graphics-scale* (argument-type-text 'picture-scale) +usual-scale+))))
 
 (defun check-scale (operator scale)

@@ -2,10 +2,10 @@
 
 (in-package :ars-magna.display)
 
-;;; A wall has the texture and the hue of its substance, and is the lighter the greater the parameter
-;;; is. Hue and texture go by the order in which substances were defined; there is no common factor of
-;;; how many there are of each, so that they do not come together again soon. If two substances of a
-;;; map have the same texture, that which was defined later takes one that none of them has.
+;;; A wall has the texture and the hue of its substance, and is the lighter the greater the
+;;; parameter is. Hue and texture go by the order in which substances were defined; there is no
+;;; common factor of how many there are of each, so that they do not come together again soon. If
+;;; two substances of a map have the same texture, that which was defined later takes a free one.
 
 ;;; Text maps write walls in these colours, pictures tint their greys with them.
 

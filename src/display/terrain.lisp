@@ -7,7 +7,8 @@
 
 ;;; Walls.
 
-(defstruct (wall-look (:constructor make-wall-look (color &optional (texture :plain))) (:copier nil))
+(defstruct (wall-look (:constructor make-wall-look (color &optional (texture :plain)))
+                      (:copier nil))
   "What a wall looks like. Looks of walls that are alike are the same object."
   (color 0 :type color :read-only t)
   (texture :plain :type keyword :read-only t))
@@ -193,9 +194,10 @@ of items, says whose it is (reading 214)."
 
 (defun draw-terrain (canvas map &key left top right bottom (layers '(:places)))
   "Draw the walls of MAP in black, or in greys by their substance parameters with a tint and a
-texture by their substance, and, as far as LAYERS lists :PLACES and :GRID, the marks of its places and the borders of
-its cells, on CANVAS, GRAPHICS-SCALE* pixels to a cell (manual B). LEFT, TOP, RIGHT and BOTTOM,
-columns and rows of cells, say which part of MAP is wanted; by default all of it is."
+texture by their substance, and, as far as LAYERS lists :PLACES and :GRID, the marks of its places
+and the borders of its cells, on CANVAS, GRAPHICS-SCALE* pixels to a cell (manual B). LEFT, TOP,
+RIGHT and BOTTOM, columns and rows of cells, say which part of MAP is wanted; by default all of
+it is."
   (let ((window (clip-window map left top right bottom)))
     (when (member :grid layers) (draw-grid canvas window))
     (draw-walls canvas map window)

@@ -33,8 +33,8 @@
         when (and (<= low level) (< level high)) collect level))
 
 (defun slants (left top right bottom tile sign)
-  "Return diagonals through the corners of tiles, cut to the rectangle: those on which y - SIGN x is a
-multiple of TILE."
+  "Return diagonals through the corners of tiles, cut to the rectangle: those on which y - SIGN x is
+a multiple of TILE."
   (let* ((ends (list (* sign left) (* sign right)))
          (least (- top (reduce #'max ends))) (most (- bottom (reduce #'min ends))))
     (loop for c in (rest (tile-edges least most tile))

@@ -60,7 +60,8 @@
   (loop with digits = (length (princ-to-string (length moments)))
         for moment in moments
         for number from 1
-        collect (format nil "~V,,,VD   tick ~A: ~A" digits +figure-space+ number (moment-tick moment) (moment-text moment))))
+        collect (format nil "~V,,,VD   tick ~A: ~A" digits +figure-space+ number
+                        (moment-tick moment) (moment-text moment))))
 
 ;;; Finding out.
 
