@@ -211,6 +211,15 @@
       (window:refresh window)
       (is (= 11 (window::pane-scale (pane window 'window::world)))))))
 
+(test view.outlives-a-scale-that-is-none
+  (in-window (window robot)
+    (lay-out window 800 600)
+    (window:refresh window)
+    (let ((before (window::pane-scale (pane window 'window::world))))
+      (dolist (canvas:graphics-scale* '(0 -3 "x" nil 1000))
+        (window:refresh window)
+        (is (= before (window::pane-scale (pane window 'window::world))))))))
+
 (test canvas.outlines-of-arcs-stay-in-their-box
   "Manual B.1: a circle inscribed in a cell has all of its pixels there."
   (is (equal '(8 8 7 7) (multiple-value-list (window::outline-box 8 8 8 8 1))))

@@ -158,7 +158,7 @@
 (defun wall-fill (parameter substance)
   "Return how the fill of a wall of the studio is written."
   (let ((hue (getf display::+tints+ (display::substance-ink substance))))
-    (format nil "fill=\"#~(~6,'0X~)\"" (display::wall-color (if (= parameter 10) 14 44) hue))))
+    (format nil "fill=\"#~(~6,'0X~)\"" (display::wall-color (display::wall-shade parameter) hue))))
 
 (test world-display.walls-are-grey-by-their-parameter
   (in-studio (robot)

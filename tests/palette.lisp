@@ -81,9 +81,57 @@
         (aref canvas:lightblue* 9))
   "What cells of the built-in place types are filled with.")
 
+;;; Substances.
+
+(defun shipped-materials (&rest more)
+  (display::textures-for (append '(world::wood world::metal world::bricks world::slate world::stone
+                                   world::plaster world::glass world::cloth world::paper
+                                   world::plastic)
+                                 more)))
+
+(test substances.of-one-map-have-textures-of-their-own
+  "So they are told apart in grey, too, be their parameters what they will."
+  (let ((textures (mapcar #'second (shipped-materials))))
+    (is (= 10 (length (remove-duplicates textures)))))
+  (with-own-definitions
+    (dolist (name '(ivoryx tar snow))
+      (eval `(world:defsubstance ,name 250))
+      (loop for (shipped) in (shipped-materials)
+            for textures = (mapcar #'second (display::textures-for (list name shipped)))
+            do (is (not (eq (first textures) (second textures))))))))
+
+(defun marks-in-tile (texture)
+  "Return the coordinates of all marks of TEXTURE in a tile 6 pixels wide."
+  (loop for mark in (getf canvas:+textures+ texture)
+        append (if (eq :box (first mark))
+                   (canvas::mark-boxes mark 0 0 6 6 6)
+                   (canvas::mark-segments mark 0 0 6 6 6))))
+
+(test textures.are-all-different-in-a-cell-of-six-pixels
+  (let ((tiles (loop for (texture) on canvas:+textures+ by #'cddr
+                     collect (marks-in-tile texture))))
+    (is (= (length tiles) (length (remove-duplicates tiles :test #'equal))))
+    (is (null (set-difference display::+wall-textures+ canvas:+textures+)))))
+
+(test textures.stay-within-their-rectangles-and-fit-together
+  (loop for (nil marks) on canvas:+textures+ by #'cddr
+        do (dolist (mark (remove :box marks :key #'first))
+             (is (loop for (x y) on (canvas::mark-segments mark 12 6 30 24 6) by #'cddr
+                       always (and (<= 12 x 30) (<= 6 y 24))))))
+  (is (equal '(0 6 6 0) (canvas::mark-segments '(:rising) 0 0 6 6 6)))
+  (is (equal '(0 0 6 6) (canvas::mark-segments '(:falling) 0 0 6 6 6))))
+
+(test walls.are-as-light-in-every-map
+  (is (= 14 (display::wall-shade 0)))
+  (is (= 25 (display::wall-shade 60)))
+  (is (= 31 (display::wall-shade 200)))
+  (is (= 36 (display::wall-shade 1d15)))
+  (is (= 8 (display::wall-shade -1d15)))
+  (is (apply #'<= (mapcar #'display::wall-shade '(-100 -10 0 5 10 40 120 250 1000)))))
+
 (defun wall-colors ()
   "Return the colours of all walls that there can be."
-  (loop for shade from display::+darkest-wall+ to display::+lightest-wall+
+  (loop for shade from display::+least-shade+ to display::+greatest-shade+
         append (loop for hue in (cons nil (remove-if-not #'integerp display::+tints+))
                      collect (display::wall-color shade hue))))
 
@@ -152,7 +200,7 @@
 
 (test contrast.tints-of-walls-leave-them-as-light-as-they-are
   "So the parameter can still be told from the lightness, and on a print in grey."
-  (loop for shade from display::+darkest-wall+ to display::+lightest-wall+
+  (loop for shade from display::+least-shade+ to display::+greatest-shade+
         for light = (canvas:luminance (aref canvas:grey* shade))
         do (is (loop for hue in (remove-if-not #'integerp display::+tints+)
                      always (near light (canvas:luminance (display::wall-color shade hue))

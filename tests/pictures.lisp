@@ -32,13 +32,16 @@
   (is (mentions-p (fourth (drawn-shape :obsview-p t)) "<path d=\"M")))
 
 (test things.grow-with-the-square-root-of-their-size
-  "At least 6 pixels, at most a cell and a half."
+  "From 5 pixels for nothing, to a cell and a half."
+  (dolist (scale '(4 14 40))
+    (let ((canvas:graphics-scale* scale))
+      (flet ((more (size) (- (display::half-width (image-with :size size)) 5/2)))
+        (is (= (* 2 (more 4)) (more 16)))
+        (is (= (* 2 (more 16)) (more 64)))
+        (is (< 0 (more 0.01d0) (more 1) (more 2)))
+        (is (= (more 64) (more 1000))))))
   (let ((canvas:graphics-scale* 40))
-    (flet ((half (size) (display::half-width (image-with :size size))))
-      (is (= (* 2 (half 4)) (half 16)))
-      (is (= (* 2 (half 16)) (half 64)))
-      (is (= 3 (half 0.01d0)))
-      (is (= 30 (half 64) (half 1000))))))
+    (is (= 30 (display::half-width (image-with :size 64))))))
 
 (test things.the-small-lie-above-the-large-and-all-above-the-robot
   (in-studio (robot)
@@ -189,6 +192,80 @@
 (test margins.the-bare-map-has-none
   (in-studio (robot)
     (is (null (words-in-picture robot :layers '())))))
+
+(test margins.legends-do-not-shrink-the-map-and-cut-long-names
+  (with-own-definitions
+    (eval '(world:defmap named (30 20)
+            (obj a-name-that-goes-on-and-on-beyond-what-one-would-call-a-name-at-all (5.5 5.5)
+             ((:size 2)))
+            (obj |Kettle| (8.5 9.5) ((:size 2)))))
+    (eval '(robot:defrobot namer (named (15.5 15.5) 0)))
+    (run:call-with-simulation
+     (lambda ()
+       (let* ((robot (first (run:simulation-robots)))
+              (snapshot (display:snapshot-of robot))
+              (text (display:svg-picture robot)))
+         (is (= (display:suitable-scale nil snapshot '(:title))
+                (display:suitable-scale nil snapshot '(:title :legend))))
+         (is-true (has-words-p text ">a-name-that-goes-on-a...<" ">Kettle<"
+                               "<title>a-name-that-goes-on-and-on-beyond"))))
+     '(namer))))
+
+(test margins.text-grows-with-the-scale
+  (in-studio (robot)
+    (flet ((width (scale)
+             (let ((text (display:svg-picture robot :scale scale)))
+               (/ (parse-integer text :start (+ 7 (search "width=\"" text)) :junk-allowed t)
+                  (svg-view-width text)))))
+      (is (= 2 (width 80)))
+      (is (= 1 (width 40) (width 20) (width 8))))))
+
+(defun svg-view-width (text)
+  "Return how wide the SVG document TEXT says that what it shows is."
+  (parse-integer text :start (+ 13 (search "viewBox=\"0 0 " text)) :junk-allowed t))
+
+(test margins.titles-of-small-maps-are-whole
+  (with-own-definitions
+    (eval '(world:defmap cell-of-one (1 1)))
+    (eval '(robot:defrobot hermit (cell-of-one (0.5 0.5) 0)))
+    (run:call-with-simulation
+     (lambda ()
+       (is (< (* 7 (length "hermit in cell-of-one, tick 0"))
+              (svg-view-width (display:svg-picture (first (run:simulation-robots))
+                                                   :layers '(:title :coordinates))))))
+     '(hermit))))
+
+(test names.keep-apart
+  "Two names on one line are not read as one, and none lies on the mark of a place."
+  (in-studio (robot)
+    (let* ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 8)
+           (boxes '((20 20 60 31) (40 40 80 51))))
+      (is (equal (second boxes)
+                 (display::best-box snapshot '() boxes
+                                    (list (display::widened '(-26 20 15 31) 6)))))
+      (is (null (display::best-box snapshot '(:places) '((8 8 20 19)) '())))
+      (is (equal '(8 8 20 19) (display::best-box snapshot '() '((8 8 20 19)) '()))))))
+
+(test margins.trails-have-an-entry
+  (let ((snapshot (display::make-snapshot
+                   :robots (list (display::make-robot-image :trail '(1 1 2 2))))))
+    (is (equal '("trail")
+               (mapcar #'display::entry-text
+                       (display::line-entries snapshot '(:trail :odometer)))))))
+
+;;; Scales that are none.
+
+(test scale.that-is-none-is-misuse-of-every-picture-that-names-the-remedy
+  (in-studio (robot)
+    (uiop:with-temporary-file (:pathname file :type "svg")
+      (dolist (canvas:graphics-scale* '(0 -1 "x" nil 1000))
+        (dolist (drawing (list (lambda () (display:svg-picture robot))
+                               (lambda () (display:save-way-picture 'studio '(((1 1) (2 2)))
+                                                                    file))))
+          (handler-case (progn (funcall drawing) (fail "~S" canvas:graphics-scale*))
+            (base:misuse (trouble)
+              (is-true (has-words-p (princ-to-string trouble) "graphics-scale*"
+                                    "from 1 to 256" "or to 8")))))))))
 
 (test margins.every-picture-of-a-shipped-size-fits
   "Up to 200 x 150 cells a picture is no larger than 900 x 700."

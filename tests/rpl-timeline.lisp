@@ -136,6 +136,35 @@
       (is-true (has-words-p text "rpl-storage-bin-open 0), ticks" ": bin-open"
                             "(turn-and-tell 1)")))))
 
+(test timeline.writes-commands-where-there-is-room
+  (with-traced-turns ()
+    (is-true (has-words-p (timeline-text nil) ">robot-turn 1<")))
+  (flet ((name (text)
+           (ars-magna.rpl-pictures::command-name
+            (ars-magna.rpl.seeing::make-span :command 0 text))))
+    (is (string= "robot-turn -0.05 nil" (name "(rpl-robot-turn -0.058755822d0 nil)")))
+    (is (string= "camera-track 1 #<Designator 0>" (name "(rpl-camera-track 1 #<Designator 0>)")))))
+
+(defun colors-in (text)
+  "Return what follows each # in the SVG document TEXT, six characters each time."
+  (loop for start = (search "=\"#" text) then (search "=\"#" text :start2 (1+ start))
+        while start collect (subseq text (+ 3 start) (+ 9 start))))
+
+(test timeline.needs-no-colours
+  "Without them there is only black and white, and kinds are told apart by texture."
+  (let ((text (timeline-text (seen-until 30) :in-color nil)))
+    (is (subsetp '("000000" "ffffff") (colors-in text) :test #'string=))
+    (is (subsetp (colors-in text) '("000000" "ffffff") :test #'string=))
+    (is-true (has-words-p text "runs its parts" "command with an error"))))
+
+(test timeline.gives-names-the-room-that-they-need
+  (flet ((width (label)
+           (ars-magna.rpl-pictures::labels-width
+            (list (ars-magna.rpl-pictures::make-row
+                   (list (ars-magna.rpl.seeing::make-bar 1 nil label nil 0 0)))))))
+    (is (= 120 (width 'a)))
+    (is (< (width 'a-plan-with-a-long-name) (width 'a-plan-with-a-name-that-is-yet-much-longer)))))
+
 (test trace-plans.takes-effect-at-the-next-plan
   (run:with-simulation (ars-user::butler :clean t)
     (driver:run-plan 'turn-twice)

@@ -178,5 +178,6 @@
 (test text-map.rejects-what-makes-no-sense
   (in-depot (robot)
     (dolist (options '((:rows 2) (:columns 3) (:radius -1) (:region (1 2 3)) (:region (5 5 1 9))
+                       (:region (500 500 600 600)) (:region (-9 -9 0 0))
                        (:region (1 2 3 . 4)) (:layers (:frob)) (:layers :way)))
       (signals base:wrong-argument (apply #'display:text-map robot options)))))

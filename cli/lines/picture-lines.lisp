@@ -37,7 +37,7 @@ default."
     (:seeing)
     (format nil "Save a picture of the world as it is now in FILE, replacing it. A number is how ~
                  many pixels a cell has, from 1 to 256; without one it is what suits the map, ~
-                 from 4 to 40, for a picture of 900 x 700 pixels at most, or graphics-scale* if ~
+                 from 4 to 40, for a map of 900 x 700 pixels at most, or graphics-scale* if ~
                  that was set. Words are for what else is shown: ~:{~A, ~A~:^; ~}. What has a ~
                  star is shown anyway; with BARE only what you name."
             (loop for layer in +picture-layers+

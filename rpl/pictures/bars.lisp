@@ -2,25 +2,29 @@
 
 (in-package :ars-magna.rpl-pictures)
 
-(defconstant +label-width+ 330 "How wide the column with the names of the tasks is, in pixels.")
+(defconstant +label-width+ 480
+  "How wide the column with the names of the tasks is at most, in pixels.")
 (defconstant +chart-width+ 900 "How wide all ticks together are, in pixels.")
-(defconstant +row-height+ 19 "How high a row is, in pixels.")
+(defconstant +bar-height+ 14 "How high a bar is, in pixels.")
+(defconstant +lane-height+ 12 "How high commands below a bar are, in pixels.")
+(defconstant +gap+ 5 "How far rows are apart, in pixels.")
 (defconstant +top+ 74 "How much room there is above the rows, in pixels.")
 
 (defparameter *looks*
-  '((:parts #x9DB9DC "runs its parts") (:call #xDDD3EF "commands in a call")
-    (:waiting #xE6ECF5 "waits")
-    (:blocked #x8C8C94 "is blocked") (:cleaning #xF2BE6A "cleans up")
-    (:failure #xF08C78 "a failure happened")
-    (:command #x3C68FF "command under way") (:trouble #xE0301E "command with an error"))
-  "Lists (kind color text): what the parts of a bar look like, and what the legend says.")
+  '((:parts #x9DB9DC :hatching "runs its parts") (:call #xDDD3EF :dots "commands in a call")
+    (:waiting #xE6ECF5 :plain "waits")
+    (:blocked #x8C8C94 :chequers "is blocked") (:cleaning #xF2BE6A :crosses "cleans up")
+    (:failure #xF08C78 :solid "a failure happened")
+    (:command #x3C68FF :solid "command under way")
+    (:trouble #xE0301E :plain "command with an error"))
+  "Lists (kind color texture text): what the parts of a bar look like, without colours by texture,
+and what the legend says.")
 
 (defparameter *end-looks*
   '((:succeeded #x1E9632 "succeeded") (:failed #xE0301E "failed")
     (:evaporated #x606060 "evaporated"))
   "Lists (outcome color text): what the end of a bar looks like.")
 
-(defun look (kind) (second (assoc kind *looks*)))
 
 ;;; Ticks and pixels.
 
@@ -59,6 +63,23 @@
   (with-color color
     (draw-rectangle canvas draw-gcontext* x y (max 1 width) height t)))
 
+(defun textured-box (canvas texture x y width height)
+  "Draw a box with a black outline, full of TEXTURE or :SOLID."
+  (with-gcontext (draw-gcontext* :foreground (if (eq :solid texture) black* white*))
+    (draw-rectangle canvas draw-gcontext* x y width height t))
+  (with-color black*
+    (unless (eq :solid texture)
+      (draw-texture canvas draw-gcontext* texture (list x y width height) 6))
+    (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) (max 0 (1- height)))))
+
+(defun look-box (canvas kind x y width height)
+  "Draw a box with the look of KIND."
+  (destructuring-bind (color texture text) (rest (assoc kind *looks*))
+    (declare (ignore text))
+    (if in-color*
+        (box canvas color x y width height)
+        (textured-box canvas texture x y (max 1 width) height))))
+
 (defun write-at (canvas x y text &optional (color black*))
   (with-color color (draw-glyphs canvas draw-gcontext* x y text)))
 
@@ -75,53 +96,116 @@
   (reduce #'max (append (mapcar #'span-end (bar-commands bar)) (mapcar #'last-tick (bar-parts bar)))
           :initial-value (bar-end bar)))
 
+(defun span-width (span scale)
+  (- (place (span-end span) scale) (place (span-start span) scale)))
+
 (defun draw-span (canvas span y scale)
+  (let ((x (place (span-start span) scale)))
+    (look-box canvas (span-kind span) x y (span-width span scale) +bar-height+)
+    (box canvas #xA8B4C8 x y 1 +bar-height+)))
+
+(defun write-span (canvas span next y scale)
+  "Write what was waited for in SPAN where there is room before NEXT, a span or NIL, begins."
   (let* ((x (place (span-start span) scale))
-         (width (- (place (span-end span) scale) x))
-         (text (and (eq :waiting (span-kind span)) (span-text span)
-                    (fitted (span-text span) (- width 6)))))
-    (box canvas (look (span-kind span)) x y width 14)
-    (box canvas #xA8B4C8 x y 1 14)
+         (end (if next
+                  (min (place (span-end span) scale) (place (span-start next) scale))
+                  (place (span-end span) scale)))
+         (text (and (span-text span) (fitted (span-text span) (- end x 6)))))
     (when text (write-at canvas (+ x 3) (+ y 11) text #x505868))))
 
-(defun draw-command (canvas span y scale)
-  (let* ((x (place (span-start span) scale))
-         (width (- (place (span-end span) scale) x)))
+(defun draw-waits (canvas spans y scale)
+  "Draw SPANS of waiting, and above all of them what was waited for."
+  (let ((spans (stable-sort (copy-list spans) #'< :key #'span-start)))
+    (dolist (span spans) (draw-span canvas span y scale))
+    (loop for (span next) on spans do (write-span canvas span next y scale))))
+
+;;; Commands stand in a lane of their own, so that neither they nor their names lie on others'.
+
+(defconstant +command-size+ 9 "How high the font of commands is, in pixels.")
+
+(defun plain-number (token)
+  "Return TOKEN, if it is a number that is no integer, with two decimals; or as it is."
+  (if (and (find #\. token) (every (lambda (char) (find char "+-.0123456789def")) token)
+           (find-if #'digit-char-p token))
+      (let ((end (position-if (lambda (char) (find char "def")) token))
+            (dot (position #\. token)))
+        (subseq token 0 (min (or end (length token)) (+ dot 3))))
+      token))
+
+(defun command-name (span)
+  "Return the command of SPAN as it is written in a lane: without parentheses and prefix, numbers
+cut to two decimals."
+  (let* ((text (string-trim "()" (span-text span)))
+         (own (if (eql 0 (search "rpl-" text)) (subseq text 4) text)))
+    (format nil "~{~A~^ ~}" (mapcar #'plain-number (uiop:split-string own)))))
+
+(defun ink-in-lane (span)
+  "Return the colour of text on SPAN, a command."
+  (if (and (span-error span) (not in-color*)) black* white*))
+
+(defun write-command (canvas span x y width room)
+  "Write the command of SPAN, which is WIDTH pixels wide, on it; or beside it, if there is ROOM, in
+pixels; or its beginning."
+  (let* ((name (command-name span))
+         (per-character (character-width canvas +command-size+))
+         (fitting (floor (- width 4) per-character)))
+    (flet ((words (color x text)
+             (with-gcontext (draw-gcontext* :foreground color)
+               (draw-words canvas draw-gcontext* x (+ y 9) text :size +command-size+))))
+      (cond ((<= (length name) fitting) (words (ink-in-lane span) (+ x 2) name))
+            ((<= (+ 6 (* per-character (length name))) room) (words black* (+ x width 3) name))
+            ((<= 6 fitting) (words (ink-in-lane span) (+ x 2) (subseq name 0 fitting)))))))
+
+(defun draw-command (canvas span next y scale)
+  "Draw SPAN, a command, in a lane at Y in which NEXT, a command or NIL, comes after it."
+  (let* ((x (place (span-start span) scale)) (width (span-width span scale))
+         (end (if next
+                  (place (span-start next) scale)
+                  (+ 40 (place (scale-end scale) scale)))))
     (with-subject (canvas (format nil "~A, ticks ~A to ~A~@[: ~A~]" (span-text span)
                                   (span-start span) (span-end span) (span-error span)))
-      (box canvas (look (if (span-error span) :trouble :command)) x (+ y 11) width 4))))
+      (look-box canvas (if (span-error span) :trouble :command) x y width +lane-height+)
+      (write-command canvas span x y width (- end x width)))))
+
+(defun draw-lane (canvas spans y scale)
+  "Draw the commands SPANS of a row in their lane."
+  (loop for (span next) on (stable-sort (copy-list spans) #'< :key #'span-start)
+        do (draw-command canvas span next y scale)))
 
 ;; Also of failures that are handled where they happen.
 (defun draw-failure (canvas span y scale)
   (with-subject (canvas (format nil "failed at tick ~A: ~A" (span-start span)
                                 (cut (one-line (span-text span)) 200)))
-    (box canvas (look :failure) (- (place (span-start span) scale) 2) y 4 6)))
+    (look-box canvas :failure (- (place (span-start span) scale) 2) y 4 6)))
 
 (defun draw-mark (canvas outcome x y)
-  "Draw how a task ended: a line, and a cross if it failed or was ended. NIL: it goes on."
+  "Draw how a task ended: a line, crossed if it failed, and struck through if it was ended. NIL: it
+goes on."
   (let ((color (second (assoc outcome *end-looks*))))
     (when color
-      (box canvas color (- x 1) y 2 14)
-      (unless (eq :succeeded outcome)
-        (with-color color
-          (with-lines (:width 2)
-            (draw-segments canvas draw-gcontext* (list (- x 4) (+ y 3) (+ x 4) (+ y 11)
-                                                       (- x 4) (+ y 11) (+ x 4) (+ y 3)))))))))
+      (box canvas color (- x 1) y 2 +bar-height+)
+      (with-color color
+        (with-lines (:width 2)
+          (unless (eq :succeeded outcome)
+            (draw-segments canvas draw-gcontext* (list (- x 4) (+ y 11) (+ x 4) (+ y 3))))
+          (when (eq :failed outcome)
+            (draw-segments canvas draw-gcontext* (list (- x 4) (+ y 3) (+ x 4) (+ y 11)))))))))
 
 (defmethod subject-title ((bar bar))
   (format nil "~A, ticks ~A to ~A~@[, ~(~A~)~]~@[: ~A~]" (bar-label bar) (bar-start bar)
           (bar-end bar) (bar-outcome bar)
           (and (bar-failure bar) (cut (one-line (own-text (bar-failure bar))) 200))))
 
+(defun spans-of-kind (bar kind)
+  (remove kind (bar-spans bar) :key #'span-kind :test-not #'eq))
+
 (defun draw-bar (canvas bar y scale)
   "Draw BAR with its upper edge at Y."
   (let ((x (place (bar-start bar) scale)))
     (with-subject (canvas bar)
-      (box canvas (look (if (bar-call-p bar) :call :parts))
-           x y (- (place (bar-end bar) scale) x) 14)
-      (dolist (kind '(:waiting :cleaning :blocked))
-        (dolist (span (bar-spans bar))
-          (when (eq kind (span-kind span)) (draw-span canvas span y scale)))))
-    (dolist (span (bar-spans bar))
-      (when (eq :failure (span-kind span)) (draw-failure canvas span y scale)))
-    (dolist (span (bar-commands bar)) (draw-command canvas span y scale))))
+      (look-box canvas (if (bar-call-p bar) :call :parts)
+                x y (- (place (bar-end bar) scale) x) +bar-height+)
+      (draw-waits canvas (spans-of-kind bar :waiting) y scale)
+      (dolist (kind '(:cleaning :blocked))
+        (dolist (span (spans-of-kind bar kind)) (draw-span canvas span y scale))))
+    (dolist (span (spans-of-kind bar :failure)) (draw-failure canvas span y scale))))

@@ -17,27 +17,27 @@
     (or (and (symbolp name) (symbol-package name))
         *package*)))
 
-(defun timeline-svg (bars most)
+(defun timeline-svg (bars most in-color)
   "Return the timeline of BARS, in at most MOST rows, as an SVG document."
   (let ((*package* (plan-package bars)))
     (with-output-to-string (stream)
-      (with-svg (canvas stream)
+      (with-svg (canvas stream :color-p in-color)
         (with-canvas (canvas)
           (draw-timeline canvas bars most))))))
 
 (addition save-plan-timeline)
-(defun save-plan-timeline (file &key runner (most 1000))
+(defun save-plan-timeline (file &key runner (most 1000) (in-color t))
   "Save a picture of the plans that have run in FILE, replacing it: SVG or, where the program
 rsvg-convert is installed, PNG, as its name ends. Each task is a bar over ticks, below the one that
 it is part of, with what it waited for, the commands that it issued while these were under way, and
 how it ended; turns of a loop share a row. RUNNER is the plan runner, by default the one in use,
-which must have kept a trace: see *TRACE-PLANS*. At most MOST rows are drawn. Return the file's
-truename. Signals WRONG-ARGUMENT and MISUSE."
+which must have kept a trace: see *TRACE-PLANS*. At most MOST rows are drawn. IN-COLOR is false for
+a picture in black and white. Return the file's truename. Signals WRONG-ARGUMENT and MISUSE."
   (check-argument save-plan-timeline most (whole-p most 1 1000000) "an integer from 1 to 1000000")
   (let ((kind (picture-kind 'save-plan-timeline file))
         (bars (call-with-plans-in-use
                (lambda (in-use) (trace-bars (or runner in-use (runner-to-see)))))))
-    (save-svg (timeline-svg bars most) file kind)))
+    (save-svg (timeline-svg bars most in-color) file kind)))
 
 (defun tree-svg (image)
   "Return the tree of tasks of IMAGE as an SVG document."

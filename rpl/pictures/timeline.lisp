@@ -10,7 +10,8 @@
         for text = (princ-to-string tick)
         for left = (- x (/ (* +character-width+ (length text)) 2))
         do (with-color #xDCDCDC
-             (draw-line canvas draw-gcontext* x (- top 6) x (+ bottom 2)))
+             (with-lines (:style (if in-color* :solid :dash))
+               (draw-line canvas draw-gcontext* x (- top 6) x (+ bottom 2))))
            (write-at canvas left (- top 10) text #x606060)
            (write-at canvas left (+ bottom 15) text #x606060)))
 
@@ -28,19 +29,32 @@ pixels wide. Return where it ends: how far to the right, and how far down."
                (funcall painter x y)
                (write-at canvas (+ x 24) (+ y 11) text)
                (setf x end))))
-      (loop for (kind color text) in *looks*
-            for low = (member kind '(:command :trouble))
-            do (entry text (lambda (x y)
-                             (box canvas color x (if low (+ y 6) y) 18 (if low 4 14)))))
+      (loop for (kind nil nil text) in *looks*
+            do (let ((kind kind))
+                 (entry text (lambda (x y) (look-box canvas kind x y 18 +bar-height+)))))
       (loop for (outcome nil text) in *end-looks*
             do (entry text (lambda (x y) (draw-mark canvas outcome (+ x 12) y)))))
     (values x (+ y 18))))
 
 ;;; The rows.
 
+(defun row-height (row)
+  "Return how high ROW is, in pixels: with a lane for commands, if there are any."
+  (+ +bar-height+ +gap+ (if (some #'bar-commands (row-bars row)) (+ 1 +lane-height+) 0)))
+
+(defun rows-height (rows)
+  (reduce #'+ (mapcar #'row-height rows)))
+
 (defun name-to-fit (row width)
   "Return what ROW is called; where WIDTH, in pixels, is little, little of it says how deep it is."
   (if (< width 250) (row-label row 1 7) (row-label row)))
+
+(defun labels-width (rows least most)
+  "Return how wide the column with the names of ROWS is, in pixels: as they need, from LEAST to
+MOST."
+  (clamp (+ 24 (* +character-width+
+                  (loop for row in rows maximize (length (name-to-fit row most)))))
+         least most))
 
 (defun row-name (row width)
   "Return what ROW is called, as far as WIDTH pixels have room for it."
@@ -49,16 +63,19 @@ pixels wide. Return where it ends: how far to the right, and how far down."
 (defun draw-row (canvas row y scale)
   "Draw ROW with its upper edge at Y, its name left of SCALE."
   (with-subject (canvas (first (row-bars row)))
-    (write-at canvas 10 (+ y 11) (row-name row (max 80 (- (scale-left scale) 20)))))
+    (write-at canvas 10 (+ y 11) (or (row-name row (max 80 (- (scale-left scale) 20))) "")))
   (dolist (bar (row-bars row)) (draw-bar canvas bar y scale))
+  (draw-lane canvas (mapcan (lambda (bar) (copy-list (bar-commands bar))) (row-bars row))
+             (+ y +bar-height+ 1) scale)
   (dolist (bar (row-bars row))
     (draw-mark canvas (bar-outcome bar) (place (bar-end bar) scale) y)))
 
 (defun draw-rows (canvas rows scale top &key (from 0) to)
   "Draw ROWS from TOP down, but for those that end above FROM or begin below TO."
   (loop for row in rows
-        for y from (+ top 2) by +row-height+
-        when (and (>= (+ y +row-height+) from) (or (null to) (<= y to)))
+        for y = (+ top 2) then (+ y height)
+        for height = (row-height row)
+        when (and (>= (+ y height) from) (or (null to) (<= y to)))
           do (draw-row canvas row y scale)))
 
 ;;; As a page.
@@ -88,26 +105,23 @@ pixels wide. Return where it ends: how far to the right, and how far down."
   "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows. Return width and height in
 pixels."
   (let* ((page (make-page bars most))
-         (scale (make-scale (page-start page) (page-end page)))
-         (bottom (+ +top+ (* +row-height+ (length (page-rows page))))))
+         (left (labels-width (page-rows page) 120 +label-width+))
+         (scale (make-scale (page-start page) (page-end page) left))
+         (bottom (+ +top+ (rows-height (page-rows page)))))
     (write-at canvas 10 16 (format nil "Plans from tick ~A to ~A" (page-start page)
                                    (page-end page)))
     (draw-axis canvas scale +top+ bottom)
     (draw-rows canvas (page-rows page) scale +top+)
     (draw-unseen canvas page (+ bottom 34))
-    (values (max (draw-legend canvas) (+ +label-width+ +chart-width+ 40)) (+ bottom 42))))
+    (values (max (draw-legend canvas) (+ left +chart-width+ 40)) (+ bottom 42))))
 
 ;;; In a place of any width.
 
-(defun names-width (rows room)
-  "Return how many pixels the names of ROWS take where ROOM is for them."
-  (* +character-width+ (loop for row in rows maximize (length (name-to-fit row room)))))
-
+(defun scale-for (page width)
 (defun scale-for (page width)
   "Return the scale of PAGE in a place WIDTH pixels wide: of it the names have what they need, up to
 half."
-  (let* ((most (max 100 (floor width 2)))
-         (left (clamp (+ 24 (names-width (page-rows page) most)) 100 most)))
+  (let ((left (labels-width (page-rows page) 100 (max 100 (floor width 2)))))
     (make-scale (page-start page) (page-end page) left (max 60 (- width left 24)))))
 
 (defun draw-page (canvas page &key (width 640) (top 0) (from 0) to)
@@ -115,7 +129,7 @@ half."
 TO, in pixels from the top, need be seen. Return where it ends, in pixels."
   (let* ((scale (scale-for page width))
          (first (+ top 26))
-         (bottom (+ first (* +row-height+ (length (page-rows page))))))
+         (bottom (+ first (rows-height (page-rows page)))))
     (draw-axis canvas scale first bottom)
     (draw-rows canvas (page-rows page) scale first :from from :to to)
     (draw-unseen canvas page (+ bottom 34))

@@ -112,12 +112,13 @@ that they cover nothing of a map that is in view as a whole."
 ;;; Before each picture.
 
 (defun obey-scale (pane)
-  "If the user has set GRAPHICS-SCALE*, let it be the scale of the view of PANE."
-  (unless (eql graphics-scale* (pane-scale-seen pane))
-    (setf (pane-scale-seen pane) graphics-scale*
-          (pane-scale pane) (clamp graphics-scale* 1 128)
-          (pane-fitting-p pane) nil)
-    (centre-robot pane)))
+  "If the user has set GRAPHICS-SCALE*, let it be the scale of the view of PANE, unless it is none."
+  (unless (eql graphics-scale* (shiftf (pane-scale-seen pane) graphics-scale*))
+    (when (handler-case (progn (users-scale) t)
+            (misuse () nil))
+      (setf (pane-scale pane) (clamp graphics-scale* 1 128)
+            (pane-fitting-p pane) nil)
+      (centre-robot pane))))
 
 (defun prepare-view (pane)
   "Let the view of PANE be where it should be for its next picture."

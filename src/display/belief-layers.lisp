@@ -18,6 +18,12 @@
     (inked ((layer-ink :tracks))
       (draw-circle canvas (first target) (second target) (max 4 (* 1/2 graphics-scale*)) nil))))
 
+(defun designator-box (robot designator)
+  "Return the box (left top right bottom) of the cross and the number of DESIGNATOR, in pixels."
+  (destructuring-bind (x y) (believed-place robot designator)
+    (let ((text (princ-to-string (designator-image-number designator))))
+      (list (- x 5) (- y 13) (+ x 9 (words-width text)) (+ y 5)))))
+
 (defun draw-designator-on-map (canvas robot designator)
   "Draw a cross with the number of DESIGNATOR where ROBOT believes it to be, and a line from there
 to what it denotes."

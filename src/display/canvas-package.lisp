@@ -6,7 +6,7 @@
   (:use :cl :ars-magna.base)
   ;; colours
   (:export #:color #:black* #:white* #:grey* #:red* #:green* #:blue* #:violet* #:lightred*
-           #:lightgreen* #:lightblue* #:lightviolet* #:shade #:color-called)
+           #:lightgreen* #:lightblue* #:lightviolet* #:shade #:color-called #:mix)
   ;; contrast
   (:export #:+least-contrast+ #:primaries #:color-of-primaries #:luminance #:contrast #:ink-on
            #:tinted)
@@ -25,6 +25,8 @@
   (:export #:draw-rectangle #:draw-rectangles #:draw-arc #:draw-arcs #:draw-line #:draw-lines
            #:draw-segments #:draw-point #:draw-points #:draw-glyph #:draw-glyphs
            #:draw-image-glyph #:draw-image-glyphs #:clear-area)
+  ;; textures
+  (:export #:+textures+ #:draw-texture)
   ;; text
   (:export #:+text-font+ #:text-width #:paint-text #:character-width #:draw-words
            #:call-with-opacity #:with-opacity)

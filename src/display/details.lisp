@@ -68,8 +68,8 @@ that their widths are in proportion.")
         (/ +object-width+ largest))))
 
 (defun thing-width (image)
-  "Return how wide to draw the thing, in pixels: in proportion to its size."
-  (* *size-unit* (max 0 (thing-image-size image))))
+  "Return how wide to draw the thing, in pixels: in proportion to its size, but so that it is seen."
+  (max 2 (* *size-unit* (thing-image-size image))))
 
 (defun draw-hollow (canvas x y width)
   "Draw a frame in the current colour, with an outline that is seen on white whatever that is."

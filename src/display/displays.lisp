@@ -69,10 +69,3 @@ the world shows. To be called within WITH-CANVAS."
     (error 'wrong-argument :operator operator :name "display" :value display
                            :expected (format nil "one of ~{~(~S~)~^, ~}"
                                              (append +displays+ '(:all))))))
-
-(define-argument-type 'picture-scale (lambda (value) (and (finite-p value) (<= 1 value 256)))
-  "a number of pixels to a cell, from 1 to 256")
-
-(defun check-scale (operator scale)
-  (unless (or (null scale) (argument-of-type-p scale 'picture-scale))
-    (reject-argument operator "scale" scale (argument-type-text 'picture-scale))))

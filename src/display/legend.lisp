@@ -5,13 +5,24 @@
 ;;; An entry is a text with a function of a canvas and a place, X and Y in pixels, that draws the
 ;;; sample around there, no more than 16 pixels wide and high.
 
-(defstruct (entry (:constructor make-entry (text sample)) (:copier nil))
+(defstruct (entry (:constructor make-entry (text sample &optional whole)) (:copier nil))
+  "TEXT stands in the legend; WHOLE is what it is short for, or NIL."
   (text "" :type string :read-only t)
-  (sample (constantly nil) :type function :read-only t))
+  (sample (constantly nil) :type function :read-only t)
+  (whole nil :type (or null string) :read-only t))
 
 (defmacro sample-of ((canvas x y) text &body body)
   "Return an entry with TEXT, the sample of which BODY draws."
   `(make-entry ,text (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)))
+
+(defun named-entry (name sample &optional (more ""))
+  "Return an entry for NAME, a string, abridged if it is long, and for MORE, with SAMPLE."
+  (let ((text (short-name name)))
+    (make-entry (concatenate 'string text more) sample (and (string/= text name) name))))
+
+(defmacro sample-of-name ((canvas x y) (name &optional (more "")) &body body)
+  "Return an entry for NAME and MORE, the sample of which BODY draws."
+  `(named-entry ,name (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body) ,more))
 
 ;;; Robots.
 
@@ -19,7 +30,7 @@
   (loop for robot in (snapshot-robots snapshot)
         for position from 0
         collect (let ((color (robot-color position)))
-                  (sample-of (canvas x y) (string-downcase (robot-image-name robot))
+                  (sample-of-name (canvas x y) ((robot-title robot))
                     (draw-ring canvas x y 6 0 color)))))
 
 ;;; Walls: the substances, with the range of their parameters.
@@ -41,26 +52,28 @@
 (defun range-text (least greatest)
   (format nil "~A~:[ to ~A~;~]" (number-text least) (= least greatest) (number-text greatest)))
 
+(define-constant +sample-tile+ 6 :documentation "How wide tiles of textures are in legends.")
+
 (defun draw-swatch (canvas x y left right)
-  "Draw a rectangle in the colours LEFT and RIGHT."
-  (loop for color in (list left right) for start in (list (- x 7) x)
-        do (with-color color
-             (draw-rectangle canvas draw-gcontext* start (- y 5) 7 10 t))))
+  "Draw two cells side by side with the looks LEFT and RIGHT."
+  (with-origin (canvas (- x 9) (- y 6))
+    (loop for look in (list left right) for start in '(0 9)
+          do (draw-wall-look canvas look (list start 0 9 12) +sample-tile+))))
 
 (defun wall-entries (map)
-  (let ((hues (hues-of map)) (ranges (parameter-ranges map)))
+  (let ((materials (materials-of map)) (ranges (parameter-ranges map)))
     (cond ((null ranges) '())
           ((not in-color*)
-           (list (sample-of (canvas x y) "wall" (draw-swatch canvas x y black* black*))))
+           (let ((black (make-wall-look black*)))
+             (list (sample-of (canvas x y) "wall" (draw-swatch canvas x y black black)))))
           (t (loop for (number least greatest) in ranges
-                   collect (wall-entry map number least greatest (svref hues number)))))))
+                   collect (wall-entry map number least greatest (svref materials number)))))))
 
-(defun wall-entry (map number least greatest hue)
-  (flet ((color (parameter) (wall-color (wall-shade map parameter) hue)))
-    (sample-of (canvas x y)
-        (format nil "~(~A~) ~A" (svref (map-substance-types map) number)
-                (range-text least greatest))
-      (draw-swatch canvas x y (color least) (color greatest)))))
+(defun wall-entry (map number least greatest material)
+  (sample-of-name (canvas x y)
+      ((drawn-name (svref (map-substance-types map) number))
+       (format nil " ~A" (range-text least greatest)))
+    (draw-swatch canvas x y (wall-look-of material least) (wall-look-of material greatest))))
 
 ;;; Places.
 
@@ -74,7 +87,7 @@
 (defun place-entries (map)
   (loop for type in (place-types-of map)
         collect (let ((type type))
-                  (sample-of (canvas x y) (string-downcase (place-type-name type))
+                  (sample-of-name (canvas x y) ((drawn-name (place-type-name type)))
                     (let ((graphics-scale* 12))
                       (draw-place-at canvas type (- x 6) (- y 6)))))))
 
@@ -89,16 +102,18 @@
           #'string< :key (lambda (images) (thing-image-name (first images))))))
 
 (defun sample-half (image)
-  "Return half the width of the sample of the thing, in pixels."
-  (let ((graphics-scale* 9)) (half-width image)))
+  "Return half the width of the sample of the thing, in pixels: as on the map, if that is not larger
+than the line."
+  (let ((graphics-scale* (min graphics-scale* (floor (- +line-height+ 2) +largest-thing+))))
+    (half-width image)))
 
 (defun thing-entries (snapshot)
   (if in-color*
       (loop for (image . others) in (thing-kinds snapshot)
             collect (let ((image image))
-                      (sample-of (canvas x y)
-                          (format nil "~A~@[ (~D)~]" (thing-image-name image)
-                                  (and others (1+ (length others))))
+                      (sample-of-name (canvas x y)
+                          ((thing-image-name image)
+                           (format nil "~@[ (~D)~]" (and others (1+ (length others)))))
                         (draw-thing-sample canvas image x y (sample-half image)))))
       (and (plusp (length (snapshot-things snapshot)))
            (list (sample-of (canvas x y) "thing"
@@ -123,7 +138,8 @@
 
 (define-constant +line-words+
     '((:wedges . "in view") (:tracks . "tracked") (:designators . "believed, true")
-      (:odometer . "odometer") (:planned-way . "planned way") (:reach . "may move"))
+      (:odometer . "odometer") (:trail . "trail") (:planned-way . "planned way")
+      (:reach . "may move"))
   :test #'cl:equal
   :documentation "What lines of layers are called in legends.")
 
@@ -135,6 +151,7 @@
                     (:tracks (some #'camera-image-track (robot-image-cameras robot)))
                     (:designators (robot-image-designators robot))
                     (:odometer (robot-image-odometer robot))
+                    (:trail (cddr (robot-image-trail robot)))
                     (:planned-way (robot-image-planned-way robot))
                     (:reach (find-if #'thing-image-moving-p (snapshot-things snapshot))))))
 
@@ -143,8 +160,8 @@
         when (and (member layer layers) (line-shown-p snapshot layer))
           collect (let ((layer layer))
                     (sample-of (canvas x y) words
-                      (inked ((layer-ink layer)
-                              :style (if (member layer '(:wedges :odometer)) :solid :dash))
+                      (inked ((or (layer-ink layer) (robot-color 0))
+                              :style (if (member layer '(:wedges :odometer :trail)) :solid :dash))
                         (draw-segments canvas draw-gcontext* (list (- x 8) y (+ x 7) y)))))))
 
 (defun ray-entries (snapshot layers)

@@ -2,96 +2,23 @@
 
 (in-package :ars-magna.display)
 
-;;; A picture is an arrangement of the map and of what is around it. Where nobody says how many
-;;; pixels a cell has, there are as many as make the picture no larger than +WIDEST+ by +HIGHEST+.
-
-(define-constant +widest+ 900 :documentation "How wide a picture of a world should be, in pixels.")
-(define-constant +highest+ 700 :documentation "How high a picture of a world should be, in pixels.")
-(define-constant +least-scale+ 4 :documentation "How many pixels a cell has at least.")
-(define-constant +greatest-scale+ 40 :documentation "How many pixels a cell has at most.")
-(define-constant +usual-scale+ 8 :documentation "What GRAPHICS-SCALE* is until a user sets it.")
-
-(defstruct (arrangement (:copier nil))
-  "Where the map begins, how much room there is to its right and below, and the legend: COLUMNS,
-lists of entries, beside the map or BELOW-P, and how high it is."
-  (left 0) (top 0) (right 0) (bottom 0) (columns '()) (high 0) (below-p nil))
-
-(defun room-for (layers)
-  "Return how much room there is left of, above, right of and below the map for LAYERS without
-legend."
-  (flet ((shown-p (layer) (member layer layers)))
-    (if (intersection layers (layers-of-kind :margin))
-        (list (if (shown-p :coordinates) 36 8)
-              (+ (if (shown-p :title) 22 8) (if (shown-p :coordinates) 18 0))
-              14
-              (if (shown-p :scale-bar) 28 8))
-        '(0 0 0 0))))
-
-(defun columns-of (entries rows)
-  "Return ENTRIES as a list of lists of no more than ROWS of them."
-  (loop while entries
-        collect (loop repeat rows while entries collect (pop entries))))
-
-(defun column-width (column)
-  "Return how wide COLUMN, a list of entries, is, in pixels."
-  (+ 36 (loop for entry in column maximize (words-width (entry-text entry)))))
-
-(defun columns-width (columns)
-  (reduce #'+ (mapcar #'column-width columns)))
-
-(defun legend-beside (entries room)
-  "Return the arrangement with a legend of ENTRIES to the right of the map. ROOM is as ROOM-FOR has
-it."
-  (destructuring-bind (left top right bottom) room
-    (let ((columns (columns-of entries (floor (- +highest+ top bottom) +line-height+))))
-      (make-arrangement :left left :top top :right (+ right (columns-width columns))
-                        :bottom bottom :columns columns
-                        :high (* +line-height+ (length (first columns)))))))
-
-(defun legend-below (entries room)
-  "Return the arrangement with a legend of ENTRIES below the map."
-  (destructuring-bind (left top right bottom) room
-    (loop for rows from 1
-          for columns = (columns-of entries rows)
-          when (or (null (rest columns))
-                   (<= (columns-width columns) (- +widest+ left right)))
-            return (let ((high (* rows +line-height+)))
-                     (make-arrangement :left left :top top :right right :below-p t
-                                       :bottom (+ bottom 8 high) :columns columns :high high)))))
-
-(defun fitting-scale (map arrangement)
-  "Return how many pixels a cell of MAP has for the picture not to be too large."
-  (clamp (floor (min (/ (- +widest+ (arrangement-left arrangement) (arrangement-right arrangement))
-                        (map-width map))
-                     (/ (- +highest+ (arrangement-top arrangement) (arrangement-bottom arrangement))
-                        (map-height map))))
-         +least-scale+ +greatest-scale+))
-
-(defun arrange (snapshot layers)
-  "Return the arrangement for a picture of SNAPSHOT with LAYERS in which the map is largest."
-  (let ((room (room-for layers)) (map (snapshot-map snapshot))
-        (entries (and (member :legend layers) (legend-entries snapshot layers))))
-    (if entries
-        (let ((beside (legend-beside entries room)) (below (legend-below entries room)))
-          (if (< (fitting-scale map beside) (fitting-scale map below)) below beside))
-        (destructuring-bind (left top right bottom) room
-          (make-arrangement :left left :top top :right right :bottom bottom)))))
-
-(defun suitable-scale (scale snapshot layers)
-  "Return SCALE, or if it is NIL, GRAPHICS-SCALE* if the user has set that, or else the scale that
-suits the map of SNAPSHOT."
-  (cond (scale)
-        ((/= graphics-scale* +usual-scale+) graphics-scale*)
-        (t (fitting-scale (snapshot-map snapshot) (arrange snapshot layers)))))
-
 ;;; The parts. The origin is that of the map.
 
+(define-constant +title-size+ 13 :documentation "How high the font of titles is, in pixels.")
+
+(defun map-title (snapshot)
+  (format nil "~{~A~^, ~} in ~A, tick ~D"
+          (mapcar #'robot-title (snapshot-robots snapshot))
+          (drawn-name (map-name (snapshot-map snapshot))) (snapshot-tick snapshot)))
+
+(defun title-width (canvas snapshot layers)
+  "Return how wide the title of a picture of SNAPSHOT with LAYERS is, in pixels: 0 without one."
+  (if (member :title layers)
+      (ceiling (* (character-width canvas +title-size+) (length (map-title snapshot))))
+      0))
+
 (defun draw-map-title (canvas snapshot y)
-  (draw-words canvas draw-gcontext* 0 y
-              (format nil "~(~{~A~^, ~} in ~A~), tick ~D"
-                      (mapcar #'robot-image-name (snapshot-robots snapshot))
-                      (map-name (snapshot-map snapshot)) (snapshot-tick snapshot))
-              :size 13 :bold-p t))
+  (draw-words canvas draw-gcontext* 0 y (map-title snapshot) :size +title-size+ :bold-p t))
 
 (defun draw-coordinates (canvas map)
   "Write metres above and to the left of MAP."
@@ -126,8 +53,11 @@ suits the map of SNAPSHOT."
 (defun draw-entry (canvas entry x y)
   "Draw ENTRY, its upper left corner at X, Y."
   (let ((middle (+ y (/ +line-height+ 2))))
-    (funcall (entry-sample entry) canvas (+ x 8) middle)
-    (draw-text canvas (+ x 22) (+ middle 4) (entry-text entry))))
+    (flet ((words () (draw-text canvas (+ x 22) (+ middle 4) (entry-text entry))))
+      (funcall (entry-sample entry) canvas (+ x 8) middle)
+      (if (entry-whole entry)
+          (with-subject (canvas (entry-whole entry)) (words))
+          (words)))))
 
 (defun draw-legend (canvas arrangement x y)
   "Draw the legend of ARRANGEMENT, its upper left corner at X, Y."
@@ -152,23 +82,20 @@ suits the map of SNAPSHOT."
             (draw-legend canvas arrangement 0 (+ height (if (shown-p :scale-bar) 32 8)))
             (draw-legend canvas arrangement (+ width 14) 0))))))
 
+(defun arrangement-for (canvas snapshot layers)
+  "Return the arrangement for a picture of SNAPSHOT with LAYERS on CANVAS."
+  (arrange snapshot layers
+           (and (member :legend layers) (legend-entries snapshot layers))
+           (title-width canvas snapshot layers)))
+
 (defun draw-framed (canvas snapshot layers draw)
   "Draw around the map of SNAPSHOT what LAYERS lists, and call DRAW, which draws the map and what is
 on it; return width and height of all that."
-  (let* ((arrangement (arrange snapshot layers)) (map (snapshot-map snapshot))
-         (left (arrangement-left arrangement)) (top (arrangement-top arrangement)))
-    (with-origin (canvas left top)
+  (let ((arrangement (arrangement-for canvas snapshot layers)))
+    (with-origin (canvas (arrangement-left arrangement) (arrangement-top arrangement))
       (draw-margins canvas snapshot layers arrangement)
       (funcall draw))
-    (values (+ left (max (to-pixels (map-width map))
-                         (if (arrangement-below-p arrangement)
-                             (columns-width (arrangement-columns arrangement))
-                             0))
-               (arrangement-right arrangement))
-            (max (+ top (to-pixels (map-height map)) (arrangement-bottom arrangement))
-                 (if (arrangement-below-p arrangement)
-                     0
-                     (+ top (arrangement-high arrangement) 8))))))
+    (values (arrangement-width arrangement) (arrangement-height arrangement))))
 
 (defun draw-framed-world (canvas snapshot layers)
   "Draw the world of SNAPSHOT and around it what LAYERS lists; return width and height of that."

@@ -3,8 +3,8 @@
 (in-package :ars-magna.display)
 
 ;;; A box is a list (left top right bottom) in pixels. A name is written near by where its box meets
-;;; no wall, thing, robot or other name, and rather no mark of a place; if there is no such room,
-;;; not at all. Robots come first, then large things.
+;;; no wall, thing, robot, number of a designator, mark of a place or other name, and rather no
+;;; trail; if there is no such room, not at all. Robots come first, then large things.
 
 (define-constant +name-size+ 10 :documentation "How high the font of names is, in pixels.")
 (define-constant +name-height+ 11 :documentation "How high the box of a name is, in pixels.")
@@ -48,48 +48,92 @@ on it, meets."
 (defun on-wall-p (map box)
   (cells-below map box (lambda (index) (logtest +wall+ (aref (map-flags map) index)))))
 
-(defun on-place-p (map box)
-  (cells-below map box (lambda (index) (plusp (aref (map-places map) index)))))
+(defun on-mark-p (map box)
+  "True if a place that is marked on MAP lies below BOX."
+  (cells-below map box (lambda (index)
+                         (drawn-place-type-p (svref (map-place-types map)
+                                                    (aref (map-places map) index))))))
 
-(defun best-box (map boxes taken)
-  "Return the first of BOXES that is on MAP and meets no wall and none of TAKEN, and rather no
-place; or NIL."
-  (let ((free (remove-if-not (lambda (box)
-                               (and (on-map-p map box)
-                                    (notany (lambda (other) (overlap-p box other)) taken)
-                                    (not (on-wall-p map box))))
-                             boxes)))
-    (or (find-if-not (lambda (box) (on-place-p map box)) free)
+(defun on-trail-p (snapshot box)
+  (destructuring-bind (left top right bottom) box
+    (loop for robot in (snapshot-robots snapshot)
+          thereis (loop for (x y) on (robot-image-trail robot) by #'cddr
+                        repeat +trail-length+
+                        thereis (and (< left (to-pixels x) right) (< top (to-pixels y) bottom))))))
+
+(defun best-box (snapshot layers boxes taken)
+  "Return the first of BOXES that is on the map of SNAPSHOT, meets no wall, none of TAKEN and no
+mark of a place that LAYERS show, and rather no trail; or NIL."
+  (let* ((map (snapshot-map snapshot))
+         (free (remove-if-not
+                (lambda (box)
+                  (and (on-map-p map box)
+                       (notany (lambda (other) (overlap-p box other)) taken)
+                       (not (on-wall-p map box))
+                       (not (and (member :places layers) (on-mark-p map box)))))
+                boxes)))
+    (or (and (member :trail layers)
+             (find-if-not (lambda (box) (on-trail-p snapshot box)) free))
         (first free))))
+
+(define-constant +longest-name+ 24
+  :documentation "How many characters of a name are written beside a sample, or on the map.")
+
+(defun short-name (name)
+  "Return the string NAME, or its beginning if it is long."
+  (cut name +longest-name+))
+
+(defun drawn-name (name)
+  "Return what the symbol or string NAME is called in pictures: in small letters, but for names that
+have small letters of their own."
+  (let ((text (string name)))
+    (if (some #'lower-case-p text) text (string-downcase text))))
+
+(defun robot-title (image) (drawn-name (robot-image-name image)))
+
+(defun thing-image-name (image)
+  (drawn-name (thing-name (thing-image-thing image))))
 
 (defun named-spots (snapshot)
   "Return lists (name x y half) of what has a name on the map, in order of importance."
   (append (loop for robot in (snapshot-robots snapshot)
-                collect (list (string-downcase (robot-image-name robot))
+                collect (list (short-name (robot-title robot))
                               (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
                               (* 8/5 (robot-radius))))
           (loop for image in (stable-sort (coerce (snapshot-things snapshot) 'list) #'>
                                           :key #'thing-image-size)
-                collect (list (thing-image-name image)
+                collect (list (short-name (thing-image-name image))
                               (to-pixels (thing-image-x image)) (to-pixels (thing-image-y image))
                               (half-width image)))))
 
-(defun thing-image-name (image)
-  (string-downcase (thing-name (thing-image-thing image))))
+(define-constant +apart+ 6
+  :documentation "How far names on a line are apart at least, not to be read as one, in pixels.")
+
+(defun widened (box by)
+  (destructuring-bind (left top right bottom) box
+    (list (- left by) top (+ right by) bottom)))
+
+(defun boxes-taken (snapshot layers spots)
+  "Return the boxes of SPOTS, and of the numbers of designators if LAYERS show them."
+  (append (loop for (nil x y half) in spots collect (widened (box-around x y half) 2))
+          (and (member :designators layers)
+               (loop for robot in (snapshot-robots snapshot)
+                     append (loop for designator in (robot-image-designators robot)
+                                  collect (designator-box robot designator))))))
 
 (defun write-name (canvas name box)
   (with-color black*
     (draw-words canvas draw-gcontext* (+ 1 (first box)) (- (fourth box) 2) name
                 :size +name-size+)))
 
-(defun draw-names (canvas snapshot)
-  "Write the names of robots and things where there is room."
-  (let* ((map (snapshot-map snapshot)) (spots (named-spots snapshot))
+(defun draw-names (canvas snapshot layers)
+  "Write the names of robots and things where there is room beside what LAYERS list."
+  (let* ((spots (named-spots snapshot))
          (per-character (character-width canvas +name-size+))
-         (taken (loop for (nil x y half) in spots collect (box-around x y half))))
+         (taken (boxes-taken snapshot layers spots)))
     (loop for (name x y half) in spots
           for width = (+ 2 (* per-character (length name)))
-          for box = (best-box map (name-boxes x y half width) taken)
+          for box = (best-box snapshot layers (name-boxes x y half width) taken)
           when box
-            do (push box taken)
+            do (push (widened box +apart+) taken)
                (write-name canvas name box))))

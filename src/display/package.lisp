@@ -28,6 +28,7 @@
            #:layers-of-kind)
   ;; terrain, world-display, margins, displays
   (:export #:draw-terrain #:draw-movers #:draw-world #:draw-framed-world #:suitable-scale
+           #:users-scale
            #:draw-view-margins
            #:draw-display #:display-title #:+displays+)
   ;; moments

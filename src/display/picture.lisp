@@ -5,9 +5,10 @@
 (defun write-picture (stream snapshot robot &key (display :world) (layers *picture-layers*)
                                               (in-color t) scale)
   "Write an SVG document of DISPLAY from SNAPSHOT to STREAM; ROBOT is the image of a robot in it."
-  (with-svg (canvas stream :color-p in-color)
-    (with-canvas (canvas)
-      (let ((graphics-scale* (suitable-scale scale snapshot layers)))
+  (let* ((scale (suitable-scale scale snapshot layers))
+         (zoom (if (member display '(:world :all)) (magnification scale snapshot layers) 1)))
+    (with-svg (canvas stream :color-p in-color :zoom zoom)
+      (with-canvas (canvas :scale (/ scale zoom))
         (draw-display canvas display snapshot robot :layers layers)))))
 
 (defun check-picture (operator robot display layers scale)
@@ -25,8 +26,10 @@ of :WORLD, :STATE, :DESIGNATORS, :CAMERAS, :HANDS and :BINS, the displays of the
 LAYERS lists what the picture shows besides walls, things and robots: *PICTURE-LAYERS* tells what
 there is; the list () gives the bare map. SCALE is how many pixels there are to a cell, from 1 to
 256. Without SCALE it is GRAPHICS-SCALE*, if you have set that to another value than 8, or else what
-suits the map: from 4 to 40, so that the picture is 900 x 700 pixels at most, if 4 do for that.
-IN-COLOR is false for a picture in black and white. Signals WRONG-ARGUMENT."
+suits the map: from 4 to 40, so that the picture without its legend is 900 x 700 pixels at most, if
+4 do for that. Where SCALE is more than that, and more than 20, the picture grows as a whole, text
+and lines, too. IN-COLOR is false for a picture in black and white. Signals WRONG-ARGUMENT, and
+MISUSE if GRAPHICS-SCALE* is no scale."
   (check-picture 'svg-picture robot display layers scale)
   (let ((snapshot (snapshot-of robot)))
     (with-output-to-string (stream)
@@ -56,6 +59,8 @@ IN-COLOR is false for a picture in black and white. Signals WRONG-ARGUMENT."
 picture there; then it says that a name has one of ENDINGS."
   (flet ((reject (expected) (reject-argument operator 'file file expected)))
     (unless (typep file '(or string pathname)) (reject "the name of a file"))
+    (when (wild-pathname-p file)
+      (reject "the name of one file; write \\\\ before each * ? and [ in a string of Lisp"))
     (let ((missing (missing-directory file)))
       (when missing (reject (format nil "a name in a directory that there is; make ~A first"
                                     missing))))

@@ -256,29 +256,30 @@
     (write-svg canvas "</g>
 ")))
 
-(defun write-document (body width height stream font)
+(defun write-document (body width height stream font zoom)
   (let ((canvas (make-instance 'svg-canvas :stream stream)))
-    (write-svg canvas "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" width
-               "\" height=\"" height "\" viewBox=\"0 0 " width " " height
+    (write-svg canvas "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" (* zoom width)
+               "\" height=\"" (* zoom height) "\" viewBox=\"0 0 " width " " height
                "\" font-family=\"" font "\" font-size=\"11.6\""
                " xml:space=\"preserve\">
 <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>
 " body "</svg>
 ")))
 
-(defun call-with-svg (function stream &key (color-p t) (font "DejaVu Sans Mono, monospace"))
+(defun call-with-svg (function stream &key (color-p t) (font "DejaVu Sans Mono, monospace")
+                                        (zoom 1))
   "Call FUNCTION with a canvas, then write what it has drawn to STREAM as an SVG document, white
 where nothing was drawn, with text in the font family FONT. FUNCTION returns its width and height
-in pixels, as two values."
+in pixels, as two values; the document is shown ZOOM times as large."
   (let* ((width 0) (height 0)
          (body (with-output-to-string (scratch)
                  (setf (values width height)
                        (printing-plainly ()
                          (funcall function (make-instance 'svg-canvas :stream scratch
                                                                       :color-p color-p)))))))
-    (printing-plainly () (write-document body width height stream font))))
+    (printing-plainly () (write-document body width height stream font zoom))))
 
 (defmacro with-svg ((canvas stream &rest options) &body body)
   "Run BODY, which draws on CANVAS and returns its width and height in pixels, as two values, then
-write what it has drawn to STREAM as an SVG document. OPTIONS: :color-p, :font."
+write what it has drawn to STREAM as an SVG document. OPTIONS: :color-p, :font, :zoom."
   `(call-with-svg (lambda (,canvas) ,@body) ,stream ,@options))

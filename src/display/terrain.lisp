@@ -2,42 +2,39 @@
 
 (in-package :ars-magna.display)
 
-;;; Runs of wall cells with the same shade are merged into rectangles, and all rectangles of a
-;;; shade are drawn at once: a picture of a big floor is made of few elements.
+;;; Runs of wall cells with the same look are merged into rectangles, and all rectangles of a
+;;; look are drawn at once: a picture of a big floor is made of few elements.
 
 ;;; Walls.
 
-(define-constant +darkest-wall+ 14 :documentation "The shade of grey* of the least parameter.")
-(define-constant +lightest-wall+ 44 :documentation "The shade of grey* of the greatest one.")
+(defstruct (wall-look (:constructor make-wall-look (color &optional (texture :plain)))
+                      (:copier nil))
+  "What a wall looks like. Looks of walls that are alike are the same object."
+  (color 0 :type color :read-only t)
+  (texture :plain :type keyword :read-only t))
 
-(defun wall-shade (map parameter)
-  "Return the shade of grey* of walls of MAP with PARAMETER; walls of one map that all have the same
-parameter are dark."
-  (declare (type map map))
-  (let ((least (map-least-parameter map)) (greatest (map-greatest-parameter map)))
-    (if (> greatest least)
-        (+ +darkest-wall+
-           (values (round (* (- +lightest-wall+ +darkest-wall+)
-                             (/ (- parameter least) (- greatest least))))))
-        +darkest-wall+)))
+(defun wall-look-of (material parameter)
+  (make-wall-look (wall-color (wall-shade parameter) (material-hue material))
+             (material-texture material)))
 
-(defun wall-colors (map)
-  "Return a function of the index of a wall cell of MAP that returns its colour: a grey by the
-substance parameter, tinted by the substance; black on a display without colours."
-  (let ((hues (hues-of map)) (known (make-hash-table :test #'eql)))
+(defun wall-looks (map)
+  "Return a function of the index of a wall cell of MAP that returns its look: by its substance and
+its parameter; plain black on a display without colours."
+  (let ((materials (materials-of map)) (known (make-hash-table :test #'eql))
+        (black (make-wall-look black*)))
     (if in-color*
         (lambda (index)
           (let* ((substance (aref (map-substances map) index))
-                 (shade (wall-shade map (aref (map-parameters map) index)))
-                 (key (+ shade (* 64 substance))))
+                 (parameter (aref (map-parameters map) index))
+                 (key (+ (wall-shade parameter) (* 64 substance))))
             (or (gethash key known)
-                (setf (gethash key known) (wall-color shade (svref hues substance))))))
-        (constantly black*))))
+                (setf (gethash key known) (wall-look-of (svref materials substance) parameter)))))
+        (constantly black))))
 
-(defstruct (wall-run (:constructor make-wall-run (left right top bottom color)) (:copier nil))
-  "A rectangle of wall cells of one colour; RIGHT and BOTTOM are outside."
+(defstruct (wall-run (:constructor make-wall-run (left right top bottom look)) (:copier nil))
+  "A rectangle of wall cells of one look; RIGHT and BOTTOM are outside."
   (left 0 :type fixnum) (right 0 :type fixnum) (top 0 :type fixnum) (bottom 0 :type fixnum)
-  (color 0 :type color))
+  (look nil :type wall-look))
 
 (defstruct (window (:constructor make-window (left top right bottom)) (:copier nil))
   "The cells of a map that are to be drawn; RIGHT and BOTTOM are outside."
@@ -51,47 +48,69 @@ substance parameter, tinted by the substance; black on a display without colours
       (make-window (within (or left 0) width) (within (or top 0) height)
                    (within (or right width) width) (within (or bottom height) height)))))
 
-(defun row-runs (map window y colors)
+(defun row-runs (map window y looks)
   "Return the runs of walls in the row Y of MAP within WINDOW, from left to right."
-  (declare (type map map) (type fixnum y) (type function colors))
+  (declare (type map map) (type fixnum y) (type function looks))
   (let ((flags (map-flags map)) (width (map-width map)) (runs '()) (run nil))
     (loop for x from (window-left window) below (window-right window)
           do (let* ((index (+ x (* y width)))
-                    (color (and (logtest +wall+ (aref flags index)) (funcall colors index))))
-               (cond ((null color) (setf run nil))
-                     ((and run (= color (wall-run-color run))) (setf (wall-run-right run) (1+ x)))
-                     (t (push (setf run (make-wall-run x (1+ x) y (1+ y) color)) runs)))))
+                    (look (and (logtest +wall+ (aref flags index)) (funcall looks index))))
+               (cond ((null look) (setf run nil))
+                     ((and run (eq look (wall-run-look run))) (setf (wall-run-right run) (1+ x)))
+                     (t (push (setf run (make-wall-run x (1+ x) y (1+ y) look)) runs)))))
     (nreverse runs)))
 
 (defun wall-runs (map window)
   "Return rectangles that together are all walls of MAP within WINDOW."
   (let ((above (make-array (map-width map) :initial-element nil)) (runs '())
-        (colors (wall-colors map)))
+        (looks (wall-looks map)))
     (loop for y from (window-top window) below (window-bottom window)
-          do (dolist (run (row-runs map window y colors))
+          do (dolist (run (row-runs map window y looks))
                (let ((old (svref above (wall-run-left run))))
                  (cond ((and old (= (wall-run-bottom old) y)
                              (= (wall-run-right old) (wall-run-right run))
-                             (= (wall-run-color old) (wall-run-color run)))
+                             (eq (wall-run-look old) (wall-run-look run)))
                         (setf (wall-run-bottom old) (1+ y)))
                        (t (push run runs)
                           (setf (svref above (wall-run-left run)) run))))))
     runs))
 
+(define-constant +least-tile+ 4
+  :documentation "How wide a tile of a texture is at least, in pixels: less cannot be made out.")
+
+(defun tile-width ()
+  "Return how wide tiles of textures are, in pixels: as many as fit into a cell. NIL: too narrow."
+  (let ((width (/ (rational graphics-scale*) (max 1 (round graphics-scale* 7)))))
+    (and (<= +least-tile+ width) width)))
+
+(defun texture-ink (color)
+  "Return the colour of textures on COLOR."
+  (mix color white* 6/10))
+
+(defun draw-wall-look (canvas look rectangles &optional (tile (tile-width)))
+  "Fill RECTANGLES, a list x y width height ..., with LOOK, in tiles TILE pixels wide."
+  (with-color (wall-look-color look)
+    (draw-rectangles canvas draw-gcontext* rectangles t))
+  (when tile
+    (with-color (texture-ink (wall-look-color look))
+      (draw-texture canvas draw-gcontext* (wall-look-texture look) rectangles tile))))
+
+(defun runs-by-look (runs)
+  "Return lists (look x y width height ...), in pixels, of the rectangles RUNS of walls."
+  (let ((lists '()))
+    (dolist (run runs lists)
+      (let ((list (or (assoc (wall-run-look run) lists :test #'eq)
+                      (first (push (list (wall-run-look run)) lists)))))
+        (setf (rest list)
+              (list* (to-pixels (wall-run-left run)) (to-pixels (wall-run-top run))
+                     (to-pixels (- (wall-run-right run) (wall-run-left run)))
+                     (to-pixels (- (wall-run-bottom run) (wall-run-top run)))
+                     (rest list)))))))
+
 (defun draw-walls (canvas map window)
-  (let ((by-color '()))
-    (dolist (run (wall-runs map window))
-      (let ((entry (or (assoc (wall-run-color run) by-color)
-                       (first (push (list (wall-run-color run)) by-color)))))
-        (setf (rest entry)
-              (list* (* graphics-scale* (wall-run-left run))
-                     (* graphics-scale* (wall-run-top run))
-                     (* graphics-scale* (- (wall-run-right run) (wall-run-left run)))
-                     (* graphics-scale* (- (wall-run-bottom run) (wall-run-top run)))
-                     (rest entry)))))
-    (loop for (color . rectangles) in (sort by-color #'< :key #'first)
-          do (with-color color
-               (draw-rectangles canvas draw-gcontext* rectangles t)))))
+  (loop for (look . rectangles) in (sort (runs-by-look (wall-runs map window)) #'<
+                                         :key (lambda (list) (wall-look-color (first list))))
+        do (draw-wall-look canvas look rectangles)))
 
 ;;; Places.
 
@@ -146,10 +165,11 @@ substance parameter, tinted by the substance; black on a display without colours
                                         (lambda (y) (list left y right y))))))))))
 
 (defun draw-terrain (canvas map &key left top right bottom (layers '(:places)))
-  "Draw the walls of MAP in black, or in greys by their substance parameters with a tint by their
-substance, and, as far as LAYERS lists :PLACES and :GRID, the marks of its places and the borders of
-its cells, on CANVAS, GRAPHICS-SCALE* pixels to a cell (manual B). LEFT, TOP, RIGHT and BOTTOM,
-columns and rows of cells, say which part of MAP is wanted; by default all of it is."
+  "Draw the walls of MAP in black, or in greys by their substance parameters with a tint and a
+texture by their substance, and, as far as LAYERS lists :PLACES and :GRID, the marks of its places
+and the borders of its cells, on CANVAS, GRAPHICS-SCALE* pixels to a cell (manual B). LEFT, TOP,
+RIGHT and BOTTOM, columns and rows of cells, say which part of MAP is wanted; by default all of
+it is."
   (let ((window (clip-window map left top right bottom)))
     (when (member :grid layers) (draw-grid canvas window))
     (draw-walls canvas map window)

@@ -77,6 +77,19 @@ COLUMNS characters, if that can be."
           when (or (null rows) (<= (length head) lines) (<= rows (+ 2 lines)))
             return sheet)))
 
+(defun check-region (region map)
+  "Signal WRONG-ARGUMENT unless REGION is NIL or a region that has some of MAP in it."
+  (check-argument text-map region (or (null region) (region-p region))
+                  (format nil "a list (left top right bottom) in metres, left less than right and ~
+                               top less than bottom, or NIL"))
+  (when region
+    (destructuring-bind (left top right bottom) region
+      (check-argument text-map region (and (< left (map-width map)) (< top (map-height map))
+                                           (< 0 right) (< 0 bottom))
+                      (format nil "a list (left top right bottom) of which some is on the map, ~
+                                   that is from 0 to ~D and from 0 to ~D"
+                              (map-width map) (map-height map))))))
+
 (defun region-p (object)
   (and (proper-list-p object) (= 4 (length object)) (every #'finite-p object)
        (destructuring-bind (left top right bottom) object
@@ -99,9 +112,7 @@ out. Call it where the world stands still. Signals WRONG-ARGUMENT."
                   "an integer from 5 to 100000, or NIL")
   (check-argument text-map radius (or (null radius) (whole-p radius))
                   "a whole number of cells, from 0 to 1e9, or NIL")
-  (check-argument text-map region (or (null region) (region-p region))
-                  "a list (left top right bottom) in metres, left less than right and top less ~
-                   than bottom, or NIL")
+  (check-region region (world-map (robot-world robot)))
   (check-argument text-map layers (and (proper-list-p layers) (subsetp layers +text-layers+))
                   (format nil "a list of some of ~{~(~S~)~^, ~}" +text-layers+))
   (let ((sheet (fitting-sheet robot (if radius (region-near robot radius) region)

@@ -8,16 +8,17 @@
 
 (define-constant +largest-thing+ 3/2 :documentation "How wide a thing is drawn at most, in cells.")
 (define-constant +largest-size+ 64 :documentation "The :size of what is drawn so wide.")
-(define-constant +least-width+ 6 :documentation "How wide a thing is drawn at least, in pixels.")
+(define-constant +least-width+ 5
+  :documentation "How wide a thing of size 0 is drawn, in pixels: so one sees it.")
 
+;; As reading 241 says.
 (defun half-width (image)
   "Return half the width of the thing on the map, in pixels: its area grows with its size. Without
 colours all have the same."
   (if in-color*
-      (* 1/2 (max +least-width+
-                  (* graphics-scale* +largest-thing+
-                     (sqrt (/ (clamp (thing-image-size image) 0 +largest-size+)
-                              +largest-size+)))))
+      (let ((largest (max (1+ +least-width+) (* graphics-scale* +largest-thing+)))
+            (part (/ (clamp (thing-image-size image) 0 +largest-size+) +largest-size+)))
+        (* 1/2 (+ +least-width+ (* (- largest +least-width+) (sqrt part)))))
       (* 3/8 graphics-scale*)))
 
 ;;; Shapes. What moves by itself has a point.
@@ -73,8 +74,8 @@ or :DIAMOND."
       (draw-cross canvas x y (* half (if (eq :square (thing-shape image)) 3/4 1/2))))))
 
 (defun draw-upright-line (canvas x y)
-  (let ((width (max 1 (round graphics-scale* 4)))
-        (height (max 3 (round (* 3/4 graphics-scale*)))))
+  (let ((width (max 2 (round graphics-scale* 4)))
+        (height (max 5 (round (* 3/4 graphics-scale*)))))
     (draw-rectangle canvas draw-gcontext* (- x (/ width 2)) (- y (/ height 2)) width height t)))
 
 (defun draw-thing-on-map (canvas image)

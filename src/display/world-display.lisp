@@ -30,10 +30,19 @@
     (dolist (robot (snapshot-robots snapshot))
       (dolist (designator (robot-image-designators robot))
         (draw-designator-on-map canvas robot designator))))
-  (when (member :names layers) (draw-names canvas snapshot)))
+  (when (member :names layers) (draw-names canvas snapshot layers)))
+
+(defun call-on-map (function canvas map)
+  "Call FUNCTION; what it draws on CANVAS outside of MAP stays invisible."
+  (with-clipping (canvas 0 0 (to-pixels (map-width map)) (to-pixels (map-height map)))
+    (funcall function)))
 
 (defun draw-movers (canvas snapshot layers)
   "Draw what is not terrain of SNAPSHOT on CANVAS: things, robots, and what LAYERS lists of them."
+  (call-on-map (lambda () (draw-all-movers canvas snapshot layers))
+               canvas (snapshot-map snapshot)))
+
+(defun draw-all-movers (canvas snapshot layers)
   (let ((robots (snapshot-robots snapshot)))
     (loop for robot in robots for position from 0
           do (draw-layers canvas snapshot robot (robot-color position) layers))

@@ -52,11 +52,16 @@
       (draw-arc canvas draw-gcontext* (- x half) (- y 9) (* 2 half) 18 0 (* 2 pi) nil)
       (draw-words canvas draw-gcontext* x (+ y 4) text :size 11 :anchor :middle))))
 
+(define-constant +figure-space+ (code-char #x2007)
+  :documentation "A space that is as wide as a digit.")
+
 (defun moment-notes (moments)
-  "Return what the numbers of MOMENTS mean, a text for each."
-  (loop for moment in moments
+  "Return what the numbers of MOMENTS mean, a text for each; the texts stand below each other."
+  (loop with digits = (length (princ-to-string (length moments)))
+        for moment in moments
         for number from 1
-        collect (format nil "~D   tick ~A: ~A" number (moment-tick moment) (moment-text moment))))
+        collect (format nil "~V,,,VD   tick ~A: ~A" digits +figure-space+ number
+                        (moment-tick moment) (moment-text moment))))
 
 ;;; Finding out.
 
