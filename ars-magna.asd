@@ -290,7 +290,7 @@
                  (:file "plan-mouse") (:file "world-mouse") (:file "keys") (:file "keyboard")
                  (:file "help")
                  (:file "robots") (:file "window") (:file "line-menus") (:file "commands")
-                 (:file "opening") (:file "x-server")
+                 (:file "opening") (:file "x-server") (:file "replies")
                  (:file "following")))))
 
 (defsystem "ars-magna/fiveam"

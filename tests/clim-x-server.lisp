@@ -263,3 +263,31 @@
                (is (time:live-p simulation))
                (is (< tick (setf tick (run:simulation-tick simulation))))))
         (run:stop-clock simulation)))))
+
+;;; Two threads wait for the X server on one connection; see replies.lisp.
+
+(test replies.who-may-read-does-not-wait-for-what-has-come-meanwhile
+  "Another thread reads the answer after we have looked for it and before we may read."
+  (let ((looks '()) (waits 0))
+    (flet ((read-input (display timeout force-output-p come-p &rest arguments)
+             (declare (ignore force-output-p))
+             (loop until (apply come-p arguments)
+                   do (let ((end (window::wait-unless-come
+                                  (lambda (display timeout)
+                                    (declare (ignore display timeout))
+                                    (incf waits)
+                                    :timeout)
+                                  display timeout)))
+                        (when end (return end)))))
+           (come-p (answers)
+             (pop (first answers))))
+      (flet ((wait (answers) (window::read-for #'read-input nil 1 nil #'come-p (list answers))))
+        (setf looks (list nil t))
+        (is (null (wait looks)))
+        (is (= 0 waits))
+        (is (eq :timeout (wait (list nil nil))))
+        (is (= 1 waits))))))
+
+(test replies.are-waited-for-so-by-clx
+  (is (sb-int:encapsulated-p 'xlib::read-input 'ars-magna.base::ars-magna))
+  (is (sb-int:encapsulated-p 'xlib::buffer-input-wait 'ars-magna.base::ars-magna)))
