@@ -159,12 +159,14 @@
 
 (define-constant +entry-limit+ 80 :documentation "How many entries a legend has at most.")
 
-(defun legend-entries (snapshot layers)
-  "Return the entries of the legend of a picture of SNAPSHOT with LAYERS."
+(defun legend-entries (snapshot layers
+                       &optional (lines (append (line-entries snapshot layers)
+                                                (ray-entries snapshot layers))))
+  "Return the entries of the legend of a picture of SNAPSHOT with LAYERS; LINES are those of lines."
   (let* ((map (snapshot-map snapshot))
          (entries (append (robot-entries snapshot) (wall-entries map)
                           (and (member :places layers) (place-entries map))
-                          (line-entries snapshot layers) (ray-entries snapshot layers)
+                          lines
                           (shape-entries snapshot) (thing-entries snapshot)))
          (more (- (length entries) +entry-limit+)))
     (if (plusp more)

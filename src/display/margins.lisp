@@ -67,31 +67,35 @@ it."
                         (map-height map))))
          +least-scale+ +greatest-scale+))
 
-(defun arrange (snapshot layers)
-  "Return the arrangement for a picture of SNAPSHOT with LAYERS in which the map is largest."
+(defun arrange (snapshot layers &optional more)
+  "Return the arrangement for a picture of SNAPSHOT with LAYERS in which the map is largest. MORE
+are entries of the legend that come before the others."
   (let ((room (room-for layers)) (map (snapshot-map snapshot))
-        (entries (and (member :legend layers) (legend-entries snapshot layers))))
+        (entries (and (member :legend layers)
+                      (append more (legend-entries snapshot layers)))))
     (if entries
         (let ((beside (legend-beside entries room)) (below (legend-below entries room)))
           (if (< (fitting-scale map beside) (fitting-scale map below)) below beside))
         (destructuring-bind (left top right bottom) room
           (make-arrangement :left left :top top :right right :bottom bottom)))))
 
-(defun suitable-scale (scale snapshot layers)
+(defun suitable-scale (scale snapshot layers &optional more)
   "Return SCALE, or if it is NIL, GRAPHICS-SCALE* if the user has set that, or else the scale that
-suits the map of SNAPSHOT."
+suits the map of SNAPSHOT with LAYERS, and MORE entries of the legend."
   (cond (scale)
         ((/= graphics-scale* +usual-scale+) graphics-scale*)
-        (t (fitting-scale (snapshot-map snapshot) (arrange snapshot layers)))))
+        (t (fitting-scale (snapshot-map snapshot) (arrange snapshot layers more)))))
 
 ;;; The parts. The origin is that of the map.
 
-(defun draw-map-title (canvas snapshot y)
-  (draw-words canvas draw-gcontext* 0 y
-              (format nil "~(~{~A~^, ~} in ~A~), tick ~D"
-                      (mapcar #'robot-image-name (snapshot-robots snapshot))
-                      (map-name (snapshot-map snapshot)) (snapshot-tick snapshot))
-              :size 13 :bold-p t))
+(defun map-title (snapshot)
+  "Return what stands above a picture of SNAPSHOT unless somebody says what."
+  (format nil "~(~{~A~^, ~} in ~A~), tick ~D"
+          (mapcar #'robot-image-name (snapshot-robots snapshot))
+          (map-name (snapshot-map snapshot)) (snapshot-tick snapshot)))
+
+(defun draw-map-title (canvas title y)
+  (draw-words canvas draw-gcontext* 0 y title :size 13 :bold-p t))
 
 (defun draw-coordinates (canvas map)
   "Write metres above and to the left of MAP."
@@ -136,7 +140,7 @@ suits the map of SNAPSHOT."
           do (draw-entry canvas entry x (+ y (* row +line-height+))))
     (incf x (column-width column))))
 
-(defun draw-margins (canvas snapshot layers arrangement)
+(defun draw-margins (canvas snapshot layers arrangement title)
   (let* ((map (snapshot-map snapshot))
          (width (to-pixels (map-width map))) (height (to-pixels (map-height map))))
     (flet ((shown-p (layer) (member layer layers)))
@@ -144,7 +148,7 @@ suits the map of SNAPSHOT."
         (with-color +frame-ink+
           (draw-rectangle canvas draw-gcontext* -1 -1 (1+ width) (1+ height))))
       (when (shown-p :title)
-        (draw-map-title canvas snapshot (- 16 (arrangement-top arrangement))))
+        (draw-map-title canvas title (- 16 (arrangement-top arrangement))))
       (when (shown-p :coordinates) (draw-coordinates canvas map))
       (when (shown-p :scale-bar) (draw-scale-bar canvas map (+ height 14)))
       (when (arrangement-columns arrangement)
@@ -152,13 +156,14 @@ suits the map of SNAPSHOT."
             (draw-legend canvas arrangement 0 (+ height (if (shown-p :scale-bar) 32 8)))
             (draw-legend canvas arrangement (+ width 14) 0))))))
 
-(defun draw-framed (canvas snapshot layers draw)
+(defun draw-framed (canvas snapshot layers draw &key title more)
   "Draw around the map of SNAPSHOT what LAYERS lists, and call DRAW, which draws the map and what is
-on it; return width and height of all that."
-  (let* ((arrangement (arrange snapshot layers)) (map (snapshot-map snapshot))
+on it; return width and height of all that, and how far from the left the map begins. TITLE is what
+stands above, instead of the robots, map and tick; MORE are entries of the legend that come first."
+  (let* ((arrangement (arrange snapshot layers more)) (map (snapshot-map snapshot))
          (left (arrangement-left arrangement)) (top (arrangement-top arrangement)))
     (with-origin (canvas left top)
-      (draw-margins canvas snapshot layers arrangement)
+      (draw-margins canvas snapshot layers arrangement (or title (map-title snapshot)))
       (funcall draw))
     (values (+ left (max (to-pixels (map-width map))
                          (if (arrangement-below-p arrangement)
@@ -168,7 +173,8 @@ on it; return width and height of all that."
             (max (+ top (to-pixels (map-height map)) (arrangement-bottom arrangement))
                  (if (arrangement-below-p arrangement)
                      0
-                     (+ top (arrangement-high arrangement) 8))))))
+                     (+ top (arrangement-high arrangement) 8)))
+            left)))
 
 (defun draw-framed-world (canvas snapshot layers)
   "Draw the world of SNAPSHOT and around it what LAYERS lists; return width and height of that."

@@ -82,11 +82,12 @@ place; or NIL."
     (draw-words canvas draw-gcontext* (+ 1 (first box)) (- (fourth box) 2) name
                 :size +name-size+)))
 
-(defun draw-names (canvas snapshot)
-  "Write the names of robots and things where there is room."
+(defun draw-names (canvas snapshot &optional boxes)
+  "Write the names of robots and things where there is room, and none of BOXES."
   (let* ((map (snapshot-map snapshot)) (spots (named-spots snapshot))
          (per-character (character-width canvas +name-size+))
-         (taken (loop for (nil x y half) in spots collect (box-around x y half))))
+         (taken (append boxes
+                        (loop for (nil x y half) in spots collect (box-around x y half)))))
     (loop for (name x y half) in spots
           for width = (+ 2 (* per-character (length name)))
           for box = (best-box map (name-boxes x y half width) taken)

@@ -71,9 +71,10 @@ picture there; then it says that a name has one of ENDINGS."
 (defun save-snapshot (snapshot robot file &key (display :all) (layers *picture-layers*)
                                             (in-color t) scale)
   "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does; ROBOT is the image of a robot in it."
-  (save-svg (with-output-to-string (stream)
-              (write-picture stream snapshot robot
-                             :display display :layers layers :in-color in-color :scale scale))
+  (save-svg (telling-what-breaks
+              (with-output-to-string (stream)
+                (write-picture stream snapshot robot :display display :layers layers
+                                                     :in-color in-color :scale scale)))
             file (picture-kind 'save-snapshot file)))
 
 (addition save-picture)

@@ -96,7 +96,11 @@ substance parameter, tinted by the substance; black on a display without colours
 ;;; Graphics bodies are user code: one that fails is reported once, and drawn as a mark.
 
 (defvar *broken-graphics* (make-hash-table :test #'eq :weakness :key :synchronized t)
-  "The functions that have signalled an error.")
+  "The functions that have signalled an error, and are called no more.")
+
+(defmacro telling-what-breaks (&body body)
+  "Run BODY, which draws a file: of what is broken it tells once, though it was told before."
+  `(let ((*broken-graphics* (make-hash-table :test #'eq))) ,@body))
 
 (defun draw-mark (canvas x y width height)
   "Draw what stands for graphics that cannot be drawn: a crossed box."
