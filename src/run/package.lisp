@@ -14,7 +14,7 @@ takes part in it. Manual 2.3 and appendix A.")
   ;; run
   (:export #:simulation #:simulation-p #:simulation-name #:simulation-world #:simulation-timeline
            #:simulation-tick #:simulation-seed #:simulation-robots #:simulation-journal
-           #:simulation-gate #:simulation-observers #:simulation-participants
+           #:simulation-gate #:simulation-observers #:simulation-trails #:simulation-participants
            #:simulation-messages #:simulation-over #:simulation-agenda #:simulation-ticking-p
            #:simulation-rate #:simulation-thinking #:simulation-thread #:latest
            #:add-observer #:remove-observer #:add-participant #:remove-participant
