@@ -228,10 +228,10 @@ few that there are no more than 600 frames), RATE frames a second, to FILE. If i
 gone through: what a robot grasped, let go of and stowed, and which commands failed, are marked
 there, also plans that failed or were ended and errors in your code, and what the list MOMENTS has
 besides, each a moment or a list of a tick and a string; KINDS chooses, see SAVE-RUN-PICTURE. If it
-ends in .svg, it is an animated picture of the world, about ten times as large a file. With SERIES, pictures of DISPLAY go to a
-series of files, as FILE ends: for run.png, run-0001.png and so on. The other arguments are those of
-SVG-PICTURE. Return the truename, or a list of them. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY
-does."
+ends in .svg, it is an animated picture of the world, in a file about ten times as large. With
+SERIES, pictures of DISPLAY go to a series of files, as FILE ends: for run.png, run-0001.png and so
+on. The first frame shows how the run began. The other arguments are those of SVG-PICTURE. Return
+the truename, or a list of them. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY does."
   (let* ((kind (animation-kind file series))
          (journal (journal-meant journal))
          (moments (checked-moments 'save-animation moments (shown-end journal until)))

@@ -74,5 +74,6 @@ the world shows. To be called within WITH-CANVAS."
   "a number of pixels to a cell, from 1 to 256")
 
 (defun check-scale (operator scale)
+  "Signal WRONG-ARGUMENT unless SCALE, an argument of OPERATOR, is a scale of a picture or NIL."
   (unless (or (null scale) (argument-of-type-p scale 'picture-scale))
     (reject-argument operator "scale" scale (argument-type-text 'picture-scale))))

@@ -158,8 +158,8 @@ cannot play; LEGEND the items of a list. SEVERAL-P: say of which robot MOMENTS a
   (write-text title out)
   (format out "</title>~%<style>~%~A</style></head><body>~%<h1>" *film-style*)
   (write-text title out)
-  (format out "</h1>~%<noscript><p>To play this a browser needs scripts. Below is how it began, and ~
-               how it ended.</p></noscript>~%")
+  (format out "</h1>~%<noscript><p>To play this a browser needs scripts. Below is how it ~
+               began, and how it ended.</p></noscript>~%")
   (format out "<main><div id=\"stage\">~%~A<noscript>~%~A</noscript></div>~%" picture last-picture)
   (write-aside legend moments several-p out)
   (format out "</main>~%")

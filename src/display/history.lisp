@@ -58,8 +58,8 @@
                    (remove name (simulation-trails simulation) :key #'car :test #'eq))))))
 
 (defun points-of-trail (robot)
-  "Return a list x y tick x y tick ... of where ROBOT has been, newest first, as far as that is known;
-NIL if none of it is. Where a fork has gone nobody notes, but it came to where it is."
+  "Return a list x y tick x y tick ... of where ROBOT has been, newest first, as far as that is
+known; NIL if none of it is. Where a fork has gone nobody notes, but it came to where it is."
   (let* ((simulation (robot-simulation robot))
          (trail (trail-called (robot-name robot) simulation)))
     (cond ((null trail) '())

@@ -119,7 +119,8 @@ arguments, which returns the moments seen so far, the earliest first."
 ;;; What users add.
 
 (defun own-moment (object)
-  "Return the moment that OBJECT is, or that the list (tick text [robot]) stands for; NIL if it is none."
+  "Return the moment that OBJECT is, or that the list (tick text [robot]) stands for; NIL if it is
+none."
   (cond ((moment-p object) object)
         ((typep object '(cons integer (cons string (or null (cons symbol null)))))
          (make-moment (first object) :note (second object) nil nil (third object)))))

@@ -10,10 +10,12 @@
 (define-constant +name-height+ 11 :documentation "How high the box of a name is, in pixels.")
 
 (defun overlap-p (a b)
+  "True if the boxes A and B, lists (left top right bottom), overlap."
   (and (< (first a) (third b)) (< (first b) (third a))
        (< (second a) (fourth b)) (< (second b) (fourth a))))
 
 (defun box-around (x y half)
+  "Return the box that reaches HALF from X, Y to each side."
   (list (- x half) (- y half) (+ x half) (+ y half)))
 
 (defun name-boxes (x y half width)

@@ -39,7 +39,7 @@
            #:check-kinds #:of-kinds #:in-order #:moment-weight #:moment-words #:journal-moments)
   ;; picture, animation
   (:export #:picture-scale)
-  (:export #:picture-kind #:save-svg #:save-picture #:save-snapshot #:svg-picture #:save-animation #:shown-end
-           #:save-way-picture)
+  (:export #:picture-kind #:save-svg #:save-picture #:save-snapshot #:svg-picture #:save-animation
+           #:shown-end #:save-way-picture)
   ;; opening
   (:export #:open-display #:*display-opener* #:*displays-waiter* #:announce-display))

@@ -30,8 +30,8 @@ repeats the run up to there.")
   journal-header "Return the plist with which the run began: map, robots, seed, parameters, and what
 the definitions were that decide it."
   journal-length "Return how many entries the journal has."
-  journal-remarks "Return lists (tick kind text robot x y), the newest first: what is told of the run
-that a replay cannot know. ROBOT is a name, a string, or NIL."
+  journal-remarks "Return lists (tick kind text robot x y), the newest first: what is told of the
+run that a replay cannot know. ROBOT is a name, a string, or NIL."
   journal-end "Return the tick at which the journal ends.")
 
 (defmethod print-object ((journal journal) stream)

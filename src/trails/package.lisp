@@ -17,7 +17,8 @@
                 #:robot-image-x #:robot-image-y #:thing-image-x #:thing-image-y
                 #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:draw-way-line
                 #:draw-start #:way-entry #:sample-of #:robot-color #:to-pixels #:box-around
-                #:overlap-p #:telling-what-breaks #:suitable-scale #:*picture-layers* #:check-layers #:check-scale
+                #:overlap-p #:telling-what-breaks #:suitable-scale #:*picture-layers*
+                #:check-layers #:check-scale
                 #:take-snapshot #:picture-kind #:save-svg
                 #:make-moment #:moment-tick #:moment-kind #:moment-text #:moment-x #:moment-y
                 #:moment-robot #:moment-weight #:moment-words #:moments-watcher

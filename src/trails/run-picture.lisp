@@ -60,19 +60,26 @@ moments that were seen, and the moments OWN with their places."
           do (draw-way-line canvas (list* x y more) (robot-color position) position)
              (draw-start canvas x y (robot-color position))))
 
+(defconstant +tile+ 6 "How large the boxes are that hide a line, in pixels.")
+
+(defun tiles-of-line (x y next-x next-y tiles)
+  "Enter into the hash table TILES conses (column . row) of the boxes that hide a line."
+  (let ((steps (max 1 (ceiling (max (abs (- next-x x)) (abs (- next-y y))) (/ +tile+ 2)))))
+    (loop for step from 0 to steps
+          for share = (/ step steps)
+          do (setf (gethash (cons (floor (+ x (* share (- next-x x))) +tile+)
+                                  (floor (+ y (* share (- next-y y))) +tile+))
+                            tiles)
+                   t))))
+
 (defun boxes-along (points)
   "Return boxes that together hide the line through POINTS, x y ... in pixels."
-  (let ((boxes (make-hash-table :test #'equal)))
+  (let ((tiles (make-hash-table :test #'equal)))
     (loop for (x y next-x next-y) on points by #'cddr
-          while next-y
-          do (let ((steps (max 1 (ceiling (sqrt (+ (expt (- next-x x) 2) (expt (- next-y y) 2))) 4))))
-               (loop for step from 0 to steps
-                     for at-x = (+ x (* (/ step steps) (- next-x x)))
-                     for at-y = (+ y (* (/ step steps) (- next-y y)))
-                     for column = (floor at-x 6) for row = (floor at-y 6)
-                     do (setf (gethash (cons column row) boxes)
-                              (list (* 6 column) (* 6 row) (* 6 (1+ column)) (* 6 (1+ row)))))))
-    (loop for box being the hash-values of boxes collect box)))
+          while next-y do (tiles-of-line x y next-x next-y tiles))
+    (loop for (column . row) being the hash-keys of tiles
+          collect (list (* +tile+ column) (* +tile+ row)
+                        (* +tile+ (1+ column)) (* +tile+ (1+ row))))))
 
 (defun boxes-of-ways (snapshot ways)
   (loop for robot in (snapshot-robots snapshot) append (boxes-along (way-of robot ways))))
@@ -158,16 +165,16 @@ where the next would be."
                                 (layers (remove :tracks *picture-layers*)) (in-color t) scale)
   "Save in FILE, replacing it, a picture of the run that JOURNAL holds (a journal, or a file with
 one; by default that of the current simulation) up to the tick UNTIL or its end: its world as it is
-then, the ways that its robots went, and numbers where something happened that is told of below: that
-they grasped, let go of or stowed something, that a command failed, that a plan failed or was ended,
-that there was an error in your code. KINDS, a list, chooses among :GRASP, :RELEASE, :STOW, :FAILURE,
-:PLAN and :ERROR. There are LIMIT lines below the map at most, or any number if it is NIL: where there
-is more to tell, what matters least is left out, and counted; that a robot was blocked or lost a track,
-as plans expect, before other failures of commands, and these before the rest. MOMENTS, a list of
-moments or of lists of a tick, a string and, if you like, a robot's name, are told of besides. TITLE
-stands above. FILE and the other
-arguments are those of SAVE-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, what REPLAY
-does, and MISUSE without the program that PNG needs, or where no journal is kept."
+then, the ways that its robots went, and numbers where something happened that is told of below:
+that they grasped, let go of or stowed something, that a command failed, that a plan failed or was
+ended, that there was an error in your code. KINDS, a list, chooses among :GRASP, :RELEASE, :STOW,
+:FAILURE, :PLAN and :ERROR. There are LIMIT lines below the map at most, or any number if it is NIL:
+where there is more to tell, what matters least is left out, and counted; that a robot was blocked
+or lost a track, as plans expect, before other failures of commands, and these before the rest.
+MOMENTS, a list of moments or of lists of a tick, a string and, if you like, a robot's name, are
+told of besides. TITLE stands above. FILE and the other arguments are those of SAVE-PICTURE. Return
+the file's truename. Signals WRONG-ARGUMENT, what REPLAY does, and MISUSE without the program that
+PNG needs, or where no journal is kept."
   (let* ((kind (picture-kind 'save-run-picture file))
          (journal (journal-meant journal))
          (own (check-run-picture journal moments until :kinds kinds :limit limit :title title
