@@ -10,6 +10,10 @@
                        (let ((window::*windows* (cons ,window window::*windows*))) ,@body))
                      (robot:find-robot ,robot-name)))
 
+(defun let-others-type (window)
+  "Let the prompt of WINDOW count as one of another thread than this."
+  (setf (window::conversation-thread (window::window-conversation window)) "another"))
+
 (defun shown-in (window)
   "Return the name of the robot that WINDOW shows, and its run."
   (list (window::shown-robot window) (window::window-simulation window)))
@@ -39,6 +43,7 @@
 (test going-on.a-window-closes-where-another-shows-the-only-robot
   (in-shed
     (with-window-of (left 'mole)
+      (let-others-type left)
       (type-here "world hayloft")
       (is (eq 'heifer (window::robot-to-show left)))
       (with-window-of (other 'heifer)

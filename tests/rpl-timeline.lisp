@@ -161,7 +161,8 @@
   (flet ((width (label)
            (ars-magna.rpl-pictures::labels-width
             (list (ars-magna.rpl-pictures::make-row
-                   (list (ars-magna.rpl.seeing::make-bar 1 nil label nil 0 0)))))))
+                   (list (ars-magna.rpl.seeing::make-bar 1 nil label nil 0 0))))
+            120 480)))
     (is (= 120 (width 'a)))
     (is (< (width 'a-plan-with-a-long-name) (width 'a-plan-with-a-name-that-is-yet-much-longer)))))
 

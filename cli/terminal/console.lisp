@@ -256,12 +256,12 @@ below.")
             ((string/= "" (drawn-line-text line)) (put-fresh text console stream))
             (t (put-fresh (concatenate 'string (drawn-line-label line) text) console stream))))))
 
-(defgeneric fitted (text console &optional prompt)
-  (:documentation "Return TEXT as it is written after PROMPT: on a terminal, with lines that are
+(defgeneric fitted (text console &optional label)
+  (:documentation "Return TEXT as it is written after LABEL: on a terminal, with lines that are
 broken between words.")
-  (:method (text (console console) &optional (prompt ""))
+  (:method (text (console console) &optional (label ""))
     (if (console-window console)
-        (broken-text text (1- (funcall (console-window console))) (text-columns prompt))
+        (broken-text text (1- (funcall (console-window console))) (text-columns label))
         text)))
 
 (defmethod stream-write-char ((console console) char)

@@ -9,18 +9,18 @@
   ((lock :initform (make-lock "octets") :reader handed-lock)
    (ready :initform (make-semaphore "octets") :reader handed-ready)
    ;; Those handed over last, how many of them have been read, and whether more may come.
-   (octets :initform "" :accessor handed-text)
+   (octets :initform "" :accessor handed-string)
    (start :initform 0 :accessor handed-start)
    (over-p :initform nil :accessor handed-over-p))
   (:documentation "An input stream of the octets that REVISE-OCTETS leaves; it waits for them."))
 
 (defun handed-left (stream)
   "Return the octets of STREAM that have not been read yet, a string."
-  (subseq (handed-text stream) (handed-start stream)))
+  (subseq (handed-string stream) (handed-start stream)))
 
 (defun leave-octets (stream octets)
   "Let OCTETS, a string, be all that is left to be read of STREAM, whose lock is held."
-  (setf (handed-text stream) octets
+  (setf (handed-string stream) octets
         (handed-start stream) 0))
 
 (defun revise-octets (stream function)
@@ -40,7 +40,7 @@ reads any meanwhile."
 (defun next-handed (stream)
   "Return the next octet of STREAM, :EOF at its end, or NIL if none has come yet."
   (with-lock ((handed-lock stream))
-    (cond ((listen stream) (prog1 (char (handed-text stream) (handed-start stream))
+    (cond ((listen stream) (prog1 (char (handed-string stream) (handed-start stream))
                              (incf (handed-start stream))))
           ((handed-over-p stream) :eof))))
 
@@ -58,7 +58,7 @@ reads any meanwhile."
   nil)
 
 (defmethod stream-listen ((stream handed-octets))
-  (< (handed-start stream) (length (handed-text stream))))
+  (< (handed-start stream) (length (handed-string stream))))
 
 (defmethod stream-clear-input ((stream handed-octets))
   (with-lock ((handed-lock stream)) (leave-octets stream ""))

@@ -118,7 +118,6 @@ pixels."
 ;;; In a place of any width.
 
 (defun scale-for (page width)
-(defun scale-for (page width)
   "Return the scale of PAGE in a place WIDTH pixels wide: of it the names have what they need, up to
 half."
   (let ((left (labels-width (page-rows page) 100 (max 100 (floor width 2)))))

@@ -50,8 +50,8 @@ there is room."
             (ars-magna.cli:drawn-line-text line))))
 
 ;; The transcript breaks its lines itself, anew whenever its width changes.
-(defmethod ars-magna.cli:fitted (text (console window-console) &optional prompt)
-  (declare (ignore prompt))
+(defmethod ars-magna.cli:fitted (text (console window-console) &optional label)
+  (declare (ignore label))
   text)
 
 (defmethod ars-magna.cli:clear-screen ((console window-console) stream)
