@@ -91,7 +91,9 @@ have small letters of their own."
   (let ((text (string name)))
     (if (some #'lower-case-p text) text (string-downcase text))))
 
-(defun robot-title (image) (drawn-name (robot-image-name image)))
+(defun robot-title (image)
+  "Return what the robot that IMAGE is of is called in pictures."
+  (drawn-name (robot-image-name image)))
 
 (defun thing-image-name (image)
   (drawn-name (thing-name (thing-image-thing image))))
