@@ -122,6 +122,19 @@
       (is (not (mentions-p (between "<div id=\"stage\">" "<noscript>" film) ">blocks the way<"))
           "The legend is not in the picture, too."))))
 
+(test film.legend-has-whole-names-where-it-abridges-them
+  (in-studio (robot)
+    (let ((name (make-string 40 :initial-element #\y)))
+      (world:make-new-thing (make-symbol name) (list (robot:robot-world robot) 8 8) '())
+      (is (mentions-p (display::legend-text (cast-of robot) '(:legend) t)
+                      (format nil "<li title=\"~A\">" name))))))
+
+(defun cast-of (robot)
+  "Return what is to be seen now around ROBOT, as films have it."
+  (let* ((snapshot (display:snapshot-of robot)) (cast (display::make-cast snapshot)))
+    (display::add-to-cast snapshot '(:legend) cast)
+    cast))
+
 (test film.tells-of-broken-graphics-though-that-was-told-before
   (in-studio (robot)
     (eval '(world:def-place-type doorway (cell)

@@ -26,12 +26,13 @@
   ;; layers
   (:export #:*picture-layers* #:+picture-layers+ #:layer-title #:layer-documentation
            #:layers-of-kind)
-  ;; terrain, world-display, margins, displays
-  (:export #:draw-terrain #:draw-movers #:draw-world #:draw-framed-world #:suitable-scale
-           #:users-scale #:check-layers #:check-scale #:draw-framed #:with-map-svg
-           #:sample-of #:robot-color #:robot-title #:draw-names #:telling-what-breaks
-           #:draw-way-line #:draw-start #:way-entry #:to-pixels #:words-width #:box-around
-           #:overlap-p #:draw-view-margins #:draw-display #:display-title #:+displays+)
+  ;; inks, user-drawing, terrain, names, world-display, legend, scales, margins, way-picture
+  ;; and displays
+  (:export #:draw-terrain #:draw-movers #:draw-world #:users-scale #:check-layers #:check-scale
+           #:draw-framed #:with-map-svg #:sample-of #:robot-color #:robot-title #:draw-names
+           #:telling-what-breaks #:draw-way-line #:draw-start #:way-entry #:to-pixels
+           #:box-around #:overlap-p #:draw-view-margins
+           #:draw-display #:display-title #:+displays+)
   ;; moments
   (:export #:moment-p #:moment-tick #:moment-kind #:moment-text #:moment-x #:moment-y
            #:moment-robot #:make-moment #:moments-watcher #:remarked-moments #:checked-moments

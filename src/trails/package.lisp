@@ -3,7 +3,7 @@
 (defpackage :ars-magna.trails
   (:documentation "The ways of robots over their map. Knows neither experiments nor plans.")
   (:use :cl :ars-magna.base :ars-magna.canvas)
-  (:import-from :ars-magna.time #:current-simulation #:asking)
+  (:import-from :ars-magna.time #:current-simulation)
   (:import-from :ars-magna.run
                 #:simulation-robots #:simulation-tick #:call-with-replay #:journal-meant
                 #:journal-header #:journal-end #:simulation-world)
