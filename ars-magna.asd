@@ -168,7 +168,7 @@
                  (:file "measure-chart") (:file "drawing-chart") (:file "saving")))
    (:module "src/trails" :serial t
     :components ((:file "package") (:file "trails") (:file "trajectory") (:file "picture")
-                 (:file "run-picture")))
+                 (:file "spots") (:file "run-picture")))
    (:module "rpl/projecting" :serial t
     :components ((:file "package") (:file "rollout") (:file "projection") (:file "question")
                  (:file "running") (:file "believing") (:file "rolling-out") (:file "answering")

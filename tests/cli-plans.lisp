@@ -225,6 +225,9 @@
   (is-true (has-words-p (complaint "picture world.gif") ".svg or .png"))
   (is-true (has-words-p (complaint "picture world.svg -1") "scale"))
   (is-true (has-words-p (complaint "picture world.svg 8 9") "one number"))
+  (is-true (has-words-p (complaint "film run.html 8 9") "FILM takes one number"))
+  (is-true (has-words-p (complaint "film run.html gird") "FILM does not know" "GRID"))
+  (is-true (has-words-p (complaint "plan-timeline plan.svg") "No plans have run here" "begin-plan"))
   (is-true (has-words-p (complaint "picture world.svg nmaes") "nmaes" "NAMES" "BARE"))
   (is-true (has-words-p (complaint "picture /no/such/directory/world.svg") "/no/such/directory")))
 

@@ -126,11 +126,11 @@
       (display:save-animation (journal-of-a-drive robot) file :every 5 :layers '(:trail)
                                                                  :scale 8)
       (let ((text (uiop:read-file-string file)))
-        (dolist (part '("tick 5<" "tick 10<" "tick 15<" "tick 20<"
-                        "values=\"visible;hidden\" keyTimes=\"0;0.250000\""
-                        "values=\"hidden;visible;hidden\" keyTimes=\"0;0.250000;0.500000\""
-                        "values=\"hidden;visible\" keyTimes=\"0;0.750000\""
-                        "dur=\"0.4s\""
+        (dolist (part '("tick 0<" "tick 5<" "tick 10<" "tick 15<" "tick 20<"
+                        "values=\"visible;hidden\" keyTimes=\"0;0.200000\""
+                        "values=\"hidden;visible;hidden\" keyTimes=\"0;0.200000;0.400000\""
+                        "values=\"hidden;visible\" keyTimes=\"0;0.800000\""
+                        "dur=\"0.5s\""
                         "<ellipse cx=\"40\" cy=\"52\" rx=\"7\""))
           (is (mentions-p text part)))
         (is (not (mentions-p text "tick 25<")))))))
@@ -141,9 +141,10 @@
       (with-scratch-file (file "svg")
         (let ((files (display:save-animation journal file :every 10 :series t :until 15
                                                           :display :state)))
-          (is (= 2 (length files)))
-          (is (mentions-p (uiop:read-file-string (first files)) "Position: 3.00, 6.50"))
-          (is (mentions-p (uiop:read-file-string (second files)) "Position: 4.00, 6.50"))
+          (is (= 3 (length files)))
+          (is (mentions-p (uiop:read-file-string (first files)) "Position: 2.00, 6.50"))
+          (is (mentions-p (uiop:read-file-string (second files)) "Position: 3.00, 6.50"))
+          (is (mentions-p (uiop:read-file-string (third files)) "Position: 4.00, 6.50"))
           (is (mentions-p (pathname-name (second files)) "-0002"))
           (mapc #'delete-file files)))
       (signals base:wrong-argument (display:save-animation journal "run.png"))

@@ -75,8 +75,8 @@
                            texts)))))
       (run:add-observer look (time:current-simulation))
       (let ((film (film-of robot #'journal-of-a-drive :every 5 :layers '(:wedges) :scale 12)))
-        (is (mentions-p film "\"ticks\":[5,10,15,20]"))
-        (is (equal (reverse texts) (frames-shown film)))
+        (is (mentions-p film "\"ticks\":[0,5,10,15,20]"))
+        (is (equal (reverse texts) (rest (frames-shown film))))
         (is (mentions-p film (first (last texts))))))))
 
 ;;; Moments.
@@ -93,10 +93,61 @@
           "Words of a user's do not end the script.")
       (is (mentions-p film "\\u003C/script>\\u003Cb>odd \\\"words\\\" & more"))
       (is (mentions-p film "&lt;/script&gt;&lt;b&gt;odd"))
-      ;; The frames are of ticks 4, 8, 12 ....
-      (is (equal '("0" "0" "2")
+      ;; The frames are of ticks 0, 4, 8, 12 ....
+      (is (equal '("1" "1" "3")
                  (mapcar (lambda (part) (subseq part 0 1)) (rest (split-by "\"frame\":" film)))))
-      (is (= 3 (length (rest (split-by "<li>" film))))))))
+      (is (= 3 (length (rest (split-by "<li><button>" film))))))))
+
+(test film.begins-as-the-run-began
+  "Also where a frame is wanted of every fourth tick only: the robot still stands where it was put."
+  (in-studio (robot)
+    (flet ((drive (robot)
+             (robot:place-robot robot 3.5 6.5 0)
+             (command:robot-go-forward robot 4)
+             (run:run-ticks 6)))
+      (let ((film (film-of robot #'drive :every 4 :layers '() :scale 10)))
+        (is (mentions-p film "\"ticks\":[0,4,6]"))
+        (is (mentions-p (first (frames-shown film)) "cx=\"35\" cy=\"65\""))
+        (is (not (mentions-p (third (frames-shown film)) "cx=\"35\" cy=\"65\"")))))))
+
+(test film.legend-has-what-appears-later
+  (in-studio (robot)
+    (let ((film (film-of robot
+                         (lambda (robot)
+                           (run:run-ticks 5)
+                           (world:make-new-thing 'late-comer (list (robot:robot-world robot) 8 8)
+                                                 '())
+                           (run:run-ticks 5)))))
+      (is (mentions-p (between "<ul id=\"legend\">" "</ul>" film) "late-comer"))
+      (is (not (mentions-p (between "<div id=\"stage\">" "<noscript>" film) ">blocks the way<"))
+          "The legend is not in the picture, too."))))
+
+(test film.legend-has-whole-names-where-it-abridges-them
+  (in-studio (robot)
+    (let ((name (make-string 40 :initial-element #\y)))
+      (world:make-new-thing (make-symbol name) (list (robot:robot-world robot) 8 8) '())
+      (is (mentions-p (display::legend-text (cast-of robot) '(:legend) t)
+                      (format nil "<li title=\"~A\">" name))))))
+
+(defun cast-of (robot)
+  "Return what is to be seen now around ROBOT, as films have it."
+  (let* ((snapshot (display:snapshot-of robot)) (cast (display::make-cast snapshot)))
+    (display::add-to-cast snapshot '(:legend) cast)
+    cast))
+
+(test film.tells-of-broken-graphics-though-that-was-told-before
+  (in-studio (robot)
+    (eval '(world:def-place-type doorway (cell)
+            :check-matchers ((((- * -) (- - -) (- * -)) 0))
+            :graphics ((win cx cy) (error "no ink"))))
+    (world:rebuild-map 'studio)
+    (run:call-with-simulation
+     (lambda ()
+       (run:run-ticks 4)
+       (dotimes (time 2)
+         (with-scratch-file (file "html") (display:save-animation nil file))
+         (is (mentions-p (with-output-to-string (out) (base:error-display out)) "no ink"))))
+     (list (robot:robot-name robot)) :seed 1 :journal t)))
 
 (test moments.are-what-came-of-commands
   (in-studio (robot)
@@ -118,7 +169,10 @@
 (test films.refuse-what-they-cannot-show
   (in-studio (robot)
     (let ((journal (journal-of-a-drive robot)))
-      (dolist (moments '(7 (7) ((:x "word")) ((1 2)) ((1 "a") . 2)))
+      (dolist (moments '(7 (7) ((:x "word")) ((1 2)) ((1 "a") . 2) ((-1 "early")) ((1.5 "half"))
+                         ((21 "late"))))
+        (signals base:wrong-argument
+          (ars:save-run-picture "run.svg" :journal journal :moments moments))
         (signals base:wrong-argument
           (display:save-animation journal "run.html" :moments moments)))
       (signals base:wrong-argument (display:save-animation journal "no-such-place/run.html"))
@@ -134,14 +188,150 @@
     (signals base:misuse
       (run:with-simulation (ars-worlds:dot :journal nil) (ars:save-run-picture "run.svg")))))
 
-(test run-picture.numbers-moments-where-they-were
+(test run-picture.numbers-places-where-something-was
   (in-studio (robot)
     (journal-of-a-drive robot)
     (with-scratch-file (file "svg")
-      (ars:save-run-picture file :title "A drive & more"
+      (ars:save-run-picture file :title "A drive & more" :layers '(:title)
                                  :moments (list (display:make-moment 3 :note "here" 2 2)
                                                 (display:make-moment 4 :note "there" 2.1 2)
                                                 (display:make-moment 9 :note "far" 6 6)))
       (let ((text (uiop:read-file-string file)))
-        (dolist (part '("A drive &amp; more" ">1-2</text>" ">3</text>" "tick 4: there"))
-          (is (mentions-p text part)))))))
+        (dolist (part '("A drive &amp; more" ">1</text>" ">2</text>" "tick 4: there"))
+          (is (mentions-p text part)))
+        (is (not (mentions-p text ">3</text>")))))))
+
+;;; Pictures of runs.
+
+(defun run-picture (&rest options)
+  "Return the text of a picture of the current run."
+  (with-scratch-file (file "svg")
+    (apply #'ars:save-run-picture file options)
+    (uiop:read-file-string file)))
+
+(defun notes-in (picture)
+  "Return the texts in PICTURE that are neither numbers nor names, in order."
+  (remove-if-not (lambda (text) (some (lambda (word) (mentions-p text word))
+                                      '("tick" "Not shown" "moments")))
+                 (mapcar (lambda (text) (of-element text :text)) (drawn-with :text picture))))
+
+(defun moments-at (count)
+  "Return COUNT moments of failures at one place, and a grasp and a note at another."
+  (append (loop for tick from 1 to count
+                collect (display:make-moment tick :failure "Robot is blocked" 3 3 nil
+                                             :robot-blocked))
+          (list (display:make-moment 2 :grasp "grasped a pen" 6 6)
+                (display:make-moment 3 :note "halfway" 6 6))))
+
+(test run-picture.has-a-line-for-what-is-the-same-at-a-place
+  (in-studio (robot)
+    (run:run-ticks 20)
+    (let ((notes (notes-in (run-picture :layers '() :moments (moments-at 15)))))
+      (is (equal '("ticks 1, 2, 3 and 12 more: Robot is blocked" "tick 2: grasped a pen"
+                   "tick 3: halfway")
+                 notes)))))
+
+(test run-picture.leaves-out-what-matters-least-and-counts-it
+  (in-studio (robot)
+    (run:run-ticks 20)
+    (let ((notes (notes-in (run-picture :layers '() :moments (moments-at 15) :limit 2))))
+      (is (equal '("tick 2: grasped a pen" "tick 3: halfway"
+                   "Not shown: 15 failures of commands.")
+                 notes)))))
+
+(test run-picture.shows-the-kinds-that-are-chosen
+  (in-studio (robot)
+    (ungrasp-nothing robot)
+    (is (= 1 (length (notes-in (run-picture :layers '())))))
+    (is (null (notes-in (run-picture :layers '() :kinds '(:grasp :plan)))))
+    (signals base:wrong-argument (run-picture :kinds '(:grasps)))
+    (signals base:wrong-argument (run-picture :limit -1))))
+
+(test run-picture.puts-a-users-words-where-the-robot-was
+  (in-studio (robot)
+    (journal-of-a-drive robot)
+    (let ((picture (run-picture :layers '() :moments '((7 "half way")))))
+      (is (= 2 (length (remove "1" (drawn-with :text picture)
+                               :key (lambda (text) (of-element text :text)) :test-not #'equal)))
+          "On the map and before the words."))))
+
+(test run-picture.tells-two-robots-apart
+  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 3 :journal t)
+    (command:robot-go-forward ars-worlds:marvin 99)
+    (command:robot-go-forward ars-worlds:gofer 99)
+    (run:run-ticks 60)
+    (let* ((picture (run-picture))
+           (ways (loop for line in (drawn-with :polyline picture)
+                       unless (equal "#ffffff" (of-element line :stroke))
+                         collect (list (of-element line :stroke)
+                                       (of-element line :stroke-dasharray)))))
+      (is (= 2 (length (remove-duplicates (mapcar #'first ways) :test #'equal))))
+      (is (= 2 (length (remove-duplicates (mapcar #'second ways) :test #'equal))))
+      (dolist (words '("way of marvin" "way of gofer" "marvin: robot-go-forward: Robot is blocked"
+                       "gofer: robot-go-forward: Robot is blocked"))
+        (is (mentions-p picture words))))))
+
+(test run-picture.has-what-save-picture-has
+  (in-studio (robot)
+    (journal-of-a-drive robot)
+    (let ((words (mapcar (lambda (text) (of-element text :text))
+                         (drawn-with :text (run-picture)))))
+      (dolist (word '("bricks 10" "box" "10"))
+        (is (member word words :test #'string=) "~A" word))
+      (is (some (lambda (word) (search " m" word)) words) "the scale bar"))
+    (is (< (length (run-picture :scale 5 :layers '() :in-color nil)) (length (run-picture))))
+    (is (not (mentions-p (run-picture :in-color nil) "#c22418")))))
+
+(test way-picture.has-what-save-picture-has
+  (in-studio (robot)
+    (with-scratch-file (file "svg")
+      (display:save-way-picture 'studio '(((2 2) (5 5)) ((3 3) (8 8))) file :scale 10)
+      (let ((words (mapcar (lambda (text) (of-element text :text))
+                           (drawn-with :text (uiop:read-file-string file)))))
+        (dolist (word '("studio" "way 1" "way 2" "box" "bricks 10" "20"))
+          (is (member word words :test #'string=) "~A" word)))
+      (display:save-way-picture 'studio '() file :layers '())
+      (is (null (drawn-with :text (uiop:read-file-string file))))
+      (is (mentions-p (handler-case (display:save-way-picture 'studio '(nil) file)
+                        (base:wrong-argument (condition) (text-of condition)))
+                      "FIND-WAY")))))
+
+;;; What becomes of plans, and errors in users' code.
+
+(test moments.tell-of-plans-and-errors
+  "Also those in a file."
+  (run:with-simulation (ars-worlds:dot :seed 1 :journal t)
+    (driver:run-plan (rpl:interp-lambda () (rpl:fail :class 'doom)))
+    (driver:end-plan (driver:begin-plan (rpl:interp-lambda () (rpl:wait-time 50))))
+    (command:robot-turn ars-worlds:dot 1 (lambda (&rest results)
+                                           (declare (ignore results))
+                                           (error "bad code")))
+    (run:run-ticks 60)
+    (flet ((seen (journal)
+             (mapcar #'display:moment-kind (display:journal-moments journal))))
+      (is (equal '(:plan :plan :error) (seen nil)))
+      (is (mentions-p (display:moment-text (first (display:journal-moments nil))) "DOOM"))
+      (with-scratch-file (file "journal")
+        (run:save-journal file)
+        (is (equal '(:plan :plan :error) (seen file)))
+        (is (= (run:state-digest) (nth-value 1 (run:replay file))))))))
+
+;;; Trails.
+
+(test trails.are-known-in-forks-and-after-rewinding
+  (run:with-simulation (ars-worlds:dot :seed 1 :clean t :keep t)
+    (display:keep-history)
+    (command:robot-go-forward ars-worlds:dot 8)
+    (run:run-ticks 7)
+    (let ((middle (display::points-of-trail ars-worlds:dot)))
+      (is (< 9 (length middle)))
+      (run:with-fork ()
+        (is (equal middle (display::points-of-trail ars-worlds:dot)))
+        (is (find #\+ (display:text-map ars-worlds:dot :radius 6 :layers '(:way)))))
+      (run:run-ticks 2)
+      (is (< (length middle) (length (display::points-of-trail ars-worlds:dot))))
+      (run:rewind 2)
+      (is (equal middle (display::points-of-trail ars-worlds:dot)))
+      (run:run-ticks 2)
+      (is (< (length middle) (length (display::points-of-trail ars-worlds:dot)))))))
+

@@ -205,20 +205,33 @@
        (let* ((robot (first (run:simulation-robots)))
               (snapshot (display:snapshot-of robot))
               (text (display:svg-picture robot)))
-         (is (= (display:suitable-scale nil snapshot '(:title))
-                (display:suitable-scale nil snapshot '(:title :legend))))
+         (is (= (display::suitable-scale nil snapshot '(:title))
+                (display::suitable-scale nil snapshot '(:title :legend))))
          (is-true (has-words-p text ">a-name-that-goes-on-a...<" ">Kettle<"
                                "<title>a-name-that-goes-on-and-on-beyond"))))
      '(namer))))
 
 (test margins.text-grows-with-the-scale
   (in-studio (robot)
-    (flet ((width (scale)
-             (let ((text (display:svg-picture robot :scale scale)))
-               (/ (parse-integer text :start (+ 7 (search "width=\"" text)) :junk-allowed t)
-                  (svg-view-width text)))))
+    (flet ((width (scale) (svg-magnification (display:svg-picture robot :scale scale))))
       (is (= 2 (width 80)))
       (is (= 1 (width 40) (width 20) (width 8))))))
+
+(test picture.of-ways-and-runs-is-magnified-as-others-are
+  (in-studio (robot)
+    (run:run-ticks 2)
+    (dolist (save (list (lambda (file)
+                          (display:save-way-picture 'studio '(((1 1) (2 2))) file :scale 80))
+                        (lambda (file) (ars:save-run-picture file :scale 80))
+                        (lambda (file) (display:save-animation nil file :scale 80))))
+      (with-scratch-file (file "svg")
+        (funcall save file)
+        (is (= 2 (svg-magnification (uiop:read-file-string file))))))))
+
+(defun svg-magnification (text)
+  "Return how much larger than drawn the SVG document TEXT is to be shown."
+  (/ (parse-integer text :start (+ 7 (search "width=\"" text)) :junk-allowed t)
+     (svg-view-width text)))
 
 (defun svg-view-width (text)
   "Return how wide the SVG document TEXT says that what it shows is."
@@ -247,11 +260,21 @@
       (is (equal '(8 8 20 19) (display::best-box snapshot '() '((8 8 20 19)) '()))))))
 
 (test margins.trails-have-an-entry
-  (let ((snapshot (display::make-snapshot
-                   :robots (list (display::make-robot-image :trail '(1 1 2 2))))))
-    (is (equal '("trail")
-               (mapcar #'display::entry-text
-                       (display::line-entries snapshot '(:trail :odometer)))))))
+  (flet ((entries (trail)
+           (mapcar #'display::entry-text
+                   (display::line-entries (trail-snapshot trail) '(:trail :odometer)))))
+    (is (equal '("trail") (entries '(1 1 50 2 1 49))))
+    (is (null (entries '(1 1 50))))))
+
+(defun trail-snapshot (trail)
+  "Return a snapshot of a robot with TRAIL, a list x y tick ...."
+  (display::make-snapshot :robots (list (display::make-robot-image :trail trail))))
+
+(test names.are-rather-not-on-trails
+  (let ((snapshot (trail-snapshot '(1 1 50 2 1 49))) (canvas:graphics-scale* 8))
+    (is-true (display::on-trail-p snapshot '(14 6 18 10)))
+    (is (null (display::on-trail-p snapshot '(6 390 10 394))))
+    (is (null (display::on-trail-p snapshot '(398 14 402 18))))))
 
 ;;; Scales that are none.
 
@@ -271,7 +294,7 @@
   "Up to 200 x 150 cells a picture is no larger than 900 x 700."
   (loop for (width height) in '((12 12) (40 30) (75 75) (120 80) (24 18) (200 150) (10 80))
         for map = (world::small-map width height (constantly nil))
-        for scale = (display:suitable-scale nil (display::make-snapshot :map map) '(:title))
+        for scale = (display::suitable-scale nil (display::make-snapshot :map map) '(:title))
         do (is (<= 4 scale 40))
            (is (<= (* scale width) 900))
            (is (<= (* scale height) 700))))

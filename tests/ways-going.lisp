@@ -132,7 +132,7 @@
 (test pictures.show-ways-on-the-map
   (uiop:with-temporary-file (:pathname file :type "svg")
     (flet ((lines (&rest ways)
-             (ars:save-way-picture 'two-doors ways file :scale 10)
+             (ars:save-way-picture 'two-doors ways file :scale 10 :layers '())
              (occurrences "<p" (base:file-text file))))
       (let ((way (ars:find-way 'two-doors '(3 5.5) '(17 5.5))))
         ;; Two for each: it has a halo.

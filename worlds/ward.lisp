@@ -68,7 +68,8 @@
   "Save in FILE a picture of the map that YAML is imported as with OPTIONS, with a way from one to
 the other of ENDS."
   (apply #'import-map yaml :name 'pictured-ward :unknown 'glass options)
-  (save-way-picture 'pictured-ward (list (apply #'find-way 'pictured-ward ends)) file :scale scale)
+  (save-way-picture 'pictured-ward (list (apply #'find-way 'pictured-ward ends)) file
+                    :title "ward" :scale scale)
   (undefine 'map 'pictured-ward))
 
 (defun draw-ward (directory)

@@ -9,27 +9,36 @@
 default."
   (append (mapcar #'symbol-name +picture-layers+) (list "BARE")))
 
-(defun picture-word (text)
-  "Return the keyword of PICTURE-WORDS that begins with TEXT. Signals BAD-LINE if there is none."
+(defun picture-word (text line)
+  "Return the keyword of PICTURE-WORDS that begins with TEXT, which was typed after LINE, a command.
+Signals BAD-LINE if there is none."
   (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word))
                        (picture-words))))
     (unless word
-      (reject-line "PICTURE does not know ~A.~@[ Did you mean ~A?~] It takes a file, a scale, and ~
+      (reject-line "~A does not know ~A.~@[ Did you mean ~A?~] It takes a file, a scale, and ~
                     words: ~{~A~^, ~}."
-                   text (nearest-name text (picture-words)) (picture-words)))
+                   line text (nearest-name text (picture-words)) (picture-words)))
     (make-keyword word)))
 
-(defun picture-options (text)
-  "Return as options of SAVE-PICTURE what TEXT, as typed after the name of the file, asks for."
+(defun picture-options (text &optional (line "PICTURE"))
+  "Return as options of SAVE-PICTURE what TEXT, as typed after LINE and the name of the file, asks
+for."
   (loop for word in (words-in (or text ""))
         for number = (number-typed word)
         if number collect number into numbers
-        else collect (picture-word word) into words
+        else collect (picture-word word line) into words
         finally (when (rest numbers)
-                  (reject-line "PICTURE takes one number, the scale; not ~{~A~^ ~}." numbers))
+                  (reject-line "~A takes one number, the scale; not ~{~A~^ ~}." line numbers))
                 (return (list :scale (first numbers)
                               :layers (union (remove :bare words)
                                              (unless (member :bare words) *picture-layers*))))))
+
+(defun layers-text ()
+  "Return in words what layers there are."
+  (format nil "~:{~A, ~A~:^; ~}. What has a star is shown anyway; with BARE only what you name."
+          (loop for layer in +picture-layers+
+                collect (list (format nil "~A~:[~;*~]" layer (member layer *picture-layers*))
+                              (string-downcase (layer-title layer))))))
 
 (define-line "PICTURE" (session (file :file "a name that ends in .svg or .png")
                                 (what :rest "pixels to a cell, and names of layers; BARE"
@@ -38,10 +47,7 @@ default."
     (format nil "Save a picture of the world as it is now in FILE, replacing it. A number is how ~
                  many pixels a cell has, from 1 to 256; without one it is what suits the map, ~
                  from 4 to 40, for a map of 900 x 700 pixels at most, or graphics-scale* if ~
-                 that was set. Words are for what else is shown: ~:{~A, ~A~:^; ~}. What has a ~
-                 star is shown anyway; with BARE only what you name."
-            (loop for layer in +picture-layers+
-                  collect (list (format nil "~A~:[~;*~]" layer (member layer *picture-layers*))
-                                (string-downcase (layer-title layer)))))
+                 that was set. Words are for what else is shown: ~A"
+            (layers-text))
   (let ((path (apply #'save-picture (session-robot) (path-called file) (picture-options what))))
     (format t "~A~%" (native-name path))))

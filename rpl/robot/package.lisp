@@ -25,7 +25,7 @@
                 #:participant-place #:simulation-participants #:fork-p #:note-environment
                 #:environment-of #:*rewind-hooks* #:*rewound-end-hooks*
                 #:counterpart-here #:counterpart #:latest #:let-fork-be-kept #:note-doing
-                #:simulation-past)
+                #:simulation-past #:remark)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:fluent-value
                 #:apply-settings #:*home-in-use* #:*runner* #:post-call #:react-to-all

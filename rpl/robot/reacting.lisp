@@ -133,8 +133,19 @@ not count: they tell plans nothing."
 (defun note-end (interface task)
   "Do what is due when TASK, a top-level task of INTERFACE, has ended."
   (no-longer-unwanted interface task)
-  (unless (eq :succeeded (task-state task)) (interrupt-deeds interface task))
+  (unless (eq :succeeded (task-state task))
+    (interrupt-deeds interface task)
+    (remark-end interface task))
   (report-end task))
+
+(defun remark-end (interface task)
+  "Let the journal of the run of INTERFACE say that TASK, a plan, failed or was ended."
+  (remark (interface-simulation interface) :plan
+          (if (eq :failed (task-state task))
+              (format nil "plan ~A failed: ~A" (task-label task)
+                      (one-line-text (task-result task)))
+              (format nil "plan ~A was ended" (task-label task)))
+          (interface-robot interface)))
 
 (defun make-runner (interface)
   (let ((simulation (interface-simulation interface)))

@@ -15,7 +15,8 @@ use. Signals MISUSE if there is none."
             ((typep subject 'plan-runner) subject)
             (*runner*)
             (t (funcall *runner-in-use*)))
-      (reject-use "No plans have run here. Give a task, or a plan runner.")))
+      (reject-use "No plans have run here. Start one first: (begin-plan ...), or the line PLAN at ~
+                   the prompt.")))
 
 (defun all-tasks (which)
   "Return the tasks of WHICH, a task or a runner, each before its parts."

@@ -146,7 +146,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:*asker* #:asker-note #:asker-forked-p #:*goes-on-in-forks-p* #:goes-on-in-forks-p
            #:note-of-asker #:note-text)
   ;; user code
-  (:export #:call-user-code #:*break-on-user-error* #:*user-error-listener* #:in-any-case
+  (:export #:call-user-code #:*break-on-user-error* #:*user-error-listener* #:*user-error-hooks*
+           #:in-any-case
            #:call-each
            #:note-waiting #:report-break #:continue-inside
            #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*

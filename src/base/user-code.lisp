@@ -93,12 +93,16 @@ is queued as an error message that names its origin, and the run goes on.")
 (defvar *user-error-listener* nil
   "A function that is called with the text of each error in users' code that is reported, or NIL.")
 
+(defvar *user-error-hooks* '()
+  "Functions that are called with the text of each error in users' code that is reported.")
+
 (defun report-user-error (condition origin)
   "Queue an error message, and tell whoever listens, that CONDITION came up in ORIGIN, an item or
 list of items."
-  (when *user-error-listener*
-    (funcall *user-error-listener*
-             (format nil "in ~A: ~A" (text-of-origin origin) (brief-text condition))))
+  (let ((text (format nil "in ~A: ~A" (text-of-origin origin) (brief-text condition))))
+    (when *user-error-listener* (funcall *user-error-listener* text))
+    (dolist (hook *user-error-hooks*)
+      (funcall hook (concatenate 'string "Error " text))))
   (apply #'error-set "Error in "
          (append (ensure-list origin) (list ": " (brief-text condition)))))
 

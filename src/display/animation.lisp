@@ -10,23 +10,23 @@
   :documentation "How many frames a run is shown in at most, unless the user asks for more.")
 
 (defun call-with-frames (function journal every until &optional (watch #'identity))
-  "Replay JOURNAL up to the tick UNTIL (NIL: its end); call FUNCTION with a snapshot every EVERY
-ticks and at the end, and WATCH with the simulation after each."
-  (let ((last nil))
-    (flet ((show (world)
-             (setf last (take-snapshot world last))
-             (funcall function last)))
-      (flet ((look (simulation)
+  "Replay JOURNAL up to the tick UNTIL (NIL: its end); call FUNCTION with a snapshot of its
+beginning, of every EVERY ticks and of its end, and WATCH with the simulation at the beginning and
+after each tick."
+  (let ((last nil) (queue *message-queue*))
+    (labels ((show (simulation)
+               (setf last (take-snapshot (simulation-world simulation) last))
+               ;; What is wrong with drawing is to be told here, not in the run repeated.
+               (let ((*message-queue* queue)) (funcall function last)))
+             (look (simulation)
                (keep-history simulation)
                (funcall watch simulation)
-               (when (zerop (mod (simulation-tick simulation) every))
-                 (show (simulation-world simulation)))))
-        (call-with-replay (lambda ()
-                            (let ((simulation (current-simulation)))
-                              (unless (and last (= (snapshot-tick last)
-                                                   (simulation-tick simulation)))
-                                (show (simulation-world simulation)))))
-                          journal :until until :observer #'look)))))
+               (when (zerop (mod (simulation-tick simulation) every)) (show simulation)))
+             (end ()
+               (let ((simulation (current-simulation)))
+                 (unless (= (snapshot-tick last) (simulation-tick simulation))
+                   (show simulation)))))
+      (call-with-replay #'end journal :until until :observer #'look :beginning #'look))))
 
 (defun frame-step (journal every until)
   "Return every how many ticks to draw a frame."
@@ -72,14 +72,14 @@ ticks and at the end, and WATCH with the simulation after each."
 
 (defun write-animation (stream snapshots rate &key layers in-color scale)
   (let ((first (first snapshots)))
-    (with-svg (canvas stream :color-p in-color)
-      (with-canvas (canvas :scale (suitable-scale scale first layers))
-        (draw-framed canvas first layers
-                     (lambda ()
-                       (draw-terrain canvas (snapshot-map first) :layers layers)
-                       (write-frames-of canvas snapshots rate layers)))))))
+    (with-map-svg (canvas stream first :layers layers :in-color in-color :scale scale)
+      (draw-framed canvas first layers
+                   (lambda ()
+                     (draw-terrain canvas (snapshot-map first) :layers layers)
+                     (write-frames-of canvas snapshots rate layers))))))
 
-;;; A page.
+;;; A page. Its legend stands beside the picture, so that this can be as large as there is room; and
+;;; has what is to be seen in any of the frames.
 
 (defun movers-text (snapshot layers in-color scale)
   "Return what moves in SNAPSHOT as lines of SVG."
@@ -101,47 +101,124 @@ the lines of SVG MOVERS."
 ")))))))
 
 (defun film-title (journal ticks)
-  (format nil "~{~(~A~)~^ and ~}, tick~P ~D~@[ to ~D~]"
-          (mapcar (lambda (robot) (blueprint-name (find-blueprint robot)))
+  (format nil "~{~A~^ and ~}, tick~P ~D~@[ to ~D~]"
+          (mapcar (lambda (robot) (drawn-name (blueprint-name (find-blueprint robot))))
                   (getf (journal-header journal) :robots))
           (length ticks) (first ticks)
           (and (rest ticks) (first (last ticks)))))
 
-(defun film-text (journal moments &key every until rate layers in-color scale)
+(defstruct (cast (:constructor make-cast (opening)) (:copier nil))
+  "What is to be seen in a film that begins as the snapshot OPENING shows: the images of things, by
+these, and the entries of lines, the latest first."
+  (opening nil :type snapshot :read-only t)
+  (things (make-hash-table :test #'eq) :type hash-table :read-only t)
+  (lines '() :type list))
+
+(defun add-to-cast (snapshot layers cast)
+  "Let CAST know what is to be seen in SNAPSHOT with LAYERS."
+  (let ((things (cast-things cast)))
+    (loop for image across (snapshot-things snapshot)
+          do (unless (gethash (thing-image-thing image) things)
+               (setf (gethash (thing-image-thing image) things) image)))
+    (dolist (entry (append (line-entries snapshot layers) (ray-entries snapshot layers)))
+      (pushnew entry (cast-lines cast) :key #'entry-text :test #'string=))))
+
+(defun cast-entries (cast layers)
+  "Return the entries of the legend for all that CAST has."
+  (let ((opening (cast-opening cast)))
+    (legend-entries (make-snapshot :map (snapshot-map opening) :robots (snapshot-robots opening)
+                                   :things (sort (coerce (hash-table-values (cast-things cast))
+                                                         'simple-vector)
+                                                 #'< :key #'image-serial))
+                    layers (reverse (cast-lines cast)))))
+
+(defun write-whole-name (entry out)
+  "Write, as an attribute in HTML, what ENTRY is short for, if it is."
+  (when (entry-whole entry)
+    (format out " title=\"")
+    (write-text (entry-whole entry) out)
+    (format out "\"")))
+
+(defun legend-text (cast layers in-color)
+  "Return the legend of a film as items of a list in HTML."
+  (with-output-to-string (out)
+    (let ((canvas (make-instance 'svg-canvas :stream out :color-p in-color)))
+      (with-canvas (canvas)
+        (dolist (entry (cast-entries cast layers))
+          (format out "<li")
+          (write-whole-name entry out)
+          (format out "><svg width=\"20\" height=\"18\" viewBox=\"0 0 20 18\">~%")
+          (funcall (entry-sample entry) canvas 10 9)
+          (format out "</svg> ")
+          (write-text (entry-text entry) out)
+          (format out "</li>~%"))))))
+
+(defun film-layers (layers)
+  "Return those of LAYERS that the picture in a film has: its legend and title are HTML."
+  (set-difference layers '(:legend :title)))
+
+(defun film-moments (journal seen until kinds own)
+  (in-order (append (of-kinds kinds (append seen (remarked-moments journal until))) own)))
+
+(defun shoot (journal every until watch layers in-color scale)
+  "Replay JOURNAL. Return the reel of it, the ticks of its frames, stills of the first and the last
+frame, and the cast; WATCH is called with the simulation after each tick."
+  (let ((reel (make-reel)) (ticks '()) (cast nil) (first nil) (last nil)
+        (shown (film-layers layers)))
+    (call-with-frames (lambda (snapshot)
+                        (unless cast
+                          ;; The page magnifies the picture itself, as far as there is room.
+                          (setf cast (make-cast snapshot)
+                                scale (values (drawn-scale scale snapshot shown))))
+                        (add-to-cast snapshot layers cast)
+                        (setf last (movers-text snapshot shown in-color scale)
+                              first (or first last))
+                        (push (snapshot-tick snapshot) ticks)
+                        (add-frame last reel))
+                      journal (frame-step journal every until) until watch)
+    (flet ((still (movers) (still-text (cast-opening cast) movers shown in-color scale)))
+      (values reel (reverse ticks) (still first) (still last) cast))))
+
+(defun film-text (journal moments &key every until rate kinds layers in-color scale)
   "Return the page of a film of JOURNAL, with MOMENTS besides those that are seen in it."
-  (let ((reel (make-reel)) (ticks '()) (opening nil) (first nil) (last nil))
-    (multiple-value-bind (watch seen) (moments-watcher)
-      (call-with-frames (lambda (snapshot)
-                          (unless opening
-                            (setf opening snapshot
-                                  scale (suitable-scale scale snapshot layers)))
-                          (setf last (movers-text snapshot layers in-color scale)
-                                first (or first last))
-                          (push (snapshot-tick snapshot) ticks)
-                          (add-frame last reel))
-                        journal (frame-step journal every until) until watch)
-      (setf ticks (reverse ticks))
-      (flet ((still (movers) (still-text opening movers layers in-color scale)))
-        (with-output-to-string (out)
-          (write-film out (film-title journal ticks) (still first) (still last)
-                      reel ticks rate (in-order (append (funcall seen) moments))))))))
+  (multiple-value-bind (watch seen) (moments-watcher)
+    (multiple-value-bind (reel ticks first last cast)
+        (shoot journal every until watch layers in-color scale)
+      (with-output-to-string (out)
+        (write-film out (film-title journal ticks) first last
+                    (if (member :legend layers) (legend-text cast layers in-color) "")
+                    reel ticks rate
+                    (film-moments journal (funcall seen) until kinds moments)
+                    (and (rest (snapshot-robots (cast-opening cast))) t))))))
 
 (defun film-file-p (file)
   "True if FILE, the name of one, is a page for browsers, as it ends."
   (and (typep file '(or string pathname))
        (string-equal "html" (or (pathname-type file) ""))))
 
+(define-constant +film-endings+ ".html or .svg; with :series t in .svg or .png"
+  :test #'cl:equal
+  :documentation "How names of files end in which a run can be saved.")
+
 (defun animation-kind (file series)
   "Return :HTML, :SVG or :PNG, as the name of FILE ends. Signals WRONG-ARGUMENT for other names, and
 says what is for a film, or for a SERIES."
-  (if (film-file-p file)
+  (if (and (film-file-p file) (not series))
       (let ((missing (missing-directory file)))
         (when missing
           (reject-argument 'save-animation 'file file
                            (format nil "a name in a directory that there is; make ~A first"
                                    missing)))
         :html)
-      (picture-kind 'save-animation file (if series ".svg or .png" ".html or .svg"))))
+      (let ((kind (picture-kind 'save-animation file (if series ".svg or .png" +film-endings+))))
+        (when (and (eq kind :png) (not series))
+          (reject-argument 'save-animation 'file file
+                           (format nil "a name that ends in ~A" +film-endings+)))
+        kind)))
+
+(defun shown-end (journal until)
+  "Return the tick at which what is shown of JOURNAL, up to UNTIL, ends."
+  (if (typep until 'unsigned-byte) (min until (journal-end journal)) (journal-end journal)))
 
 ;;; A series.
 
@@ -152,31 +229,36 @@ says what is for a film, or for a SERIES."
 
 (addition save-animation)
 (defun save-animation (journal file &key every until (rate 10) series (display :world) moments
-                                      (layers *picture-layers*) (in-color t) scale)
+                                      (kinds t) (layers *picture-layers*) (in-color t) scale)
   "Replay JOURNAL (a journal, a file that holds one, or NIL for that of the current simulation so
 far) up to the tick UNTIL or its end and save what it looks like every EVERY ticks (by default as
 few that there are no more than 600 frames), RATE frames a second, to FILE. If its name ends in
 .html it is a page for any browser, without a network, in which the run can be played, stopped, and
 gone through: what a robot grasped, let go of and stowed, and which commands failed, are marked
-there, and what the list MOMENTS has besides, each a moment or a list of a tick and a string. If it
-ends in .svg, it is an animated picture of the world. With SERIES, pictures of DISPLAY go to a
-series of files, as FILE ends: for run.png, run-0001.png and so on. The other arguments are those of
-SVG-PICTURE. Return the truename, or a list of them. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY
-does."
-  (let ((kind (animation-kind file series))
-        (moments (checked-moments 'save-animation moments))
-        (journal (journal-meant journal))
-        ;; The tick, which the title has, is told of by frames.
-        (look (list :layers (if series layers (remove :title layers))
-                    :in-color in-color :scale scale)))
-    (check-animation kind series every rate display layers scale)
-    (cond (series
-           (apply #'save-series journal file :every every :until until :display display look))
-          ((eq kind :html)
-           (save-text (apply #'film-text journal moments :every every :until until :rate rate look)
-                      file))
-          (t (save-text (apply #'animation-text journal :every every :until until :rate rate look)
-                        file)))))
+there, also plans that failed or were ended and errors in your code, and what the list MOMENTS has
+besides, each a moment or a list of a tick and a string; KINDS chooses, see SAVE-RUN-PICTURE. If it
+ends in .svg, it is an animated picture of the world, in a file about ten times as large. With
+SERIES, pictures of DISPLAY go to a series of files, as FILE ends: for run.png, run-0001.png and so
+on. The first frame shows how the run began. The other arguments are those of SVG-PICTURE. Return
+the truename, or a list of them. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY does."
+  (let* ((kind (animation-kind file series))
+         (journal (journal-meant journal))
+         (moments (checked-moments 'save-animation moments (shown-end journal until)))
+         ;; The tick, which the title has, is told of by frames.
+         (look (list :layers (if series layers (remove :title layers))
+                     :in-color in-color :scale scale)))
+    (check-animation series every rate display layers scale)
+    (check-kinds 'save-animation kinds)
+    (telling-what-breaks
+      (cond (series
+             (apply #'save-series journal file :every every :until until :display display look))
+            ((eq kind :html)
+             (save-text (apply #'film-text journal moments :every every :until until :rate rate
+                                                           :kinds kinds look)
+                        file))
+            (t (save-text (apply #'animation-text journal :every every :until until :rate rate
+                                                          look)
+                          file))))))
 
 (defun animation-text (journal &key every until rate layers in-color scale)
   "Return the animated SVG document of JOURNAL."
@@ -191,17 +273,18 @@ does."
 (defun journal-moments (journal &key until)
   "Replay JOURNAL (a journal, a file that holds one, or NIL for that of the current simulation so
 far) up to the tick UNTIL or its end; return a list of what happened there that people look for, in
-order: moments at which a robot grasped, let go of or stowed something, or a command failed. Signals
-what REPLAY does."
-  (multiple-value-bind (watch seen) (moments-watcher)
-    (call-with-replay seen (journal-meant journal) :until until :observer watch)))
+order: moments at which a robot grasped, let go of or stowed something, a command failed, a plan
+failed or was ended, or an error came up in users' code. Signals what REPLAY does."
+  (let ((journal (journal-meant journal)))
+    (multiple-value-bind (watch seen) (moments-watcher)
+      (in-order (append (call-with-replay seen journal
+                                          :until until :observer watch :beginning watch)
+                        (remarked-moments journal until))))))
 
-(defun check-animation (kind series every rate display layers scale)
+(defun check-animation (series every rate display layers scale)
   (flet ((reject (name value expected)
            (error 'wrong-argument :operator 'save-animation :name name :value value
                                   :expected expected)))
-    (when (if series (eq kind :html) (eq kind :png))
-      (reject "file" kind "a name that ends in .html or .svg; with :series t in .svg or .png"))
     (unless (or series (eq display :world))
       (reject "display" display ":world, or :series t for numbered pictures"))
     (unless (or (null every) (whole-p every 1))

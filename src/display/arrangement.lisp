@@ -53,6 +53,13 @@ read all."
   (max 1 (/ (rational scale)
             (max +readable-scale+ (fitting-scale (snapshot-map snapshot) layers)))))
 
+(defun drawn-scale (scale snapshot layers)
+  "Return how many pixels a cell has where a picture of SNAPSHOT with SCALE (see SUITABLE-SCALE) and
+LAYERS is drawn, and how much that is then to be magnified as a whole."
+  (let* ((scale (suitable-scale scale snapshot layers))
+         (zoom (magnification scale snapshot layers)))
+    (values (/ scale zoom) zoom)))
+
 ;;; The legend.
 
 (defun columns-of (entries rows)

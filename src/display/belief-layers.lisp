@@ -61,10 +61,11 @@ that the bounds of its heading."
         (draw-segments canvas draw-gcontext* (pixels-of (list* x y (around x y angle 3))))))))
 
 (defun draw-trail (canvas points color)
-  (when (cddr points)
+  "Draw a line of COLOR through POINTS, a list x y tick ..., newest first."
+  (when (cdddr points)
     (inked (color)
       (draw-lines canvas draw-gcontext*
-                  (loop for (x y) on points by #'cddr
+                  (loop for (x y) on points by #'cdddr
                         repeat +trail-length+
                         collect (to-pixels x) collect (to-pixels y))))))
 

@@ -96,6 +96,11 @@
     keys[event.key]();
   });
 
+  // In a small window the picture comes first.
+  if (window.innerWidth < 1000)
+    Array.prototype.forEach.call(document.querySelectorAll("aside details"),
+                                 function (part) { part.open = false; });
+
   var start = /^#tick=(\d+)$/.exec(location.hash), first = 0;
   if (start) FILM.ticks.forEach(function (tick, index) { if (tick <= Number(start[1])) first = index; });
   show(first);

@@ -93,14 +93,14 @@ a vector of such numbers."
   (or (position-if (lambda (shown) (>= shown tick)) ticks)
       (1- (length ticks))))
 
-(defun write-moment (moment ticks out)
+(defun write-moment (moment ticks several-p out)
   (format out "{\"tick\":~A,\"frame\":~D,\"kind\":\"~(~A~)\",\"text\":"
           (number-text (moment-tick moment)) (frame-at (moment-tick moment) ticks)
           (moment-kind moment))
-  (write-quoted (moment-text moment) out)
+  (write-quoted (moment-words moment several-p) out)
   (write-char #\} out))
 
-(defun write-data (reel ticks rate moments out)
+(defun write-data (reel ticks rate moments several-p out)
   (write-string "var FILM = {\"rate\":" out)
   (write-number rate out)
   (write-string ",\"ticks\":" out)
@@ -110,13 +110,14 @@ a vector of such numbers."
   (format out ",~%\"frames\":")
   (write-frames (reverse (reel-frames reel)) out)
   (format out ",~%\"moments\":")
-  (write-array (lambda (moment out) (write-moment moment ticks out)) moments out)
+  (write-array (lambda (moment out) (write-moment moment ticks several-p out)) moments out)
   (format out "};~%"))
 
-;;; The page.
+;;; The page: the picture takes what room there is between title and controls, beside it stands what
+;;; can be read and folded.
 
 (defun write-controls (out)
-  (format out "<div id=\"timeline\"><div id=\"marks\"></div>~
+  (format out "<footer><div id=\"timeline\"><div id=\"marks\"></div>~
                <input id=\"slider\" type=\"range\" min=\"0\" value=\"0\" aria-label=\"Frame\"></div>
 <div id=\"controls\">
 <button id=\"back\" title=\"One frame back\">&lt;</button>
@@ -124,35 +125,45 @@ a vector of such numbers."
 <button id=\"on\" title=\"One frame on\">&gt;</button>
 <label>Speed <select id=\"speed\">~{<option value=\"~A\"~A>~A</option>~}</select></label>
 <output id=\"tick\"></output>
-<span><kbd>space</kbd> plays and stops, arrows step, <kbd>+</kbd> and <kbd>-</kbd>
+<span id=\"help\"><kbd>space</kbd> plays and stops, arrows step, <kbd>+</kbd> and <kbd>-</kbd>
 change the speed</span>
-</div>~%"
+</div></footer>~%"
           (loop for (value text) in '(("0.25" "a quarter") ("0.5" "half") ("1" "as made")
                                       ("2" "twice") ("4" "4 times") ("10" "10 times"))
                 append (list value (if (string= value "1") " selected" "") text))))
 
-(defun write-moments-list (moments out)
+(defun write-moments-list (moments several-p out)
   (format out "<ol id=\"moments\">~%")
   (dolist (moment moments)
     (format out "<li><button><i class=\"~(~A~)\"></i>tick ~A: " (moment-kind moment)
             (number-text (moment-tick moment)))
-    (write-text (moment-text moment) out)
+    (write-text (moment-words moment several-p) out)
     (format out "</button></li>~%"))
   (format out "</ol>~%"))
 
-(defun write-film (out title picture last-picture reel ticks rate moments)
+(defun write-aside (legend moments several-p out)
+  "Write what stands beside the picture: the moments, and LEGEND, items of a list."
+  (format out "<aside>~%<details~:[ hidden~;~] open><summary>What happened</summary>~%" moments)
+  (write-moments-list moments several-p out)
+  (format out "</details>~%<details~:[~; hidden~] open><summary>Legend</summary>~%~
+               <ul id=\"legend\">~%~A</ul></details>~%</aside>~%"
+          (string= "" legend) legend))
+
+(defun write-film (out title picture last-picture legend reel ticks rate moments several-p)
   "Write to OUT the page of a film called TITLE. PICTURE is an SVG document of its first frame in
 which a group called movers is what frames draw; LAST-PICTURE is one of its last, for those who
-cannot play."
-  (format out "<!DOCTYPE html>~%<html lang=\"en\"><head><meta charset=\"utf-8\">~%<title>")
+cannot play; LEGEND the items of a list. SEVERAL-P: say of which robot MOMENTS are."
+  (format out "<!DOCTYPE html>~%<html lang=\"en\"><head><meta charset=\"utf-8\">~%")
+  (format out "<meta name=\"viewport\" content=\"width=device-width\">~%<title>")
   (write-text title out)
   (format out "</title>~%<style>~%~A</style></head><body>~%<h1>" *film-style*)
   (write-text title out)
-  (format out "</h1>~%<div id=\"stage\">~%~A</div>~%" picture)
-  (format out "<noscript><p>To play this a browser needs scripts. Above is how it began; this is ~
-               how it ended.</p>~%~A</noscript>~%" last-picture)
+  (format out "</h1>~%<noscript><p>To play this a browser needs scripts. Below is how it ~
+               began, and how it ended.</p></noscript>~%")
+  (format out "<main><div id=\"stage\">~%~A<noscript>~%~A</noscript></div>~%" picture last-picture)
+  (write-aside legend moments several-p out)
+  (format out "</main>~%")
   (write-controls out)
-  (write-moments-list moments out)
   (format out "<script>~%")
-  (write-data reel ticks rate moments out)
+  (write-data reel ticks rate moments several-p out)
   (format out "</script>~%<script>~%~A</script>~%</body></html>~%" *film-script*))

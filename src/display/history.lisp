@@ -2,15 +2,14 @@
 
 (in-package :ars-magna.display)
 
-;;; A history is kept by an observer of its simulation from when somebody first asks for it. Its
-;;; lists only ever grow at the front, so a snapshot may share them.
+;;; A history is kept by an observer of its simulation from when somebody first asks for it. Trails
+;;; are kept with the simulation, under the names of robots, and are never altered: so forks have
+;;; them as they were, and what is rewound has the part of them that is still so.
 
-(defstruct (trail (:copier nil))
-  "Where a robot has been: POINTS is a list x y x y ..., newest first; X, Y is the newest."
-  (points '() :type list)
-  (count 0 :type fixnum)
-  (x -1d9 :type double-float)
-  (y -1d9 :type double-float))
+(defstruct (trail (:constructor make-trail (points count)) (:copier nil))
+  "Where a robot has been: POINTS is a list x y tick x y tick ... of COUNT of them, newest first."
+  (points '() :type list :read-only t)
+  (count 0 :type fixnum :read-only t))
 
 (defstruct (look (:constructor make-look (view x y ends)) (:copier nil))
   "What a camera's last view came from: rays from X, Y to ENDS, a list x y x y ...."
@@ -20,35 +19,61 @@
   (ends '() :type list :read-only t))
 
 (defstruct (history (:copier nil))
-  "The past of one simulation, as far as pictures show it."
-  ;; Robots and cameras come in small numbers: association lists.
-  (trails '() :type list)
+  "The past of one simulation, as far as pictures show it besides trails."
+  ;; Cameras come in small numbers: an association list.
   (looks '() :type list))
 
 (define-constant +trail-length+ 4000 :documentation "How many points of a trail are kept.")
 (define-constant +trail-step+ 0.1d0
   :documentation "How far apart the points of a trail are at least, in metres.")
 
-(defmacro entry-of (key place new)
-  "Return what KEY has in the association list in PLACE, entering NEW if it has nothing."
-  `(or (cdr (assoc ,key ,place :test #'eq))
-       (cdr (first (push (cons ,key ,new) ,place)))))
+(defun trail-called (name simulation)
+  "Return the trail of the robot called NAME that is kept of SIMULATION, or NIL."
+  (cdr (assoc name (simulation-trails simulation) :test #'eq)))
 
-(defun extend-trail (trail x y)
-  (setf (trail-x trail) x
-        (trail-y trail) y
-        (trail-points trail) (list* x y (trail-points trail)))
-  (when (> (incf (trail-count trail)) (* 2 +trail-length+))
-    (setf (trail-points trail) (subseq (trail-points trail) 0 (* 2 +trail-length+))
-          (trail-count trail) +trail-length+)))
+(defun moved-p (points x y)
+  "True unless the first of POINTS is about at X, Y."
+  (declare #.*hot* (type double-float x y))
+  (or (null points)
+      (>= (+ (abs (- x (the double-float (first points))))
+             (abs (- y (the double-float (second points)))))
+          +trail-step+)))
 
-(defun note-position (trail robot)
-  "Note where ROBOT is, if it has moved; this runs in every tick."
-  (declare #.*hot* (type trail trail) (type robot robot))
-  (unless (< (+ (abs (- (robot-x robot) (trail-x trail)))
-                (abs (- (robot-y robot) (trail-y trail))))
-             +trail-step+)
-    (extend-trail trail (robot-x robot) (robot-y robot))))
+(defun longer-trail (trail x y tick)
+  "Return what TRAIL, one or NIL, is with X, Y at TICK as the newest point."
+  (let ((points (list* x y tick (and trail (trail-points trail))))
+        (count (if trail (1+ (trail-count trail)) 1)))
+    (if (> count (* 2 +trail-length+))
+        (make-trail (subseq points 0 (* 3 +trail-length+)) +trail-length+)
+        (make-trail points count))))
+
+(defun note-position (simulation robot)
+  "Note where ROBOT of SIMULATION is, if it has moved; this runs in every tick."
+  (declare #.*hot* (type robot robot))
+  (let* ((name (robot-name robot)) (trail (trail-called name simulation)))
+    (when (moved-p (and trail (trail-points trail)) (robot-x robot) (robot-y robot))
+      (setf (simulation-trails simulation)
+            (acons name (longer-trail trail (robot-x robot) (robot-y robot)
+                                      (simulation-tick simulation))
+                   (remove name (simulation-trails simulation) :key #'car :test #'eq))))))
+
+(defun points-of-trail (robot)
+  "Return a list x y tick x y tick ... of where ROBOT has been, newest first, as far as that is
+known; NIL if none of it is. Where a fork has gone nobody notes, but it came to where it is."
+  (let* ((simulation (robot-simulation robot))
+         (trail (trail-called (robot-name robot) simulation)))
+    (cond ((null trail) '())
+          ((moved-p (trail-points trail) (robot-x robot) (robot-y robot))
+           (list* (robot-x robot) (robot-y robot) (simulation-tick simulation)
+                  (trail-points trail)))
+          (t (trail-points trail)))))
+
+(defun trail-until (tick trail)
+  "Return the part of TRAIL up to TICK."
+  (loop for points on (trail-points trail) by #'cdddr
+        for count downfrom (trail-count trail)
+        while (> (the fixnum (third points)) tick)
+        finally (return (make-trail points count))))
 
 ;;; Looks.
 
@@ -99,7 +124,7 @@ OPAQUE-P is a function of the index of a cell."
   (declare #.*hot* (type history history))
   (dolist (robot (simulation-robots simulation))
     (declare (type robot robot))
-    (note-position (entry-of robot (history-trails history) (make-trail)) robot)
+    (note-position simulation robot)
     (loop for camera across (robot-cameras robot) do (note-look history camera))))
 
 (defvar *histories* (make-hash-table :test #'eq :weakness :key :synchronized t)
@@ -123,7 +148,11 @@ the rays of the last looks. Return it."
         history)))
 
 (defun follow-rewind (old new)
-  "Keep a history of NEW, which is to go on in the place of OLD, if one is kept of that."
+  "Keep a history of NEW, which is to go on in the place of OLD, if one is kept of that; let it have
+the trails of OLD up to now."
+  (setf (simulation-trails new)
+        (loop for (name . trail) in (simulation-trails old)
+              collect (cons name (trail-until (simulation-tick new) trail))))
   (let ((entry (gethash old *histories*)))
     (when entry
       (remhash old *histories*)

@@ -17,7 +17,9 @@
 wide."
   `(call-inked (lambda () ,@body) ,color ,width ,style))
 
-(defun to-pixels (metres) (* metres graphics-scale*))
+(defun to-pixels (metres)
+  "Return how many pixels METRES are."
+  (* metres graphics-scale*))
 
 (defun pixels-of (points)
   "Return the list of coordinates POINTS, in metres, in pixels."

@@ -77,6 +77,7 @@
                     collect (list name default-p title sentence))))
 
 (defun check-layers (operator layers)
+  "Signal WRONG-ARGUMENT unless LAYERS, an argument of OPERATOR, is a list of layers."
   (unless (and (proper-list-p layers) (subsetp layers +picture-layers+))
     (reject-argument operator "layers" layers
                      (format nil "a list of some of ~{~(~S~)~^, ~}" +picture-layers+))))

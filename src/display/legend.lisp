@@ -151,7 +151,7 @@ than the line."
                     (:tracks (some #'camera-image-track (robot-image-cameras robot)))
                     (:designators (robot-image-designators robot))
                     (:odometer (robot-image-odometer robot))
-                    (:trail (cddr (robot-image-trail robot)))
+                    (:trail (cdddr (robot-image-trail robot)))
                     (:planned-way (robot-image-planned-way robot))
                     (:reach (find-if #'thing-image-moving-p (snapshot-things snapshot))))))
 
@@ -177,12 +177,14 @@ than the line."
 
 (define-constant +entry-limit+ 80 :documentation "How many entries a legend has at most.")
 
-(defun legend-entries (snapshot layers)
-  "Return the entries of the legend of a picture of SNAPSHOT with LAYERS."
+(defun legend-entries (snapshot layers
+                       &optional (lines (append (line-entries snapshot layers)
+                                                (ray-entries snapshot layers))))
+  "Return the entries of the legend of a picture of SNAPSHOT with LAYERS; LINES are those of lines."
   (let* ((map (snapshot-map snapshot))
          (entries (append (robot-entries snapshot) (wall-entries map)
                           (and (member :places layers) (place-entries map))
-                          (line-entries snapshot layers) (ray-entries snapshot layers)
+                          lines
                           (shape-entries snapshot) (thing-entries snapshot)))
          (more (- (length entries) +entry-limit+)))
     (if (plusp more)

@@ -5,25 +5,34 @@
 ;;; A journal says what was asked for, not what came of it. So it is repeated, and after each tick
 ;;; somebody looks what a robot holds now that it did not, what lies in its bins, and what failed.
 
-(addition moment-p moment-tick moment-kind moment-text moment-x moment-y)
-(defstruct (moment (:constructor make-moment (tick kind text &optional x y)) (:copier nil))
-  "That at TICK something happened of which TEXT tells, to a robot that was at X, Y. KIND is what
-sort of thing that is."
+(define-constant +moment-kinds+ '(:grasp :release :stow :failure :plan :error :note)
+  :test #'cl:equal
+  :documentation "What sorts of moments there are.")
+
+(addition moment-p moment-tick moment-kind moment-text moment-x moment-y moment-robot)
+(defstruct (moment (:constructor make-moment (tick kind text &optional x y robot code))
+                   (:copier nil))
+  "That at TICK something happened of which TEXT tells, to ROBOT, the name of one, that was at X, Y.
+KIND is what sort of thing that is; CODE is the error code of a command that failed."
   (tick 0 :type real :read-only t)
-  (kind :note :type (member :grasp :release :stow :failure :plan :note) :read-only t)
+  (kind :note :type symbol :read-only t)
   (text "" :type string :read-only t)
   (x nil :type (or null real) :read-only t)
-  (y nil :type (or null real) :read-only t))
+  (y nil :type (or null real) :read-only t)
+  (robot nil :type symbol :read-only t)
+  (code nil :type symbol :read-only t))
 
 (document-functions
   make-moment "Return a moment: that at a tick something of a kind happened, of which a text
-tells, to a robot at x, y."
+tells, to a robot at x, y, of a name; with an error code."
   moment-p "True of moments: of things that happened in a run."
   moment-tick "Return the tick at which it was."
-  moment-kind "Return what sort of thing it was: :GRASP, :RELEASE, :STOW, :FAILURE, :PLAN or :NOTE."
+  moment-kind "Return what sort of thing it was: :GRASP, :RELEASE, :STOW; :FAILURE of a command;
+:PLAN, that failed or was ended; :ERROR in users' code; :NOTE of a user's."
   moment-text "Return a few words about it."
   moment-x "Return where the robot was then, in metres, or NIL if that is unknown."
-  moment-y "Return where the robot was then, in metres, or NIL if that is unknown.")
+  moment-y "Return where the robot was then, in metres, or NIL if that is unknown."
+  moment-robot "Return the name of the robot, a symbol, or NIL if that is unknown.")
 
 (defmethod print-object ((moment moment) stream)
   (print-unreadable-object (moment stream)
@@ -70,13 +79,14 @@ command take over from an older one.")
   (unless (eq (sight-failure new) (sight-failure old))
     (destructuring-bind (&key command error text &allow-other-keys) (last-failure robot)
       (unless (member error *no-trouble*)
-        (list (list :failure (format nil "~(~A~): ~A" command text)))))))
+        (list (list :failure (format nil "~(~A~): ~A" command text) error))))))
 
 (defun moments-between (old new robot tick)
   "Return the moments that lie between two sights of ROBOT, of which the later is of TICK."
-  (loop for (kind text) in (append (changes-of-hands old new) (changes-of-bins old new)
-                                   (failures-since old new robot))
-        collect (make-moment tick kind text (robot-x robot) (robot-y robot))))
+  (loop for (kind text code) in (append (changes-of-hands old new) (changes-of-bins old new)
+                                        (failures-since old new robot))
+        collect (make-moment tick kind text (robot-x robot) (robot-y robot) (robot-name robot)
+                             code)))
 
 ;;; Looking all the time.
 
@@ -93,23 +103,74 @@ arguments, which returns the moments seen so far, the earliest first."
                   (setf sights (acons robot new (remove robot sights :key #'first))))))
             (lambda () (reverse moments)))))
 
+;;; What a journal itself has: what became of plans, and errors in users' code.
+
+(defun remarked-moments (journal until)
+  "Return the moments that the remarks of JOURNAL, up to the tick UNTIL or its end, tell of."
+  (loop for (tick kind text robot x y) in (reverse (journal-remarks journal))
+        when (or (null until) (<= tick until))
+          collect (make-moment tick kind text x y (name-of-robot robot))))
+
+(defun name-of-robot (text)
+  "Return the name, a symbol, of the robot that a journal calls TEXT; NIL if there is none."
+  (let ((blueprint (and text (find-blueprint text nil))))
+    (and blueprint (blueprint-name blueprint))))
+
 ;;; What users add.
 
 (defun own-moment (object)
-  "Return the moment that OBJECT is, or that the list (tick text) stands for; NIL if it is none."
+  "Return the moment that OBJECT is, or that the list (tick text [robot]) stands for; NIL if it is
+none."
   (cond ((moment-p object) object)
-        ((and (consp object) (eql 2 (list-length object))
-              (within-reason-p (first object)) (stringp (second object)))
-         (make-moment (first object) :note (second object)))))
+        ((typep object '(cons integer (cons string (or null (cons symbol null)))))
+         (make-moment (first object) :note (second object) nil nil (third object)))))
 
-(defun checked-moments (operator moments)
-  "Return the list MOMENTS, an argument of OPERATOR, as moments. Signals WRONG-ARGUMENT."
+(defun checked-moments (operator moments end)
+  "Return the list MOMENTS, an argument of OPERATOR, as moments of a run that ends at the tick END.
+Signals WRONG-ARGUMENT."
   (let ((own (and (proper-list-p moments) (mapcar #'own-moment moments))))
-    (unless (and (proper-list-p moments) (notany #'null own))
+    (unless (and (proper-list-p moments)
+                 (every (lambda (moment)
+                          (and moment (typep (moment-tick moment) `(integer 0 ,end))))
+                        own))
       (reject-argument operator :moments moments
-                       "a list of moments, or of lists of a tick and a string"))
+                       (format nil "a list of moments, or of lists of a tick, a string and perhaps ~
+                                    a robot's name, with ~
+                                    whole ticks from 0 to ~D, where what is shown of the run ends"
+                               end)))
     own))
+
+(defun check-kinds (operator kinds)
+  "Signal WRONG-ARGUMENT unless KINDS, an argument of OPERATOR, is T or a list of kinds of moments."
+  (unless (or (eq kinds t)
+              (and (proper-list-p kinds) (subsetp kinds +moment-kinds+)))
+    (reject-argument operator :kinds kinds
+                     (format nil "T for all, or a list of some of ~{~(~S~)~^, ~}" +moment-kinds+))))
+
+(defun of-kinds (kinds moments)
+  "Return those of MOMENTS that are of KINDS, T or a list, or a user's own."
+  (if (eq kinds t)
+      moments
+      (remove-if-not (lambda (moment) (member (moment-kind moment) (cons :note kinds))) moments)))
 
 (defun in-order (moments)
   "Return MOMENTS by their ticks."
   (stable-sort (copy-list moments) #'< :key #'moment-tick))
+
+;;; Telling of them.
+
+(defparameter *expected-codes* '(:robot-blocked :not-tracking :lost-track :track-lost)
+  "Codes of failures that plans expect, and go on after.")
+
+(defun moment-weight (moment)
+  "Return how much MOMENT matters: 0 is most, 3 least."
+  (case (moment-kind moment)
+    (:note 0)
+    (:failure (if (member (moment-code moment) *expected-codes*) 3 2))
+    (t 1)))
+
+(defun moment-words (moment several-p)
+  "Return what happened at MOMENT, in words; also to which robot, if there are SEVERAL-P."
+  (format nil "~@[~A: ~]~A"
+          (and several-p (moment-robot moment) (drawn-name (moment-robot moment)))
+          (moment-text moment)))

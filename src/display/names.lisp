@@ -10,10 +10,12 @@
 (define-constant +name-height+ 11 :documentation "How high the box of a name is, in pixels.")
 
 (defun overlap-p (a b)
+  "True if the boxes A and B, lists (left top right bottom), overlap."
   (and (< (first a) (third b)) (< (first b) (third a))
        (< (second a) (fourth b)) (< (second b) (fourth a))))
 
 (defun box-around (x y half)
+  "Return the box that reaches HALF from X, Y to each side."
   (list (- x half) (- y half) (+ x half) (+ y half)))
 
 (defun name-boxes (x y half width)
@@ -57,7 +59,7 @@ on it, meets."
 (defun on-trail-p (snapshot box)
   (destructuring-bind (left top right bottom) box
     (loop for robot in (snapshot-robots snapshot)
-          thereis (loop for (x y) on (robot-image-trail robot) by #'cddr
+          thereis (loop for (x y) on (robot-image-trail robot) by #'cdddr
                         repeat +trail-length+
                         thereis (and (< left (to-pixels x) right) (< top (to-pixels y) bottom))))))
 
@@ -89,7 +91,9 @@ have small letters of their own."
   (let ((text (string name)))
     (if (some #'lower-case-p text) text (string-downcase text))))
 
-(defun robot-title (image) (drawn-name (robot-image-name image)))
+(defun robot-title (image)
+  "Return what the robot that IMAGE is of is called in pictures."
+  (drawn-name (robot-image-name image)))
 
 (defun thing-image-name (image)
   (drawn-name (thing-name (thing-image-thing image))))
@@ -126,11 +130,11 @@ have small letters of their own."
     (draw-words canvas draw-gcontext* (+ 1 (first box)) (- (fourth box) 2) name
                 :size +name-size+)))
 
-(defun draw-names (canvas snapshot layers)
-  "Write the names of robots and things where there is room beside what LAYERS list."
+(defun draw-names (canvas snapshot layers &optional boxes)
+  "Write the names of robots and things where there is room beside what LAYERS list and BOXES."
   (let* ((spots (named-spots snapshot))
          (per-character (character-width canvas +name-size+))
-         (taken (boxes-taken snapshot layers spots)))
+         (taken (append boxes (boxes-taken snapshot layers spots))))
     (loop for (name x y half) in spots
           for width = (+ 2 (* per-character (length name)))
           for box = (best-box snapshot layers (name-boxes x y half width) taken)

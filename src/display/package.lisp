@@ -26,17 +26,20 @@
   ;; layers
   (:export #:*picture-layers* #:+picture-layers+ #:layer-title #:layer-documentation
            #:layers-of-kind)
-  ;; terrain, world-display, margins, displays
-  (:export #:draw-terrain #:draw-movers #:draw-world #:draw-framed-world #:suitable-scale
-           #:users-scale
-           #:draw-view-margins
+  ;; inks, user-drawing, terrain, names, world-display, legend, scales, margins, way-picture
+  ;; and displays
+  (:export #:draw-terrain #:draw-movers #:draw-world #:users-scale #:check-layers #:check-scale
+           #:draw-framed #:with-map-svg #:sample-of #:robot-color #:robot-title #:draw-names
+           #:telling-what-breaks #:draw-way-line #:draw-start #:way-entry #:to-pixels
+           #:box-around #:overlap-p #:draw-view-margins
            #:draw-display #:display-title #:+displays+)
   ;; moments
   (:export #:moment-p #:moment-tick #:moment-kind #:moment-text #:moment-x #:moment-y
-           #:make-moment #:moments-watcher #:checked-moments #:in-order #:journal-moments)
+           #:moment-robot #:make-moment #:moments-watcher #:remarked-moments #:checked-moments
+           #:check-kinds #:of-kinds #:in-order #:moment-weight #:moment-words #:journal-moments)
   ;; picture, animation
   (:export #:picture-scale)
   (:export #:picture-kind #:save-svg #:save-picture #:save-snapshot #:svg-picture #:save-animation
-           #:save-way-picture)
+           #:shown-end #:save-way-picture)
   ;; opening
   (:export #:open-display #:*display-opener* #:*displays-waiter* #:announce-display))

@@ -5,11 +5,12 @@
 (defun write-picture (stream snapshot robot &key (display :world) (layers *picture-layers*)
                                               (in-color t) scale)
   "Write an SVG document of DISPLAY from SNAPSHOT to STREAM; ROBOT is the image of a robot in it."
-  (let* ((scale (suitable-scale scale snapshot layers))
-         (zoom (if (member display '(:world :all)) (magnification scale snapshot layers) 1)))
-    (with-svg (canvas stream :color-p in-color :zoom zoom)
-      (with-canvas (canvas :scale (/ scale zoom))
-        (draw-display canvas display snapshot robot :layers layers)))))
+  (flet ((draw (canvas) (draw-display canvas display snapshot robot :layers layers)))
+    (if (member display '(:world :all))
+        (with-map-svg (canvas stream snapshot :layers layers :in-color in-color :scale scale)
+          (draw canvas))
+        (with-svg (canvas stream :color-p in-color)
+          (with-canvas (canvas :scale (suitable-scale scale snapshot layers)) (draw canvas))))))
 
 (defun check-picture (operator robot display layers scale)
   (unless (robot-p robot)
@@ -76,9 +77,10 @@ picture there; then it says that a name has one of ENDINGS."
 (defun save-snapshot (snapshot robot file &key (display :all) (layers *picture-layers*)
                                             (in-color t) scale)
   "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does; ROBOT is the image of a robot in it."
-  (save-svg (with-output-to-string (stream)
-              (write-picture stream snapshot robot
-                             :display display :layers layers :in-color in-color :scale scale))
+  (save-svg (telling-what-breaks
+              (with-output-to-string (stream)
+                (write-picture stream snapshot robot :display display :layers layers
+                                                     :in-color in-color :scale scale)))
             file (picture-kind 'save-snapshot file)))
 
 (addition save-picture)

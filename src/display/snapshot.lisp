@@ -194,20 +194,19 @@ what it holds of each."
          :spread (width angle))))))
 
 (defun image-of-robot (robot history)
-  (let ((trail (and history (cdr (assoc robot (history-trails history) :test #'eq)))))
-    (flet ((images (function parts) (cl:map 'list function parts)))
-      (make-robot-image
-       :name (robot-name robot) :x (robot-x robot) :y (robot-y robot) :angle (robot-angle robot)
-       :speed (robot-speed robot) :place (robot-last-place robot)
-       :under-way (under-way-text robot) :interruption (interruption-text robot)
-       :cameras (images (lambda (camera) (image-of-camera camera history))
-                        (robot-cameras robot))
-       :hands (images #'image-of-hand (robot-hands robot))
-       :bins (images #'image-of-bin (robot-bins robot))
-       :designators (images #'image-of-designator (live-designators robot))
-       :odometer (and (robot-main-odometer robot) (image-of-odometer robot))
-       :trail (and trail (trail-points trail))
-       :planned-way (robot-way-left robot)))))
+  (flet ((images (function parts) (cl:map 'list function parts)))
+    (make-robot-image
+     :name (robot-name robot) :x (robot-x robot) :y (robot-y robot) :angle (robot-angle robot)
+     :speed (robot-speed robot) :place (robot-last-place robot)
+     :under-way (under-way-text robot) :interruption (interruption-text robot)
+     :cameras (images (lambda (camera) (image-of-camera camera history))
+                      (robot-cameras robot))
+     :hands (images #'image-of-hand (robot-hands robot))
+     :bins (images #'image-of-bin (robot-bins robot))
+     :designators (images #'image-of-designator (live-designators robot))
+     :odometer (and (robot-main-odometer robot) (image-of-odometer robot))
+     :trail (points-of-trail robot)
+     :planned-way (robot-way-left robot))))
 
 ;;; The whole.
 

@@ -54,13 +54,10 @@ designators denote to be.")
 ;;; Ways.
 
 (defun way-layer (view robot)
-  (let* ((history (history-of (robot-simulation robot)))
-         (trail (and history (cdr (assoc robot (history-trails history) :test #'eq))))
-         (glyph (make-glyph :layer #\+ (format nil "way of ~A" robot) :green)))
-    (when trail
-      (loop for (x y) on (trail-points trail) by #'cddr
-            repeat +trail-length+
-            append (glyph-at view x y glyph)))))
+  (let ((glyph (make-glyph :layer #\+ (format nil "way of ~A" robot) :green)))
+    (loop for (x y) on (points-of-trail robot) by #'cdddr
+          repeat +trail-length+
+          append (glyph-at view x y glyph))))
 
 (defconstant +way-spacing+ 0.2d0
   "How far apart the points of a planned way are that are shown, in metres.")

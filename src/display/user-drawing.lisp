@@ -13,6 +13,10 @@
 (defvar *broken-graphics* (make-hash-table :test #'eq :weakness :key :synchronized t)
   "The functions that have signalled an error, and the names that mean no function.")
 
+(defmacro telling-what-breaks (&body body)
+  "Run BODY, which draws a file: of what is broken it tells once, though it was told before."
+  `(let ((*broken-graphics* (make-hash-table :test #'eq))) ,@body))
+
 (defun give-up-drawing ()
   "Signal that users' code has drawn for too long, unless it waits in a debugger."
   (unless (user-calls-waiting-p *user-calls*)

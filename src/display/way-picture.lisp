@@ -5,42 +5,109 @@
 (defparameter *way-colors* '(#x9C1408 #x0C3C9C #x0A5A1C #x6A3C00 #x5C1478)
   "What ways are drawn in, by turns: dark enough for the marks of all built-in places.")
 
+(defun way-color (position)
+  (nth (mod position (length *way-colors*)) *way-colors*))
+
+;;; The first ways are told apart without colours, too.
+
+(define-constant +way-dashes+ '(nil (9 4) (2 3) (9 3 2 3) (4 2))
+  :test #'cl:equal
+  :documentation "The dashes and gaps of ways, by turns, in pixels; NIL is a solid line.")
+
+(defun draw-way-line (canvas points color position)
+  "Draw a line of COLOR through POINTS, x y ... in pixels, dashed as that at POSITION of several."
+  (let ((dashes (nth (mod position (length +way-dashes+)) +way-dashes+)))
+    (with-gcontext (draw-gcontext* :foreground white* :line-width 4)
+      (draw-lines canvas draw-gcontext* points))
+    (with-color color
+      (with-gcontext (draw-gcontext* :line-width 2 :line-style (if dashes :dash :solid)
+                                     :dashes (or dashes '(4)))
+        (draw-lines canvas draw-gcontext* points)))))
+
+(defun draw-start (canvas x y color)
+  "Draw what marks where a way begins: a small ring."
+  (with-gcontext (draw-gcontext* :foreground white*) (draw-circle canvas x y 5 t))
+  (inked (color :width 2) (draw-circle canvas x y 4 nil)))
+
+(defun draw-goal (canvas x y color)
+  "Draw what marks where a way ends: a spot."
+  (with-gcontext (draw-gcontext* :foreground white*) (draw-circle canvas x y 5 t))
+  (with-color color (draw-circle canvas x y 4 t)))
+
+(defun way-entry (text color position)
+  "Return an entry of a legend for a way."
+  (sample-of-name (canvas x y) (text)
+    (draw-way-line canvas (list (- x 8) y (+ x 8) y) color position)))
+
+;;; Ways as points.
+
 (defun coordinates-of (point)
   "Return the coordinates of POINT, a PT or a list (x y), as a list in pixels."
-  (list (* graphics-scale* (if (pt-p point) (pt-x point) (first point)))
-        (* graphics-scale* (if (pt-p point) (pt-y point) (second point)))))
+  (list (to-pixels (if (pt-p point) (pt-x point) (first point)))
+        (to-pixels (if (pt-p point) (pt-y point) (second point)))))
 
-(defun draw-way-on-map (canvas way color)
-  "Draw WAY, a list of points, as a line of COLOR, with a spot where it ends."
-  (inked (color :width 2)
-    (draw-lines canvas draw-gcontext* (mapcan #'coordinates-of way)))
-  (with-gcontext (draw-gcontext* :foreground color)
-    (destructuring-bind (x y) (coordinates-of (first (last way)))
-      (draw-arc canvas draw-gcontext* (- x 3) (- y 3) 6 6 0 (* 2 pi) t))))
+(defun draw-way-on-map (canvas way position)
+  "Draw WAY, a list of points, the one at POSITION of several."
+  (let ((color (way-color position)))
+    (draw-way-line canvas (mapcan #'coordinates-of way) color position)
+    (destructuring-bind (x y) (coordinates-of (first way)) (draw-start canvas x y color))
+    (destructuring-bind (x y) (coordinates-of (first (last way))) (draw-goal canvas x y color))))
 
-(defun ways-p (ways)
-  (flet ((point-p (point) (or (pt-p point) (number-pair-p point))))
-    (and (proper-list-p ways)
-         (every (lambda (way) (and (consp way) (proper-list-p way) (every #'point-p way))) ways))))
+(defun way-p (way)
+  (and (consp way) (proper-list-p way)
+       (every (lambda (point) (or (pt-p point) (number-pair-p point))) way)))
+
+(defun check-ways (ways)
+  "Signal WRONG-ARGUMENT unless WAYS is a list of ways."
+  (when (and (proper-list-p ways) (member nil ways))
+    (reject-argument 'save-way-picture 'ways ways
+                     "a list of ways. There is a NIL in it, which FIND-WAY returns where there is ~
+                      no way: leave that out"))
+  (check-argument save-way-picture ways (and (proper-list-p ways) (every #'way-p ways))
+                  "a list of ways, each a list of PTs or of lists (x y)"))
+
+(defun ways-entries (ways)
+  "Return the entries of the legend for WAYS."
+  (append (loop for nil in ways for position from 0
+                collect (way-entry (format nil "way~:[~; ~D~]" (rest ways) (1+ position))
+                                   (way-color position) position))
+          (and ways (list (sample-of (canvas x y) "start" (draw-start canvas x y black*))
+                          (sample-of (canvas x y) "end" (draw-goal canvas x y black*))))))
+
+(defun snapshot-of-map (map)
+  "Return a snapshot of the current world, if that is of MAP, or else of MAP with nothing in it."
+  (let ((simulation *simulation*))
+    (if (and simulation (eq map (world-map (simulation-world simulation))))
+        (asking (simulation) (take-snapshot (simulation-world simulation)))
+        (make-snapshot :map map))))
+
+(defun way-picture-text (snapshot ways &key layers in-color scale title)
+  "Return an SVG document of SNAPSHOT with WAYS, under TITLE."
+  (let ((more (ways-entries ways)))
+    (with-output-to-string (stream)
+      (with-map-svg (canvas stream snapshot :layers layers :in-color in-color :scale scale)
+        (draw-framed canvas snapshot layers
+                     (lambda ()
+                       (draw-terrain canvas (snapshot-map snapshot) :layers layers)
+                       (loop for way in ways for position from 0
+                             do (draw-way-on-map canvas way position))
+                       (draw-movers canvas snapshot layers))
+                     :title title :more more)))))
 
 (addition save-way-picture)
-(defun save-way-picture (map ways file &key scale)
+(defun save-way-picture (map ways file &key title (layers *picture-layers*) (in-color t) scale)
   "Save in FILE, replacing it, a picture of MAP, a map or the name of one, and of WAYS in it: a
-list of ways, each a list of PTs or of lists (x y), as FIND-WAY returns it. SCALE is how many
-pixels there are to a cell; without it, as SAVE-PICTURE has it. FILE is SVG or, where the program
-rsvg-convert is installed, PNG, as its name ends. Return its truename. Signals WRONG-ARGUMENT,
-UNKNOWN-NAME, and MISUSE without that program."
-  (check-argument save-way-picture ways (ways-p ways)
-                  "a list of ways, each a list of PTs or of lists (x y)")
+list of ways, each a list of PTs or of lists (x y), as FIND-WAY returns it. If the current
+simulation is in MAP, its things and robots are shown as they are now. TITLE, a string, stands
+above. FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename. Signals
+WRONG-ARGUMENT, UNKNOWN-NAME, and MISUSE without the program that PNG needs."
+  (check-ways ways)
+  (check-argument save-way-picture title (typep title '(or null string)) "a string or NIL")
+  (check-layers 'save-way-picture layers)
   (check-scale 'save-way-picture scale)
-  (let* ((map (find-map map)) (kind (picture-kind 'save-way-picture file))
-         (scale (suitable-scale scale (make-snapshot :map map) '())))
-    (save-svg (with-output-to-string (stream)
-                (with-svg (canvas stream)
-                  (with-canvas (canvas :scale scale)
-                    (draw-terrain canvas map)
-                    (loop for way in ways for i from 0
-                          do (draw-way-on-map canvas way
-                                              (nth (mod i (length *way-colors*)) *way-colors*)))
-                    (values (* scale (map-width map)) (* scale (map-height map))))))
+  (let* ((map (find-map map)) (kind (picture-kind 'save-way-picture file)))
+    (save-svg (telling-what-breaks
+                (way-picture-text (snapshot-of-map map) ways
+                                  :layers layers :in-color in-color :scale scale
+                                  :title (or title (drawn-name (map-name map)))))
               file kind)))

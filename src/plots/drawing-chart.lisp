@@ -29,16 +29,11 @@
              (incf x (+ (entry-width text) +entry-space+)))
     (incf y (+ +text-step+ 4))))
 
-(defun draw-notes (canvas notes y)
-  (loop for note in notes
-        for below from y by +text-step+
-        do (write-lines canvas +margin+ below (list note))))
-
-(defun drawing-chart (draw width height &key title subtitle entries notes)
+(defun drawing-chart (draw width height &key title subtitle entries)
   "Return a drawing WIDTH and HEIGHT pixels large as an SVG document, with TITLE and SUBTITLE above,
 strings or NIL, and ENTRIES below, lists (index text) that say what lines mean that end in a marker
-(see LOOK-COLOR and DRAW-MARKER), and NOTES, strings, a line for each. The function DRAW is called
-with a canvas whose origin is the upper left corner of the drawing."
+(see LOOK-COLOR and DRAW-MARKER). The function DRAW is called with a canvas whose origin is the
+upper left corner of the drawing."
   (let* ((page-width (max width 480))
          (heading (plan-heading title subtitle (+ page-width (* 2 +margin+))))
          (rows (entry-rows entries page-width))
@@ -48,7 +43,6 @@ with a canvas whose origin is the upper left corner of the drawing."
                 (draw-heading canvas heading)
                 (with-origin (canvas +margin+ top)
                   (with-clipping (canvas 0 0 width height) (funcall draw canvas)))
-                (draw-entries canvas rows (+ top height 22))
-                (draw-notes canvas notes (+ top height legend 22)))
+                (draw-entries canvas rows (+ top height 22)))
               (+ page-width (* 2 +margin+))
-              (+ top height legend (* +text-step+ (length notes)) +margin+ 4))))
+              (+ top height legend +margin+ 4))))

@@ -83,7 +83,8 @@ tick, and CANNOT-FORK."
                                    :options (fork-options simulation continuations decisions))
                 (copy-of-run simulation copier)))
         (journal (simulation-journal simulation)))
-    (setf (simulation-messages copy) (copy-message-queue (simulation-messages simulation)))
+    (setf (simulation-messages copy) (copy-message-queue (simulation-messages simulation))
+          (simulation-trails copy) (simulation-trails simulation))
     (when journal
       (setf (simulation-journal copy) (copied-journal journal (simulation-tick simulation))))
     copy))

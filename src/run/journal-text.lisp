@@ -42,9 +42,17 @@
   "Return ENTRY as it stands in a file: the operator by name."
   (list* (first entry) (make-keyword (symbol-name (second entry))) (cddr entry)))
 
+(defun header-with-remarks (journal)
+  (append (journal-header journal)
+          (and (journal-remarks journal) (list :remarks (reverse (journal-remarks journal))))))
+
+(defun without-remarks (header)
+  (loop for (key value) on header by #'cddr
+        unless (eq key :remarks) append (list key value)))
+
 (defun journal-data (journal)
   "Return what the file of JOURNAL has, in order."
-  (append (list (list :ars-magna-journal +journal-version+ (journal-header journal)))
+  (append (list (list :ars-magna-journal +journal-version+ (header-with-remarks journal)))
           (mapcar #'entry-datum (journal-entries journal))
           (list (list :end (journal-end journal)))))
 
@@ -110,6 +118,16 @@ is wrong, and in which entry."
                 (typep definition '(cons symbol (cons string (cons (or integer symbol) null)))))
               object)))
 
+(defun remarks-p (object)
+  (and (listp object)
+       (every (lambda (remark)
+                (typep remark '(cons tick-count
+                                (cons keyword
+                                 (cons string
+                                  (cons (or null string)
+                                   (cons (or null real) (cons (or null real) null))))))))
+              object)))
+
 (defun settings-trouble (settings)
   "Return what is wrong with SETTINGS of parameters, lists (name value), or NIL."
   (handler-case (call-with-parameters settings (constantly nil))
@@ -130,6 +148,7 @@ is wrong, and in which entry."
           ((not (thinking-mode-p (getf header :thinking :free))) "its thinking mode makes no sense")
           ((wrong-p :parameters #'settings-p) "its parameters make no sense")
           ((wrong-p :definitions #'definitions-p) "its definitions make no sense")
+          ((wrong-p :remarks #'remarks-p) "what is remarked of the run makes no sense")
           ((undescribed header) (format nil "it does not say what ~A was" (undescribed header)))
           ((settings-trouble (getf header :parameters))))))
 
@@ -181,12 +200,13 @@ is wrong, and in which entry."
 (defun journal-from (data)
   "Return the journal that DATA, all that its file has, come to. Signals an error if it is none."
   (check-head (first data))
-  (let ((journal (make-journal (third (first data))))
+  (let ((journal (make-journal (without-remarks (third (first data)))))
         (entries (entries-of (butlast (rest data))))
         (end (first (last (rest data)))))
     (check-end end entries)
     (setf (journal-newest-first journal) (reverse entries)
           (journal-length journal) (length entries)
+          (journal-remarks journal) (reverse (getf (third (first data)) :remarks))
           (journal-end journal) (second end))
     journal))
 

@@ -19,6 +19,8 @@ repeats the run up to there.")
   (newest-first '() :type list)
   (length 0 :type fixnum)
   (end 0 :type tick-count)
+  ;; What is told of the run that a replay cannot know, the newest first; see REMARK.
+  (remarks '() :type list)
   ;; True once there was something to note and no room for it.
   (full-p nil :type boolean))
 (addition journal-p journal-header journal-length journal-end)
@@ -28,6 +30,8 @@ repeats the run up to there.")
   journal-header "Return the plist with which the run began: map, robots, seed, parameters, and what
 the definitions were that decide it."
   journal-length "Return how many entries the journal has."
+  journal-remarks "Return lists (tick kind text robot x y), the newest first: what is told of the
+run that a replay cannot know. ROBOT is a name, a string, or NIL."
   journal-end "Return the tick at which the journal ends.")
 
 (defmethod print-object ((journal journal) stream)
@@ -46,6 +50,7 @@ Signals WRONG-ARGUMENT."
   (let ((copy (make-journal (copy-list (journal-header journal)))))
     (setf (journal-newest-first copy) (journal-newest-first journal)
           (journal-length copy) (journal-length journal)
+          (journal-remarks copy) (journal-remarks journal)
           (journal-end copy) (if (journal-full-p journal) (journal-end journal) tick)
           (journal-full-p copy) (journal-full-p journal))
     copy))
@@ -61,5 +66,7 @@ TICK that it does not reach."
     (setf (journal-newest-first copy)
           (remove-if (lambda (entry) (>= (first entry) tick)) (journal-newest-first journal))
           (journal-length copy) (length (journal-newest-first copy))
+          (journal-remarks copy) (remove-if (lambda (remark) (> (first remark) tick))
+                                            (journal-remarks journal))
           (journal-end copy) tick)
     copy))

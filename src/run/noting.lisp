@@ -40,6 +40,29 @@ past."
                      (lambda (symbol value)
                        (note simulation 'parameter (list (string-downcase symbol) value)))))
 
+;;; Remarks. Plans and programs are not repeated in a replay; so what became of them is remarked, by
+;;; whatever thread, for people to read. It changes nothing.
+
+(define-constant +remark-limit+ 1000 :documentation "How many remarks a journal has at most.")
+
+(defun remark (simulation kind text &optional robot)
+  "Let the journal of SIMULATION, if it keeps one, say that something of KIND, a keyword, happened
+now, of which TEXT tells, to ROBOT, if given."
+  (let ((journal (simulation-journal simulation)))
+    (when (and journal (< (length (journal-remarks journal)) +remark-limit+))
+      (atomic-push (list (simulation-tick simulation) kind text
+                         (and robot (qualified-name (robot-name robot)))
+                         (and robot (robot-x robot)) (and robot (robot-y robot)))
+                   (journal-remarks journal)))))
+
+(defun remark-error (text)
+  "Let the journal of the run at work here, if any, tell of an error in users' code."
+  (when *simulation*
+    (let ((robots (simulation-robots *simulation*)))
+      (remark *simulation* :error text (and (null (rest robots)) (first robots))))))
+
+(pushnew 'remark-error *user-error-hooks*)
+
 ;;; Beginning and end.
 
 (defun begin-journal (simulation)

@@ -14,7 +14,7 @@ takes part in it. Manual 2.3 and appendix A.")
   ;; run
   (:export #:simulation #:simulation-p #:simulation-name #:simulation-world #:simulation-timeline
            #:simulation-tick #:simulation-seed #:simulation-robots #:simulation-journal
-           #:simulation-gate #:simulation-observers #:simulation-participants
+           #:simulation-gate #:simulation-observers #:simulation-trails #:simulation-participants
            #:simulation-messages #:simulation-over #:simulation-agenda #:simulation-ticking-p
            #:simulation-rate #:simulation-thinking #:simulation-thread #:latest
            #:add-observer #:remove-observer #:add-participant #:remove-participant
@@ -32,7 +32,8 @@ takes part in it. Manual 2.3 and appendix A.")
            #:rewind #:*rewind-hooks* #:*rewound-end-hooks*)
   ;; journal
   (:export #:journal #:make-journal #:journal-p #:journal-header #:journal-entries
-           #:journal-end #:journal-length #:*journal-limit* #:note #:begin-journal
+           #:journal-end #:journal-length #:journal-remarks #:remark #:*journal-limit*
+           #:note #:begin-journal
            #:end-of-journal #:truncated-journal)
   ;; plain-data
   (:export #:tree-p)

@@ -85,11 +85,20 @@ does with ARGUMENTS, which are externalized."
         (reject-use "The journal cannot be replayed: its ~A: ~A."
                     (entry-text entry number) (one-line-text trouble))))))
 
-(defun perform-entries (journal simulation)
-  (loop for entry in (journal-entries journal)
-        for number from 1
-        do (perform-entry entry number simulation))
-  (run-ticks (- (journal-end journal) (simulation-tick simulation)) simulation))
+(defun perform-entries (entries number simulation)
+  "Ask SIMULATION again for what ENTRIES say, of which the first has NUMBER."
+  (loop for entry in entries
+        for each from number
+        do (perform-entry entry each simulation)))
+
+(defun perform-journal (journal simulation beginning)
+  "Repeat JOURNAL in SIMULATION. Call BEGINNING with that before its first tick passes."
+  (let* ((entries (journal-entries journal))
+         (before (count 0 entries :key #'first)))
+    (perform-entries (subseq entries 0 before) 1 simulation)
+    (funcall beginning simulation)
+    (perform-entries (nthcdr before entries) (1+ before) simulation)
+    (run-ticks (- (journal-end journal) (simulation-tick simulation)) simulation)))
 
 (defun full-settings (settings)
   "Return SETTINGS, a list (name value), with the defaults of the parameters it leaves out."
@@ -98,9 +107,11 @@ does with ARGUMENTS, which are externalized."
                                                     (find-parameter (first setting))))
                     (list (parameter-name parameter) (parameter-default parameter)))))
 
-(defun call-with-replay (function journal &key until anyway keep observer)
+(defun call-with-replay (function journal &key until anyway keep observer
+                                            (beginning #'identity))
   "Call FUNCTION where JOURNAL has been repeated; see WITH-REPLAY. OBSERVER, if given, is called
-after each tick of that, with the simulation."
+after each tick of that, with the simulation; BEGINNING before the first one, when what was done by
+then has been done again."
   (let* ((journal (if (journal-p journal) journal (read-journal journal)))
          (journal (if (and until (not (eql until (journal-end journal))))
                       (truncated-journal journal until)
@@ -113,7 +124,7 @@ after each tick of that, with the simulation."
      (lambda ()
        (let ((simulation (current-simulation)))
          (when observer (add-observer observer simulation))
-         (perform-entries journal simulation)
+         (perform-journal journal simulation beginning)
          (when observer (remove-observer observer simulation))
          (funcall function)))
      (mapcar #'blueprint-name blueprints)

@@ -28,6 +28,8 @@ to the next, or NIL if there was no rewinding")
    (gate nil (or null function)
          "a function of the simulation that says how many ticks may pass before it is asked again")
    (observers '() list "the functions that are called after each tick")
+   (trails '() list
+           "what displays keep of where robots were; replaced, never altered, as forks share it")
    (participants '() list "what takes part in the simulation, see participant.lisp")))
 
 (addition simulation-p simulation-world simulation-journal)

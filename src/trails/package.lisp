@@ -3,7 +3,7 @@
 (defpackage :ars-magna.trails
   (:documentation "The ways of robots over their map. Knows neither experiments nor plans.")
   (:use :cl :ars-magna.base :ars-magna.canvas)
-  (:import-from :ars-magna.time #:current-simulation #:asking)
+  (:import-from :ars-magna.time #:current-simulation)
   (:import-from :ars-magna.run
                 #:simulation-robots #:simulation-tick #:call-with-replay #:journal-meant
                 #:journal-header #:journal-end #:simulation-world)
@@ -13,10 +13,19 @@
                 #:hand-holding)
   (:import-from :ars-magna.world #:map-width #:map-height)
   (:import-from :ars-magna.display
-                #:snapshot-map #:draw-terrain #:draw-movers #:take-snapshot #:picture-kind
-                #:moment-tick #:moment-text #:moment-x #:moment-y #:moments-watcher
-                #:checked-moments #:in-order)
-  (:import-from :ars-magna.plots #:drawing-chart #:look-color #:draw-marker #:save-chart)
+                #:snapshot-map #:snapshot-robots #:snapshot-things #:robot-image-name
+                #:robot-image-x #:robot-image-y #:thing-image-x #:thing-image-y
+                #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:draw-way-line
+                #:draw-start #:way-entry #:sample-of #:robot-color #:to-pixels #:box-around
+                #:overlap-p #:telling-what-breaks #:with-map-svg #:robot-title #:*picture-layers*
+                #:check-layers #:check-scale
+                #:take-snapshot #:picture-kind #:save-svg
+                #:make-moment #:moment-tick #:moment-kind #:moment-text #:moment-x #:moment-y
+                #:moment-robot #:moment-weight #:moment-words #:moments-watcher
+                #:remarked-moments #:checked-moments #:check-kinds #:of-kinds #:in-order
+                #:shown-end)
+  (:import-from :ars-magna.plots
+                #:drawing-chart #:look-color #:draw-marker)
   ;; trails
   (:export #:way-trial #:way-outcome #:way-points #:note-places #:ways-along
            #:straightened)

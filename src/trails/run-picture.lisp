@@ -2,109 +2,185 @@
 
 (in-package :ars-magna.trails)
 
-;;; Moments are numbered where they happened; what the numbers mean stands below the map. Moments
-;;; that happened at one spot share a number's circle.
+;;; What a run picture shows besides a picture of its end are the ways of its robots, and places
+;;; with a number each: what happened there stands below the map. See spots.lisp.
 
-(defconstant +spot+ 14 "How near to each other moments share a circle, in pixels.")
+(defconstant +note-size+ 12 "How high the font of notes is, in pixels.")
+(defconstant +note-step+ 16 "How far lines of notes are apart, in pixels.")
 
-(defstruct (spot (:constructor make-spot (x y)) (:copier nil))
-  "Where moments happened, in pixels, and their NUMBERS, the latest first."
-  (x 0 :type real :read-only t)
-  (y 0 :type real :read-only t)
-  (numbers '() :type list))
+(defun robot-of (moment simulation)
+  "Return the robot of SIMULATION to which MOMENT happened, or NIL."
+  (let ((robots (simulation-robots simulation)))
+    (if (moment-robot moment)
+        (find (moment-robot moment) robots :key #'robot-name :test #'same-name-p)
+        (and (null (rest robots)) (first robots)))))
 
-(defun near-spot (x y spots)
-  (find-if (lambda (spot) (and (< (abs (- x (spot-x spot))) +spot+)
-                               (< (abs (- y (spot-y spot))) +spot+)))
-           spots))
+(defun place-moment (moment simulation)
+  "Return MOMENT, which is now, with the place of its robot unless it has one or none is known."
+  (let ((robot (robot-of moment simulation)))
+    (if (or (moment-x moment) (null robot))
+        moment
+        (make-moment (moment-tick moment) (moment-kind moment) (moment-text moment)
+                     (robot-x robot) (robot-y robot) (robot-name robot)))))
 
-(defun spots-of (moments)
-  "Return the spots of those of MOMENTS that have a place; they are numbered from 1."
-  (let ((spots '()))
-    (loop for moment in moments
-          for number from 1
-          do (when (moment-x moment)
-               (let* ((x (* graphics-scale* (moment-x moment)))
-                      (y (* graphics-scale* (moment-y moment)))
-                      (spot (or (near-spot x y spots)
-                                (first (push (make-spot x y) spots)))))
-                 (push number (spot-numbers spot)))))
-    (reverse spots)))
-
-(defun numbers-text (numbers)
-  "Return NUMBERS, whole ones in order, as text in which those that follow each other are a range."
-  (with-output-to-string (out)
-    (loop with rest = numbers
-          for first = (pop rest)
-          for last = (loop with last = first
-                           while (eql (first rest) (1+ last)) do (setf last (pop rest))
-                           finally (return last))
-          do (format out "~D~:[-~D~;~*~]~:[~;,~]" first (= first last) last rest)
-          while rest)))
-
-(defun draw-spot (canvas spot)
-  (let* ((text (numbers-text (reverse (spot-numbers spot))))
-         (half (max 9 (+ 3 (/ (text-width text 11) 2))))
-         (x (spot-x spot)) (y (spot-y spot)))
-    (with-gcontext (draw-gcontext* :foreground white*)
-      (draw-arc canvas draw-gcontext* (- x half) (- y 9) (* 2 half) 18 0 (* 2 pi) t))
-    (with-gcontext (draw-gcontext* :foreground black* :line-width 1.2)
-      (draw-arc canvas draw-gcontext* (- x half) (- y 9) (* 2 half) 18 0 (* 2 pi) nil)
-      (draw-words canvas draw-gcontext* x (+ y 4) text :size 11 :anchor :middle))))
-
-(define-constant +figure-space+ (code-char #x2007)
-  :documentation "A space that is as wide as a digit.")
-
-(defun moment-notes (moments)
-  "Return what the numbers of MOMENTS mean, a text for each; the texts stand below each other."
-  (loop with digits = (length (princ-to-string (length moments)))
-        for moment in moments
-        for number from 1
-        collect (format nil "~V,,,VD   tick ~A: ~A" digits +figure-space+ number
-                        (moment-tick moment) (moment-text moment))))
-
-;;; Finding out.
-
-(defun watch-run (journal until)
-  "Repeat JOURNAL up to UNTIL. Return a snapshot of its end, the ways of its robots, and moments."
-  (let ((trails '()))
+(defun watch-run (journal until own)
+  "Repeat JOURNAL up to UNTIL. Return a snapshot of its end, the ways of its robots by their names,
+moments that were seen, and the moments OWN with their places."
+  (let ((trails '()) (placed '()))
     (multiple-value-bind (watch seen) (moments-watcher)
-      (call-with-replay
-       (lambda ()
-         (values (take-snapshot (simulation-world (current-simulation)))
-                 (ways-along (note-places (current-simulation) trails) 1 "success")
-                 (funcall seen)))
-       journal
-       :until until
-       :observer (lambda (simulation)
-                   (setf trails (note-places simulation trails))
-                   (funcall watch simulation))))))
+      (flet ((look (simulation)
+               (setf trails (note-places simulation trails))
+               (funcall watch simulation)
+               (dolist (moment own)
+                 (when (= (moment-tick moment) (simulation-tick simulation))
+                   (push (place-moment moment simulation) placed)))))
+        (call-with-replay
+         (lambda ()
+           (values (take-snapshot (simulation-world (current-simulation)))
+                   (loop for (robot . points) in (note-places (current-simulation) trails)
+                         collect (cons (robot-name robot) (reverse points)))
+                   (append (funcall seen) (remarked-moments journal until))
+                   (reverse placed)))
+         journal :until until :observer #'look :beginning #'look)))))
 
-(defun draw-run (canvas snapshot ways moments)
-  (draw-ways-on-map canvas snapshot ways 0 0)
-  (mapc (lambda (spot) (draw-spot canvas spot)) (spots-of moments)))
+;;; Ways.
 
-(defun run-chart (snapshot ways moments title)
-  "Return a picture of a run that ended as SNAPSHOT shows, with WAYS and MOMENTS, under TITLE."
-  (let* ((map (snapshot-map snapshot))
-         (scale (scale-for (map-width map) (map-height map))))
-    (drawing-chart (lambda (canvas)
-                     (let ((graphics-scale* scale)) (draw-run canvas snapshot ways moments)))
-                   (* scale (map-width map)) (* scale (map-height map))
-                   :title title
-                   :notes (moment-notes moments))))
+(defun way-of (robot ways)
+  "Return the points of the way of ROBOT, an image, in pixels, or NIL if it never moved."
+  (let ((points (straightened (rest (assoc (robot-image-name robot) ways))
+                              (/ 1/2 graphics-scale*))))
+    (when (rest points)
+      (loop for (x . y) in points collect (to-pixels x) collect (to-pixels y)))))
+
+(defun draw-robot-ways (canvas snapshot ways)
+  (loop for robot in (snapshot-robots snapshot)
+        for position from 0
+        for (x y . more) = (way-of robot ways)
+        when more
+          do (draw-way-line canvas (list* x y more) (robot-color position) position)
+             (draw-start canvas x y (robot-color position))))
+
+(defconstant +tile+ 6 "How large the boxes are that hide a line, in pixels.")
+
+(defun tiles-of-line (x y next-x next-y tiles)
+  "Enter into the hash table TILES conses (column . row) of the boxes that hide a line."
+  (let ((steps (max 1 (ceiling (max (abs (- next-x x)) (abs (- next-y y))) (/ +tile+ 2)))))
+    (loop for step from 0 to steps
+          for share = (/ step steps)
+          do (setf (gethash (cons (floor (+ x (* share (- next-x x))) +tile+)
+                                  (floor (+ y (* share (- next-y y))) +tile+))
+                            tiles)
+                   t))))
+
+(defun boxes-along (points)
+  "Return boxes that together hide the line through POINTS, x y ... in pixels."
+  (let ((tiles (make-hash-table :test #'equal)))
+    (loop for (x y next-x next-y) on points by #'cddr
+          while next-y do (tiles-of-line x y next-x next-y tiles))
+    (loop for (column . row) being the hash-keys of tiles
+          collect (list (* +tile+ column) (* +tile+ row)
+                        (* +tile+ (1+ column)) (* +tile+ (1+ row))))))
+
+(defun boxes-of-ways (snapshot ways)
+  (loop for robot in (snapshot-robots snapshot) append (boxes-along (way-of robot ways))))
+
+(defun run-entries (snapshot spots)
+  "Return the entries of the legend that a picture of a run has besides others."
+  (append (loop for robot in (snapshot-robots snapshot)
+                for position from 0
+                collect (way-entry (format nil "way of ~A" (robot-title robot))
+                                   (robot-color position) position))
+          (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*)))
+          (and spots (list (sample-of (canvas x y) "see below"
+                             (draw-number canvas x y "1"))))))
+
+;;; The whole.
+
+(defun draw-run (canvas snapshot ways spots layers)
+  "Draw the map, and on it what is to be seen of the run."
+  (draw-terrain canvas (snapshot-map snapshot) :layers layers)
+  (draw-robot-ways canvas snapshot ways)
+  (draw-movers canvas snapshot (remove :names layers))
+  (let* ((along (boxes-of-ways snapshot ways))
+         (boxes (draw-spots canvas snapshot spots along)))
+    (when (member :names layers) (draw-names canvas snapshot layers (append boxes along)))))
+
+(defun text-lines (text most)
+  "Return TEXT in lines of no more than MOST characters, broken between words where that can be."
+  (loop while (> (length text) most)
+        collect (let ((end (or (position #\Space text :from-end t :end (1+ most)) most)))
+                  (prog1 (subseq text 0 end)
+                    (setf text (string-left-trim " " (subseq text end)))))
+          into lines
+        finally (return (append lines (list text)))))
+
+(defun draw-notes (canvas notes left y width)
+  "Write NOTES, lists of a number or NIL and a text, below each other, no wider than WIDTH. Return
+where the next would be."
+  (let ((most (max 20 (floor (- width 24) (character-width canvas +note-size+)))))
+    (loop for (number text) in notes
+          do (when number
+               (draw-words canvas draw-gcontext* (+ left 16) y (princ-to-string number)
+                           :size +note-size+ :anchor :end))
+             (dolist (line (text-lines text most))
+               (draw-words canvas draw-gcontext* (+ left 24) y line :size +note-size+)
+               (incf y +note-step+)))
+    y))
+
+(defun reach-of-spots (map)
+  "Return how near to each other, in metres, what happened on MAP is at one place."
+  (max 1 (/ (max (map-width map) (map-height map)) 60)))
+
+(defun run-picture-text (snapshot ways moments &key limit title layers in-color scale)
+  "Return an SVG document of a run that ended as SNAPSHOT shows, with WAYS and MOMENTS."
+  (multiple-value-bind (spots notes)
+      (spots-and-notes moments limit (and (rest (snapshot-robots snapshot)) t)
+                       (reach-of-spots (snapshot-map snapshot)))
+    (let ((more (run-entries snapshot spots)))
+      (with-output-to-string (out)
+        (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
+          (multiple-value-bind (width height left)
+              (draw-framed canvas snapshot layers
+                           (lambda () (draw-run canvas snapshot ways spots layers))
+                           :title title :more more)
+            (let ((width (max width 480)))
+              (values width
+                      (draw-notes canvas notes (max 8 left) (+ height 16)
+                                  (- width left 16))))))))))
+
+(defun check-run-picture (journal moments until &key kinds limit title layers scale)
+  "Return MOMENTS, an argument of SAVE-RUN-PICTURE, as moments. Signals WRONG-ARGUMENT."
+  (check-argument save-run-picture title (typep title '(or null string)) "a string or NIL")
+  (check-argument save-run-picture limit (or (null limit) (whole-p limit 0 1000000))
+                  "a whole number, how many lines there are below the map at most, or NIL for all")
+  (check-kinds 'save-run-picture kinds)
+  (check-layers 'save-run-picture layers)
+  (check-scale 'save-run-picture scale)
+  (checked-moments 'save-run-picture moments
+                   (shown-end journal until)))
 
 (addition save-run-picture)
-(defun save-run-picture (file &key journal until moments title)
+(defun save-run-picture (file &key journal until moments (kinds t) (limit 24) title
+                                (layers (remove :tracks *picture-layers*)) (in-color t) scale)
   "Save in FILE, replacing it, a picture of the run that JOURNAL holds (a journal, or a file with
-one; by default that of the current simulation) up to the tick UNTIL or its end: its map and things
-as they are then, the ways that its robots went, and with numbers where they grasped, let go of or
-stowed something, or a command failed. MOMENTS, a list of moments or of lists of a tick and a
-string, are told of besides. TITLE stands above. FILE is SVG or, where the program rsvg-convert is
-installed, PNG, as its name ends. Return its truename. Signals WRONG-ARGUMENT, what REPLAY does, and
-MISUSE without that program, or where no journal is kept."
-  (check-argument save-run-picture title (typep title '(or null string)) "a string or NIL")
-  (picture-kind 'save-run-picture file)
-  (let ((own (checked-moments 'save-run-picture moments)))
-    (multiple-value-bind (snapshot ways seen) (watch-run (journal-meant journal) until)
-      (save-chart file (run-chart snapshot ways (in-order (append seen own)) title)))))
+one; by default that of the current simulation) up to the tick UNTIL or its end: its world as it is
+then, the ways that its robots went, and numbers where something happened that is told of below:
+that they grasped, let go of or stowed something, that a command failed, that a plan failed or was
+ended, that there was an error in your code. KINDS, a list, chooses among :GRASP, :RELEASE, :STOW,
+:FAILURE, :PLAN and :ERROR. There are LIMIT lines below the map at most, or any number if it is NIL:
+where there is more to tell, what matters least is left out, and counted; that a robot was blocked
+or lost a track, as plans expect, before other failures of commands, and these before the rest.
+MOMENTS, a list of moments or of lists of a tick, a string and, if you like, a robot's name, are
+told of besides. TITLE stands above. FILE and the other arguments are those of SAVE-PICTURE. Return
+the file's truename. Signals WRONG-ARGUMENT, what REPLAY does, and MISUSE without the program that
+PNG needs, or where no journal is kept."
+  (let* ((kind (picture-kind 'save-run-picture file))
+         (journal (journal-meant journal))
+         (own (check-run-picture journal moments until :kinds kinds :limit limit :title title
+                                                       :layers layers :scale scale)))
+    (multiple-value-bind (snapshot ways seen own) (watch-run journal until own)
+      (save-svg (telling-what-breaks
+                  (run-picture-text snapshot ways (in-order (append (of-kinds kinds seen) own))
+                                    :limit limit :title title :layers layers
+                                    :in-color in-color :scale scale))
+                file kind))))

@@ -1,0 +1,176 @@
+;;;; spots.lisp -- what happened where: numbered places on a map, and lines that tell of them.
+
+(in-package :ars-magna.trails)
+
+;;; Places are numbered, not moments: so a number is short, however much happened there. Moments at
+;;; one place that read the same share a line. If there are too many lines, those that matter least
+;;; are left out, and counted.
+
+(defstruct (spot (:constructor make-spot (x y)) (:copier nil))
+  "A place where something happened, in metres, and its NUMBER on the map."
+  (x 0 :type real :read-only t)
+  (y 0 :type real :read-only t)
+  (number 0 :type fixnum))
+
+(defstruct (happening (:constructor make-happening (spot words weight)) (:copier nil))
+  "That at SPOT, or nobody knows where, at the ticks of MOMENTS, the latest first, there was what
+WORDS say."
+  (spot nil :type (or null spot) :read-only t)
+  (words "" :type string :read-only t)
+  (weight 0 :type fixnum :read-only t)
+  (moments '() :type list))
+
+(defun spot-near (moment spots reach)
+  (find-if (lambda (spot) (and (< (abs (- (moment-x moment) (spot-x spot))) reach)
+                               (< (abs (- (moment-y moment) (spot-y spot))) reach)))
+           spots))
+
+(defun happenings-of (moments several-p reach)
+  "Return MOMENTS as happenings: what is nearer than REACH metres to each other is at one spot.
+SEVERAL-P: say of which robot each is."
+  (let ((spots '()) (happenings '()))
+    (dolist (moment (stable-sort (copy-list moments) #'< :key #'moment-weight)
+                    (nreverse happenings))
+      (let* ((spot (and (moment-x moment)
+                        (or (spot-near moment spots reach)
+                            (first (push (make-spot (moment-x moment) (moment-y moment))
+                                         spots)))))
+             (words (moment-words moment several-p))
+             (happening (or (find-if (lambda (other)
+                                       (and (eq spot (happening-spot other))
+                                            (string= words (happening-words other))))
+                                     happenings)
+                            (first (push (make-happening spot words (moment-weight moment))
+                                         happenings)))))
+        (push moment (happening-moments happening))))))
+
+(defun first-tick (happening)
+  (reduce #'min (happening-moments happening) :key #'moment-tick))
+
+(defun matters-more-p (one other)
+  (if (= (happening-weight one) (happening-weight other))
+      (> (length (happening-moments one)) (length (happening-moments other)))
+      (< (happening-weight one) (happening-weight other))))
+
+(defun number-spots (happenings)
+  "Number the spots of HAPPENINGS, in order. Return them."
+  (let ((spots (remove-duplicates (remove nil (mapcar #'happening-spot happenings))
+                                  :from-end t)))
+    (loop for spot in spots for number from 1 do (setf (spot-number spot) number))
+    spots))
+
+;;; As text.
+
+(defun ticks-text (ticks)
+  "Return TICKS, in order, as text: no more than three of them."
+  (let ((more (- (length ticks) 3)))
+    (format nil "tick~P ~{~D~^, ~}~@[ and ~D more~]" (length ticks)
+            (if (plusp more) (subseq ticks 0 3) ticks) (and (plusp more) more))))
+
+(defun note-of (happening)
+  "Return a list of the number of the spot of HAPPENING, if it has one, and a text."
+  (list (and (happening-spot happening) (spot-number (happening-spot happening)))
+        (format nil "~A: ~A"
+                (ticks-text (sort (mapcar #'moment-tick (happening-moments happening)) #'<))
+                (happening-words happening))))
+
+(defparameter *kind-words*
+  '((:grasp "grasp" "grasps") (:release "letting go" "times of letting go")
+    (:stow "thing stowed" "things stowed") (:failure "failure of a command" "failures of commands")
+    (:plan "plan that failed or was ended" "plans that failed or were ended")
+    (:error "error in your code" "errors in your code") (:note "note of yours" "notes of yours"))
+  "What one moment of each kind is called, and several.")
+
+(defun left-out-note (happenings)
+  "Return a list of a note that says what HAPPENINGS, which are left out, were; or none."
+  (let ((moments (mapcan (lambda (happening) (copy-list (happening-moments happening)))
+                         happenings)))
+    (when moments
+      (list (list nil (format nil "Not shown: ~{~A~^, ~}."
+                              (loop for (kind one several) in *kind-words*
+                                    for count = (count kind moments :key #'moment-kind)
+                                    when (plusp count)
+                                      collect (format nil "~D ~A" count
+                                                      (if (= count 1) one several)))))))))
+
+(defun spots-and-notes (moments limit several-p reach)
+  "Return the numbered spots of what happened at MOMENTS, and notes that tell of that, lists of a
+number or NIL and a text, LIMIT at most (NIL: of all). See HAPPENINGS-OF."
+  (let* ((all (stable-sort (happenings-of moments several-p reach) #'matters-more-p))
+         (count (if limit (min limit (length all)) (length all)))
+         (told (stable-sort (subseq all 0 count) #'< :key #'first-tick))
+         (spots (number-spots told)))
+    (values spots
+            (append (mapcar #'note-of told) (left-out-note (nthcdr count all))))))
+
+;;; On the map: a dot where it was, and beside it, where nothing else is, the number.
+
+(defconstant +number-radius+ 8 "The radius of the circle around a number, in pixels.")
+
+(defun draw-number (canvas x y text)
+  "Draw TEXT, a number, in a circle around X, Y."
+  (let ((reach +number-radius+))
+    (with-gcontext (draw-gcontext* :foreground white*)
+      (draw-arc canvas draw-gcontext* (- x reach) (- y reach) (* 2 reach) (* 2 reach) 0 (* 2 pi) t))
+    (with-gcontext (draw-gcontext* :foreground black* :line-width 1.2)
+      (draw-arc canvas draw-gcontext* (- x reach) (- y reach) (* 2 reach) (* 2 reach) 0 (* 2 pi))
+      (draw-words canvas draw-gcontext* x (+ y 4) text :size 11 :anchor :middle))))
+
+(defun boxes-to-spare (snapshot spots)
+  "Return boxes around robots, spots and things: what no number should hide."
+  (append (loop for robot in (snapshot-robots snapshot)
+                collect (box-around (to-pixels (robot-image-x robot))
+                                    (to-pixels (robot-image-y robot)) (max 8 (to-pixels 1))))
+          (loop for spot in spots
+                collect (box-around (to-pixels (spot-x spot)) (to-pixels (spot-y spot)) 3))
+          (loop for image across (snapshot-things snapshot)
+                collect (box-around (to-pixels (thing-image-x image))
+                                    (to-pixels (thing-image-y image)) (max 4 (to-pixels 1/2))))))
+
+(defun places-around (x y)
+  "Return points (x y), the nearest first, for the number of a spot at X, Y."
+  (loop for distance in '(16 24 34 46 60)
+        append (loop for turn below 12
+                     for angle = (+ (/ pi -4) (* turn (/ pi 6)))
+                     collect (list (+ x (* distance (cos angle))) (+ y (* distance (sin angle)))))))
+
+(defun free-place-p (place map taken)
+  "True if the number at PLACE, a point (x y), is on MAP and meets none of the boxes TAKEN."
+  (destructuring-bind (x y) place
+    (let ((box (box-around x y (1+ +number-radius+))))
+      (and (<= 0 (first box)) (<= 0 (second box))
+           (<= (third box) (to-pixels (map-width map)))
+           (<= (fourth box) (to-pixels (map-height map)))
+           (notany (lambda (other) (overlap-p box other)) taken)))))
+
+(defun place-for-number (map x y taken rather-not)
+  "Return the point (x y) for the number of a spot at X, Y: on MAP, where none of the boxes TAKEN
+is and, if possible, none of RATHER-NOT."
+  (let ((places (places-around x y)))
+    (flet ((free (taken) (find-if (lambda (place) (free-place-p place map taken)) places)))
+      (or (free (append taken rather-not)) (free taken) (first places)))))
+
+(defun draw-spot (canvas x y place text)
+  "Draw a dot at X, Y, and TEXT, its number, at PLACE, with a line from there."
+  (flet ((draw-line-there (color width)
+           (with-gcontext (draw-gcontext* :foreground color :line-width width)
+             (draw-segments canvas draw-gcontext* (list* x y place))))
+         (draw-dot (color radius)
+           (with-gcontext (draw-gcontext* :foreground color)
+             (draw-arc canvas draw-gcontext* (- x radius) (- y radius) (* 2 radius) (* 2 radius)
+                       0 (* 2 pi) t))))
+    (draw-line-there white* 3)
+    (draw-dot white* 4)
+    (draw-line-there black* 1)
+    (draw-dot black* 5/2)
+    (draw-number canvas (first place) (second place) text)))
+
+(defun draw-spots (canvas snapshot spots ways)
+  "Draw SPOTS on the map of SNAPSHOT, the numbers rather not on the boxes WAYS. Return the boxes of
+the numbers."
+  (let ((spared (boxes-to-spare snapshot spots)) (boxes '()))
+    (dolist (spot spots boxes)
+      (let* ((x (to-pixels (spot-x spot))) (y (to-pixels (spot-y spot)))
+             (place (place-for-number (snapshot-map snapshot) x y (append boxes spared) ways)))
+        (push (box-around (first place) (second place) +number-radius+) boxes)
+        (draw-spot canvas x y place (princ-to-string (spot-number spot)))))))
