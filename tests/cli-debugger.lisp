@@ -229,3 +229,35 @@
   (type-at-terminal "(ars-magna.tests::break-elsewhere)" "quit")
   (base:join-thread *breaking*)
   (is (equal '(:went-on) *went-on*)))
+
+;;; Whose matter a break is.
+
+(test breaks.wait-for-the-last-prompt-that-can-answer
+  (let* ((sessions (loop repeat 2 collect (cli:make-session)))
+         (restart (restart-case (first (compute-restarts)) (go-on () nil)))
+         (breakage (cli::make-breakage (make-condition 'simple-condition) (list restart)
+                                       (base:current-thread) (copy-list sessions))))
+    (dolist (session sessions) (setf (cli::session-breaks session) (list breakage)))
+    (cli::release-all (first sessions))
+    (is (null (cli::breakage-order breakage)) "the other one has not answered yet")
+    (cli::release-all (second sessions))
+    (is-true (cli::breakage-order breakage))))
+
+(test breaks.of-a-users-own-thread-are-for-lisps-debugger
+  "Unless this Lisp does nothing but the program of the prompt."
+  (flet ((there-p (start)
+           (let ((answer '()) (session cli::*session*) (own-p cli::*own-process-p*))
+             (setf cli::*session* nil cli::*own-process-p* nil)
+             (unwind-protect
+                  (base:join-thread (funcall start (lambda ()
+                                                     (push (cli::others-matter-p) answer))))
+               (setf cli::*session* session cli::*own-process-p* own-p))
+             answer)))
+    (is (equal '(t) (there-p (lambda (function) (bordeaux-threads:make-thread function)))))
+    (is (equal '(nil) (there-p (lambda (function) (base:start-thread function "ours")))))))
+
+(test threads.wait-for-no-time-at-all
+  (let ((semaphore (base:make-semaphore "none")))
+    (is (null (base:wait-on-semaphore semaphore 0)))
+    (base:signal-semaphore semaphore)
+    (is-true (base:wait-on-semaphore semaphore 0))))

@@ -271,3 +271,19 @@
              ;; The history goes on.
              (is (= (1+ observers) (length (run:simulation-observers simulation)))))
         (run:stop-clock simulation)))))
+
+(test watcher.watches-something-at-each-moment
+  "Other threads ask what it watches while it leaves a run for another."
+  (in-studio (robot)
+    (let ((old (time:current-simulation))
+          (new (run:fork-simulation))
+          (watcher (window:make-watcher 'studio-robot (constantly nil)))
+          (meanwhile '()))
+      (window:watch-simulation watcher old)
+      (sb-int:encapsulate 'window::leave-simulation 'test
+                          (lambda (leave &rest arguments)
+                            (push (window::watcher-simulation watcher) meanwhile)
+                            (apply leave arguments)))
+      (unwind-protect (window:watch-simulation watcher new)
+        (sb-int:unencapsulate 'window::leave-simulation 'test))
+      (is (equal (list new) meanwhile)))))

@@ -9,11 +9,14 @@
 ;;; no debugger: a break is a message. So it is for what is typed to answer a break: there is no
 ;;; break in a break.
 
-(defstruct (breakage (:constructor make-breakage (condition restarts thread)) (:copier nil))
-  "A program that has broken and waits in THREAD. ORDER is what it is to do next, a function."
+(defstruct (breakage (:constructor make-breakage (condition restarts thread sessions))
+                     (:copier nil))
+  "A program that has broken and waits in THREAD, until the user of one of SESSIONS says how to go
+on. ORDER is what it is to do next, a function."
   (condition nil :type condition :read-only t)
   (restarts '() :type list :read-only t)
   (thread nil :read-only t)
+  (sessions '() :type list)
   (order nil :type (or null function))
   ;; How to go on has been shown.
   (told-p nil :type boolean)
@@ -276,21 +279,30 @@ of this thread, or all that listen to its simulation, or the newest."
           ((remove-if-not #'terminal-p (sessions-hearing *simulation*)))
           ((and own (terminal-p own)) (list own)))))
 
+(defvar *own-process-p* nil "True in a process that does nothing but this program.")
+
+(defun others-matter-p ()
+  "True if what breaks in this thread is no matter of prompts: it is a user's own, in a Lisp that
+does other things too, and no prompt runs in it."
+  (not (or *own-process-p*
+           (own-thread-p)
+           (and *session* (eq (session-thread *session*) (current-thread))))))
+
 (defun enter-debugger (condition hook)
   "Let the user of the prompt say how to go on after CONDITION. Called instead of Lisp's debugger."
   ;; What asks needs the room that is not there.
   (when (typep condition 'storage-condition) (give-up condition))
   (let ((sessions (sessions-to-ask)))
-    (cond (sessions
+    (cond ((others-matter-p) nil)
+          (sessions
            (with-debugger-hook ('debugger-disabled-hook)
              (debug-breakage sessions
                              (make-breakage condition
                                             (restarts-to-offer condition (first sessions))
-                                            (current-thread)))))
+                                            (current-thread)
+                                            sessions))))
           ;; Without any, as when it has just ended, Lisp's own debugger comes up.
           (*session* (debugger-disabled-hook condition hook)))))
-
-(defvar *own-process-p* nil "True in a process that does nothing but this program.")
 
 (defun make-process-own ()
   "Let this Lisp, which is to be saved, do nothing but this program."
@@ -316,10 +328,11 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
 ;;; From when to when.
 
 (defun release-all (session)
-  "Let all that waits for SESSION, which is over, go on."
+  "Let all that waits for SESSION, which is over, and for no other, go on."
   (dolist (breakage (session-breaks session))
-    (hand-order session breakage
-                (lambda () (invoke-restart (first (breakage-restarts breakage)))))))
+    (unless (removef (breakage-sessions breakage) session)
+      (hand-order session breakage
+                  (lambda () (invoke-restart (first (breakage-restarts breakage))))))))
 
 (defun call-with-debugger (session function)
   "Call FUNCTION, while SESSION is what the debugger asks."

@@ -32,7 +32,8 @@ holds that."
 (defun wait-on-semaphore (semaphore &optional seconds)
   "Take one from SEMAPHORE; true if that succeeded within SECONDS (NIL: however long)."
   (if seconds
-      (bordeaux-threads:wait-on-semaphore semaphore :timeout seconds)
+      ;; SBCL takes no 0 for a time.
+      (bordeaux-threads:wait-on-semaphore semaphore :timeout (max seconds 1d-6))
       (bordeaux-threads:wait-on-semaphore semaphore)))
 
 (defvar *while-waiting* (constantly nil)
@@ -51,9 +52,16 @@ succeeded. What others need this thread for meanwhile does not count."
         thereis (wait-a-while semaphore (min left 0.2))
         while (< 0.2 left)))
 
+(defvar *own-thread-p* nil "True in threads that START-THREAD has started.")
+
+(defun own-thread-p ()
+  "True if this thread is one of ours, not a REPL or another one of a user's."
+  *own-thread-p*)
+
 (defun start-thread (function name)
   "Call FUNCTION in a new thread called NAME; return the thread."
-  (bordeaux-threads:make-thread function :name name))
+  (bordeaux-threads:make-thread (lambda () (let ((*own-thread-p* t)) (funcall function)))
+                                :name name))
 
 (defun join-thread (thread)
   "Wait until THREAD has ended, in whatever way. Return nothing."

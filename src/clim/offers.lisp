@@ -162,7 +162,10 @@ connected, if there is one."
 
 (defun offer-row (window title line)
   (make-row (format nil "~A   ~A" title line)
-            :action (lambda () (give-line (window-conversation window) line))))
+            :action (lambda ()
+                      (give-line (window-conversation window) line)
+                      ;; Whoever goes on typing means the next line.
+                      (type-into (pane-named window 'interactor)))))
 
 (defun subject-heading (subject)
   (if (typep subject 'cell)

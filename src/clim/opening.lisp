@@ -43,7 +43,8 @@
 (defun warn-of-closing (window condition)
   "Say, once, that CONDITION has closed WINDOW."
   (when (forget-window window)
-    (let ((*message-queue* (simulation-messages (window-simulation window))))
+    (let* ((simulation (window-simulation window))
+           (*message-queue* (if simulation (simulation-messages simulation) *message-queue*)))
       (warning-set (format nil "The display of ~A has closed: ~A"
                            (watcher-robot (window-watcher window))
                            (substitute #\Space #\Newline

@@ -146,22 +146,24 @@ itself: it will come with the next tick."
 
 ;;; Beginning and ending.
 
-(defun leave-simulation (watcher)
-  (let ((simulation (shiftf (watcher-simulation watcher) nil)))
-    (when simulation
-      (asking (simulation) (remove-observer (watcher-observer watcher) simulation)))))
+(defun leave-simulation (simulation observer)
+  "Have SIMULATION, if there is one, call OBSERVER no longer."
+  (when simulation
+    (asking (simulation) (remove-observer observer simulation))))
 
+;; Other threads read what WATCHER watches: between two runs there is no moment without one.
 (defun watch-simulation (watcher simulation)
   "Let WATCHER watch SIMULATION, from now on and instead of what it watches. Return WATCHER."
-  (unless (eq simulation (watcher-simulation watcher))
-    (leave-simulation watcher)
-    (keep-history simulation)
-    (setf (watcher-simulation watcher) simulation
-          (watcher-observer watcher) (observer-of watcher))
-    (direct-look (watcher-plans watcher) simulation)
-    (asking (simulation)
-      (add-observer (watcher-observer watcher) simulation)
-      (publish watcher simulation)))
+  (let ((old (watcher-simulation watcher)) (observer (watcher-observer watcher)))
+    (unless (eq simulation old)
+      (keep-history simulation)
+      (setf (watcher-observer watcher) (observer-of watcher)
+            (watcher-simulation watcher) simulation)
+      (leave-simulation old observer)
+      (direct-look (watcher-plans watcher) simulation)
+      (asking (simulation)
+        (add-observer (watcher-observer watcher) simulation)
+        (publish watcher simulation))))
   watcher)
 
 (defun start-watching (watcher simulation)
@@ -178,7 +180,7 @@ itself: it will come with the next tick."
   (signal-semaphore (watcher-over watcher))
   (signal-semaphore (watcher-painted watcher))
   (direct-look (watcher-plans watcher) nil)
-  (leave-simulation watcher)
+  (leave-simulation (shiftf (watcher-simulation watcher) nil) (watcher-observer watcher))
   (let ((pacer (watcher-pacer watcher)))
     ;; When Lisp exits, the pacer may have been ended before.
     (when (and pacer (not (eq pacer (current-thread))))

@@ -25,7 +25,7 @@
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun reject-parameter (name parameter)
     (reject-clause (title "defsubstance" name) parameter
-                   "a number as the parameter of the substance, from -1e15 to 1e15"))
+                   "a number as the parameter of the substance, such as 60, from -1e15 to 1e15"))
 
   (defun check-parameter-form (name form)
     "Signal MALFORMED-DEFINITION if FORM, for the parameter of NAME, is no number at first sight."
