@@ -31,43 +31,38 @@
     (is (= 40 (window::measure pulse 60 102d0)))
     (is (null (window::measure pulse 5 103d0)))))
 
+(defun call-while-code-holds (function robot &optional (enter (constantly nil)))
+  "Call FUNCTION with the live run of ROBOT while a continuation there, which calls ENTER, waits."
+  (let ((simulation (time:current-simulation))
+        (there (base:make-semaphore "there")) (on (base:make-semaphore "on")))
+    (run:start-clock simulation :rate :free)
+    (unwind-protect
+         (progn (command:robot-turn robot 1/10 (lambda (err robot angle)
+                                                 (declare (ignore err robot angle))
+                                                 (funcall enter)
+                                                 (base:signal-semaphore there)
+                                                 (base:wait-on-semaphore on)))
+                (base:wait-on-semaphore there)
+                (unwind-protect (funcall function simulation)
+                  (base:signal-semaphore on)))
+      (run:stop-clock simulation))))
+
 (test progress.says-that-a-program-has-broken
   (in-studio (robot)
-    (let ((simulation (time:current-simulation))
-          (there (base:make-semaphore "there")) (on (base:make-semaphore "on")))
-      (run:start-clock simulation :rate :free)
-      (unwind-protect
-           (progn
-             (command:robot-turn robot 1/10
-                                 (lambda (err robot angle)
-                                   (declare (ignore err robot angle))
-                                   ;; As whoever enters a debugger does.
-                                   (base:note-waiting)
-                                   (base:signal-semaphore there)
-                                   (base:wait-on-semaphore on)))
-             (base:wait-on-semaphore there)
-             (is (mentions-p (progress-text-of simulation) "a program has broken"))
-             (base:signal-semaphore on))
-        (run:stop-clock simulation)))))
+    (call-while-code-holds
+     (lambda (simulation)
+       (is (mentions-p (progress-text-of simulation) "a program has broken")))
+     ;; As whoever enters a debugger does.
+     robot #'base:note-waiting)))
 
 (test progress.names-users-code-that-does-not-return
   (in-studio (robot)
-    (let* ((simulation (time:current-simulation))
-           (there (base:make-semaphore "there")) (on (base:make-semaphore "on"))
-           (pulse (window::make-pulse)))
-      (run:start-clock simulation :rate :free)
-      (unwind-protect
-           (progn
-             (command:robot-turn robot 1/10
-                                 (lambda (err robot angle)
-                                   (declare (ignore err robot angle))
-                                   (base:signal-semaphore there)
-                                   (base:wait-on-semaphore on)))
-             (base:wait-on-semaphore there)
-             (window::progress-of simulation pulse)
-             (is (mentions-p (progress-text-of simulation pulse) "busy in"))
-             (base:signal-semaphore on))
-        (run:stop-clock simulation)))))
+    (call-while-code-holds
+     (lambda (simulation)
+       (let ((pulse (window::make-pulse)))
+         (window::progress-of simulation pulse)
+         (is (mentions-p (progress-text-of simulation pulse) "busy in"))))
+     robot)))
 
 (test watcher.tells-of-a-scale-that-was-set
   (in-studio (robot)

@@ -14,11 +14,15 @@
          (end (and start (position-if #'blank-p text :start start))))
     (and end (< start (1- end)) (char= #\: (char text (1- end))))))
 
+(defun after-label (text)
+  "Return what stands after the prompt that TEXT, a line, begins with, or NIL if it has none."
+  (let* ((text (subseq text (or (position-if-not #'blank-p text) 0)))
+         (label (find-if (lambda (label) (starts-with-subseq label text)) *labels*)))
+    (and label (subseq text (length label)))))
+
 (defun without-label (text)
   "Return TEXT, a line as typed, without the prompts that it begins with; nothing of a message."
-  (let* ((start (or (position-if-not #'blank-p text) 0))
-         (label (find-if (lambda (label) (starts-with-subseq label (subseq text start))) *labels*))
-         (rest (and label (subseq text (+ start (length label))))))
+  (let ((rest (after-label text)))
     (cond ((null rest) text)
           ((message-p rest) "")
           (t (without-label (string-left-trim " " rest))))))
@@ -26,33 +30,28 @@
 (define-constant +going-on+ "     > " :test #'string=
   :documentation "The prompt for what goes on from the line before.")
 
+(defun going-on-p (text)
+  (starts-with-subseq +going-on+ text))
+
 (defun line-pasted (text before)
   "Return TEXT, a line as typed, without a prompt that was pasted with it. BEFORE is true if it goes
 on from another."
   (cond ((null before) (without-label text))
-        ((starts-with-subseq +going-on+ text) (subseq text (length +going-on+)))
+        ((going-on-p text) (subseq text (length +going-on+)))
         (t text)))
 
 ;;; Where several lines were pasted, prompts tell which of them were typed.
 
-(defun going-on-p (text)
-  (starts-with-subseq +going-on+ text))
-
-(defun labelled-p (text)
-  "True if TEXT, a line, begins with a prompt."
-  (let ((start (or (position-if-not #'blank-p text) 0)))
-    (some (lambda (label) (starts-with-subseq label (subseq text start))) *labels*)))
-
 (defun typed-line-of (line)
   "Return LINE, as pasted among others with prompts, without its own; NIL if it was not typed."
   (cond ((going-on-p line) (line-pasted line t))
-        ((labelled-p line) (let ((text (without-label line)))
+        ((after-label line) (let ((text (without-label line)))
                              (and (string/= "" text) text)))))
 
 (defun typed-lines (lines)
   "Return what was typed of LINES, as pasted: all up to the first with a prompt, which may be the
 rest of one, and those with prompts, but for messages; or LINES if none has any."
-  (let ((start (position-if #'labelled-p lines)))
+  (let ((start (position-if #'after-label lines)))
     (if start
         (append (subseq lines 0 start)
                 (remove nil (mapcar #'typed-line-of (nthcdr start lines))))
