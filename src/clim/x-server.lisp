@@ -18,11 +18,11 @@
       (setf *ports* (remove port *ports*))
       t)))
 
-(defun lose-port (port condition)
+(defun lose-port (port)
   "Close the windows on PORT, whose X server has gone; end the thread that reads its events."
   (when (forget-port port)
     (dolist (window (windows-on port))
-      (warn-of-closing window condition)
+      (warn-of-closing window "the X server has gone. The run goes on; WINDOW opens it anew")
       (close-window window))
     (ignore-errors (clim:destroy-port port))
     (abort)))
@@ -46,5 +46,5 @@
                           (cond ((of-one-event-p condition)
                                  (drop-event port)
                                  (return-from clim:process-next-event t))
-                                (t (lose-port port condition))))))
+                                (t (lose-port port))))))
     (call-next-method)))
