@@ -138,6 +138,39 @@
         (window::drag-scroll-bar pane height)
         (is (= (- extent height) (window::pane-offset pane)))))))
 
+(defun cameras-drawn (window pane)
+  "Return the numbers of the cameras of WINDOW of which something was drawn in PANE in view."
+  (multiple-value-bind (width height) (window::pane-size pane)
+    (loop for camera in (display:robot-image-cameras (window::window-robot window))
+          for top from 0 by (/ (window::pane-extent pane) 3)
+          for shown = (- top (window::pane-offset pane))
+          when (and (plusp width) (<= 0 shown (- height 40)))
+            collect (display:camera-image-index camera))))
+
+(test layout.each-of-three-cameras-can-be-reached-in-a-small-window
+  "In the window of MARVIN of the office, which has three, the display scrolls to each of them."
+  (run:with-simulation (ars-worlds:marvin :seed 1)
+    (call-with-window
+     (lambda (window)
+       (lay-out window 640 480)
+       (let ((pane (pane window 'window::cameras)) (reached '()))
+         (is (= (window::pane-extent pane) (cameras-height window pane)) "all are drawn")
+         (loop repeat 20
+               do (setf reached (union reached (cameras-drawn window pane)))
+                  (window::scroll pane 16))
+         (is (equal '(0 1 2) (sort reached #'<)))))
+     ars-worlds:marvin)))
+
+(defun cameras-height (window pane)
+  "Return how high a drawing of all cameras of WINDOW is that is as wide as PANE."
+  (let ((height 0))
+    (drawing (canvas)
+      (setf height (nth-value 1 (display:draw-display canvas :cameras
+                                                      (window::window-snapshot window)
+                                                      (window::window-robot window)
+                                                      :width (window::content-width pane)))))
+    height))
+
 (test layout.a-picture-that-has-shrunk-is-in-view
   "Nothing of what was there before is left."
   (in-window (window robot)
@@ -157,7 +190,7 @@
     (let ((pane (pane window 'window::world)))
       (flet ((filled-p ()
                (multiple-value-bind (width height) (window::pane-size pane)
-                 (destructuring-bind (left top bottom) (window::fit-margins pane)
+                 (destructuring-bind (left top bottom) (window::pane-edges pane)
                    (decf width left)
                    (decf height (+ top bottom)))
                  (let ((scale (window::pane-scale pane)))
@@ -182,11 +215,28 @@
             do (lay-out window width height)
                (let ((bottom (- (* 10 (window::pane-scale pane)) (window::pane-top pane)))
                      (room (nth-value 1 (window::pane-size pane))))
-                 (is (<= (window::pane-left pane) -27))
-                 (is (<= (window::pane-top pane) -16))
-                 (is (<= bottom (- room 28)))))
+                 (destructuring-bind (left top low) (window::pane-edges pane)
+                   (is (every #'plusp (list left top low)))
+                   (is (<= (window::pane-left pane) (- left)))
+                   (is (<= (window::pane-top pane) (- top)))
+                   (is (<= bottom (- room low))))))
       (setf (window:window-layers window) '())
-      (is (equal '(0 0 0) (window::fit-margins pane))))))
+      (is (equal '(0 0 0) (window::pane-edges pane))))))
+
+(test view.has-nothing-below-its-numbers
+  "However the map is dragged: what lies under a strip is neither told of, nor picked, nor marked."
+  (in-window (window robot)
+    (lay-out window 640 480)
+    (let ((pane (pane window 'window::world)))
+      (window::zoom pane 4)
+      (window::place-view pane 30 30)
+      (destructuring-bind (left top right bottom) (window::view-box pane)
+        (flet ((cells (x y) (length (remove-if-not #'world:cell-p
+                                                   (window::subjects-under pane x y)))))
+          (is (= 1 (cells left top)))
+          (is (= 1 (cells (1- right) (1- bottom))))
+          (is (= 0 (cells (1- left) top) (cells left (1- top)) (cells left bottom)))
+          (is (string= "" (window::hover-text pane (1- left) top))))))))
 
 (test view.follows-the-robot-if-asked
   (in-window (window robot)

@@ -132,6 +132,25 @@
       (is (null (window::pane-ghost pane)))
       (is (equal "" (window::window-hint window)) "the strip says no longer where it would be"))))
 
+(test pointing.a-drag-into-a-wall-says-so-before-and-after
+  "As the lines do that it gives."
+  (in-window (window robot)
+    (let ((pane (painted-world window)))
+      (window::press pane :left 28 36)
+      (window::drag pane 44 4)
+      (is (mentions-p (window::window-hint window) "inside a wall"))
+      (window::drag pane 124 20)
+      (is (not (mentions-p (window::window-hint window) "wall"))))
+    (base:take-messages)
+    (world:move-thing (world:find-thing 'box) 5.5 0.5)
+    (robot:place-robot robot 0.5 3 0)
+    (is (equal '("BOX#1 is inside a wall now, at 5.50, 0.50"
+                 "STUDIO-ROBOT is inside a wall now, at 0.50, 3.00")
+               (mapcar #'base:message-text (base:take-messages))))
+    (world:move-thing (world:find-thing 'box) 5.5 2.5)
+    (robot:place-robot robot 2.5 3 0)
+    (is (null (base:take-messages)))))
+
 (test pointing.dragging-the-map-moves-the-view
   (in-window (window robot)
     (let ((pane (painted-world window)))

@@ -124,6 +124,21 @@
         (base:join-thread (window::conversation-thread conversation))
         (is (said-p "quit"))))))
 
+(test talking.the-command-interrupt-ends-the-line-under-way
+  "As it is chosen in the menu Run; the prompt goes on."
+  (in-window (window robot)
+    (let ((there (base:make-semaphore "there")) (conversation (window::window-conversation window)))
+      (setf (symbol-value (intern "*THERE*" :ars-user)) there)
+      (window::start-conversation conversation (time:current-simulation) 'studio-robot)
+      (window::give-line conversation "(progn (ars-magna.base:signal-semaphore *there*) (loop))")
+      (is (base:wait-on-semaphore there 20))
+      (clim:execute-frame-command window '(window::com-interrupt))
+      (window::give-line conversation "(+ 20 22)")
+      (window::give-line conversation "quit")
+      (base:join-thread (window::conversation-thread conversation))
+      (is (mentions-p (said-in window) "Interrupted."))
+      (is (mentions-p (said-in window) "42")))))
+
 (defvar *typed* nil "A semaphore that a line waits for.")
 
 (defun wait-for-typing () (base:wait-on-semaphore *typed* 60))

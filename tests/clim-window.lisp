@@ -50,7 +50,9 @@
     (setf (window::pane-fitting-p pane) nil
           (window::pane-scale pane) 8
           (window::pane-left pane) 0
-          (window::pane-top pane) 0)
+          (window::pane-top pane) 0
+          (window:window-layers window) (set-difference (window:window-layers window)
+                                                        '(:coordinates :scale-bar)))
     (window::repaint pane)
     pane))
 

@@ -143,13 +143,17 @@
         (is (equalp before (look)))))))
 
 (defun resize-from-outside (window width height)
-  "Make WINDOW WIDTH times HEIGHT pixels as a window manager would; wait until it is laid out so."
+  "Make WINDOW WIDTH times HEIGHT pixels as a window manager would; wait until it is laid out so.
+Its thread may hear of width and height apart, and later than others see them."
   (call-as-other-client (lambda (x-window)
                           (setf (xlib:drawable-width x-window) width
                                 (xlib:drawable-height x-window) height)
                           (xlib:display-finish-output (xlib:window-display x-window)))
                         window)
-  (loop until (= width (inside (window) (window::pane-size (pane window 'window::interactor))))))
+  (loop until (equal (list width height) (inside (window) (window-size window)))))
+
+(defun window-size (window)
+  (multiple-value-list (window::pane-size (clim:frame-top-level-sheet window))))
 
 (defun share-of-black (window name)
   (multiple-value-bind (image width) (shown-on-screen window name)

@@ -230,11 +230,11 @@ And more."
         (is (search (format nil "\"way=~A noise=0\"" way) text))))))
 
 (test report.breaks-what-is-longer-than-a-line
-  (is (equal '("aaa bbb" "ccc") (experiment::wrapped-text "aaa bbb ccc" 8)))
-  (is (equal '("x," "aaa bbb") (experiment::wrapped-text
+  (is (equal '("aaa bbb" "ccc") (base:wrapped-text "aaa bbb ccc" 8)))
+  (is (equal '("x," "aaa bbb") (base:wrapped-text
                                 (format nil "x, ~A" (experiment::unbroken "aaa bbb")) 8)))
-  (is (equal '("aaa bbb" "ccc") (experiment::wrapped-text (experiment::unbroken "aaa bbb ccc") 8)))
-  (is (equal '("aaaa" "aa") (experiment::wrapped-text "aaaaaa" 4))))
+  (is (equal '("aaa bbb" "ccc") (base:wrapped-text (experiment::unbroken "aaa bbb ccc") 8)))
+  (is (equal '("aaaa" "aa") (base:wrapped-text "aaaaaa" 4))))
 
 ;;; Trials added until intervals are narrow.
 

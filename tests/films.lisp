@@ -110,6 +110,44 @@
         (is (mentions-p (first (frames-shown film)) "cx=\"35\" cy=\"65\""))
         (is (not (mentions-p (third (frames-shown film)) "cx=\"35\" cy=\"65\"")))))))
 
+(test film.is-no-less-legible-at-a-great-scale
+  "The page magnifies its picture as far as there is room, so that is no larger than suits the map."
+  (in-studio (robot)
+    (flet ((film (scale) (film-of robot (lambda (robot)
+                                          (declare (ignore robot))
+                                          (run:run-ticks 2))
+                                  :scale scale :layers '())))
+      (is (mentions-p (film 80) (format nil "viewBox=\"0 0 ~D ~D\"" (* 20 40) (* 10 40))))
+      (is (mentions-p (film 10) "viewBox=\"0 0 200 100\"")))))
+
+(defun chromium-p ()
+  (zerop (nth-value 2 (uiop:run-program '("sh" "-c" "command -v chromium")
+                                        :ignore-error-status t))))
+
+(defun as-a-browser-shows (film)
+  "Return the document that FILM has become when its scripts have run."
+  (with-scratch-file (file "html")
+    (alexandria:write-string-into-file film file :if-exists :supersede)
+    (uiop:run-program (list "chromium" "--headless" "--no-sandbox" "--disable-gpu" "--dump-dom"
+                            (format nil "file://~A" (uiop:native-namestring file)))
+                      :output :string :error-output nil)))
+
+(defun failing-often (robot)
+  "Let a command of ROBOT fail three times within 60 of 2600 ticks, and once more, late."
+  (loop for (ticks commands) in '((10 3) (2000 1) (500 0))
+        do (dotimes (count commands) (ungrasp-nothing robot))
+           (run:run-ticks ticks)))
+
+(test film.marks-that-would-overlap-are-one-with-a-number
+  (if (chromium-p)
+      (in-studio (robot)
+        (let* ((page (as-a-browser-shows (film-of robot #'failing-often)))
+               (marks (between "<div id=\"marks\">" "</div>" page)))
+          (is (= 2 (length (rest (split-by "<button" marks)))))
+          (is (mentions-p marks ">3</button>"))
+          (is (mentions-p marks "></button>"))))
+      (skip "chromium is not installed: how films look in a browser is not tested.")))
+
 (test film.legend-has-what-appears-later
   (in-studio (robot)
     (let ((film (film-of robot
@@ -255,6 +293,14 @@
                                :key (lambda (text) (of-element text :text)) :test-not #'equal)))
           "On the map and before the words."))))
 
+(test run-picture.keeps-numbers-on-the-smallest-map
+  "Where the map is as large as a number, that is wholly on it; on a smaller one, in its middle."
+  (let ((map (world::small-map 1 1 (constantly nil))))
+    (loop for (scale least) in '((40 9) (20 9) (10 5))
+          do (let ((canvas:graphics-scale* scale) (middle (/ scale 2)))
+               (dolist (at (trails::place-for-number map middle middle '() '()))
+                 (is (<= least at (- scale least))))))))
+
 (test run-picture.tells-two-robots-apart
   (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 3 :journal t)
     (command:robot-go-forward ars-worlds:marvin 99)
@@ -315,6 +361,45 @@
         (run:save-journal file)
         (is (equal '(:plan :plan :error) (seen file)))
         (is (= (run:state-digest) (nth-value 1 (run:replay file))))))))
+
+(defun moments-of-plan (plan)
+  "Return pairs of kind and text of the moments of a run of PLAN."
+  (run:with-simulation (ars-worlds:dot :seed 1 :journal t)
+    (driver:run-plan plan)
+    (mapcar (lambda (moment) (cons (display:moment-kind moment) (display:moment-text moment)))
+            (display:journal-moments nil))))
+
+(test moments.tell-of-failures-that-a-plan-takes-care-of
+  "Each once, where it happened; the failure that ends a plan at once is told of as that alone."
+  (let ((seen (moments-of-plan (rpl:interp-lambda ()
+                                 (rpl:try-all
+                                   (rpl:seq (rpl:wait-time 2) (rpl:fail :class 'slip))
+                                   (rpl:wait-time 9))))))
+    (is (equal '(:part) (mapcar #'car seen)))
+    (is (mentions-p (cdr (first seen)) "SLIP")))
+  (is (equal '(:plan) (mapcar #'car (moments-of-plan
+                                     (rpl:interp-lambda () (rpl:fail :class 'slip)))))))
+
+(test moments.tell-of-parts-of-plans-that-somebody-ends
+  "But not of branches that are no longer needed."
+  (let ((seen (moments-of-plan
+               (rpl:interp-lambda ()
+                 (rpl:par (:tag victim (rpl:wait-time 20))
+                          (rpl:seq (rpl:wait-time 2) (rpl:evaporate victim)))))))
+    (is (equal '(:part) (mapcar #'car seen)))
+    (is (mentions-p (cdr (first seen)) "was ended")))
+  (is (null (moments-of-plan (rpl:interp-lambda ()
+                               (rpl:try-all (rpl:wait-time 2) (rpl:wait-time 9)))))))
+
+(test moments.of-parts-leave-room-for-others
+  "However often a plan tries again, what becomes of plans is told of."
+  (run:with-simulation (ars-worlds:dot :seed 1 :journal t)
+    (let ((simulation (time:current-simulation)))
+      (dotimes (count 2000) (run:remark simulation :part "tried again"))
+      (run:remark simulation :plan "failed"))
+    (let ((kinds (mapcar #'display:moment-kind (display:journal-moments nil))))
+      (is (= 1 (count :plan kinds)))
+      (is (< 100 (count :part kinds) 1000)))))
 
 ;;; Trails.
 

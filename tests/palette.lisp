@@ -189,6 +189,29 @@
 (test contrast.names-are-seen-on-floor-and-marks
   (is (apply #'seen-p canvas:black* canvas:white* *place-tints*)))
 
+(defun css-color (style selector property)
+  "Return the colour that PROPERTY has in STYLE for SELECTOR, written as # and three digits."
+  (let* ((rule (subseq style (search (format nil "~A {" selector) style)))
+         (body (subseq rule 0 (position #\} rule)))
+         (start (search "#" body :start2 (search (format nil " ~A: " property) body))))
+    (parse-integer (loop for at from (1+ start) repeat 3
+                         collect (char body at) into digits
+                         collect (char body at) into digits
+                         finally (return (coerce digits 'string)))
+                   :radix 16)))
+
+(test contrast.ticks-of-animations-are-seen
+  "In a page the text has the colours of all; in an animated picture it lies on a white strip."
+  (is (seen-p (css-color display::*film-style* "body" "color")
+              (css-color display::*film-style* "body" "background")))
+  (is (null (search "color" (between "#tick {" "}" display::*film-style*))))
+  (destructuring-bind (strip text)
+      (elements (format nil "~{~A~}" (drawing (canvas) (display::draw-tick-label canvas 12345))))
+    (flet ((color (element) (parse-integer (of-element element :fill) :start 1 :radix 16)))
+      (is (seen-p (color text) (color strip))))
+    (is (<= (+ (of-element text :x) (* 7 (length "tick 12345"))) (of-element strip :width)))
+    (is (<= 0 (- (of-element text :y) 10) (of-element text :y) (of-element strip :height)))))
+
 (test contrast.rays-grid-and-frames-are-seen-where-they-lie
   "Rays lie on floor and marks, the grid on the floor, coordinates and frames beside the map."
   (dolist (ink display::+ray-inks+)

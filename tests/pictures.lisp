@@ -148,6 +148,40 @@
                          (drawn-with :text (plain-picture robot :scale 24 :layers '(:names))))))
       (is (equal '("box" "pen" "studio-robot") (sort names #'string<))))))
 
+(test names.end-the-lines-that-they-lie-on
+  "Each stands on white, drawn just before it, so no trail or ray goes through it."
+  (in-studio (robot)
+    (let ((all (elements (plain-picture robot :scale 24 :layers '(:names :grid :wedges)))))
+      (is (= 3 (loop for (plate text) on all
+                     count (and (eq :text (first text)) (eq :rect (first plate))
+                                (equal "#ffffff" (of-element plate :fill))
+                                (< (of-element plate :x) (of-element text :x))
+                                (<= (+ (of-element text :x)
+                                       (* 6 (length (of-element text :text))))
+                                    (+ (of-element plate :x) (of-element plate :width))))))))))
+
+(test names.spare-the-rings-where-tracks-and-ways-end
+  (in-studio (robot)
+    (let* ((image (display::make-robot-image
+                   :x 5 :y 5 :planned-way '((5 5) (8 3))
+                   :cameras (list (display::make-camera-image
+                                   :track (display::make-designator-image :distance 2)))))
+           (canvas:graphics-scale* 10))
+      (flet ((spared-p (layer x y)
+               (some (lambda (box) (display::overlap-p box (display::box-around x y 1)))
+                     (display::marked-spots image (list layer)))))
+        (is-true (spared-p :planned-way 80 30))
+        (is-true (spared-p :tracks 70 50))
+        (is (null (spared-p :tracks 80 30)))))))
+
+(test legend.counts-as-people-do
+  (in-studio (robot)
+    (dolist (name '(r10 r9 r1 r2))
+      (world:make-new-thing name (list (robot:robot-world robot) 8 8) '()))
+    (is (equal '("box" "pen" "r1" "r2" "r9" "r10")
+               (mapcar (lambda (images) (display::thing-image-name (first images)))
+                       (display::thing-kinds (display:snapshot-of robot)))))))
+
 ;;; Around the map.
 
 (test margins.of-a-view-lie-at-its-edges
@@ -159,8 +193,14 @@
                                          (display:draw-view-margins
                                           canvas map '(:coordinates :scale-bar)
                                           80 40 160 120))))))
-         (texts (remove :text elements :key #'first :test-not #'eq)))
-    (is (equal '("5" "10" "5" "5 m") (mapcar (lambda (text) (of-element text :text)) texts)))
+         (texts (remove :text elements :key #'first :test-not #'eq))
+         (strips (remove :rect elements :key #'first :test-not #'eq)))
+    (is (equal '("10" "5" "5 m") (mapcar (lambda (text) (of-element text :text)) texts)))
+    ;; From end to end, but for the corners.
+    (is (equal '((80 40 160 17) (80 57 25 79) (80 136 160 24))
+               (loop for strip in strips
+                     collect (loop for key in '(:x :y :width :height)
+                                   collect (of-element strip key)))))
     (dolist (text texts)
       (is (<= 76 (of-element text :x) 240))
       (is (<= 40 (of-element text :y) 160)))))

@@ -145,6 +145,15 @@
     (is (string= "robot-turn -0.05 nil" (name "(rpl-robot-turn -0.058755822d0 nil)")))
     (is (string= "camera-track 1 #<Designator 0>" (name "(rpl-camera-track 1 #<Designator 0>)")))))
 
+(test timeline.writes-the-last-commands-before-them-where-there-is-no-room-behind
+  (flet ((place (x from)
+           (multiple-value-list (ars-magna.rpl-pictures::place-for-name 50 x 10 from 140))))
+    (is (equal '(73) (place 60 0)))
+    (is (equal '(67) (place 120 0)))
+    (is (equal '(nil) (place 120 80)))
+    (is (equal '(82 t) (multiple-value-list
+                        (ars-magna.rpl-pictures::place-for-name 50 80 60 0 140))))))
+
 (defun colors-in (text)
   "Return what follows each # in the SVG document TEXT, six characters each time."
   (loop for start = (search "=\"#" text) then (search "=\"#" text :start2 (1+ start))

@@ -102,7 +102,8 @@ designators; and that no ticks pass, if so. In Lisp: (status)."
 
 (define-line "POS" (session (x metres "metres from the left") (y metres "metres from the top"))
     (:seeing)
-    "Put the robot at X, Y at once, without error and ignoring obstacles."
+    "Put the robot at X, Y at once, without error and ignoring obstacles. You are told if that is
+inside a wall."
   (let ((robot (session-robot)))
     (place-robot robot x y (robot-angle robot))))
 

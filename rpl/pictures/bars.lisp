@@ -143,34 +143,46 @@ cut to two decimals."
   "Return the colour of text on SPAN, a command."
   (if (and (span-error span) (not in-color*)) black* white*))
 
-(defun write-command (canvas span x y width room)
-  "Write the command of SPAN, which is WIDTH pixels wide, on it; or beside it, if there is ROOM, in
-pixels; or its beginning."
+(defun place-for-name (length x width from to)
+  "Return where the name, LENGTH pixels wide, of a command is written whose box begins at X and is
+WIDTH pixels wide: on it, behind it or before it, between FROM and TO; and whether on it. NIL if
+nowhere is room."
+  (cond ((<= (+ 4 length) width) (values (+ x 2) t))
+        ((<= (+ x width 6 length) to) (+ x width 3))
+        ((<= from (- x 6 length)) (- x 3 length))))
+
+(defun write-command (canvas span x y width from to)
+  "Write the command of SPAN, which is WIDTH pixels wide from X on, where there is room between FROM
+and TO; or its beginning on it. Return where that ends."
   (let* ((name (command-name span))
          (per-character (character-width canvas +command-size+))
+         (length (* per-character (length name)))
          (fitting (floor (- width 4) per-character)))
-    (flet ((words (color x text)
+    (flet ((words (color at text)
              (with-gcontext (draw-gcontext* :foreground color)
-               (draw-words canvas draw-gcontext* x (+ y 9) text :size +command-size+))))
-      (cond ((<= (length name) fitting) (words (ink-in-lane span) (+ x 2) name))
-            ((<= (+ 6 (* per-character (length name))) room) (words black* (+ x width 3) name))
-            ((<= 6 fitting) (words (ink-in-lane span) (+ x 2) (subseq name 0 fitting)))))))
+               (draw-words canvas draw-gcontext* at (+ y 9) text :size +command-size+))))
+      (multiple-value-bind (at on-it-p) (place-for-name length x width from to)
+        (cond (at (words (if on-it-p (ink-in-lane span) black*) at name))
+              ((<= 6 fitting) (words (ink-in-lane span) (+ x 2) (subseq name 0 fitting))))
+        (max (+ x width) (if at (+ at length) 0))))))
 
-(defun draw-command (canvas span next y scale)
-  "Draw SPAN, a command, in a lane at Y in which NEXT, a command or NIL, comes after it."
-  (let* ((x (place (span-start span) scale)) (width (span-width span scale))
-         (end (if next
-                  (place (span-start next) scale)
-                  (+ 40 (place (scale-end scale) scale)))))
+(defun draw-command (canvas span next from y scale)
+  "Draw SPAN, a command, in a lane at Y in which NEXT, a command or NIL, comes after it, and which is
+free from FROM on. Return from where on it is free then."
+  (let ((x (place (span-start span) scale)) (width (span-width span scale))
+        (to (if next
+                (place (span-start next) scale)
+                (+ 40 (place (scale-end scale) scale)))))
     (with-subject (canvas (format nil "~A, ticks ~A to ~A~@[: ~A~]" (span-text span)
                                   (span-start span) (span-end span) (span-error span)))
       (look-box canvas (if (span-error span) :trouble :command) x y width +lane-height+)
-      (write-command canvas span x y width (- end x width)))))
+      (write-command canvas span x y width from to))))
 
 (defun draw-lane (canvas spans y scale)
   "Draw the commands SPANS of a row in their lane."
-  (loop for (span next) on (stable-sort (copy-list spans) #'< :key #'span-start)
-        do (draw-command canvas span next y scale)))
+  (loop with free = (scale-left scale)
+        for (span next) on (stable-sort (copy-list spans) #'< :key #'span-start)
+        do (setf free (draw-command canvas span next free y scale))))
 
 ;; Also of failures that are handled where they happen.
 (defun draw-failure (canvas span y scale)

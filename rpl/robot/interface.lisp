@@ -35,6 +35,7 @@ SAVE-PLAN-TIMELINE.")
   (:link
    (origin '() list "how messages call the plans, kept so that no tick makes it anew")
    (ender nil (or null function) "what the robot calls when its run is over")
+   (told nil t "a pair of the last failure that the journal was told of, and that remark, or NIL")
    (closing-p nil boolean "the interface is to end")
    (closed-p nil boolean "the interface has ended")
    (resting-p nil boolean "whoever holds the plans has them rest, for the run to be forked")

@@ -25,7 +25,7 @@
                 #:participant-place #:simulation-participants #:fork-p #:note-environment
                 #:environment-of #:*rewind-hooks* #:*rewound-end-hooks*
                 #:counterpart-here #:counterpart #:latest #:let-fork-be-kept #:note-doing
-                #:simulation-past #:remark)
+                #:simulation-past #:simulation-journal #:remark #:unremark)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable #:fluent-value
                 #:apply-settings #:*home-in-use* #:*runner* #:post-call #:react-to-all
@@ -39,7 +39,8 @@
                 #:report-end #:reseed-runner #:digest-runner #:print-tasks #:find-procedure
                 #:plan-trace #:write-trace #:valve #:make-valve #:note-command #:with-answer
                 #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks* #:start-trace
-                #:task-runner #:leave-plan #:runner-client #:client-forked-p #:*realm*
+                #:task-runner #:leave-plan #:runner-client #:client-forked-p
+                #:hear-of-trouble #:*realm*
                 #:give-back-all #:+root+
                 #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:here
                 #:task-numbered #:task-with #:blocked-p #:failure-of #:complete

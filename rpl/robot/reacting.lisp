@@ -125,6 +125,35 @@ not count: they tell plans nothing."
   "Return the time in seconds, by which plans that hog their thread are noticed; headless NIL."
   (and (live-p simulation) (seconds-now)))
 
+;;; What the journal is told of plans, besides what they did: it is no part of the run.
+
+(defun remark-trouble (interface kind words task failure)
+  "Let the journal of the run of INTERFACE say of TASK, called WORDS, that it failed by FAILURE or,
+if that is NIL, was ended. Return the remark."
+  (remark (interface-simulation interface) kind
+          (format nil "~A ~A ~:[was ended~;failed: ~:*~A~]" words (task-label task)
+                  (and failure (one-line-text failure)))
+          (interface-robot interface)))
+
+(defmethod hear-of-trouble ((interface interface) task failure)
+  (when (simulation-journal (interface-simulation interface))
+    (let ((remark (remark-trouble interface :part (part-words task) task failure)))
+      (when failure (setf (interface-told interface) (cons failure remark))))))
+
+(defun part-words (task)
+  "Return words for the label of TASK to follow: which plan it is part of, unless it is one."
+  (format nil "~@[in ~A: ~]task" (and (task-parent task) (task-label (task-top task)))))
+
+(defun remark-end (interface task)
+  "Let the journal of the run of INTERFACE say that TASK, a plan, failed or was ended; and no more
+that this failure happened, if that was just now."
+  (let ((failure (and (eq :failed (task-state task)) (task-result task)))
+        (simulation (interface-simulation interface)))
+    (destructuring-bind (&optional told . remark) (shiftf (interface-told interface) nil)
+      (when (and remark (eq told failure) (eql (first remark) (simulation-tick simulation)))
+        (unremark simulation remark)))
+    (remark-trouble interface :plan "plan" task failure)))
+
 (defun no-longer-unwanted (interface task)
   (loop for tasks = (interface-unwanted interface)
         until (or (not (member task tasks))
@@ -137,15 +166,6 @@ not count: they tell plans nothing."
     (interrupt-deeds interface task)
     (remark-end interface task))
   (report-end task))
-
-(defun remark-end (interface task)
-  "Let the journal of the run of INTERFACE say that TASK, a plan, failed or was ended."
-  (remark (interface-simulation interface) :plan
-          (if (eq :failed (task-state task))
-              (format nil "plan ~A failed: ~A" (task-label task)
-                      (one-line-text (task-result task)))
-              (format nil "plan ~A was ended" (task-label task)))
-          (interface-robot interface)))
 
 (defun make-runner (interface)
   (let ((simulation (interface-simulation interface)))

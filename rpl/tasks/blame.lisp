@@ -37,6 +37,7 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
             (failure-form failure) (first (failure-plan-backtrace failure))
             (failure-cause failure) (or (failure-cause failure) (handled-failure task frame)))
       (note-event task :failure failure)
+      (hear-of-trouble (runner-client (task-runner task)) task failure)
       (when *failure-hook* (funcall *failure-hook* failure task frame)))
     failure))
 

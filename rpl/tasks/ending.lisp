@@ -149,7 +149,11 @@ none does and TASK has ended, +PARKED+."
   (loop for child = (task-newest-child task) then older
         while child
         for older = (task-older child)
-        do (evaporate child)))
+        do (unless (beyond-evaporating-p child) (evaporate-here child))))
+
+(defun beyond-evaporating-p (task)
+  "True if TASK has not started, is over or evaporates already."
+  (or (task-over-p task) (task-doomed task) (eq (task-state task) :created)))
 
 (addition evaporate)
 (defun evaporate (task)
@@ -159,11 +163,13 @@ or evaporates already is left alone. From outside of its plan it is heard before
 Signals WRONG-ARGUMENT."
   (check-argument evaporate task (task-p task) "a task, as begin-plan returns")
   (let ((task (task-meant task)))
-    (cond ((or (task-over-p task) (task-doomed task) (eq (task-state task) :created)))
+    (cond ((beyond-evaporating-p task))
           ((not (inside-plans-p (task-runner task)))
            (note-from-outside #'evaporate task)
            (doom task))
-          (t (evaporate-here task)))))
+          (t (when (task-parent task)
+               (hear-of-trouble (runner-client (task-runner task)) task nil))
+             (evaporate-here task)))))
 
 (defun evaporate-here (task)
   "Let TASK, of the plans at work here, evaporate."

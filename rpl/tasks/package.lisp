@@ -38,7 +38,7 @@ plans nor a simulator.")
            #:plan-runner-tasks #:plan-runner-tick #:plan-time #:plan-trace #:runner-blocks
            #:runner-dice #:runner-tick
            #:runner-ticks-per-second #:runner-timers #:runner-current #:runner-stepper
-           #:runner-note #:runner-serial #:runner-alive #:client-forked-p
+           #:runner-note #:runner-serial #:runner-alive #:client-forked-p #:hear-of-trouble
            #:runner-trace #:runner-client #:*plan-task-limit*)
   ;; words
   (:export #:note-word #:task-now)

@@ -87,6 +87,12 @@ as it needs. CLIENT is on whose behalf all this is."
   (:documentation "True if CLIENT, of a plan runner, is of the run that COPIER copies.")
   (:method (client copier) (declare (ignore client copier)) nil))
 
+;; What tasks go through that others than plans may want to know.
+(defgeneric hear-of-trouble (client task failure)
+  (:documentation "In TASK, of plans of CLIENT, FAILURE has just happened, which something may take
+care of; or, if FAILURE is NIL, TASK is a part of a plan that somebody has just ended.")
+  (:method (client task failure) (declare (ignore client task failure))))
+
 (defmethod home-forked-p ((runner plan-runner) copier)
   (client-forked-p (runner-client runner) copier))
 

@@ -98,6 +98,10 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:reading-trouble
            #:text-of-condition #:one-line-text #:hundredths #:editors-output)
+  ;; breaking-lines
+  (:export #:wrapped-text)
+  ;; ordering
+  (:export #:name-before-p)
   ;; dice, random
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice

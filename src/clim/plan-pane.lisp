@@ -93,19 +93,10 @@
           ((switch-p line) (draw-switch canvas line 8 (+ y 2)) (incf y 24))
           (t (draw-glyphs canvas draw-gcontext* 8 (+ y 13) line) (incf y +line-height+)))))
 
-(defun cut-into-lines (text columns)
-  "Return the words of TEXT as a list of lines of at most COLUMNS characters, where words allow."
-  (let ((lines '()) (line ""))
-    (dolist (word (split-words text))
-      (if (and (plusp (length line)) (> (+ 1 (length line) (length word)) columns))
-          (setf lines (cons line lines) line word)
-          (setf line (if (string= line "") word (format nil "~A ~A" line word)))))
-    (nreverse (cons line lines))))
-
 (defun say-text (canvas pane y text)
   "Write TEXT from Y down in as many lines as it takes in PANE. Return where it ends."
   (apply #'say-lines canvas y
-         (cut-into-lines text (max 16 (floor (- (content-width pane) 16) +character-width+)))))
+         (wrapped-text text (max 16 (floor (- (content-width pane) 16) +character-width+)))))
 
 (defun say-ending (canvas pane y)
   "Write, from Y down, how the last plan ended, if one has. Return where that ends."

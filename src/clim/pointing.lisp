@@ -12,15 +12,7 @@
 
 (defun subject-text (subject)
   "Return in one line what is known of SUBJECT."
-  (let ((text (with-output-to-string (stream) (describe-subject subject stream))))
-    (format nil "~{~A~^ ~}" (split-words (substitute #\Space #\Newline text)))))
-
-(defun split-words (text)
-  "Return a list of the words of TEXT, which spaces divide."
-  (loop with start = 0
-        for end = (position #\Space text :start start)
-        when (< start (or end (length text))) collect (subseq text start end)
-        while end do (setf start (1+ end))))
+  (one-line (with-output-to-string (stream) (describe-subject subject stream))))
 
 ;;; Picking and offering.
 

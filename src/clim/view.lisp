@@ -26,14 +26,30 @@
 
 (defun view-map (pane) (window-map (window-of pane)))
 
+(defun pane-edges (pane)
+  "Return how many pixels at the left, top and bottom of PANE its coordinates and scale bar take."
+  (view-edges (view-map pane) (window-layers (window-of pane))))
+
+(defun view-box (pane)
+  "Return the box (left top right bottom) of PANE in which the map is in view."
+  (multiple-value-bind (width height) (pane-size pane)
+    (destructuring-bind (left top bottom) (pane-edges pane)
+      (list left top (max left width) (max top (- height bottom))))))
+
+(defun in-view-p (pane x y)
+  "True if the map is in view at X, Y of PANE, and not a strip at its edge."
+  (destructuring-bind (left top right bottom) (view-box pane)
+    (and (<= left x) (< x right) (<= top y) (< y bottom))))
+
 (defun place-view (pane left top)
   "Let the view of PANE begin at LEFT, TOP, but not off the map."
-  (multiple-value-bind (width height) (pane-size pane)
+  (destructuring-bind (from-x from-y to-x to-y) (view-box pane)
     (let ((map (view-map pane)) (scale (pane-scale pane)))
-      (flet ((within (value cells size)
-               (clamp (round value) (- +in-view+ size) (- (floor (* cells scale)) +in-view+))))
-        (setf (pane-left pane) (within left (map-width map) width)
-              (pane-top pane) (within top (map-height map) height))))))
+      (flet ((within (value cells from to)
+               (clamp (round value)
+                      (- +in-view+ to) (- (floor (* cells scale)) +in-view+ from))))
+        (setf (pane-left pane) (within left (map-width map) from-x to-x)
+              (pane-top pane) (within top (map-height map) from-y to-y))))))
 
 (defun move-view (pane dx dy)
   "Move the view of PANE by DX, DY pixels, but not off the map."
@@ -56,23 +72,15 @@
   (let ((scale (min (/ width (map-width map)) (/ height (map-height map)))))
     (clamp (if (< scale 4) (/ (floor scale 1/4) 4) (floor scale)) 1 64)))
 
-(defun fit-margins (pane)
-  "Return how many pixels at the left, top and bottom of PANE its coordinates and scale bar take, so
-that they cover nothing of a map that is in view as a whole."
-  (let* ((layers (window-layers (window-of pane)))
-         (numbers-p (member :coordinates layers)))
-    (list (if numbers-p 27 0) (if numbers-p 16 0) (if (member :scale-bar layers) 28 0))))
-
 (defun fit-view (pane)
-  "Let the whole map be in view in the middle of PANE, but for what stands at its edges."
-  (multiple-value-bind (width height) (pane-size pane)
-    (destructuring-bind (left top bottom) (fit-margins pane)
-      (let* ((width (- width left)) (height (- height top bottom)) (map (view-map pane))
-             (scale (fitting-scale map width height)))
-        (flet ((rest-of (size cells) (floor (max 0 (- size (* scale cells))) 2)))
-          (setf (pane-scale pane) scale
-                (pane-left pane) (- (+ left (rest-of width (map-width map))))
-                (pane-top pane) (- (+ top (rest-of height (map-height map))))))))))
+  "Let the whole map be in view in the middle of PANE."
+  (destructuring-bind (left top right bottom) (view-box pane)
+    (let* ((width (max 1 (- right left))) (height (max 1 (- bottom top))) (map (view-map pane))
+           (scale (fitting-scale map width height)))
+      (flet ((rest-of (size cells) (floor (max 0 (- size (* scale cells))) 2)))
+        (setf (pane-scale pane) scale
+              (pane-left pane) (- (+ left (rest-of width (map-width map))))
+              (pane-top pane) (- (+ top (rest-of height (map-height map)))))))))
 
 (defun fit (pane)
   "Let the whole map be in view in PANE, also when its size changes."
@@ -93,15 +101,16 @@ that they cover nothing of a map that is in view as a whole."
   "Let the window's robot be in the middle of the view of PANE."
   (multiple-value-bind (x y) (robot-place pane)
     (when x
-      (multiple-value-bind (width height) (pane-size pane)
-        (place-view pane (+ (pane-left pane) (- x (/ width 2)))
-                    (+ (pane-top pane) (- y (/ height 2))))))))
+      (destructuring-bind (left top right bottom) (view-box pane)
+        (place-view pane (+ (pane-left pane) (- x (/ (+ left right) 2)))
+                    (+ (pane-top pane) (- y (/ (+ top bottom) 2))))))))
 
 (defun off-centre-p (pane)
   "True if the window's robot is not in the middle half of PANE."
   (multiple-value-bind (x y) (robot-place pane)
-    (multiple-value-bind (width height) (pane-size pane)
-      (and x (not (and (<= (/ width 4) x (* 3/4 width)) (<= (/ height 4) y (* 3/4 height))))))))
+    (destructuring-bind (left top right bottom) (view-box pane)
+      (flet ((off-p (at from to) (> (abs (- at (/ (+ from to) 2))) (/ (- to from) 4))))
+        (and x (or (off-p x left right) (off-p y top bottom)))))))
 
 (defun show-robot (pane)
   "Move the view of PANE so that the window's robot is in its middle."
@@ -123,7 +132,7 @@ that they cover nothing of a map that is in view as a whole."
 (defun prepare-view (pane)
   "Let the view of PANE be where it should be for its next picture."
   (multiple-value-bind (width height) (pane-size pane)
-    (let ((key (list width height (view-map pane) (fit-margins pane))))
+    (let ((key (list width height (view-map pane) (pane-edges pane))))
       (obey-scale pane)
       (cond ((pane-fitting-p pane)
              (unless (equal key (pane-fitted pane)) (fit-view pane)))

@@ -17,13 +17,15 @@
 
 (defun cell-at (pane x y)
   "Return the cell of the map that is painted at X, Y of PANE, or NIL."
-  (let ((map (view-map pane)))
-    (multiple-value-bind (x y) (point-at pane x y)
-      (and (map-index map x y) (map-cell map x y)))))
+  (when (in-view-p pane x y)
+    (let ((map (view-map pane)))
+      (multiple-value-bind (x y) (point-at pane x y)
+        (and (map-index map x y) (map-cell map x y))))))
 
 (defmethod subjects-under ((pane world-pane) x y)
-  (let ((cell (cell-at pane x y)))
-    (append (call-next-method) (and cell (list cell)))))
+  (when (in-view-p pane x y)
+    (let ((cell (cell-at pane x y)))
+      (append (call-next-method) (and cell (list cell))))))
 
 (defmethod hover-text ((pane world-pane) x y)
   (let* ((subjects (subjects-under pane x y)) (cell (find-if #'cell-p subjects)))
@@ -61,7 +63,9 @@
   "Show in PANE where SUBJECT would be if it were dropped at X, Y."
   (multiple-value-bind (to-x to-y) (point-at pane x y)
     (setf (pane-ghost pane) (list x y))
-    (hint (window-of pane) (format nil "~A to ~,2F, ~,2F" (subject-title subject) to-x to-y))
+    (hint (window-of pane) (format nil "~A to ~,2F, ~,2F~:[~;, inside a wall~]"
+                                   (subject-title subject) to-x to-y
+                                   (wall-at-p (view-map pane) to-x to-y)))
     (repaint-if-changed pane)))
 
 (defun paint-ghost (pane)

@@ -91,10 +91,16 @@
                                pane pane)))
           (paint-ghost pane))))))
 
+(defun mark-cell (pane x y)
+  (let* ((scale (pane-scale pane))
+         (left (- (* scale x) (pane-left pane))) (top (- (* scale y) (pane-top pane))))
+    (mark-box pane left top (+ left scale) (+ top scale))))
+
 (defmethod paint-selection ((pane world-pane))
-  (let ((key (window-selection (window-of pane))) (scale (pane-scale pane)))
-    (if (eq :cell (first key))
-        (destructuring-bind (x y) (rest key)
-          (let ((left (- (* scale x) (pane-left pane))) (top (- (* scale y) (pane-top pane))))
-            (mark-box pane left top (+ left scale) (+ top scale))))
-        (call-next-method))))
+  (when (window-snapshot (window-of pane))
+    (clim:with-drawing-options (pane :clipping-region
+                                     (apply #'clim:make-rectangle* (view-box pane)))
+      (let ((key (window-selection (window-of pane))))
+        (if (eq :cell (first key))
+            (apply #'mark-cell pane (rest key))
+            (call-next-method))))))

@@ -157,6 +157,11 @@ these, and the entries of lines, the latest first."
   "Return those of LAYERS that the picture in a film has: its legend and title are HTML."
   (set-difference layers '(:legend :title)))
 
+(defun film-scale (scale snapshot layers)
+  "Return how many pixels a cell has in a film that begins as SNAPSHOT shows. The page magnifies the
+picture itself, as far as there is room: more than suits the map would only make its text small."
+  (min (suitable-scale scale snapshot layers) (fitting-scale (snapshot-map snapshot) layers)))
+
 (defun film-moments (journal seen until kinds own)
   (in-order (append (of-kinds kinds (append seen (remarked-moments journal until))) own)))
 
@@ -167,9 +172,8 @@ frame, and the cast; WATCH is called with the simulation after each tick."
         (shown (film-layers layers)))
     (call-with-frames (lambda (snapshot)
                         (unless cast
-                          ;; The page magnifies the picture itself, as far as there is room.
                           (setf cast (make-cast snapshot)
-                                scale (values (drawn-scale scale snapshot shown))))
+                                scale (film-scale scale snapshot shown)))
                         (add-to-cast snapshot layers cast)
                         (setf last (movers-text snapshot shown in-color scale)
                               first (or first last))
@@ -235,12 +239,14 @@ far) up to the tick UNTIL or its end and save what it looks like every EVERY tic
 few that there are no more than 600 frames), RATE frames a second, to FILE. If its name ends in
 .html it is a page for any browser, without a network, in which the run can be played, stopped, and
 gone through: what a robot grasped, let go of and stowed, and which commands failed, are marked
-there, also plans that failed or were ended and errors in your code, and what the list MOMENTS has
-besides, each a moment or a list of a tick and a string; KINDS chooses, see SAVE-RUN-PICTURE. If it
-ends in .svg, it is an animated picture of the world, in a file about ten times as large. With
-SERIES, pictures of DISPLAY go to a series of files, as FILE ends: for run.png, run-0001.png and so
-on. The first frame shows how the run began. The other arguments are those of SVG-PICTURE. Return
-the truename, or a list of them. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY does."
+there, also plans and parts of plans that failed or were ended, errors in your code, and what the
+list MOMENTS has besides, each a moment or a list of a tick and a string; KINDS chooses, see
+SAVE-RUN-PICTURE. If it ends in .svg, it is an animated picture of the world, in a file about ten
+times as large. With SERIES, pictures of DISPLAY go to a series of files, as FILE ends: for run.png,
+run-0001.png and so on. A page is as large as its window: a SCALE of more than suits the map changes
+nothing there. The first frame shows how the run began. The other arguments are those of
+SVG-PICTURE. Return the truename, or a list of them. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY
+does."
   (let* ((kind (animation-kind file series))
          (journal (journal-meant journal))
          (moments (checked-moments 'save-animation moments (shown-end journal until)))
@@ -273,8 +279,8 @@ the truename, or a list of them. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY
 (defun journal-moments (journal &key until)
   "Replay JOURNAL (a journal, a file that holds one, or NIL for that of the current simulation so
 far) up to the tick UNTIL or its end; return a list of what happened there that people look for, in
-order: moments at which a robot grasped, let go of or stowed something, a command failed, a plan
-failed or was ended, or an error came up in users' code. Signals what REPLAY does."
+order: moments at which a robot grasped, let go of or stowed something, a command failed, a plan or
+a part of one failed or was ended, or an error came up in users' code. Signals what REPLAY does."
   (let ((journal (journal-meant journal)))
     (multiple-value-bind (watch seen) (moments-watcher)
       (in-order (append (call-with-replay seen journal

@@ -8,6 +8,8 @@
           (+ (robot-image-angle robot) (designator-image-angle designator))
           (to-pixels (designator-image-distance designator))))
 
+(defun track-radius () (max 4 (* 1/2 graphics-scale*)))
+
 (defun draw-track (canvas robot designator)
   "Draw a line to where ROBOT believes what a camera tracks to be."
   (let ((target (believed-place robot designator)))
@@ -16,7 +18,12 @@
                      (list* (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
                             target)))
     (inked ((layer-ink :tracks))
-      (draw-circle canvas (first target) (second target) (max 4 (* 1/2 graphics-scale*)) nil))))
+      (draw-circle canvas (first target) (second target) (track-radius) nil))))
+
+(defun track-box (robot designator)
+  "Return the box of the ring around where ROBOT believes what a camera tracks to be, in pixels."
+  (destructuring-bind (x y) (believed-place robot designator)
+    (box-around x y (+ 2 (track-radius)))))
 
 (defun designator-box (robot designator)
   "Return the box (left top right bottom) of the cross and the number of DESIGNATOR, in pixels."
@@ -69,10 +76,13 @@ that the bounds of its heading."
                         repeat +trail-length+
                         collect (to-pixels x) collect (to-pixels y))))))
 
+(define-constant +way-end+ 4
+  :documentation "The radius of the ring where a planned way ends, in pixels.")
+
 (defun draw-planned-way (canvas points)
   "Draw the way through POINTS, lists (x y), with a spot where it ends."
   (when (rest points)
     (let ((color (layer-ink :planned-way)) (end (pixels-of (first (last points)))))
       (inked (color :width 2 :style :dash)
         (draw-lines canvas draw-gcontext* (pixels-of (apply #'append points))))
-      (inked (color :width 2) (draw-circle canvas (first end) (second end) 4 nil)))))
+      (inked (color :width 2) (draw-circle canvas (first end) (second end) +way-end+ nil)))))

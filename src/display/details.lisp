@@ -12,9 +12,13 @@
 (define-constant +largest-unit+ 8
   :documentation "How many pixels wide a thing is drawn at most for each unit of its size.")
 
+(defun characters-in (width)
+  "Return how many characters fit into WIDTH pixels; at least one does."
+  (max 1 (floor width +character-width+)))
+
 (defun fit-text (text width)
   "Return as much of TEXT as fits into WIDTH pixels."
-  (let ((count (max 1 (floor width +character-width+))))
+  (let ((count (characters-in width)))
     (if (<= (length text) count)
         text
         (concatenate 'string (subseq text 0 (1- count)) "~"))))
@@ -23,19 +27,9 @@
   "Write TEXT in the line whose top is at Y."
   (draw-text canvas x (+ y 12) (fit-text text (- width x +margin+))))
 
-(defun wrapped (text width)
-  "Return TEXT as a list of lines that fit into WIDTH pixels, broken at blanks where that can be."
-  (loop with room = (max 1 (floor width +character-width+))
-        while (< room (length text))
-        collect (let ((blank (position #\Space text :from-end t :end (1+ room))))
-                  (prog1 (subseq text 0 (or blank room))
-                    (setf text (subseq text (if blank (1+ blank) room)))))
-          into lines
-        finally (return (append lines (list text)))))
-
 (defun draw-paragraph (canvas x y width text)
   "Write TEXT, in as many lines as it takes, from Y. Return where it ends."
-  (dolist (line (wrapped text (- width x +margin+)) y)
+  (dolist (line (wrapped-text text (characters-in (- width x +margin+))) y)
     (draw-line-of-text canvas x y width line)
     (incf y +line-height+)))
 

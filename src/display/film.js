@@ -62,15 +62,43 @@
     return function () { goTo(moment.frame); };
   }
 
+  // Moments so near to each other that their marks would overlap share one, with their number.
+  var groups = [], apart = 2, told = 12;
   FILM.moments.forEach(function (moment, index) {
-    var mark = document.createElement("button");
-    mark.className = moment.kind;
-    mark.style.left = (frames.length > 1 ? 100 * moment.frame / (frames.length - 1) : 0) + "%";
-    mark.title = "tick " + moment.tick + ": " + moment.text;
-    mark.setAttribute("aria-label", mark.title);
-    mark.onclick = jumper(moment);
-    element("marks").appendChild(mark);
+    var place = frames.length > 1 ? 100 * moment.frame / (frames.length - 1) : 0,
+        group = groups[groups.length - 1];
+    if (group && place - group.place < apart) group.moments.push(moment);
+    else groups.push({ place: place, moments: [moment] });
     list.children[index].firstElementChild.onclick = jumper(moment);
+  });
+
+  function title(moments) {
+    var lines = moments.slice(0, told).map(function (moment) {
+      return "tick " + moment.tick + ": " + moment.text;
+    });
+    if (moments.length > told) lines.push("and " + (moments.length - told) + " more");
+    return lines.join("\n");
+  }
+
+  // A click goes to the first of a group; further clicks, to the next frame in which one is.
+  function nextOf(moments) {
+    return function () {
+      var later = moments.filter(function (moment) { return moment.frame > now; }),
+          within = now >= moments[0].frame && later.length > 0;
+      goTo((within ? later[0] : moments[0]).frame);
+    };
+  }
+
+  groups.forEach(function (group) {
+    var mark = document.createElement("button"), first = group.moments[0],
+        alike = group.moments.every(function (moment) { return moment.kind === first.kind; });
+    mark.className = alike ? first.kind : "note";
+    mark.style.left = group.place + "%";
+    mark.textContent = group.moments.length > 1 ? group.moments.length : "";
+    mark.title = title(group.moments);
+    mark.setAttribute("aria-label", mark.title);
+    mark.onclick = nextOf(group.moments);
+    element("marks").appendChild(mark);
   });
 
   slider.max = frames.length - 1;

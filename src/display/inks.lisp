@@ -34,6 +34,17 @@ wide."
   (let ((reach (if fill-p radius (+ radius (/ (max 1 (gcontext-line-width draw-gcontext*)) 2)))))
     (draw-arc canvas draw-gcontext* (- x reach) (- y reach) (* 2 reach) (* 2 reach) 0 2pi fill-p)))
 
+;;; A box is a list (left top right bottom) in pixels.
+
+(defun overlap-p (a b)
+  "True if the boxes A and B, lists (left top right bottom), overlap."
+  (and (< (first a) (third b)) (< (first b) (third a))
+       (< (second a) (fourth b)) (< (second b) (fourth a))))
+
+(defun box-around (x y half)
+  "Return the box that reaches HALF from X, Y to each side."
+  (list (- x half) (- y half) (+ x half) (+ y half)))
+
 (defun draw-text (canvas x y text)
   (draw-glyphs canvas draw-gcontext* x y text))
 

@@ -99,7 +99,7 @@
     (loop for image across (snapshot-things snapshot)
           do (push image (gethash (thing-image-name image) kinds)))
     (sort (loop for images being the hash-values of kinds collect (reverse images))
-          #'string< :key (lambda (images) (thing-image-name (first images))))))
+          #'name-before-p :key (lambda (images) (thing-image-name (first images))))))
 
 (defun sample-half (image)
   "Return half the width of the sample of the thing, in pixels: as on the map, if that is not larger

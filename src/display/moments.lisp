@@ -5,7 +5,7 @@
 ;;; A journal says what was asked for, not what came of it. So it is repeated, and after each tick
 ;;; somebody looks what a robot holds now that it did not, what lies in its bins, and what failed.
 
-(define-constant +moment-kinds+ '(:grasp :release :stow :failure :plan :error :note)
+(define-constant +moment-kinds+ '(:grasp :release :stow :failure :plan :part :error :note)
   :test #'cl:equal
   :documentation "What sorts of moments there are.")
 
@@ -28,7 +28,8 @@ tells, to a robot at x, y, of a name; with an error code."
   moment-p "True of moments: of things that happened in a run."
   moment-tick "Return the tick at which it was."
   moment-kind "Return what sort of thing it was: :GRASP, :RELEASE, :STOW; :FAILURE of a command;
-:PLAN, that failed or was ended; :ERROR in users' code; :NOTE of a user's."
+:PLAN, that failed or was ended; :PART of a plan, in which something failed that the plan may have
+taken care of, or that somebody ended; :ERROR in users' code; :NOTE of a user's."
   moment-text "Return a few words about it."
   moment-x "Return where the robot was then, in metres, or NIL if that is unknown."
   moment-y "Return where the robot was then, in metres, or NIL if that is unknown."
@@ -167,6 +168,7 @@ Signals WRONG-ARGUMENT."
   (case (moment-kind moment)
     (:note 0)
     (:failure (if (member (moment-code moment) *expected-codes*) 3 2))
+    (:part 2)
     (t 1)))
 
 (defun moment-words (moment several-p)

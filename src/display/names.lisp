@@ -2,21 +2,12 @@
 
 (in-package :ars-magna.display)
 
-;;; A box is a list (left top right bottom) in pixels. A name is written near by where its box meets
-;;; no wall, thing, robot, number of a designator, mark of a place or other name, and rather no
-;;; trail; if there is no such room, not at all. Robots come first, then large things.
+;;; A name is written near by where its box meets no wall, thing, robot, number of a designator,
+;;; mark of a place or other name, and rather no trail; if there is no such room, not at all.
+;;; Other lines end before a name. Robots come first, then large things.
 
 (define-constant +name-size+ 10 :documentation "How high the font of names is, in pixels.")
 (define-constant +name-height+ 11 :documentation "How high the box of a name is, in pixels.")
-
-(defun overlap-p (a b)
-  "True if the boxes A and B, lists (left top right bottom), overlap."
-  (and (< (first a) (third b)) (< (first b) (third a))
-       (< (second a) (fourth b)) (< (second b) (fourth a))))
-
-(defun box-around (x y half)
-  "Return the box that reaches HALF from X, Y to each side."
-  (list (- x half) (- y half) (+ x half) (+ y half)))
 
 (defun name-boxes (x y half width)
   "Return boxes for a name WIDTH pixels wide beside what reaches HALF pixels from X, Y: the best
@@ -117,15 +108,30 @@ have small letters of their own."
   (destructuring-bind (left top right bottom) box
     (list (- left by) top (+ right by) bottom)))
 
+(defun marked-spots (robot layers)
+  "Return the boxes of the numbers and rings that LAYERS show of ROBOT."
+  (append (and (member :designators layers)
+               (loop for designator in (robot-image-designators robot)
+                     collect (designator-box robot designator)))
+          (and (member :tracks layers)
+               (loop for camera in (robot-image-cameras robot)
+                     when (camera-image-track camera)
+                       collect (track-box robot (camera-image-track camera))))
+          (let ((end (first (last (robot-image-planned-way robot)))))
+            (and end (member :planned-way layers)
+                 (list (box-around (to-pixels (first end)) (to-pixels (second end))
+                                   (+ 2 +way-end+)))))))
+
 (defun boxes-taken (snapshot layers spots)
-  "Return the boxes of SPOTS, and of the numbers of designators if LAYERS show them."
+  "Return the boxes of SPOTS, and of what LAYERS show besides that a name must not hide."
   (append (loop for (nil x y half) in spots collect (widened (box-around x y half) 2))
-          (and (member :designators layers)
-               (loop for robot in (snapshot-robots snapshot)
-                     append (loop for designator in (robot-image-designators robot)
-                                  collect (designator-box robot designator))))))
+          (loop for robot in (snapshot-robots snapshot) append (marked-spots robot layers))))
 
 (defun write-name (canvas name box)
+  "Write NAME in BOX, on white: what lines lie there end before it."
+  (destructuring-bind (left top right bottom) box
+    (with-gcontext (draw-gcontext* :foreground white*)
+      (draw-rectangle canvas draw-gcontext* left top (- right left) (- bottom top) t)))
   (with-color black*
     (draw-words canvas draw-gcontext* (+ 1 (first box)) (- (fourth box) 2) name
                 :size +name-size+)))

@@ -31,7 +31,7 @@
   (:export #:draw-terrain #:draw-movers #:draw-world #:users-scale #:check-layers #:check-scale
            #:draw-framed #:with-map-svg #:sample-of #:robot-color #:robot-title #:draw-names
            #:telling-what-breaks #:draw-way-line #:draw-start #:way-entry #:to-pixels
-           #:box-around #:overlap-p #:draw-view-margins
+           #:box-around #:overlap-p #:draw-view-margins #:view-edges
            #:draw-display #:display-title #:+displays+)
   ;; moments
   (:export #:moment-p #:moment-tick #:moment-kind #:moment-text #:moment-x #:moment-y

@@ -38,7 +38,7 @@ it is called, and in which colour it is shown: a name, or NIL for that of text."
     (sort (loop for name being the hash-keys of sizes collect name)
           (lambda (a b)
             (let ((size-a (gethash a sizes)) (size-b (gethash b sizes)))
-              (if (= size-a size-b) (string< a b) (> size-a size-b)))))))
+              (if (= size-a size-b) (name-before-p a b) (> size-a size-b)))))))
 
 (defun letters-of (world)
   "Return a hash table from what the things of WORLD are called, strings, to their letters: those of

@@ -18,7 +18,7 @@
            (or (char= +other+ char-b)
                (and (char/= +other+ char-a) (char-lessp char-a char-b))))
           ((char/= char-a char-b) (char> char-a char-b))
-          (t (string< (glyph-text a) (glyph-text b))))))
+          (t (name-before-p (glyph-text a) (glyph-text b))))))
 
 (defun sorted-legend (sheet)
   (sort (copy-list (sheet-legend sheet)) #'glyph<))

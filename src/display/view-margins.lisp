@@ -2,8 +2,21 @@
 
 (in-package :ars-magna.display)
 
-;;; A window shows a part of the map and has no room around it; so numbers and bar lie on the map,
-;;; on white plates. All is in pixels of the whole map: LEFT and TOP are where the view begins.
+;;; A window shows a part of the map. Numbers and bar stand in strips at its edges, from one end to
+;;; the other, and the map is in view between these: so they hide nothing that one could see there
+;;; otherwise. All is in pixels of the whole map: LEFT and TOP are where the view begins.
+
+(define-constant +strip-height+ 17 :documentation "How high the strip of numbers is, in pixels.")
+(define-constant +bar-strip-height+ 24
+  :documentation "How high the strip of the scale bar is, in pixels.")
+
+(defun view-edges (map layers)
+  "Return how many pixels at the left, top and bottom of a view of MAP the strips take that LAYERS
+ask for: a list."
+  (let ((numbers-p (member :coordinates layers)))
+    (list (if numbers-p (+ 11 (words-width (princ-to-string (map-height map)))) 0)
+          (if numbers-p +strip-height+ 0)
+          (if (member :scale-bar layers) +bar-strip-height+ 0))))
 
 (defun marks-between (start end step)
   "Return the multiples of STEP, in metres, from the pixel START to the pixel END."
@@ -11,28 +24,47 @@
         while (<= (to-pixels metres) end)
         collect metres))
 
-(defun draw-view-coordinates (canvas map left top width height)
-  (let ((step (steps-apart 60)))
-    (dolist (metres (marks-between (max 0 left)
-                                   (min (+ left width -12) (to-pixels (map-width map))) step))
-      (let ((text (princ-to-string metres)))
-        (draw-text-on-plate canvas (- (to-pixels metres) (/ (words-width text) 2)) (+ top 12)
-                            text)))
-    (dolist (metres (marks-between (max 0 (+ top 24))
-                                   (min (+ top height -24) (to-pixels (map-height map))) step))
-      (draw-text-on-plate canvas (+ left 3) (+ (to-pixels metres) 4) (princ-to-string metres)))))
+(defun draw-strip (canvas left top width height)
+  (with-gcontext (draw-gcontext* :foreground (svref grey* 58))
+    (draw-rectangle canvas draw-gcontext* left top width height t)))
 
-(defun draw-view-bar (canvas map left top height)
-  (let ((x (+ left 36)) (y (+ top height -16)))
-    (with-gcontext (draw-gcontext* :foreground white*)
-      (draw-rectangle canvas draw-gcontext* (- x 6) (- y 9)
-                      (+ 60 (to-pixels (bar-metres map))) 18 t))
-    (with-origin (canvas x 0)
-      (draw-scale-bar canvas map y))))
+(defun draw-notch (canvas x y end-x end-y)
+  (with-color +frame-ink+
+    (draw-segments canvas draw-gcontext* (list x y end-x end-y))))
+
+(defun draw-columns-strip (canvas map left top start end)
+  "Draw the numbers of metres from the left of MAP that are between the pixels START and END, in a
+strip that begins at LEFT, TOP."
+  (draw-strip canvas left top (- end left) +strip-height+)
+  (dolist (metres (marks-between (max 0 start) (min end (to-pixels (map-width map)))
+                                 (steps-apart 60)))
+    (let* ((text (princ-to-string metres)) (x (to-pixels metres)) (half (/ (words-width text) 2)))
+      (draw-notch canvas x (+ top 14) x (+ top 17))
+      (when (<= (+ left half) x (- end half))
+        (draw-text canvas (- x half) (+ top 11) text)))))
+
+(defun draw-rows-strip (canvas map left top width end)
+  "Draw the numbers of metres from the top of MAP that are between the pixels TOP and END, in a
+strip at LEFT that is WIDTH pixels wide."
+  (draw-strip canvas left top width (- end top))
+  (dolist (metres (marks-between (max 0 top) (min end (to-pixels (map-height map)))
+                                 (steps-apart 60)))
+    (let* ((text (princ-to-string metres)) (y (to-pixels metres)) (right (+ left width)))
+      (draw-notch canvas (- right 3) y right y)
+      (when (<= y (- end 6))
+        (draw-text canvas (- right 8 (words-width text)) (+ y 4) text)))))
 
 (defun draw-view-margins (canvas map layers left top width height)
   "Draw what LAYERS lists of :COORDINATES and :SCALE-BAR of MAP at the edges of a view of it, WIDTH
 by HEIGHT pixels, that begins LEFT and TOP pixels from the corner of MAP. To be called within
 WITH-CANVAS, with the origin in that corner."
-  (when (member :coordinates layers) (draw-view-coordinates canvas map left top width height))
-  (when (member :scale-bar layers) (draw-view-bar canvas map left top height)))
+  (destructuring-bind (left-edge top-edge bottom-edge) (view-edges map layers)
+    (let* ((right (+ left width)) (bottom (- (+ top height) bottom-edge)))
+      (when (member :coordinates layers)
+        ;; In this order: the first number of a row may reach into the corner, which is empty.
+        (draw-columns-strip canvas map left top (+ left left-edge) right)
+        (draw-rows-strip canvas map left (+ top top-edge) left-edge bottom))
+      (when (member :scale-bar layers)
+        (draw-strip canvas left bottom width bottom-edge)
+        (with-origin (canvas (+ left 36) 0)
+          (draw-scale-bar canvas map (+ bottom (floor bottom-edge 2))))))))

@@ -55,7 +55,8 @@ no part of the robot any more."
 (addition place-robot)
 (defun place-robot (robot x y angle)
   "Put ROBOT at (X,Y) heading ANGLE at once, without error and ignoring obstacles: a change from
-outside, as the prompt's POS and ANGLE make. Signals WRONG-ARGUMENT (manual E). See reading 114."
+outside, as the prompt's POS and ANGLE make. That it is inside a wall then is a warning among the
+messages. Signals WRONG-ARGUMENT (manual E). See reading 114."
   (check-argument place-robot robot (robot-p robot) "a robot")
   (check-of-type 'place-robot 'x x 'number)
   (check-of-type 'place-robot 'y y 'number)
@@ -66,7 +67,8 @@ outside, as the prompt's POS and ANGLE make. Signals WRONG-ARGUMENT (manual E). 
                              :expected (format nil "a point of the map: 0 <= x < ~D, 0 <= y < ~D"
                                                (map-width map) (map-height map)))))
   (changing ((robot-world robot) place-robot robot x y angle)
-    (set-robot-pose robot x y angle))
+    (set-robot-pose robot x y angle)
+    (tell-if-in-wall (princ-to-string (robot-name robot)) (world-map (robot-world robot)) x y))
   robot)
 
 (define-operator 'place-robot '(robot number number angle) #'place-robot)

@@ -44,16 +44,31 @@ past."
 ;;; whatever thread, for people to read. It changes nothing.
 
 (define-constant +remark-limit+ 1000 :documentation "How many remarks a journal has at most.")
+(define-constant +part-limit+ 500
+  :documentation "How many remarks a journal has when no more of parts of plans are added: a plan
+that tries again and again has many such, and others are to have room.")
+
+(defun room-for-remark-p (journal kind)
+  (< (length (journal-remarks journal)) (if (eq kind :part) +part-limit+ +remark-limit+)))
 
 (defun remark (simulation kind text &optional robot)
   "Let the journal of SIMULATION, if it keeps one, say that something of KIND, a keyword, happened
-now, of which TEXT tells, to ROBOT, if given."
+now, of which TEXT tells, to ROBOT, if given. Return the remark, or NIL."
   (let ((journal (simulation-journal simulation)))
-    (when (and journal (< (length (journal-remarks journal)) +remark-limit+))
-      (atomic-push (list (simulation-tick simulation) kind text
-                         (and robot (qualified-name (robot-name robot)))
-                         (and robot (robot-x robot)) (and robot (robot-y robot)))
-                   (journal-remarks journal)))))
+    (when (and journal (room-for-remark-p journal kind))
+      (let ((remark (list (simulation-tick simulation) kind text
+                          (and robot (qualified-name (robot-name robot)))
+                          (and robot (robot-x robot)) (and robot (robot-y robot)))))
+        (atomic-push remark (journal-remarks journal))
+        remark))))
+
+(defun unremark (simulation remark)
+  "Let the journal of SIMULATION say no more what REMARK, as REMARK has returned it, says."
+  (let ((journal (simulation-journal simulation)))
+    (when journal
+      (loop for remarks = (journal-remarks journal)
+            until (swap-if (journal-remarks journal) remarks
+                           (remove remark remarks :test #'eq))))))
 
 (defun remark-error (text)
   "Let the journal of the run at work here, if any, tell of an error in users' code."

@@ -32,7 +32,7 @@ takes part in it. Manual 2.3 and appendix A.")
            #:rewind #:*rewind-hooks* #:*rewound-end-hooks*)
   ;; journal
   (:export #:journal #:make-journal #:journal-p #:journal-header #:journal-entries
-           #:journal-end #:journal-length #:journal-remarks #:remark #:*journal-limit*
+           #:journal-end #:journal-length #:journal-remarks #:remark #:unremark #:*journal-limit*
            #:note #:begin-journal
            #:end-of-journal #:truncated-journal)
   ;; plain-data

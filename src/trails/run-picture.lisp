@@ -105,15 +105,6 @@ moments that were seen, and the moments OWN with their places."
          (boxes (draw-spots canvas snapshot spots along)))
     (when (member :names layers) (draw-names canvas snapshot layers (append boxes along)))))
 
-(defun text-lines (text most)
-  "Return TEXT in lines of no more than MOST characters, broken between words where that can be."
-  (loop while (> (length text) most)
-        collect (let ((end (or (position #\Space text :from-end t :end (1+ most)) most)))
-                  (prog1 (subseq text 0 end)
-                    (setf text (string-left-trim " " (subseq text end)))))
-          into lines
-        finally (return (append lines (list text)))))
-
 (defun draw-notes (canvas notes left y width)
   "Write NOTES, lists of a number or NIL and a text, below each other, no wider than WIDTH. Return
 where the next would be."
@@ -122,7 +113,7 @@ where the next would be."
           do (when number
                (draw-words canvas draw-gcontext* (+ left 16) y (princ-to-string number)
                            :size +note-size+ :anchor :end))
-             (dolist (line (text-lines text most))
+             (dolist (line (wrapped-text text most))
                (draw-words canvas draw-gcontext* (+ left 24) y line :size +note-size+)
                (incf y +note-step+)))
     y))
@@ -165,15 +156,15 @@ where the next would be."
   "Save in FILE, replacing it, a picture of the run that JOURNAL holds (a journal, or a file with
 one; by default that of the current simulation) up to the tick UNTIL or its end: its world as it is
 then, the ways that its robots went, and numbers where something happened that is told of below:
-that they grasped, let go of or stowed something, that a command failed, that a plan failed or was
-ended, that there was an error in your code. KINDS, a list, chooses among :GRASP, :RELEASE, :STOW,
-:FAILURE, :PLAN and :ERROR. There are LIMIT lines below the map at most, or any number if it is NIL:
-where there is more to tell, what matters least is left out, and counted; that a robot was blocked
-or lost a track, as plans expect, before other failures of commands, and these before the rest.
-MOMENTS, a list of moments or of lists of a tick, a string and, if you like, a robot's name, are
-told of besides. TITLE stands above. FILE and the other arguments are those of SAVE-PICTURE. Return
-the file's truename. Signals WRONG-ARGUMENT, what REPLAY does, and MISUSE without the program that
-PNG needs, or where no journal is kept."
+that they grasped, let go of or stowed something, that a command failed, that a plan or a part of
+one failed or was ended, that there was an error in your code. KINDS, a list, chooses among :GRASP,
+:RELEASE, :STOW, :FAILURE, :PLAN, :PART and :ERROR. There are LIMIT lines below the map at most, or
+any number if it is NIL: where there is more to tell, what matters least is left out, and counted;
+that a robot was blocked or lost a track, as plans expect, before other failures of commands and of
+parts of plans, and these before the rest. MOMENTS, a list of moments or of lists of a tick, a
+string and, if you like, a robot's name, are told of besides. TITLE stands above. FILE and the other
+arguments are those of SAVE-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, what REPLAY
+does, and MISUSE without the program that PNG needs, or where no journal is kept."
   (let* ((kind (picture-kind 'save-run-picture file))
          (journal (journal-meant journal))
          (own (check-run-picture journal moments until :kinds kinds :limit limit :title title

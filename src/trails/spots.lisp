@@ -78,6 +78,7 @@ SEVERAL-P: say of which robot each is."
   '((:grasp "grasp" "grasps") (:release "letting go" "times of letting go")
     (:stow "thing stowed" "things stowed") (:failure "failure of a command" "failures of commands")
     (:plan "plan that failed or was ended" "plans that failed or were ended")
+    (:part "failure or end within a plan" "failures or ends within plans")
     (:error "error in your code" "errors in your code") (:note "note of yours" "notes of yours"))
   "What one moment of each kind is called, and several.")
 
@@ -143,12 +144,21 @@ number or NIL and a text, LIMIT at most (NIL: of all). See HAPPENINGS-OF."
            (<= (fourth box) (to-pixels (map-height map)))
            (notany (lambda (other) (overlap-p box other)) taken)))))
 
+(defun pulled-onto (map place)
+  "Return PLACE, or what is nearest to it of where a number is wholly on MAP; the middle of a map
+that is less wide or high."
+  (let ((reach (1+ +number-radius+)))
+    (flet ((within (at size) (if (< size (* 2 reach)) (/ size 2) (clamp at reach (- size reach)))))
+      (list (within (first place) (to-pixels (map-width map)))
+            (within (second place) (to-pixels (map-height map)))))))
+
 (defun place-for-number (map x y taken rather-not)
-  "Return the point (x y) for the number of a spot at X, Y: on MAP, where none of the boxes TAKEN
-is and, if possible, none of RATHER-NOT."
+  "Return the point (x y) for the number of a spot at X, Y: on MAP, and if possible where none of
+the boxes TAKEN is, nor of RATHER-NOT."
   (let ((places (places-around x y)))
     (flet ((free (taken) (find-if (lambda (place) (free-place-p place map taken)) places)))
-      (or (free (append taken rather-not)) (free taken) (first places)))))
+      (or (free (append taken rather-not)) (free taken) (free '())
+          (pulled-onto map (first places))))))
 
 (defun draw-spot (canvas x y place text)
   "Draw a dot at X, Y, and TEXT, its number, at PLACE, with a line from there."

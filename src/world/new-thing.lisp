@@ -61,7 +61,8 @@ hand that holds something."
                        (recipe-attributes recipe)
                        :contents (recipe-contents recipe) :kickers (recipe-kickers recipe))
         (let ((thing (follow-recipe recipe world)))
-          (cond (world (relocate thing place x y))
+          (cond ((and world (eq place :floor)) (put-by-hand thing x y))
+                (world (relocate thing place x y))
                 (place (place-thing thing place x y)))
           thing)))))
 

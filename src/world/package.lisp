@@ -73,7 +73,7 @@
   ;; placing
   (:export #:note-unknown-substance)
   (:export #:place-thing #:move-thing #:destroy-thing #:new-thing #:make-new-thing
-           #:destroyed-thing)
+           #:destroyed-thing #:tell-if-in-wall)
   ;; undeclared
   (:export #:note-strange-name #:warn-of-slips #:value-like)
   ;; kickers

@@ -97,6 +97,13 @@ The primitive: it checks and tells nothing. Return THING."
                 (append (location-contents location) (list thing))))))
   thing)
 
+;; Whoever puts something by hand may put it anywhere on the map; but where that is of no use to
+;; anybody it is said, in the same words whoever does so and how.
+(defun tell-if-in-wall (what map x y)
+  "Queue a warning if WHAT, a string, has been put into a wall of MAP at (X,Y)."
+  (when (wall-at-p map x y)
+    (warning-set (phrase "~A is inside a wall now, at ~,2F, ~,2F" what x y))))
+
 (defun check-inside (operator map x y)
   (unless (and (within-reason-p x) (within-reason-p y) (map-index map x y))
     (reject-value operator "position" (list x y)
@@ -148,8 +155,8 @@ The primitive: it checks and tells nothing. Return THING."
 (defun move-thing (thing location &optional (y nil y-p))
   "Move THING to LOCATION: a container, hand or storage bin, or a position, either a list (x y)
 or, as two arguments, its coordinates in metres. Walls, lids and capacities do not
-matter. Signals WRONG-ARGUMENT outside the map, MISUSE for prototypes, things
-destroyed, and a container put into itself. Return THING."
+matter; that it ends inside a wall is a warning among the messages. Signals WRONG-ARGUMENT outside
+the map, MISUSE for prototypes, things destroyed, and a container put into itself. Return THING."
   (check-movable 'move-thing thing)
   (let ((position (cond (y-p (list location y))
                         ((number-pair-p location) location))))
@@ -159,8 +166,13 @@ destroyed, and a container put into itself. Return THING."
         (check-holder 'move-thing thing location))
     (changing ((thing-world thing) move-thing thing (or position location))
       (if position
-          (relocate thing :floor (first position) (second position))
+          (apply #'put-by-hand thing position)
           (relocate thing location)))))
+
+(defun put-by-hand (thing x y)
+  (relocate thing :floor x y)
+  (tell-if-in-wall (princ-to-string thing) (world-map (thing-world thing)) x y)
+  thing)
 
 (defun %destroy-thing (thing)
   (let ((old (thing-location thing)) (x (thing-x thing)) (y (thing-y thing)))
