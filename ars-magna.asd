@@ -324,6 +324,7 @@
                 :components ((:file "clim-window") (:file "clim-layout") (:file "clim-pointing")
                              (:file "clim-progress") (:file "clim-plans")
                              (:file "clim-talking") (:file "clim-going-on")
+                             (:file "clim-awaiting")
                              (:file "clim-x-server") (:file "clim-keyboard")))))
 
 (defsystem "ars-magna/tests"

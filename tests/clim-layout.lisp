@@ -42,7 +42,7 @@
     (is (>= (fourth (place-of 'window::transcript places)) 60))))
 
 (test layout.who-needs-little-gets-it
-  (is (null (set-exclusive-or '((window::hands 20) (window::state 90) (window::cameras 90))
+  (is (null (set-exclusive-or '((window::hands 20) (window::state 86) (window::cameras 94))
                               (window::share-height '((window::state 150) (window::cameras 300)
                                                       (window::hands 20))
                                                     200)
@@ -51,6 +51,40 @@
              (window::share-height '((window::state 30) (window::designators 10)
                                      (window::hands 20))
                                    200))))
+
+(test layout.displays-of-text-show-whole-lines
+  "But for the last, which has what is left over."
+  (loop for height from 40 to 400 by 7
+        for shares = (window::share-height '((window::state 150) (window::hands 300)
+                                             (window::bins 250))
+                                           height)
+        do (is (= height (reduce #'+ shares :key #'second)))
+           (when (< 70 height)
+             (is (every (lambda (share) (= 6 (mod (second share) 16))) (butlast shares))))))
+
+(test layout.sections-go-down-beside-the-commands-of-a-low-window
+  (flet ((bottom (name places)
+           (destructuring-bind (left top width height) (place-of name places)
+             (declare (ignore left width))
+             (+ top height)))
+         (needs (section) (second (assoc section window::*first-needs*))))
+    (let ((places (window::arrange (window::make-wishes) #'needs 640 480)))
+      (is (= (bottom 'window::transcript places) (bottom 'window::plan-title places)))
+      (loop for (section lines) in '((window::state 4) (window::cameras 3) (window::hands 1)
+                                     (window::bins 1))
+            do (is (<= (+ 6 (* 16 lines)) (fourth (place-of section places))))))
+    (let ((places (window::arrange (window::make-wishes) #'needs 1280 900)))
+      (is (<= (bottom 'window::plan-title places)
+              (second (place-of 'window::low-splitter places)))))))
+
+(test layout.lines-that-would-be-cut-are-left-out
+  (let ((canvas (make-instance 'window::clim-canvas :medium nil :bottom 38)))
+    (flet ((whole (offset)
+             (setf (window::canvas-dy canvas) (- offset))
+             (loop for base from 18 to 66 by 16 collect (window::uncut-p canvas base))))
+      (is (equal '(t t nil nil) (whole 0)))
+      (is (equal '(nil t t nil) (whole 16)))
+      (is (equal '(nil nil t nil) (whole 28))))))
 
 (test layout.plans-have-a-column-where-there-is-room
   (let ((wishes (window::make-wishes :folded '())))

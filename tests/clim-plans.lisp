@@ -155,6 +155,33 @@
                               (search "from now on" (window::switch-label subject)))))
         (is (equal '("trace-plans on") (lines-given window)))))))
 
+(defun trace-lit-p (window)
+  "True if the switch Trace of WINDOW is lit when its plans have been looked at."
+  (window::plan-look-traced-p (window::plan-look-of (seen-plans window))))
+
+(test plan-switches.trace-is-lit-as-the-prompt-says
+  "Also where no plan is under way, as after REWIND to a tick before there was one."
+  (in-window (window robot)
+    (is (not (trace-lit-p window)))
+    (let ((ars-magna.rpl-robot:*trace-plans* t))
+      (is (trace-lit-p window))
+      (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
+      (run:run-ticks 3)
+      (is (trace-lit-p window)))))
+
+(test plan-switches.a-trace-is-kept-after-rewind-to-a-tick-before-it-was-wanted
+  (in-window (window robot)
+    (run:keep-forks)
+    (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
+    (run:run-ticks 3)
+    (let ((ars-magna.rpl-robot:*trace-plans* t))
+      (ars-magna.rpl:start-trace (ars-magna.rpl-robot:interface-runner
+                                  (window::interface-of (time:current-simulation))))
+      (run:run-ticks 2)
+      (run:rewind 3)
+      (window:watch-simulation (window:window-watcher window) (time:current-simulation))
+      (is (trace-lit-p window)))))
+
 (test plan-switches.are-lines-of-the-prompt
   (let ((names (mapcar #'ars-magna.cli:line-name (ars-magna.cli:all-lines))))
     (dolist (name '("TRACE-PLANS" "END-TASK" "STEP-TASK" "PLAN-TREE" "WHY" "PLAN" "REWIND-TO"))
@@ -187,6 +214,38 @@
          (window::follow-prompt nil fork run)
          (is (eq run (window::watcher-simulation watcher)))))
      robot)))
+
+(test following.shows-what-a-line-has-changed-between-ticks-of-a-fork
+  "Also if no journal tells of it."
+  (in-studio (robot)
+    (call-with-open-window
+     (lambda (window)
+       (let ((run (time:current-simulation)) (fork (run:fork-simulation))
+             (watcher (window:window-watcher window)))
+         (setf (run:simulation-journal fork) nil)
+         (window::follow-prompt nil nil run)
+         (run:call-in-fork
+          fork
+          (lambda ()
+            (window::follow-prompt nil run fork)
+            (robot:place-robot (first (run:simulation-robots fork)) 2.5 2.5 0)
+            (window::follow-prompt nil fork fork)
+            (is (= 2.5d0 (display:robot-image-x (window::window-robot window))))))))
+     robot)))
+
+(test following.windows-hear-when-what-a-line-asked-for-is-done
+  "Where the prompt lets ticks pass for that."
+  (in-studio (robot)
+    (let* ((seen '())
+           (cli:*whereabouts-hooks* (list (lambda (session old new)
+                                            (declare (ignore session old))
+                                            (push (run:simulation-tick new) seen))))
+           (session (cli:make-session :input (make-string-input-stream ""))))
+      (setf (cli::session-lisp-p session) t)
+      (command:robot-turn robot 1 nil)
+      (cli::catch-up session)
+      (is (plusp (run:simulation-tick (time:current-simulation))))
+      (is (equal (list (run:simulation-tick (time:current-simulation))) seen)))))
 
 (test following.leaves-windows-of-other-prompts-alone
   (in-studio (robot)

@@ -28,7 +28,89 @@
           (is (mentions-p text "Cell 3, 4: "))
           (is (mentions-p text "BOX#1 at 3.50, 4.50"))
           (is (mentions-p text ":color red")))
-        (is (mentions-p (window::strip-text window) "BOX#1"))))))
+        (is (mentions-p (second (window::strip-lines window)) "BOX#1"))))))
+
+(test pointing.the-strip-tells-of-what-is-under-a-resting-mouse-now
+  "What was there moves away; the view moves."
+  (in-window (window robot)
+    (window:refresh window)
+    (let ((pane (painted-world window)))
+      (flet ((told-p (name) (mentions-p (window::window-hint window) name)))
+        (window::hover pane 28 36)
+        (is (told-p "BOX#1"))
+        (world:move-thing (world:find-thing "BOX#1") (list 15.5 2.5))
+        (window::publish (window:window-watcher window) (time:current-simulation))
+        (window:refresh window)
+        (is (told-p "Cell 3, 4"))
+        (is (not (told-p "BOX#1")))
+        (window::zoom pane 2)
+        (is (told-p "Cell 1, 2"))
+        (window::hint window "That is now.")
+        (window::repaint pane)
+        (is (told-p "That is now.") "which stays until the mouse moves")
+        (window::hover pane 28 36)
+        (window::rearrange window)
+        (is (equal "" (window::window-hint window)) "panes may have moved")))))
+
+(test strip.what-is-too-long-is-told-by-a-click
+  (in-window (window robot)
+    (setf (window::watcher-progress (window:window-watcher window))
+          (window::make-progress :state :busy :more (make-string 300 :initial-element #\x)))
+    (window::click (pane window 'window::strip) :left 5 5)
+    (is (mentions-p (remove #\Newline (said-in window)) (make-string 300 :initial-element #\x)))))
+
+;;; Panels, and where keys go.
+
+(defun press-key-in (pane name)
+  (clim:handle-event pane (make-instance 'clim:key-press-event
+                                         :sheet pane :key-name name :key-character nil
+                                         :modifier-state 0 :x 0 :y 0)))
+
+(test panels.close-by-their-key-and-by-escape
+  (in-window (window robot)
+    (flet ((press (character) (window::do-key window nil character)))
+      (press #\l)
+      (is (window::popup-open-p window))
+      (press #\l)
+      (is (not (window::popup-open-p window)))
+      (press #\l)
+      (press #\?)
+      (is (row-with window "splitters") "another key opens its own")
+      (dolist (name '(window::interactor window::world))
+        (press #\l)
+        (press-key-in (pane window name) :escape)
+        (is (not (window::popup-open-p window)))))))
+
+(defvar *focus* nil "In a list, the pane that keys go to, where a test is about that.")
+
+;; By itself the null port gives keys to nobody.
+(defmethod clim:port-keyboard-input-focus :around ((port clim-null::null-port))
+  (if *focus* (first *focus*) (call-next-method)))
+
+(defmethod (setf clim:port-keyboard-input-focus) :around (sheet (port clim-null::null-port))
+  (if *focus* (setf (first *focus*) sheet) (call-next-method)))
+
+(test keys.go-to-the-window-that-was-clicked-last
+  "Though the thread of another one comes to its own click only then."
+  (in-window (one robot)
+    (call-with-window
+     (lambda (other)
+       (let ((*focus* (list nil)) (port (clim:port one)))
+         (flet ((click-in (window)
+                  (let ((pane (pane window 'window::interactor)))
+                    (window::give-keys-by port (make-instance 'clim:pointer-button-press-event
+                                                              :sheet pane :x 5 :y 5
+                                                              :button clim:+pointer-left-button+
+                                                              :modifier-state 0)))))
+           (click-in one)
+           (click-in other)
+           (window::type-into (pane other 'window::interactor))
+           (window::type-into (pane one 'window::interactor))
+           (is (window::focused-p (pane other 'window::interactor)))
+           (is (not (window::focused-p (pane one 'window::interactor))))
+           (click-in one)
+           (is (window::focused-p (pane one 'window::interactor))))))
+     robot)))
 
 (test pointing.a-click-picks
   (in-window (window robot)

@@ -20,8 +20,10 @@
 
 (define-line "END-TASK" (session (n :task-number "the number of a task under way")) (:planning)
     "End the task N of a plan, and all that it consists of: it evaporates, as when what it is part
-of needs it no longer. What it has told the robot to do is interrupted. STOP-PLAN ends whole plans."
+of needs it no longer, without stopping if it is stepped. What it has told the robot to do is
+interrupted. STOP-PLAN ends whole plans."
   (let ((task (task-meant n)))
+    (step-task task nil)
     (end-plan task)
     (format t "Task ~A ends.~%" (task-text task))))
 

@@ -65,8 +65,13 @@ may be expected to. Only the thread that has the prompt can ask him for a value.
   "Return in words where BREAKAGE is, if not in this thread."
   (let ((thread (breakage-thread breakage)))
     (cond ((eq thread (session-thread session)) nil)
-          ((and *simulation* (eq thread (simulation-thread *simulation*))) "the simulator's thread")
-          (t "another thread"))))
+          ((simulator-p session thread) "the simulator's thread")
+          (t (format nil "another thread, ~A" (thread-name thread))))))
+
+(defun simulator-p (session thread)
+  "True if THREAD passes the ticks of the run that SESSION listens to."
+  (let ((simulation (session-simulation session)))
+    (and simulation (eq thread (simulation-thread simulation)))))
 
 (defun break-words (condition)
   "Return what CONDITION says: on a line, unless it is that a plan has stopped, with its stack."
@@ -101,7 +106,27 @@ may be expected to. Only the thread that has the prompt can ask him for a value.
                                  (break-words (breakage-condition breakage))
                                  (whereabouts session breakage))
                          console)
-                 console)))
+                 console)
+    (restore-prompt console)
+    (finish-output console)))
+
+(defun breaks-awaiting (session)
+  "Return what waits for the user of SESSION to say how it goes on, what is asked about now first."
+  (let ((own (session-debugging-p session)) (others (session-breaks session)))
+    (cond ((null own) others)
+          ((breakage-told-p own) (cons own others))
+          (t (append others (list own))))))
+
+(defun break-line (session breakage)
+  "Return on one line what has broken and where, if not in the thread of SESSION."
+  (let ((words (break-words (breakage-condition breakage))))
+    (format nil "~A~@[ (in ~A)~]" (subseq words 0 (position #\Newline words))
+            (whereabouts session breakage))))
+
+(defun awaited-answers (session)
+  "Return a list of what waits for the user of SESSION to say how it goes on, in words, what is
+asked about now first. Any thread may ask."
+  (mapcar (lambda (breakage) (break-line session breakage)) (breaks-awaiting session)))
 
 ;;; What the user says.
 
@@ -178,11 +203,11 @@ user's."
 
 ;;; How a program waits.
 
-(defun call-debugging (session function)
-  "Call FUNCTION, which reads lines for what has broken in this thread. What breaks elsewhere
-meanwhile comes after that."
+(defun call-debugging (session breakage function)
+  "Call FUNCTION, which reads lines for BREAKAGE, of this thread. What breaks elsewhere meanwhile
+comes after that."
   (let ((before (session-debugging-p session)))
-    (setf (session-debugging-p session) t)
+    (setf (session-debugging-p session) breakage)
     (unwind-protect (funcall function)
       (setf (session-debugging-p session) before)
       (when (and (session-breaks session) (not before) (not (session-over-p session)))
@@ -209,10 +234,11 @@ meanwhile comes after that."
            (tell-break session breakage)
            (loop until (session-over-p session)
                  do (call-guarded session (lambda () (read-debug-line session breakage))))))
-    (call-debugging session (lambda ()
-                              (if (session-visit session)
-                                  (call-aside #'read-lines)
-                                  (read-lines)))))
+    (call-debugging session breakage
+                    (lambda ()
+                      (if (session-visit session)
+                          (call-aside #'read-lines)
+                          (read-lines)))))
   (invoke-restart 'end-line))
 
 (defun announce-break (session breakage)

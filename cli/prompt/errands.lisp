@@ -130,5 +130,6 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
   (heed-rewind session)
   (if (waits-p session)
       (progn (await-errands session)
-             (when (shiftf (session-lisp-p session) nil) (settle)))
+             (when (shiftf (session-lisp-p session) nil) (settle))
+             (tell-whereabouts session))
       (setf (session-errands session) (remove-if #'errand-done-p (session-errands session)))))

@@ -49,8 +49,8 @@
   ;; The thread that reads, and what has entered the debugger in others, oldest first.
   (thread nil)
   (breaks '() :type list)
-  ;; True while it reads lines for what has entered the debugger in its own thread.
-  (debugging-p nil :type boolean)
+  ;; What has entered the debugger in its own thread, while it reads lines for that.
+  (debugging-p nil)
   ;; That of the last plan, if it failed, and the plan's name, in a list.
   (failure nil)
   ;; What the plans are called that it has started; those of a rewound run are its own, too.

@@ -97,17 +97,18 @@ SAVE-PLAN-TIMELINE.")
 
 (defun call-with-plans (function interface)
   "Call FUNCTION while nobody else touches the plans of INTERFACE. Signals MISUSE if one of them is
-known to be at Lisp code that does not return."
+known to be at Lisp code that does not return. One that waits in a debugger can be answered here."
   (check-not-kept interface)
   (if (holding-p interface)
       (funcall function)
       (let ((waiting-p t))
         (atomic-incf (interface-wanted interface))
         (unwind-protect
-             (with-lock ((interface-lock interface))
-               (atomic-decf (interface-wanted interface))
-               (setf waiting-p nil)
-               (call-holding function interface))
+             (call-when-free (interface-lock interface)
+                             (lambda ()
+                               (atomic-decf (interface-wanted interface))
+                               (setf waiting-p nil)
+                               (call-holding function interface)))
           (when waiting-p (atomic-decf (interface-wanted interface)))))))
 
 (defmacro with-plans ((interface) &body body)

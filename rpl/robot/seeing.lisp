@@ -13,6 +13,16 @@
 
 (pushnew 'trace-if-wanted *plan-start-hooks*)
 
+;; What was kept of the run, to go back to, may be older than that a trace is wanted.
+(defun trace-rewound (old new)
+  "Let the plans of NEW, which goes on in the place of OLD, keep a trace if *TRACE-PLANS* says so."
+  (declare (ignore old))
+  (when *trace-plans*
+    (dolist (interface (remove-if-not #'interface-p (simulation-participants new)))
+      (with-plans (interface) (start-trace (interface-runner interface))))))
+
+(pushnew 'trace-rewound *rewind-hooks*)
+
 (defun call-with-plans-in-use (function)
   "Call FUNCTION with the runner of the plans in use, none of which goes on meanwhile, or with NIL."
   (if *interface*

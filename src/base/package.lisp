@@ -86,7 +86,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   ;; threads
   (:export #:make-lock #:with-lock #:call-if-free #:make-weak #:weak-value
            #:make-semaphore #:signal-semaphore #:wait-on-semaphore
-           #:*while-waiting* #:wait-a-while #:wait-patiently
+           #:*while-waiting* #:wait-a-while #:wait-patiently #:call-when-free
            #:start-thread #:own-thread-p #:join-thread #:interrupt-thread #:thread-alive-p
            #:current-thread #:yield-thread #:thread-name #:spread-specials)
   ;; interrupts, debuggers

@@ -52,6 +52,14 @@ succeeded. What others need this thread for meanwhile does not count."
         thereis (wait-a-while semaphore (min left 0.2))
         while (< 0.2 left)))
 
+(defun call-when-free (lock function)
+  "Call FUNCTION while holding LOCK, when no other thread holds that, and return its values. What
+others need this thread for meanwhile is done."
+  (loop
+    (sb-thread:with-mutex (lock :timeout 0.2)
+      (return-from call-when-free (funcall function)))
+    (funcall *while-waiting*)))
+
 (defvar *own-thread-p* nil "True in threads that START-THREAD has started.")
 
 (defun own-thread-p ()

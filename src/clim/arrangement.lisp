@@ -5,16 +5,22 @@
 ;;; Rows from top to bottom: the bar, the displays, a splitter, the transcript, the line that is
 ;;; typed, the strip. In the row of displays the world is on the left, then a splitter, then a
 ;;; column of sections, each a title with a display below it; where there is room, plans have a
-;;; column of their own before that, and a splitter. Nothing here knows CLIM: a part is a name, a
-;;; place is (name left top width height), in pixels.
+;;; column of their own before that, and a splitter. In a low window the column of sections goes on
+;;; down beside the transcript, for else there would be room for few of their lines. Nothing here
+;;; knows CLIM: a part is a name, a place is (name left top width height), in pixels.
 
 (define-constant +title-height+ 17 :documentation "How high titles of displays are, in pixels.")
 (define-constant +bar-height+ 26 :documentation "How high the tool bar is, in pixels.")
-(define-constant +strip-height+ 20 :documentation "How high the status strip is, in pixels.")
+(define-constant +strip-height+ 36 :documentation "How high the status strip is, in pixels.")
 (define-constant +prompt-height+ 36 :documentation "How high the place to type in is, in pixels.")
 (define-constant +splitter+ 6 :documentation "How thick splitters are, in pixels.")
 (define-constant +wide+ 1500
   :documentation "From what width of a window on plans have a column of their own, in pixels.")
+
+(define-constant +low+ 700
+  :documentation "Below what height of a window sections go on beside the transcript, in pixels.")
+(define-constant +edge+ 6
+  :documentation "How far below the top of a section its first line begins, in pixels.")
 
 (define-constant +sections+ '(state designators cameras hands bins plan)
   :test #'equal
@@ -76,15 +82,32 @@ is left over goes to the designators, or the plan; or else what is fair."
         ((<= (reduce #'+ needs :key #'second) height) (give-rest needs height))
         (t (share-fairly needs height))))
 
+(defun whole-lines (height)
+  "Return the most pixels up to HEIGHT that hold whole lines of text, but one line at least."
+  (+ +edge+ (* +line-height+ (max 1 (floor (- height +edge+) +line-height+)))))
+
 (defun share-fairly (needs height)
-  "Return shares of HEIGHT, which is not enough for NEEDS: those who need less than others get it."
+  "Return shares of HEIGHT, which is not enough for NEEDS: those who need less than others get it,
+the others as many whole lines."
   (let* ((fair (floor height (max 1 (length needs))))
          (modest (remove-if (lambda (need) (> (second need) fair)) needs))
-         (greedy (set-difference needs modest :test #'eq)))
+         (greedy (remove-if (lambda (need) (member need modest)) needs)))
     (if (null modest)
-        (loop for (section) in needs collect (list section fair))
+        (share-lines needs fair height)
         (append modest
                 (share-fairly greedy (- height (reduce #'+ modest :key #'second)))))))
+
+(defun share-lines (needs fair height)
+  "Return shares of HEIGHT: each of NEEDS gets the whole lines that FAIR holds; the first get the
+lines that are left, the last the pixels."
+  (let* ((share (min (whole-lines fair) (max 0 fair)))
+         (rest (- height (* share (length needs)))))
+    (loop for ((section) . more) on needs
+          for extra = (cond ((null more) rest)
+                            ((<= +line-height+ rest) +line-height+)
+                            (t 0))
+          do (decf rest extra)
+          collect (list section (+ share extra)))))
 
 (defun give-rest (shares height)
   "Return SHARES with what they leave of HEIGHT added to one of them."
@@ -114,37 +137,46 @@ is left over goes to the designators, or the plan; or else what is fair."
 
 ;;; The whole.
 
-(defun place-plan-column (wishes width left top height)
-  "Return the places of the column of plans, which begins at LEFT, and of the splitter behind it."
+(defun place-plan-column (wishes width left top height down)
+  "Return the places of the column of plans, which begins at LEFT, and of the splitter behind it,
+which is DOWN pixels high."
   (let ((plan (plan-width wishes width)))
     (if (plusp plan)
         (append (place-section 'plan left top plan (- height +title-height+))
-                (list (list 'plan-splitter (+ left plan) top +splitter+ height)))
+                (list (list 'plan-splitter (+ left plan) top +splitter+ down)))
         (list (list 'plan-splitter left top 0 0)))))
 
-(defun place-displays (wishes needs width top height)
-  "Return the places of the row of displays, which begins at TOP and is HEIGHT pixels high."
+(defun place-displays (wishes needs width top height down)
+  "Return the places of the row of displays, which begins at TOP and is HEIGHT pixels high; the
+column of sections, DOWN pixels."
   (let* ((column (details-width wishes width))
          (own-p (plan-column-p wishes width))
          (plan (if own-p (+ (plan-width wishes width) +splitter+) 0))
          (world (- width column plan +splitter+))
          (left (+ world +splitter+)))
     (append (place-section 'world 0 top world (- height +title-height+))
-            (list (list 'side-splitter world top +splitter+ height))
-            (place-plan-column wishes width left top height)
+            (list (list 'side-splitter world top +splitter+ (if own-p height down)))
+            (place-plan-column wishes width left top height down)
             (place-sections (if own-p (remove 'plan +sections+) +sections+) needs
-                            (wishes-folded wishes) (+ left plan) top column height))))
+                            (wishes-folded wishes) (+ left plan) top column down))))
+
+(defun place-low (width top bottom)
+  "Return the places of the splitter above the transcript, which begins at TOP, and of that."
+  (let ((low (+ top +splitter+)))
+    (cons (list 'low-splitter 0 top width +splitter+)
+          (place-section 'transcript 0 low width (- bottom low +title-height+)))))
 
 (defun arrange (wishes needs width height)
   "Return the places of all parts of a window of WIDTH times HEIGHT pixels, as WISHES want it. NEEDS
 is a function from a section to how many pixels high it would like to be."
   (let* ((strip (- height +strip-height+))
          (prompt (- strip +prompt-height+))
-         (low (- prompt (transcript-height wishes height)))
-         (splitter (- low +splitter+)))
+         (splitter (- prompt (transcript-height wishes height) +splitter+))
+         (down-p (< height +low+))
+         (column (+ (details-width wishes width) +splitter+)))
     (append (list (list 'bar 0 0 width +bar-height+))
-            (place-displays wishes needs width +bar-height+ (- splitter +bar-height+))
-            (list (list 'low-splitter 0 splitter width +splitter+))
-            (place-section 'transcript 0 low width (- prompt low +title-height+))
+            (place-displays wishes needs width +bar-height+ (- splitter +bar-height+)
+                            (- (if down-p prompt splitter) +bar-height+))
+            (place-low (if down-p (- width column) width) splitter prompt)
             (list (list 'interactor 0 prompt width +prompt-height+)
                   (list 'strip 0 strip width +strip-height+)))))

@@ -10,6 +10,8 @@
    (subjects :initform '() :accessor canvas-subjects)
    ;; The box drawn in so far, or NIL outside of subjects.
    (reach :initform nil :accessor canvas-reach)
+   ;; How high what it paints on is, in pixels, if text that would be cut there is left out; or NIL.
+   (bottom :initarg :bottom :initform nil :reader canvas-bottom)
    (dx :initform 0 :accessor canvas-dx)
    (dy :initform 0 :accessor canvas-dy))
   (:documentation "A canvas that paints on a medium of CLIM."))
@@ -114,10 +116,16 @@ it is inside the box X, Y, WIDTH, HEIGHT of pixels."
 (defparameter *text-style* (clim:make-text-style :fix :roman 12)
   "How text is written on CLIM's canvases.")
 
+(defun uncut-p (canvas y)
+  "True if text whose base line is at Y is not cut at the upper or lower edge of CANVAS."
+  (let ((bottom (canvas-bottom canvas)) (y (+ y (canvas-dy canvas))))
+    (or (null bottom) (<= 10 y (- bottom 3)))))
+
 (defmethod paint-string ((canvas clim-canvas) gcontext x y string)
   (extend-reach canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
-  (clim:draw-text* (canvas-medium canvas) string x y
-                   :text-style *text-style* :ink (ink (gcontext-foreground gcontext))))
+  (when (uncut-p canvas y)
+    (clim:draw-text* (canvas-medium canvas) string x y
+                     :text-style *text-style* :ink (ink (gcontext-foreground gcontext)))))
 
 ;;; Where.
 

@@ -117,20 +117,20 @@
     "Switch between colours and black and white."
   (switch-color window))
 
-(defun open-below-bar (window rows)
-  (open-popup window rows 8 (+ +bar-height+ 2)))
+(defun open-below-bar (window rows opener)
+  (open-popup window rows 8 (+ +bar-height+ 2) opener))
 
 (define-window-command (com-layers "Layers") (window)
     "Choose what the display of the world shows."
-  (open-below-bar window (layer-rows window)))
+  (open-below-bar window (layer-rows window) 'com-layers))
 
 (define-window-command (com-robots "Which robot") (window)
     "Choose whose details to show and whom to command."
-  (open-below-bar window (robot-rows window)))
+  (open-below-bar window (robot-rows window) 'com-robots))
 
 (define-window-command (com-help "Keys and mouse") (window)
     "Tell what keys and mouse do."
-  (open-below-bar window (help-rows)))
+  (open-below-bar window (help-rows) 'com-help))
 
 ;;; Pictures.
 

@@ -5,8 +5,8 @@
 ;;; TRIAL and FORK lead the prompt into another run, and out again; REWIND and WORLD put another in
 ;;; the place of one. The window whose own prompt that is goes along; if none is, as when the user
 ;;; types at a terminal, those that show the run which is left. Such a run is headless, so that the
-;;; pacer cannot ask it for a snapshot between ticks: what lines have changed is looked at here,
-;;; before the next is read.
+;;; pacer cannot ask it for a snapshot between ticks, nor need it have a journal that tells of
+;;; changes: what lines have made of it is looked at here, before the next is read.
 
 (defun goes-along-p (window old)
   "True if WINDOW goes along with the prompt of this thread, which has been in OLD."
@@ -27,12 +27,6 @@
   (watch-simulation (window-watcher window) new)
   (request-refresh window))
 
-(defun show-what-lines-did (watcher simulation)
-  "Let WATCHER have SIMULATION, which stands still, as it is now, if that may be news."
-  (when (or (watcher-stale-p watcher)
-            (/= (watcher-traces watcher) (traces-of-change simulation)))
-    (publish watcher simulation)))
-
 (defun follow-prompt (session old new)
   "Let the windows that go along with SESSION, which was in the run OLD, show NEW, in which it is."
   (declare (ignore session))
@@ -40,7 +34,7 @@
     (dolist (window (open-windows))
       (let ((watcher (window-watcher window)))
         (cond ((eq new (watcher-simulation watcher))
-               (unless (live-p new) (show-what-lines-did watcher new)))
+               (unless (live-p new) (publish watcher new)))
               ((and old (not (eq old new)) (goes-along-p window old)
                     (not (shown-elsewhere-p new window)))
                (take-along window new)))))))

@@ -18,7 +18,8 @@
           (loop for button in *buttons*
                 collect (format nil "  ~7A ~A" (key-text (button-key button))
                                 (button-help button)))
-          (list "  arrows  move the view" "  return  back to the line that is typed")))
+          (list "  arrows  move the view" "  return  back to the line that is typed"
+                "  escape  close such a panel, or as return")))
 
 (defun help-rows ()
   (mapcar #'make-row (append (key-help) (list "") *mouse-help*)))

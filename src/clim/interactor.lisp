@@ -41,12 +41,25 @@
     (when (< 1 count)
       (format nil "~D lines: return enters them one by one, control-C drops them." count))))
 
+(defun asked-text (answers)
+  "Return what is said above the line that is typed while ANSWERS, texts, are awaited; or NIL."
+  (when answers
+    (format nil "~@[~D more wait~:*~[~;s~:;~]. ~]How does it go on? ~A"
+            (and (rest answers) (length (rest answers))) (first answers))))
+
+(defun row-above (conversation text)
+  "Return what is said above TEXT, which is being typed, and its ink."
+  (let ((asked (asked-text (answers-awaited conversation))))
+    (if asked
+        (list asked :red)
+        (list (note-on text) :grey))))
+
 (defun what-is-shown (pane)
   "Return what PANE shows: label, text and point, and the row above and its ink, or NIL."
   (let* ((conversation (pane-conversation pane))
          (shown (line-shown conversation))
          (busy (busy-with conversation)))
-    (cond (shown (append shown (list (note-on (second shown)) :grey)))
+    (cond (shown (append shown (row-above conversation (second shown))))
           (busy (append (shown-ahead conversation) (list (busy-text busy) :red))))))
 
 (defmethod pane-content ((pane interactor-pane))
@@ -71,7 +84,7 @@
       (paint-cursor canvas (+ top row) column (focused-p pane)))))
 
 (defun paint-shown (canvas pane label text point note ink)
-  (when note (paint-words canvas note 0 14 ink))
+  (when note (paint-words canvas (cut note (max 4 (columns-and-rows pane))) 0 14 ink))
   (paint-line canvas pane label text point (if note 1 0)))
 
 (defmethod paint ((pane interactor-pane))
@@ -139,6 +152,7 @@
       (cond ((and control-p shift-p (is-p #\c)) #'copy-text)
             ((or (and control-p shift-p (is-p #\v)) (and shift-p (eq name :insert)))
              (lambda (window) (paste-text window :clipboard)))
+            ((eq name :escape) #'close-popup)
             ((eq name :prior) (lambda (window) (scroll-page (pane-named window 'transcript) -1)))
             ((eq name :next) (lambda (window) (scroll-page (pane-named window 'transcript) 1)))))))
 
@@ -166,17 +180,54 @@
                     (clim:pane-frame sheet))))
     (and (typep frame 'robot-window) frame)))
 
-(defmethod clim:distribute-event :before ((port clim:basic-port) (event clim:keyboard-event))
-  (let ((window (robot-window-of (clim:event-sheet event)))
-        (before (robot-window-of (clim:port-keyboard-input-focus port))))
-    (when (and window (not (eq window before)))
-      (setf (clim:port-keyboard-input-focus port) (clim:frame-top-level-sheet window))
+;;; Which one that is the events say, in their order, in the thread that reads them: a window's own
+;;; thread, which may come to them late, only says which of its panes they go to.
+
+(defun window-with-keys (port)
+  "Return the window that keys of PORT go to, or NIL."
+  (let ((sheet (clim:port-keyboard-input-focus port)))
+    (and sheet (robot-window-of sheet))))
+
+(defun give-keys-to-window (port window)
+  "Let keys of PORT go to WINDOW."
+  (let ((before (window-with-keys port)))
+    (unless (eq window before)
+      (setf (clim:port-keyboard-input-focus port)
+            (or (window-focus window) (clim:frame-top-level-sheet window)))
       ;; The cursor says where keys go.
-      (when before (request-refresh before)))))
+      (when before (request-refresh before))
+      (request-refresh window))))
+
+(defun give-keys-by (port event)
+  "Let keys of PORT go to the window that EVENT is of, if it is one."
+  (let ((window (robot-window-of (clim:event-sheet event))))
+    (when window (give-keys-to-window port window))))
+
+(defmethod clim:distribute-event :before ((port clim:basic-port) (event clim:keyboard-event))
+  (give-keys-by port event))
+
+(defmethod clim:distribute-event :before ((port clim:basic-port)
+                                          (event clim:pointer-button-press-event))
+  (give-keys-by port event))
+
+(defmethod clim:distribute-event :before ((port clim:basic-port)
+                                          (event clime:window-manager-focus-event))
+  (give-keys-by port event))
+
+(defmethod clim:handle-event :around ((sheet clime:top-level-sheet-mixin)
+                                      (event clime:window-manager-focus-event))
+  (unless (robot-window-of sheet) (call-next-method)))
+
+(defun focus-on (pane)
+  "Let what is typed in the window of PANE go to PANE."
+  (let ((window (window-of pane)) (port (clim:port pane)))
+    (setf (window-focus window) pane)
+    (when (member (window-with-keys port) (list window nil))
+      (setf (clim:port-keyboard-input-focus port) pane))))
 
 (defun type-into (pane)
   "Let what is typed go to PANE."
-  (setf (clim:port-keyboard-input-focus (clim:port pane)) pane)
+  (focus-on pane)
   (repaint-if-changed pane))
 
 (defmethod click ((pane interactor-pane) button x y)

@@ -11,14 +11,15 @@
 (defgeneric take-keys (pane)
   (:documentation "PANE was clicked: let what is typed go where it should from now on.")
   (:method (pane) (declare (ignore pane)))
-  (:method ((pane world-pane)) (focus-on pane))
-  (:method ((pane detail-pane)) (focus-on pane))
-  (:method ((pane plan-pane)) (focus-on pane))
+  (:method ((pane world-pane)) (use-keys pane))
+  (:method ((pane detail-pane)) (use-keys pane))
+  (:method ((pane plan-pane)) (use-keys pane))
   (:method ((pane transcript-pane)) (give-keys-to-prompt (window-of pane))))
 
-(defun focus-on (pane)
-  (setf (window-typing-p (window-of pane)) nil
-        (clim:port-keyboard-input-focus (clim:port pane)) pane))
+(defun use-keys (pane)
+  "Let keys do what they do in PANE, a display."
+  (setf (window-typing-p (window-of pane)) nil)
+  (focus-on pane))
 
 (defun type-at-prompt (window character)
   "Let CHARACTER, and what is typed after it, go to the line of WINDOW that is typed."
@@ -37,6 +38,11 @@
     (:up (values 0 (- +arrow-step+)))
     (:down (values 0 +arrow-step+))))
 
+(defun press-button (window button)
+  "Do what BUTTON does; if it has opened the panel that is on top of WINDOW, close that."
+  (unless (eq (button-command button) (close-popup window))
+    (do-command (button-command button))))
+
 (defun do-key (window key-name character)
   "Do what the key called KEY-NAME, which types CHARACTER or NIL, does in WINDOW. True if anything."
   (let ((button (and character (find character *buttons* :key #'button-key))))
@@ -44,7 +50,7 @@
       (cond ((and (window-typing-p window) character (graphic-char-p character))
              (type-at-prompt window character)
              t)
-            (button (close-popup window) (do-command (button-command button)) t)
+            (button (press-button window button) t)
             (dx (move-view (pane-named window 'world) dx dy) t)
             ((member key-name '(:return :escape))
              (or (close-popup window) (give-keys-to-prompt window))

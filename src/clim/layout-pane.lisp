@@ -50,6 +50,7 @@
   "Put all parts of the window where the wishes of LAYOUT, their pane, want them."
   (multiple-value-bind (width height) (pane-size layout)
     (let ((window (clim:pane-frame layout)))
+      (point-nowhere window)
       (loop for (name . place) in (arrange (pane-wishes layout)
                                            (lambda (section) (section-need window section))
                                            width height)
@@ -67,7 +68,7 @@
   (arrange-panes pane))
 
 (defparameter *first-needs*
-  '((state 108) (designators 40) (cameras 140) (hands 84) (bins 84) (plan 240))
+  '((state 108) (designators 22) (cameras 140) (hands 84) (bins 84) (plan 240))
   "How many pixels high sections would like to be, as long as nothing has been painted in them.")
 
 (defun section-need (window section)

@@ -128,7 +128,7 @@ else, if its user has chosen another one of the same run, that that is shown."
     (start-conversation (window-conversation window) simulation
                         (watcher-robot (window-watcher window)))
     (unwind-protect
-         (handler-case (clim:run-frame-top-level window)
+         (handler-case (without-debugger (clim:run-frame-top-level window))
            (error (condition) (warn-of-closing window condition)))
       (forget-window window)
       (end-conversation (window-conversation window))

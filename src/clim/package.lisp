@@ -8,7 +8,8 @@ McCLIM's symbols are written with their packages. Manual B.")
         :ars-magna.display)
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.rpl-robot
-                #:plans #:interface-p #:interface-runner #:interface-robot #:interface-simulation)
+                #:*trace-plans* #:plans
+                #:interface-p #:interface-runner #:interface-robot #:interface-simulation)
   (:import-from :ars-magna.rpl
                 #:bar #:bar-serial #:bars #:image-of-tasks #:runner-mark #:runner-trace
                 #:runner-client

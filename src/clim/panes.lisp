@@ -34,8 +34,9 @@
     (clim:draw-rectangle* pane 0 0 width height :ink ink)))
 
 (defun call-painting (function pane)
-  "Call FUNCTION with a canvas on which it paints PANE; remember what was painted where."
-  (let ((canvas (make-instance 'clim-canvas :medium pane
+  "Call FUNCTION with a canvas on which it paints PANE, but for lines of text that would be cut;
+remember what was painted where."
+  (let ((canvas (make-instance 'clim-canvas :medium pane :bottom (nth-value 1 (pane-size pane))
                                             :color-p (window-color-p (window-of pane)))))
     (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))
       (with-canvas (canvas) (funcall function canvas)))
@@ -66,7 +67,8 @@
       (when (limit-offset pane) (paint pane))
       (paint-selection pane)
       (paint-scroll-bar pane))
-    (paint-popup-over pane)))
+    (paint-popup-over pane)
+    (point-again pane)))
 
 (defun repaint-if-changed (pane)
   (when (and (shown-p pane) (not (equal (pane-painted pane) (pane-content pane))))
@@ -93,8 +95,7 @@
   (:method (pane x y) (declare (ignore pane x y))))
 
 (defgeneric hover (pane x y)
-  (:documentation "The mouse moved to X, Y of PANE with no button pressed.")
-  (:method (pane x y) (hint (window-of pane) (hover-text pane x y))))
+  (:documentation "The mouse moved to X, Y of PANE with no button pressed."))
 
 (defgeneric wheel (pane steps x y)
   (:documentation "The mouse's wheel was turned by STEPS, down if positive, at X, Y of PANE.")

@@ -36,12 +36,19 @@ words how the last plan ended."
   "Return what runs the plans of SIMULATION, or NIL."
   (and simulation (find-if #'interface-p (simulation-participants simulation))))
 
+(defun traced-p (interface)
+  "True if a trace is kept of the plans of INTERFACE, or, where none is under way, will be."
+  (let ((runner (and interface (interface-runner interface))))
+    (and (or (and runner (runner-trace runner))
+             (and *trace-plans* (not (and runner (plan-runner-tasks runner)))))
+         t)))
+
 (defun plans-mark (look interface)
   "Return what is EQUAL to before if LOOK, at the plans of INTERFACE, would see the same."
   (let ((runner (and interface (interface-runner interface)))
         (timeline-p (eq :timeline (plan-look-view look))))
     (list (plan-look-simulation look) interface (plan-look-view look) (plan-look-folded look)
-          (and runner (runner-trace runner) t)
+          (traced-p interface)
           (and runner (runner-mark runner))
           (and runner timeline-p (plan-runner-tasks runner)
                (simulation-tick (plan-look-simulation look))))))
@@ -82,7 +89,7 @@ words how the last plan ended."
   "Let LOOK have what it is to see of the plans of INTERFACE, if any. NIL if they are at work."
   (setf (plan-look-robot look) (and interface (interface-robot interface)
                                     (robot-name (interface-robot interface)))
-        (plan-look-traced-p look) (and interface (runner-trace (interface-runner interface)) t))
+        (plan-look-traced-p look) (traced-p interface))
   (cond ((null interface)
          (setf (plan-look-tree look) nil (plan-look-page look) nil)
          t)

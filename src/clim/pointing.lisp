@@ -6,9 +6,30 @@
 
 (defun hint (window text)
   "Let the status strip of WINDOW say TEXT."
-  (unless (string= text (window-hint window))
-    (setf (window-hint window) text)
-    (repaint-if-changed (pane-named window 'strip))))
+  (setf (window-hint window) text)
+  (repaint-if-changed (pane-named window 'strip)))
+
+(defun point-at-place (pane x y)
+  "Note that the mouse rests at X, Y of PANE, and let the status strip tell of what is there."
+  (let ((text (hover-text pane x y)))
+    (setf (window-pointed (window-of pane)) (list pane x y text))
+    (hint (window-of pane) text)))
+
+(defmethod hover ((pane display-pane) x y) (point-at-place pane x y))
+
+;; Where the strip says something else meanwhile, that stays until the mouse moves.
+(defun point-again (pane)
+  "PANE was painted: if the strip tells of what lies under the mouse there, let it tell of what does
+now."
+  (let ((window (window-of pane)))
+    (destructuring-bind (&optional pointed x y text) (window-pointed window)
+      (when (and (eq pane pointed) (eq text (window-hint window)))
+        (point-at-place pane x y)))))
+
+(defun point-nowhere (window)
+  "Let the strip of WINDOW tell of nothing, as the mouse is nowhere, or what was there has moved."
+  (setf (window-pointed window) nil
+        (window-hint window) ""))
 
 (defun subject-text (subject)
   "Return in one line what is known of SUBJECT."
@@ -106,7 +127,8 @@
       (t (drag pane x y)))))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-exit-event))
-  (hint (window-of pane) ""))
+  (point-nowhere (window-of pane))
+  (repaint-if-changed (pane-named (window-of pane) 'strip)))
 
 ;;; A turn of the wheel is an event of a button, too, but no press of it.
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-event))

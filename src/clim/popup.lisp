@@ -19,7 +19,9 @@ away then unless STAYS-P. TICK, a function, says whether a row that is TICK-P is
 (defclass popup-pane (display-pane)
   ((rows :initform '() :accessor pane-rows)
    ;; The row under the mouse, or NIL.
-   (pointed :initform nil :accessor pane-pointed))
+   (pointed :initform nil :accessor pane-pointed)
+   ;; The command that has opened it, or T.
+   (opener :initform t :accessor pane-opener))
   (:default-initargs :background clim:+gray97+)
   (:documentation "A list of rows on top of the window."))
 
@@ -90,21 +92,23 @@ away then unless STAYS-P. TICK, a function, says whether a row that is TICK-P is
       (place-pane popup (max 0 (min x (- room-x width))) (max 0 (min y (- room-y height)))
                   width height))))
 
-(defun open-popup (window rows x y)
-  "Show ROWS on top of WINDOW, the upper left corner at X, Y of it."
+(defun open-popup (window rows x y &optional (opener t))
+  "Show ROWS on top of WINDOW, the upper left corner at X, Y of it. OPENER is the command that does
+so, a symbol, or T."
   (let ((popup (window-popup window)))
     (setf (pane-rows popup) rows
+          (pane-opener popup) opener
           (pane-pointed popup) nil)
     (place-popup popup x y)
     (clim:raise-sheet popup)
     (repaint popup)))
 
 (defun close-popup (window)
-  "Let the popup of WINDOW go away. True if it was there."
+  "Let the popup of WINDOW go away. Return what has opened it, or NIL if it was not there."
   (when (popup-open-p window)
     (setf (clim:sheet-enabled-p (window-popup window)) nil)
     (repaint-all window)
-    t))
+    (pane-opener (window-popup window))))
 
 ;;; The mouse.
 

@@ -112,6 +112,11 @@ returns. PLACE is called before each line; OVER when its user leaves it."
        (ars-magna.cli:at-work-on (conversation-session conversation))
        (console-entered (conversation-console conversation))))
 
+(defun answers-awaited (conversation)
+  "Return a list of what waits for the user to say how it goes on, in words, what is asked about now
+first."
+  (ars-magna.cli:awaited-answers (conversation-session conversation)))
+
 (defun waiting-in (conversation)
   "Return how many lines wait for the one that is under way to end, and what is being typed after
 them: its text, and where in it the cursor is."

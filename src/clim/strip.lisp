@@ -2,6 +2,10 @@
 
 (in-package :ars-magna.clim)
 
+;;; The upper line says how time goes, and what waits for an answer; the lower one what lies under
+;;; the mouse. What is too long ends in three dots: a click on the strip tells all of the upper line
+;;; among the commands, one on what the mouse is at all of the lower.
+
 (defclass strip-pane (display-pane) ()
   (:default-initargs :background clim:+gray88+)
   (:documentation "The status strip."))
@@ -10,19 +14,40 @@
   (let ((snapshot (window-snapshot window)))
     (format nil "tick ~:[?~;~:*~D~]" (and snapshot (snapshot-tick snapshot)))))
 
-(defun strip-text (window)
-  "Return what the status strip of WINDOW says."
-  (format nil "~A  ~A  ~A" (tick-text window)
+(defun answers-text (window)
+  "Return in words how many programs wait for an answer at the prompt of WINDOW, or NIL."
+  (let ((count (length (answers-awaited (window-conversation window)))))
+    (when (plusp count)
+      (format nil "~[~;the prompt asks how a program goes on~:;the prompt asks how ~:*~R programs ~
+                   go on~]"
+              count))))
+
+(defun time-text (window)
+  "Return the upper line of the status strip of WINDOW."
+  (format nil "~A  ~A~@[; ~A~]" (tick-text window)
           (progress-text (watcher-progress (window-watcher window)))
-          (window-hint window)))
+          (answers-text window)))
+
+(defun strip-lines (window)
+  "Return what the status strip of WINDOW says, line by line."
+  (list (time-text window) (window-hint window)))
 
 (defmethod pane-content ((pane strip-pane))
-  (list (strip-text (window-of pane)) (multiple-value-list (pane-size pane))))
+  (list (strip-lines (window-of pane)) (multiple-value-list (pane-size pane))))
 
 (defmethod paint ((pane strip-pane))
   (clear pane clim:+gray88+)
-  (painting (canvas pane)
-    (draw-glyphs canvas draw-gcontext* 6 14 (strip-text (window-of pane)))))
+  (let ((columns (max 4 (floor (- (pane-size pane) 12) +character-width+))))
+    (painting (canvas pane)
+      (loop for line in (strip-lines (window-of pane))
+            for y from 14 by +line-height+
+            do (draw-glyphs canvas draw-gcontext* 6 y (cut line columns))))))
+
+(defmethod hover-text ((pane strip-pane) x y)
+  (declare (ignore x y))
+  "Click to have all of the line above among the commands")
 
 (defmethod click ((pane strip-pane) button x y)
-  (declare (ignore button x y)))
+  (declare (ignore button x y))
+  (let ((window (window-of pane)))
+    (say (window-transcript window) (format nil "~A~%" (time-text window)))))

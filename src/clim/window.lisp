@@ -31,6 +31,10 @@
    ;; What the mouse points at, as text; the key of what is picked, or NIL.
    (hint :initform "" :accessor window-hint)
    (selection :initform nil :accessor window-selection)
+   ;; Where the mouse rests, as (pane x y text): what was told of that; or NIL.
+   (pointed :initform nil :accessor window-pointed)
+   ;; The pane that has the keys whenever the window has them, or NIL before there is one.
+   (focus :initform nil :accessor window-focus)
    ;; True if a line was begun by a key that came to a display.
    (typing-p :initform nil :accessor window-typing-p)
    ;; The name of the robot that the displays have been given room for.

@@ -221,6 +221,7 @@ view, with a tick in the direction in which it believes what it tracks to be."
 ;;; Hands.
 
 (defun draw-hand (canvas hand y width)
+  "Draw HAND from Y; return where its picture ends."
   (let ((left (+ +margin+ (* 10 +character-width+)))
         (contents (hand-image-contents hand)))
     (with-subject (canvas hand)
@@ -228,13 +229,13 @@ view, with a tick in the direction in which it believes what it tracks to be."
       (if contents
           (draw-object canvas contents left (+ y 2) width)
           (draw-line-of-text canvas left y width "empty"))
-      (draw-location canvas (hand-image-location hand) left (+ y +line-height+) width))))
+      (draw-location canvas (hand-image-location hand) left (+ y +line-height+) width)))
+  (+ y (* +line-height+ (if (hand-image-location hand) 2 1))))
 
 (defun draw-hands (canvas robot width)
-  (loop for y from +margin+ by (+ (* 2 +line-height+) +margin+)
-        for hand in (robot-image-hands robot)
-        do (draw-hand canvas hand y width)
-        finally (return y)))
+  (let ((y +margin+))
+    (dolist (hand (robot-image-hands robot) y)
+      (setf y (draw-hand canvas hand y width)))))
 
 ;;; Storage bins.
 
@@ -252,4 +253,4 @@ view, with a tick in the direction in which it believes what it tracks to be."
 (defun draw-bins (canvas robot width)
   (let ((y +margin+))
     (dolist (bin (robot-image-bins robot) y)
-      (setf y (+ (draw-bin canvas bin y width) +margin+)))))
+      (setf y (draw-bin canvas bin y width)))))

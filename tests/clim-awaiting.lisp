@@ -1,0 +1,95 @@
+;;;; clim-awaiting.lisp -- what waits in a debugger is seen in the window, and answered there.
+
+(in-package :ars-magna.tests)
+
+(in-suite clim)
+
+(defun broken (text thread &optional told-p)
+  "Return what a program that calls BREAK with TEXT leaves with a session; it waits in THREAD."
+  (let ((breakage (cli::make-breakage (make-condition 'simple-condition :format-control text)
+                                      '() thread '())))
+    (setf (cli::breakage-told-p breakage) told-p)
+    breakage))
+
+(defun note-above (window)
+  "Return what is said above the line that is typed in WINDOW, where one is."
+  (first (window::row-above (window::window-conversation window) "")))
+
+(test awaiting.is-said-above-the-line-and-in-the-strip
+  (in-window (window robot)
+    (let ((session (window::window-session window)) (thread (base:current-thread)))
+      (is (null (note-above window)))
+      (is (not (mentions-p (window::time-text window) "the prompt asks")))
+      (setf (cli::session-breaks session) (list (broken "oh" thread)))
+      (is (mentions-p (note-above window) "How does it go on? oh (in another thread, "))
+      (is (mentions-p (window::time-text window) "the prompt asks how a program goes on"))
+      (setf (cli::session-debugging-p session) (broken "mine" (cli::session-thread session) t))
+      (is (mentions-p (note-above window) "1 more waits. How does it go on? mine"))
+      (is (mentions-p (window::time-text window) "the prompt asks how two programs go on")))))
+
+(test awaiting.what-breaks-while-another-is-answered-leaves-the-prompt-there
+  "What it says would else stand where the line was, which would not be seen."
+  (in-window (window robot)
+    (let* ((conversation (window::window-conversation window))
+           (console (window::conversation-console conversation)))
+      (setf (cli::console-edited-p console) t)
+      (cli::show-prompt console "Break> ")
+      (cli::tell-waiting (window::window-session window) (broken "oh" (base:current-thread)))
+      (is (mentions-p (said-in window) "It waits until the one before is answered"))
+      (is (equal "Break> " (cli:unpainted-text (first (window::line-shown conversation))))))))
+
+(test awaiting.code-that-draws-in-a-window-is-not-waited-for
+  "Nobody could answer it: the thread that handles keys would wait. It is said once."
+  (in-window (window robot)
+    (let ((calls 0))
+      (world:set-attribute (world:find-thing "BOX#1") :draw-function
+                           (lambda (&rest arguments)
+                             (declare (ignore arguments))
+                             (incf calls)
+                             (break "look")))
+      (world:move-thing (world:find-thing "BOX#1") (robot:robot-hand robot 0))
+      (window::publish (window:window-watcher window) (time:current-simulation))
+      (window::without-debugger
+        (window:refresh window)
+        (window::repaint (pane window 'window::hands)))
+      (is (= 1 calls))
+      (is (= 1 (count-if (lambda (message)
+                           (mentions-p (base:message-text message)
+                                       "It calls for the debugger (look)"))
+                         (base:take-messages)))))))
+
+(test awaiting.a-line-that-waits-for-plans-can-answer-what-they-wait-for
+  "The plans are held until whoever waits for them does what he is needed for."
+  (in-studio (robot)
+    (let ((interface (ars-magna.rpl-robot::ensure-interface))
+          (held (base:make-semaphore "held")) (answered (base:make-semaphore "answered"))
+          (done (base:make-semaphore "done")) (simulation (time:current-simulation)))
+      (base:start-thread (lambda ()
+                           (ars-magna.rpl-robot:call-with-plans
+                            (lambda ()
+                              (base:signal-semaphore held)
+                              (base:wait-on-semaphore answered 60))
+                            interface))
+                         "plans")
+      (base:wait-on-semaphore held)
+      (base:start-thread (lambda ()
+                           (let ((time:*simulation* simulation)
+                                 (base:*while-waiting*
+                                   (lambda () (base:signal-semaphore answered))))
+                             (ars-magna.rpl-robot:call-with-plans
+                              (lambda () (base:signal-semaphore done)) interface)))
+                         "line")
+      (is (base:wait-on-semaphore done 20))
+      (base:signal-semaphore answered))))
+
+(test awaiting.a-task-that-is-ended-is-stepped-no-longer
+  (in-studio (robot)
+    (let ((task (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)))
+      (run:run-ticks 2)
+      (ars-magna.rpl.seeing:step-task task)
+      (let ((said (with-output-to-string (*standard-output*)
+                    (funcall (cli:line-action (cli:find-line "END-TASK"))
+                             (cli:make-session)
+                             (format nil "~D" (ars-magna.rpl:task-serial task))))))
+        (is (mentions-p said "ends"))
+        (is (null (ars-magna.rpl.seeing::courses-of (ars-magna.rpl:task-runner task))))))))
