@@ -244,7 +244,7 @@
                    (:file "progress") (:file "json") (:file "layout")))
      (:module "editing" :serial t
       :components ((:file "keys") (:file "changes") (:file "history") (:file "pasting")
-                   (:file "editor")
+                   (:file "octet-queue") (:file "editor")
                    (:file "search") (:file "tabbing") (:file "standard")
                    (:file "ahead") (:file "handed-text")))
      (:module "prompt" :serial t
@@ -253,9 +253,10 @@
                    (:file "line")
                    (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")
                    (:file "comments") (:file "robot-lines") (:file "finding")
-                   (:file "evaluation") (:file "carrying-out") (:file "guarding")
+                   (:file "file-trouble") (:file "forms") (:file "evaluation")
+                   (:file "carrying-out") (:file "guarding")
                    (:file "plans") (:file "loading") (:file "worlds") (:file "choices")
-                   (:file "debugger") (:file "window-system") (:file "completing")
+                   (:file "breakage") (:file "debugger") (:file "window-system") (:file "completing")
                    (:file "prompt") (:file "sessions") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")
@@ -321,8 +322,8 @@
   :depends-on ("ars-magna/tests" "ars-magna/clim" "fiveam")
   :serial t
   :components ((:module "tests" :serial t
-                :components ((:file "clim-window") (:file "clim-layout") (:file "clim-pointing")
-                             (:file "clim-progress") (:file "clim-plans")
+                :components ((:file "clim-client") (:file "clim-window") (:file "clim-layout")
+                             (:file "clim-pointing") (:file "clim-progress") (:file "clim-plans")
                              (:file "clim-talking") (:file "clim-going-on")
                              (:file "clim-awaiting")
                              (:file "clim-x-server") (:file "clim-keyboard")))))
@@ -391,6 +392,7 @@
                  (:file "saving") (:file "saving-hostile")
                  (:file "mutators") (:file "abuse-outcomes") (:file "abuse-definers")
                  (:file "abuse-data") (:file "abuse-calls") (:file "abuse") (:file "listings")
+                 (:file "cli-door")
                  (:file "listings-places") (:file "listings-sensing")
                  (:file "listings-programs") (:file "listings-plans") (:file "manual")
                  (:file "manual-2") (:file "manual-3-1") (:file "manual-3-1-commands")

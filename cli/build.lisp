@@ -9,7 +9,8 @@
 (defpackage :ars-magna.build
   (:documentation "Compiling, saving the prompt's core, running the tests.")
   (:use :cl)
-  (:export #:configure #:print-missing-libraries #:print-window-libraries #:load-strictly
+  (:export #:configure #:print-missing-libraries #:print-window-libraries #:get-window-libraries
+           #:load-strictly
            #:load-tests #:save-prompt #:save-window-prompt #:run-tests
            #:record-sessions #:write-manual))
 
@@ -149,14 +150,18 @@ defined twice, that a package has grown since it was defined."
                     ((quicklisp-file) "quicklisp")
                     (t "nothing"))))
 
+(defun get-window-libraries ()
+  "Let Quicklisp fetch McCLIM, if need be, and load it. If that fails, say why and end this Lisp."
+  (handler-case (progn (load (quicklisp-file))
+                       (uiop:symbol-call :quicklisp :quickload "mcclim/looks"))
+    (error (condition)
+      (format t "~&*** ~A~%" (substitute #\Space #\Newline (princ-to-string condition)))
+      (uiop:quit 1))))
+
 (defun ensure-window-libraries ()
   "Let ASDF find McCLIM, which Quicklisp fetches if need be."
   (when (missing-p "mcclim/looks")
-    (handler-case (progn (load (quicklisp-file))
-                         (uiop:symbol-call :quicklisp :quickload "mcclim/looks"))
-      (error (condition)
-        (format t "~&*** Quicklisp cannot get or load McCLIM: ~A~%" condition)
-        (uiop:quit 2)))))
+    (get-window-libraries)))
 
 ;;; The prompt.
 

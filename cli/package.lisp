@@ -80,10 +80,11 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
            #:run-session #:prompt #:*prompt-robot* #:*whereabouts-hooks*)
   ;; listening, going-on
   (:export #:listen-instead #:go-to-run #:run-after #:tell-of-run #:away-p)
-  ;; debugger
+  ;; breakage
   (:export #:awaited-answers)
   ;; sessions
-  (:export #:run-session-apart #:interrupt-session #:end-session #:enter-line #:at-work-on)
+  (:export #:run-session-apart #:interrupt-session #:end-session #:enter-line #:at-work-on
+           #:abandon-session #:asked-of-others-p #:take-waiting)
   ;; worlds
   (:export #:all-worlds)
   ;; main

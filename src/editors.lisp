@@ -53,6 +53,39 @@ that were found."
 
 (join-editors)
 
+;;; The inspector of an editor, asked from here. Who asks may be no thread of the server's, such as
+;;; that of a window, in which what the server binds for its own is unbound.
+
+(defun serves-editor-p (server)
+  "True if an editor is connected to the server in the package called SERVER."
+  (let* ((package (find-package server))
+         (own (and package (find-symbol "*EMACS-CONNECTION*" package)))
+         (default (and package (find-symbol "DEFAULT-CONNECTION" package))))
+    (or (and own (boundp own) (symbol-value own) t)
+        (and default (fboundp default) (funcall default) t))))
+
+(defun editor-server ()
+  "Return the name of the package of the server that an editor is connected to, or NIL."
+  (find-if #'serves-editor-p '("SWANK" "SLYNK")))
+
+(defun call-as-in-buffer (server function)
+  "Call FUNCTION as from a buffer of the editor that is connected to SERVER."
+  (progv (list (find-symbol "*BUFFER-PACKAGE*" server) (find-symbol "*BUFFER-READTABLE*" server))
+      (list *package* *readtable*)
+    (funcall function)))
+
+(addition inspect-in-editor)
+(defun inspect-in-editor (object)
+  "Show OBJECT in the inspector of the editor, SLIME or SLY, that is connected; any thread may say
+so. Return nothing. Signals MISUSE where no editor is."
+  (let ((server (editor-server)))
+    (unless server
+      (reject-use "No editor is connected. In Emacs, M-x slime-connect or sly-connect connects it ~
+                   to a server that has been started here. INSPECT and DESCRIBE need none."))
+    (call-as-in-buffer server (lambda ()
+                                (funcall (find-symbol "INSPECT-IN-EMACS" server) object))))
+  (values))
+
 ;;; INSPECT, Lisp's own, shows slots as they print. Those of a map would fill many screens.
 
 (defun inspect-briefly (inspect object)

@@ -3,7 +3,7 @@
 (defpackage :ars-magna.faces
   (:documentation "Gathers the layers' symbols into the three packages that the manual knows.")
   (:use :cl :ars-magna.base)
-  (:export #:cli #:define-user-package #:join-editors))
+  (:export #:cli #:define-user-package #:join-editors #:inspect-in-editor #:editor-server))
 
 (in-package :ars-magna.faces)
 

@@ -153,6 +153,33 @@
              (is (member `(:value ,(robot:robot-world skater)) window :test #'equal))))
          (is (equal '(5) (funcall inspect 5)) "of what is not ours they show what they would")))))
 
+(defun call-with-editor (function)
+  "Call FUNCTION while an editor seems to be connected to a server called SWANK, which inspects by
+listing what it is given and what it takes for the buffer's package."
+  (let ((package (make-package "SWANK" :use '())) (seen nil))
+    (unwind-protect
+         (destructuring-bind (connection inspect buffer readtable)
+             (loop for name in '("DEFAULT-CONNECTION" "INSPECT-IN-EMACS" "*BUFFER-PACKAGE*"
+                                 "*BUFFER-READTABLE*")
+                   collect (intern name package))
+           (proclaim `(special ,buffer ,readtable))
+           (setf (fdefinition connection) (constantly t)
+                 (fdefinition inspect) (lambda (object)
+                                         (setf seen (list object (symbol-value buffer)))))
+           (funcall function)
+           seen)
+      (delete-package package))))
+
+(test inspect-in-editor.works-in-threads-that-are-not-the-servers
+  "The server's own variables are unbound there."
+  (if (find-package "SWANK")
+      (skip "a server is loaded")
+      (is (equal (list 5 *package*)
+                 (call-with-editor (lambda () (uiop:symbol-call :ars '#:inspect-in-editor 5)))))))
+
+(test inspect-in-editor.says-that-no-editor-is-connected
+  (signals base:misuse (uiop:symbol-call :ars '#:inspect-in-editor 5)))
+
 (test inspect.shows-big-objects-in-part
   (flet ((said (object)
            (with-output-to-string (*standard-output*)

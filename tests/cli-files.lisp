@@ -74,6 +74,43 @@ name, in Nisp's syntax and with a decimal fraction."
         do (is-true (has-words-p said line "cannot be read" cause) "~A" said)
            (is (not (search "STREAM" said)) "~A" said)))
 
+(defun complaint-of-loading (text)
+  "Return what a line says that loads a file with TEXT."
+  (uiop:with-temporary-file (:pathname path :stream out :type "lisp")
+    (write-string text out)
+    :close-stream
+    (complaint (format nil "(load ~S)" (uiop:native-namestring path)))))
+
+(test files.that-lisp-loads-say-where-they-cannot-be-read
+  (loop for (text . words) in '(("(values 1)~%~%(values nowhere:f)" "line 3" "NOWHERE" "misspelt")
+                                ("(values 1)~%(cl:no-such 1" "line 2" "NO-SUCH" "COMMON-LISP"
+                                 "misspelt")
+                                ("; one~%(values 'ars-magna.cli::zip)~%(ars-magna.cli:zip)" "line 3"
+                                 "ZIP" "two colons")
+                                ("~%(values 1)~%(list 1~%2" "line 3" "parenthesis"))
+        for said = (complaint-of-loading (format nil text))
+        do (is-true (apply #'has-words-p said "cannot be read" words) "~A" said)
+           (is (not (search ".." said)) "~A" said)))
+
+(test worlds.of-a-file-begin-with-its-first-robot
+  "However often it is loaded, and whatever had its robots' names before."
+  (flet ((robots (&rest names)
+           (uiop:with-temporary-file (:pathname path :stream out :type "lisp")
+             (format out "(defmap byre (9 9))~{(defrobot ~A (byre (4 4) 0))~}" names)
+             :close-stream
+             (loop repeat 2
+                   collect (mapcar #'symbol-name
+                                   (cli::world-robots-called (uiop:native-namestring path)))))))
+    (base:with-own-definitions ()
+      (is (equal '(("ROBBIE" "COW") ("ROBBIE" "COW")) (robots "robbie" "cow")))
+      (is (equal '(("COW" "ROBBIE") ("COW" "ROBBIE")) (robots "cow" "robbie"))))))
+
+(test forms.over-lines-are-read-once-more
+  "What is evaluated while a form is read is so for its first line, and for the whole."
+  (is (equal '("*TIMES-READ*" "(2 2 3 4 5)")
+             (type-batch "(defparameter *times-read* 0)"
+                         "(list #.(incf *times-read*)" "2" "3" "4" "5)"))))
+
 (test numbers.that-cannot-be-read-say-so-in-plain-words
   (dolist (line '("turn 1e400" "turn 51/0" "(+ 1 1e400)" "(read-from-string \"(1\")"))
     (let ((said (complaint line)))

@@ -157,6 +157,38 @@
         (end-talk talk)
         (run:stop-clock simulation)))))
 
+(defun await-debugging (talk)
+  (loop until (cli::session-debugging (talk-session talk)) do (base:yield-thread)))
+
+(test sessions.break-of-one-that-is-lost-is-answered-in-another
+  "As when the X server dies under a window."
+  (in-studio (robot)
+    (let ((lost (begin-talk robot)) (other (begin-talk robot)))
+      (setf (base:global-value '*entered*) '())
+      (unwind-protect
+           (progn
+             (enter lost (format nil "(progn (break \"oh\") ~A)" (pushing 3)))
+             (await-debugging lost)
+             (is-false (cli:asked-of-others-p (talk-session lost)))
+             (cli:abandon-session (talk-session lost))
+             (is-true (cli:asked-of-others-p (talk-session lost)))
+             (cli:end-session (talk-session lost))
+             (await-break other)
+             (enter other "0")
+             (base:join-thread (talk-thread lost))
+             (is (equal '(3) (base:global-value '*entered*)))
+             (is (mentions-p (told-to other) "*BREAK* -> oh")))
+        (end-talk other)))))
+
+(test sessions.that-begin-know-how-often-an-error-has-come-up
+  (in-talk (talk)
+    (setf (gethash "jammed" (cli::session-told (talk-session talk))) 42)
+    (let ((new (cli:make-session :input (make-string-input-stream "")
+                                 :output (make-broadcast-stream))))
+      (cli::listen-to new (time:current-simulation))
+      (cli::stop-listening new)
+      (is (eql 42 (gethash "jammed" (cli::session-told new)))))))
+
 (test sessions.closing-one-carries-out-nothing
   (in-talk (talk)
     (type-keys talk (pushing 9))
@@ -234,27 +266,7 @@
              (cli:painted-spans (format nil "a ~A b" (cli::paint "red" :red)))))
   (is (equal '() (cli:painted-spans ""))))
 
-;;; The door.
-
-(defun run-without-display (&rest arguments)
-  "Run ./cli/ars-magna with ARGUMENTS where there is no X server. Return its error output and
-status."
-  (multiple-value-bind (output errors status)
-      (uiop:run-program (list* "env" "DISPLAY=" (namestring (project-file "cli/ars-magna"))
-                               arguments)
-                        :error-output :string :ignore-error-status t)
-    (declare (ignore output))
-    (values errors status)))
-
-(test window.option-says-that-there-is-no-display
-  (multiple-value-bind (errors status) (run-without-display "--window")
-    (is (mentions-p errors "DISPLAY names no X server"))
-    (is (= 1 status))))
-
-(test window.what-to-do-without-mcclim-is-said-in-full
-  (dolist (part '("sudo apt-get install cl-quicklisp" "(quicklisp-quickstart:install)"
-                  "ocicl install mcclim"))
-    (is (mentions-p cli::*how-to-get-windows* part))))
+;;; Windows.
 
 (test window.robot-has-to-be-in-a-run-that-lives
   (in-studio (robot)

@@ -23,7 +23,7 @@
       (setf (cli::session-breaks session) (list (broken "oh" thread)))
       (is (mentions-p (note-above window) "How does it go on? oh (in another thread, "))
       (is (mentions-p (window::time-text window) "the prompt asks how a program goes on"))
-      (setf (cli::session-debugging-p session) (broken "mine" (cli::session-thread session) t))
+      (setf (cli::session-debugging session) (broken "mine" (cli::session-thread session) t))
       (is (mentions-p (note-above window) "1 more waits. How does it go on? mine"))
       (is (mentions-p (window::time-text window) "the prompt asks how two programs go on")))))
 

@@ -5,7 +5,8 @@
 (in-suite clim)
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
-  (sb-ext:add-package-local-nickname :window :ars-magna.clim :ars-magna.tests))
+  (sb-ext:add-package-local-nickname :window :ars-magna.clim :ars-magna.tests)
+  (sb-ext:add-package-local-nickname :client :ars-magna.window-client :ars-magna.tests))
 
 (defun call-with-window (function robot)
   "Call FUNCTION with a window of ROBOT, adopted by the null port but not running."

@@ -51,29 +51,11 @@
                 (end-window ,window)))
          (run:stop-clock (time:current-simulation))))))
 
-;;; What the window's thread does for us.
-
-(defclass window-errand (clim:window-manager-event)
-  ((function :initarg :function :reader window-errand-function))
-  (:documentation "Something that the window's thread is to do."))
-
-(defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event window-errand))
-  (funcall (window-errand-function event)))
-
-(defun run-in-window (window function)
-  "Let the thread of WINDOW call FUNCTION, after what it had to do before; return its value."
-  (let ((done (base:make-semaphore "done")) (sheet (clim:frame-top-level-sheet window)) value)
-    (clim:queue-event sheet (make-instance 'window-errand
-                                           :sheet sheet
-                                           :function (lambda ()
-                                                       (setf value (funcall function))
-                                                       (base:signal-semaphore done))))
-    (unless (base:wait-on-semaphore done 60) (error "The window does not answer."))
-    value))
+;;; What the window's thread does for us: see clim-client.lisp.
 
 (defmacro inside ((window) &body body)
   "Let the thread of WINDOW run BODY; return its value."
-  `(run-in-window ,window (lambda () ,@body)))
+  `(client:run-in-window ,window (lambda () ,@body)))
 
 (defvar *never-comes* (base:make-semaphore "never") "Nobody signals it.")
 
@@ -84,26 +66,9 @@
 
 ;;; What is on the screen.
 
-(defun seek-x-window (name x-window)
-  "Return the X window called NAME that is, or is below, X-WINDOW; NIL if there is none."
-  (if (equal name (ignore-errors (xlib:wm-name x-window)))
-      x-window
-      (some (lambda (child) (seek-x-window name child)) (xlib:query-tree x-window))))
-
 (defun call-as-other-client (function window)
   "Call FUNCTION with the X window of WINDOW, as a second client of the X server knows it."
-  (let ((display (xlib:open-display "" :display *display-number*)))
-    (unwind-protect
-         (funcall function (seek-x-window (clim:frame-pretty-name window)
-                                          (xlib:screen-root (xlib:display-default-screen
-                                                             display))))
-      (xlib:close-display display))))
-
-(defun corner-of (pane)
-  "Return how far right and down in its X window PANE begins, in pixels."
-  (clim:transform-position (clim:sheet-delta-transformation
-                            pane (clim:frame-top-level-sheet (clim:pane-frame pane)))
-                           0 0))
+  (client:call-with-x-window function window :display *display-number*))
 
 (defun shown-on-screen (window name)
   "Return the pixels of the pane of WINDOW called NAME, four bytes each, and its width."
@@ -111,7 +76,7 @@
     (inside (window)
       (window:refresh window)
       (setf size (multiple-value-list (window::pane-size pane))
-            corner (multiple-value-list (corner-of pane)))
+            corner (multiple-value-list (client:corner-of pane)))
       (clim:medium-finish-output (clim:sheet-medium pane)))
     (values (call-as-other-client
              (lambda (x-window)
@@ -205,6 +170,21 @@ Its thread may hear of width and height apart, and later than others see them."
                (unless (eq shown seen) (setf seen shown) (incf count)))
           finally (is (= 60 count)))))
 
+(defun hide-from-outside (window)
+  "Let WINDOW vanish from the screen, as when a window manager makes an icon of it."
+  (call-as-other-client (lambda (x-window)
+                          (xlib:unmap-window x-window)
+                          (xlib:display-finish-output (xlib:window-display x-window)))
+                        window))
+
+(test screen.window-that-is-asked-for-again-is-seen
+  "It may be an icon, or lie below others."
+  (in-x-window (window robot)
+    (hide-from-outside window)
+    (is (eq window (window:open-window robot)))
+    (inside (window) (clim:medium-finish-output (clim:sheet-medium (pane window 'window::world))))
+    (is (eq :viewable (call-as-other-client #'xlib:window-map-state window)))))
+
 ;;; Trouble with the X server.
 
 (defclass quarrelsome-port (clim:basic-port)
@@ -266,6 +246,32 @@ Its thread may hear of width and height apart, and later than others see them."
                (is (null (window:find-window 'studio-robot)))
                (is (time:live-p simulation))
                (is (< tick (setf tick (run:simulation-tick simulation))))))
+        (run:stop-clock simulation)))))
+
+(test x-server.what-a-lost-window-was-at-is-told
+  (in-studio (robot)
+    (let ((simulation (time:current-simulation)) (window nil)
+          (*never-comes* (base:make-semaphore "started")))
+      (setf (base:global-value '*gate*) *never-comes*)
+      (run:start-clock simulation)
+      (unwind-protect
+           (progn
+             (with-x-server ()
+               (setf window (window:open-window robot))
+               (await-window window)
+               (window::give-line (window::window-conversation window)
+                                  "(progn (ars-magna.base:signal-semaphore
+                                           ars-magna.tests::*gate*) (loop))")
+               (window::give-line (window::window-conversation window) "turn 1")
+               (is-true (base:wait-on-semaphore *never-comes* 60)))
+             (base:join-thread (window::window-thread window))
+             (let ((said (format nil "~{~A~%~}"
+                                 (mapcar #'base:message-text
+                                         (base:take-messages
+                                          (run:simulation-messages simulation))))))
+               (is-true (has-words-p said "the X server has gone" "The line under way"
+                                     "signal-semaphore" "not done: turn 1")
+                        "~A" said)))
         (run:stop-clock simulation)))))
 
 ;;; Two threads wait for the X server on one connection; see replies.lisp.

@@ -76,6 +76,29 @@ name in *KEY-CODES*."
                                                    console))))
       (is (< (length (get-output-stream-string out)) 20000)))))
 
+(test editing.many-lines-that-come-at-once-cost-no-more-each
+  (flet ((lines (count)
+           (loop repeat count collect "(list 1 2 3" collect :enter)))
+    (let* ((console (terminal-console))
+           (stream (typed-text-for (keyboard-for (lines 3000) :at-hand t) console)))
+      (is (> 400000000 (bytes-consed-by (lambda ()
+                                         (loop while (read-line stream nil)))))))))
+
+(test editing.control-c-forgets-what-waits
+  "It is for the line that was under way; what was typed after it stays."
+  (let ((queue (cli::make-octet-queue)))
+    (cli::add-octets queue (octets-of-key (format nil "one~Ctwo~:*~Cthree"
+                                                  (code-char 3))))
+    (cli::put-back-octet queue #\x)
+    (is-true (cli::forget-until-interrupt queue))
+    (is (equal "three" (coerce (cli::take-all-octets queue) 'string)))
+    (is-false (cli::forget-until-interrupt queue))
+    (cli::put-back-octet queue (code-char 3))
+    (cli::add-octets queue (list #\y))
+    (is (eql (code-char 3) (cli::take-octet queue)))
+    (is-false (cli::forget-until-interrupt queue))
+    (is (equal '(#\y) (cli::take-all-octets queue)))))
+
 (test editing.moves
   (types-p ("xabc") "abc" #\A "x" :enter)
   (types-p ("xabcy") "abc" :home "x" :end "y" :enter)

@@ -10,8 +10,8 @@
 (defclass edited-text (typed-text)
   ((console :initarg :console :reader edited-console)
    (history :initarg :history :initform (make-history) :reader edited-history)
-   ;; Octets that were handed over before their time, in a list, and lines that were pasted.
-   (ahead :initform '() :accessor edited-ahead)
+   ;; Octets that were handed over before their time, and lines that were pasted.
+   (ahead :initform (make-octet-queue) :reader edited-ahead)
    (lines :initform '() :accessor edited-lines)
    (killed :initform "" :accessor edited-killed)
    ;; What Tab listed last, if nothing has changed since, or NIL.
@@ -57,7 +57,7 @@ control C and its like, which are signals.")
 
 (defun next-octet (stream)
   "Return the next octet of STREAM, as a character, or NIL at the end."
-  (cond ((edited-ahead stream) (pop (edited-ahead stream)))
+  (cond ((not (empty-queue-p (edited-ahead stream))) (take-octet (edited-ahead stream)))
         (t (await-octets stream)
            (handler-case (read-char (typed-octets stream) nil)
              (stream-error () nil)))))
@@ -66,7 +66,7 @@ control C and its like, which are signals.")
   "Return a function that returns the next octet of STREAM, or is given one to return first."
   (lambda (&optional octet)
     (if octet
-        (progn (push octet (edited-ahead stream)) nil)
+        (progn (put-back-octet (edited-ahead stream) octet) nil)
         (next-octet stream))))
 
 (defun octets-come (stream)
@@ -77,23 +77,22 @@ control C and its like, which are signals.")
 
 (defun octets-at-hand-p (stream)
   "True if STREAM has octets without waiting."
-  (and (or (edited-ahead stream)
-           (setf (edited-ahead stream) (octets-come stream)))
-       t))
+  (let ((ahead (edited-ahead stream)))
+    (when (empty-queue-p ahead) (add-octets ahead (octets-come stream)))
+    (not (empty-queue-p ahead))))
 
-(defparameter *control-c* (code-char 3))
-
-(defgeneric keep-ahead (stream octets)
-  (:documentation "Let OCTETS, a list, be read before others of STREAM.")
-  (:method ((stream edited-text) octets)
-    (setf (edited-ahead stream) octets)))
+(defgeneric keep-ahead (stream)
+  (:documentation "Let what has been handed over of STREAM before its time be kept where others look
+for it.")
+  (:method ((stream edited-text))))
 
 (defun look-ahead (stream)
   "Take what has been typed after the line that has ended. Control C in it is for that line."
-  (let* ((octets (append (edited-ahead stream) (octets-come stream)))
-         (interrupt (position *control-c* octets :from-end t)))
-    (keep-ahead stream (nthcdr (if interrupt (1+ interrupt) 0) octets))
-    (when interrupt (heed-interrupt))))
+  (let ((ahead (edited-ahead stream)))
+    (add-octets ahead (octets-come stream))
+    (let ((interrupt-p (forget-until-interrupt ahead)))
+      (keep-ahead stream)
+      (when interrupt-p (heed-interrupt)))))
 
 (defun tell-pastes-apart (console on)
   "Let the terminal tell what is pasted from what is typed, if ON is true."
@@ -307,8 +306,8 @@ of the input."
 (defmethod typed-ahead-p ((stream edited-text))
   (or (line-left-p stream)
       (and (edited-lines stream) t)
-      (and (edited-ahead stream) t)))
+      (not (empty-queue-p (edited-ahead stream)))))
 
 (defmethod stream-clear-input :after ((stream edited-text))
-  (setf (edited-lines stream) '()
-        (edited-ahead stream) '()))
+  (setf (edited-lines stream) '())
+  (take-all-octets (edited-ahead stream)))

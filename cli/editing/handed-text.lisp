@@ -29,10 +29,9 @@ prompt at the terminal has."
   "True if a line is being typed into STREAM: nothing is under way that would have to end first."
   (and (line-of stream) t))
 
-(defmethod keep-ahead ((stream handed-text) octets)
-  (setf (edited-ahead stream) '())
-  (revise-octets (typed-octets stream)
-                 (lambda (left) (uiop:strcat (coerce octets 'string) left))))
+(defmethod keep-ahead ((stream handed-text))
+  (let ((octets (coerce (take-all-octets (edited-ahead stream)) 'string)))
+    (revise-octets (typed-octets stream) (lambda (left) (concatenate 'string octets left)))))
 
 (defun ahead-of (stream octets)
   "Return what OCTETS, which STREAM has not read yet, come to."

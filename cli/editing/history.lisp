@@ -77,10 +77,15 @@ if the newest entry is not in it."
     (push text (history-entries history))
     (setf (history-unsaved-p history) t)))
 
+(defun begins-with-p (text start)
+  "True if TEXT begins with START. Of long texts that is known sooner than by STARTS-WITH-SUBSEQ."
+  (and (<= (length start) (length text))
+       (string= start text :end2 (length start))))
+
 (defun amend-entry (history text)
   "Let TEXT take the place of the newest entry, if it begins with that: it goes on over lines."
   (let ((newest (first (history-entries history))))
-    (when (and newest (starts-with-subseq newest text))
+    (when (and newest (begins-with-p text newest))
       (pop (history-entries history))
       (setf (history-unsaved-p history) (not (equal text (first (history-entries history)))))
       (when (history-unsaved-p history) (push text (history-entries history))))))

@@ -54,7 +54,7 @@ that is not NIL.")
     (declare (ignore input line before)))
   (:method ((input edited-text) line before)
     (if before
-        (amend-entry (edited-history input) (format nil "~A~%~A" before line))
+        (amend-entry (edited-history input) (concatenate 'string before '(#\Newline) line))
         (add-entry (edited-history input) line))))
 
 (defgeneric take-waiting (input)

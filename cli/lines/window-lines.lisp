@@ -19,9 +19,9 @@ is none."
 (define-line "WINDOW" (session (name :robot-name "the robot; the one commanded if left out"
                                      :optional))
     (:seeing)
-    "Open a window that shows the robot NAME in its world while it runs, and takes commands to it.
-McCLIM has to be installed; where it is not, this says how it is. Closing the window changes nothing
-here. It closes by itself when the run is over."
+    "Open a window that shows the robot NAME in its world while it runs, and takes commands to it;
+one that is open already comes to the front. McCLIM has to be installed; where it is not, this says
+how it is. Closing the window changes nothing here. It closes by itself when the run is over."
   (let ((robot (if name (robot-at-work-called name) (session-robot))))
     (ensure-windows)
     (open-display robot)

@@ -14,6 +14,10 @@
   (unwind-protect (funcall function)
     (with-lock (*sessions-lock*) (removef *sessions* session))))
 
+(defun sessions-at-work ()
+  "Return a list of the sessions at work, the newest first."
+  (with-lock (*sessions-lock*) (copy-list *sessions*)))
+
 (defun hears-p (session simulation)
   "True if SESSION listens to SIMULATION, or to what it was before it was rewound."
   (let ((heard (session-simulation session)))
@@ -22,8 +26,7 @@
 (defun sessions-hearing (simulation)
   "Return the sessions at work that listen to SIMULATION."
   (and simulation
-       (remove-if-not (lambda (session) (hears-p session simulation))
-                      (with-lock (*sessions-lock*) *sessions*))))
+       (remove-if-not (lambda (session) (hears-p session simulation)) (sessions-at-work))))
 
 (defun session-with-queue (queue)
   "Return a session at work that listens to a run whose messages come in QUEUE, or NIL."

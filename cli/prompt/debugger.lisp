@@ -9,125 +9,6 @@
 ;;; no debugger: a break is a message. So it is for what is typed to answer a break: there is no
 ;;; break in a break.
 
-(defstruct (breakage (:constructor make-breakage (condition restarts thread sessions))
-                     (:copier nil))
-  "A program that has broken and waits in THREAD, until the user of one of SESSIONS says how to go
-on. ORDER is what it is to do next, a function."
-  (condition nil :type condition :read-only t)
-  (restarts '() :type list :read-only t)
-  (thread nil :read-only t)
-  (sessions '() :type list)
-  (order nil :type (or null function))
-  ;; How to go on has been shown.
-  (told-p nil :type boolean)
-  (ordered (make-semaphore "order") :read-only t)
-  (done (make-semaphore "order done") :read-only t))
-
-(defvar *session* nil "The session that the debugger asks, in whatever thread; the newest.")
-
-(defun restarts-within (condition)
-  "Return the restarts for CONDITION up to the one that ends the line, of each name the innermost."
-  (let* ((all (remove nil (compute-restarts condition) :key #'restart-name))
-         (last (position 'end-line all :key #'restart-name)))
-    (remove-duplicates (subseq all 0 (and last (1+ last))) :test #'string=
-                       :key #'restart-name :from-end t)))
-
-(defun rank (restart condition)
-  "Return a number for RESTART, a lower one the more likely it is what the user wants."
-  (let ((first-names (if (typep condition 'serious-condition)
-                         '("ABORT" "RETRY" "STOP-SIMULATOR")
-                         '("CONTINUE"))))
-    (or (position (restart-name restart) first-names :test #'string=) (length first-names))))
-
-(defparameter *asking-restarts*
-  '("USE-VALUE" "STORE-VALUE" "RETURN-VALUE" "CALL-FORM" "REPLACE-FUNCTION" "SPECIFY-PACKAGE"
-    "USE-PACKAGE" "RENAME")
-  "The names of restarts, Lisp's own, that ask for what they need.")
-
-(defun asks-p (restart)
-  (member (restart-name restart) *asking-restarts* :test #'string=))
-
-(defun restarts-to-offer (condition session)
-  "Return the ways to go on after CONDITION that the user of SESSION can choose, those first that he
-may be expected to. Only the thread that has the prompt can ask him for a value."
-  (let ((restarts (restarts-within condition)))
-    (stable-sort (if (eq (session-thread session) (current-thread))
-                     restarts
-                     (remove-if #'asks-p restarts))
-                 #'< :key (lambda (restart) (rank restart condition)))))
-
-(defun here-p (breakage)
-  (eq (breakage-thread breakage) (current-thread)))
-
-;;; What the user sees.
-
-(defun whereabouts (session breakage)
-  "Return in words where BREAKAGE is, if not in this thread."
-  (let ((thread (breakage-thread breakage)))
-    (cond ((eq thread (session-thread session)) nil)
-          ((simulator-p session thread) "the simulator's thread")
-          (t (format nil "another thread, ~A" (thread-name thread))))))
-
-(defun simulator-p (session thread)
-  "True if THREAD passes the ticks of the run that SESSION listens to."
-  (let ((simulation (session-simulation session)))
-    (and simulation (eq thread (simulation-thread simulation)))))
-
-(defun break-words (condition)
-  "Return what CONDITION says: on a line, unless it is that a plan has stopped, with its stack."
-  (if (plan-break-p condition)
-      (visible (condition-text condition))
-      (complaint-text (condition-text condition))))
-
-(defun break-text (session breakage)
-  (format nil "*BREAK* -> ~A~@[ (in ~A)~]~%~:{  ~2D  ~16A ~A~%~}~
-               A number chooses. BACKTRACE tells where it is; a line in parentheses is Lisp.~%"
-          (break-words (breakage-condition breakage))
-          (whereabouts session breakage)
-          (loop for restart in (breakage-restarts breakage)
-                for number from 0
-                collect (list number (plain-name (restart-name restart))
-                              (complaint-text (own-text restart))))))
-
-(defun tell-break (session breakage)
-  "Show what has happened, and let the prompt that stands be the debugger's."
-  (let ((console (session-console session)))
-    (setf (breakage-told-p breakage) t)
-    (write-fresh (fitted (break-text session breakage) console) console)
-    (if (console-prompt console)
-        (show-prompt console "Break> ")
-        (finish-output console))))
-
-(defun tell-waiting (session breakage)
-  "Show that BREAKAGE has come while another is being answered."
-  (let ((console (session-console session)))
-    (write-fresh (fitted (format nil "*BREAK* -> ~A~@[ (in ~A)~]. It waits until the one before is ~
-                                      answered.~%"
-                                 (break-words (breakage-condition breakage))
-                                 (whereabouts session breakage))
-                         console)
-                 console)
-    (restore-prompt console)
-    (finish-output console)))
-
-(defun breaks-awaiting (session)
-  "Return what waits for the user of SESSION to say how it goes on, what is asked about now first."
-  (let ((own (session-debugging-p session)) (others (session-breaks session)))
-    (cond ((null own) others)
-          ((breakage-told-p own) (cons own others))
-          (t (append others (list own))))))
-
-(defun break-line (session breakage)
-  "Return on one line what has broken and where, if not in the thread of SESSION."
-  (let ((words (break-words (breakage-condition breakage))))
-    (format nil "~A~@[ (in ~A)~]" (subseq words 0 (position #\Newline words))
-            (whereabouts session breakage))))
-
-(defun awaited-answers (session)
-  "Return a list of what waits for the user of SESSION to say how it goes on, in words, what is
-asked about now first. Any thread may ask."
-  (mapcar (lambda (breakage) (break-line session breakage)) (breaks-awaiting session)))
-
 ;;; What the user says.
 
 (defun nothing-to-read (session)
@@ -206,10 +87,10 @@ user's."
 (defun call-debugging (session breakage function)
   "Call FUNCTION, which reads lines for BREAKAGE, of this thread. What breaks elsewhere meanwhile
 comes after that."
-  (let ((before (session-debugging-p session)))
-    (setf (session-debugging-p session) breakage)
+  (let ((before (session-debugging session)))
+    (setf (session-debugging session) breakage)
     (unwind-protect (funcall function)
-      (setf (session-debugging-p session) before)
+      (setf (session-debugging session) before)
       (when (and (session-breaks session) (not before) (not (session-over-p session)))
         (tell-break session (first (session-breaks session)))))))
 
@@ -227,6 +108,57 @@ comes after that."
       (unless (breakage-told-p other) (tell-break session other))
       (read-lines-for session other))))
 
+(defun announce-break (session breakage)
+  "Tell of BREAKAGE, of another thread than the one of SESSION: all, if it can be answered now."
+  (if (or (session-debugging session)
+          (not (eq breakage (first (session-breaks session)))))
+      (tell-waiting session breakage)
+      (tell-break session breakage)))
+
+(defun forget-break (session breakage)
+  "Let BREAKAGE, which goes on, wait for SESSION no longer, whose prompt that was perhaps not."
+  (let ((console (session-console session))
+        (next (second (member breakage (session-breaks session))))
+        (first-p (eq breakage (first (session-breaks session)))))
+    (removef (session-breaks session) breakage)
+    (unless (or (session-debugging session) (session-over-p session))
+      (cond ((and next first-p) (tell-break session next))
+            ((and (console-prompt console) (null (session-breaks session)))
+             (show-prompt console "Robot> "))))
+    (signal-semaphore (breakage-done breakage))))
+
+(defun debug-elsewhere (sessions breakage)
+  "Do what the thread of one of SESSIONS orders for BREAKAGE, until that is to go on."
+  (dolist (session sessions)
+    (setf (session-breaks session) (append (session-breaks session) (list breakage))))
+  (unwind-protect (progn (dolist (session sessions) (announce-break session breakage))
+                         (loop
+                           (wait-on-semaphore (breakage-ordered breakage))
+                           (funcall (breakage-order breakage))
+                           (signal-semaphore (breakage-done breakage))))
+    (dolist (session sessions) (forget-break session breakage))))
+
+;; Somebody's window may be lost, though he has another, or the terminal.
+(defun heirs-of (session)
+  "Return the sessions whose users can answer what that of SESSION, which is over, cannot any more:
+those that listen to its run, or else all; NIL if its user has left it."
+  (flet ((can-answer-p (other)
+           (and (terminal-p other)
+                (not (eq other session))
+                (not (session-over-p other))
+                (not (session-abandoned-p other)))))
+    (and (session-abandoned-p session)
+         (or (remove-if-not #'can-answer-p (sessions-hearing *simulation*))
+             (remove-if-not #'can-answer-p (sessions-at-work))))))
+
+(defun debug-at-heirs (session breakage)
+  "Let others than the user of SESSION, who cannot any more, say how BREAKAGE, of this thread, is to
+go on, if there are any."
+  (let ((heirs (heirs-of session)) (condition (breakage-condition breakage)))
+    (when heirs
+      (debug-elsewhere heirs (make-breakage condition (restarts-to-offer condition (first heirs))
+                                            (current-thread) heirs)))))
+
 (defun debug-here (session breakage)
   "Read lines for BREAKAGE, of this thread, until one says how to go on."
   (flet ((read-lines ()
@@ -239,37 +171,8 @@ comes after that."
                       (if (session-visit session)
                           (call-aside #'read-lines)
                           (read-lines)))))
+  (debug-at-heirs session breakage)
   (invoke-restart 'end-line))
-
-(defun announce-break (session breakage)
-  "Tell of BREAKAGE, of another thread than the one of SESSION: all, if it can be answered now."
-  (if (or (session-debugging-p session)
-          (not (eq breakage (first (session-breaks session)))))
-      (tell-waiting session breakage)
-      (tell-break session breakage)))
-
-(defun forget-break (session breakage)
-  "Let BREAKAGE, which goes on, wait for SESSION no longer, whose prompt that was perhaps not."
-  (let ((console (session-console session))
-        (next (second (member breakage (session-breaks session))))
-        (first-p (eq breakage (first (session-breaks session)))))
-    (removef (session-breaks session) breakage)
-    (unless (or (session-debugging-p session) (session-over-p session))
-      (cond ((and next first-p) (tell-break session next))
-            ((and (console-prompt console) (null (session-breaks session)))
-             (show-prompt console "Robot> "))))
-    (signal-semaphore (breakage-done breakage))))
-
-(defun debug-elsewhere (sessions breakage)
-  "Do what the thread of one of SESSIONS orders for BREAKAGE, until that is to go on."
-  (dolist (session sessions) 
-    (setf (session-breaks session) (append (session-breaks session) (list breakage))))
-  (unwind-protect (progn (dolist (session sessions) (announce-break session breakage))
-                         (loop
-                           (wait-on-semaphore (breakage-ordered breakage))
-                           (funcall (breakage-order breakage))
-                           (signal-semaphore (breakage-done breakage))))
-    (dolist (session sessions) (forget-break session breakage))))
 
 ;; A line may wait for what has broken elsewhere, as RUN-PLAN does for a plan.
 (defun answer-breaks ()

@@ -10,12 +10,6 @@
 (defun blank-from-p (text start)
   (= (skip-blanks text start) (length text)))
 
-(defun read-more (session text)
-  "Return TEXT with the next line of SESSION after it."
-  (let ((line (read-input session +going-on+ text)))
-    (unless line (reject-line "The form is not complete: ~A" (one-line text)))
-    (format nil "~A~%~A" text line)))
-
 (defvar *undefined* '()
   "Lists (name kind) of what the compiler has found undefined in the forms at hand, newest first.")
 
@@ -78,6 +72,9 @@ what Lisp says of a full stack, of which users are told."
                       (call-quietly (lambda () (eval (with-own-name form)))))
       (write-but-diagnostics (get-output-stream-string diagnostics) *standard-output*))))
 
+(defun eval-placing (form)
+  (call-placing-trouble (lambda () (eval-quietly form))))
+
 (defun value-line (value)
   "Return how VALUE is printed."
   (let ((*print-circle* (or *print-circle* (not (tree-p value)))))
@@ -87,7 +84,7 @@ what Lisp says of a full stack, of which users are told."
   "Evaluate FORM and print its values, each on a line."
   (setf (session-lisp-p session) t)
   (let ((values (multiple-value-list
-                 (call-telling-doubts (lambda () (call-staying (lambda () (eval-quietly form))))))))
+                 (call-telling-doubts (lambda () (call-staying (lambda () (eval-placing form))))))))
     (shiftf *** ** * (first values))
     (unless (report-values (session-account session) (mapcar #'value-line values))
       (when values (fresh-line))
@@ -96,27 +93,6 @@ what Lisp says of a full stack, of which users are told."
 (defun call-staying (function)
   "Call FUNCTION, in which what ends this Lisp, such as (sb-ext:exit), is an error."
   (call-refusing-exits function "EXIT would end the simulator amid a line. QUIT leaves."))
-
-(defun left-out-p (text start)
-  "True if TEXT has from START on no form but one that Lisp leaves out, as after #-sbcl."
-  (let ((start (position-if-not #'blank-p text :start start)))
-    (and start
-         (< (1+ start) (length text))
-         (char= #\# (char text start))
-         (find (char text (1+ start)) "+-")
-         ;; Then what is put behind it is what is read.
-         (eql 0 (ignore-errors (read-from-string (format nil "~A~%0" text) t nil :start start))))))
-
-(defun read-form (session text &optional (start 0))
-  "Return the form in TEXT at START, reading on in SESSION while it is incomplete; where it ends;
-and TEXT with what was read. Where Lisp leaves out what is there, the form is one without values."
-  (loop
-    (handler-case (read-from-string text t nil :start start)
-      (end-of-file ()
-        (when (left-out-p text start)
-          (return (values '(values) (length text) text)))
-        (setf text (read-more session text)))
-      (:no-error (form end) (return (values form end text))))))
 
 (defun check-parenthesis (text position)
   "Signal BAD-LINE if a form is to begin in TEXT at POSITION where a parenthesis is too many."

@@ -9,8 +9,8 @@
 
 (defun show-messages (session)
   "Show all queued messages, in SESSION or in those that listen to the runs that they are of, and
-the prompts again."
-  (unless *showing-p*
+the prompts again. One whose user is not there any more leaves them to others."
+  (unless (or *showing-p* (session-abandoned-p session))
     (with-lock (*showing-lock*)
       (let ((*showing-p* t))
         (tell-hearers session (take-all-messages))))))
@@ -54,8 +54,23 @@ another, so that nobody waits for the tick to end, which it may never."
   (setf (message-queue-listener (simulation-messages simulation))
         (and session (lambda () (hear session simulation)))))
 
+(defun counts-of (session)
+  "Return lists (text count) of what SESSION has been told how often."
+  (with-lock ((session-lock session))
+    (loop for text being the hash-keys of (session-told session) using (hash-value count)
+          collect (list text count))))
+
+(defun share-counts (session simulation)
+  "Let SESSION know what others that listen to SIMULATION have been told often, as a new window does
+not."
+  (dolist (other (remove session (sessions-hearing simulation)))
+    (loop for (text count) in (counts-of other)
+          do (setf (gethash text (session-told session))
+                   (max count (gethash text (session-told session) 0))))))
+
 (defun listen-to (session simulation)
   "Let SESSION show what SIMULATION has to say when it says it."
+  (share-counts session simulation)
   (setf (session-simulation session) simulation)
   (set-listener session simulation)
   (keep-history simulation)
@@ -83,8 +98,10 @@ another, so that nobody waits for the tick to end, which it may never."
 
 (defun follow-simulation (session)
   "Let SESSION listen to the simulation that is current now."
-  (unless (and (eq *simulation* (session-simulation session))
-               (eq (and *simulation* (live-p *simulation*)) (and (session-observer session) t)))
+  (unless (or (session-abandoned-p session)
+              (and (eq *simulation* (session-simulation session))
+                   (eq (and *simulation* (live-p *simulation*))
+                       (and (session-observer session) t))))
     (stop-listening session)
     (when *simulation* (listen-to session *simulation*))))
 

@@ -2,16 +2,6 @@
 
 (in-package :ars-magna.cli)
 
-(define-condition file-trouble (ars-magna-error)
-  ((file  :initarg :file  :reader file-trouble-file)
-   (line  :initarg :line  :reader file-trouble-line)
-   (cause :initarg :cause :reader file-trouble-cause))
-  (:report (lambda (condition stream)
-             (format stream "~A, line ~D: ~A"
-                     (file-trouble-file condition) (file-trouble-line condition)
-                     (condition-text (file-trouble-cause condition)))))
-  (:documentation "A form in a file that is being loaded has failed; those before it have not."))
-
 (defun form-start (text start)
   "Return where, from START, the next form in TEXT begins; its length if there is none."
   (loop for position = (or (position-if-not #'blank-p text :start start) (length text))
@@ -19,12 +9,6 @@
         while end
         do (setf start end)
         finally (return position)))
-
-(defun placed-p (condition)
-  "True if CONDITION says itself where the trouble is."
-  (or (typep condition 'file-trouble)
-      (and (typep condition 'malformed-definition)
-           (malformed-definition-place condition))))
 
 (defun call-on-line (function file text position)
   "Call FUNCTION, which deals with the form of FILE's TEXT at POSITION."

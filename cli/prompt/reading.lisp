@@ -16,7 +16,7 @@ program runs a script."
 
 (defun answer-p (session line)
   "True if LINE, of SESSION, answers a program that has broken: it makes no sense later."
-  (and (or (session-breaks session) (session-debugging-p session))
+  (and (or (session-breaks session) (session-debugging session))
        (not (comment-p line))
        (not (lisp-p line))))
 

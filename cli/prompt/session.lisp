@@ -50,7 +50,7 @@
   (thread nil)
   (breaks '() :type list)
   ;; What has entered the debugger in its own thread, while it reads lines for that.
-  (debugging-p nil)
+  (debugging nil)
   ;; That of the last plan, if it failed, and the plan's name, in a list.
   (failure nil)
   ;; What the plans are called that it has started; those of a rewound run are its own, too.
@@ -61,6 +61,8 @@
   ;; If the run of plans that it waits for was rewound: what to call first, with this session.
   (after-rewind nil :type (or null function))
   (over-p nil)
+  ;; It is to be over though its user has not left it: what he was to answer, others are asked.
+  (abandoned-p nil :type boolean)
   ;; It is over because nothing more is typed: nobody has said QUIT.
   (ended-p nil :type boolean)
   ;; The trial that the prompt is in, or NIL.

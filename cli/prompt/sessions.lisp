@@ -67,6 +67,17 @@ one that is under way."
          (interrupt-thread (session-thread session) #'heed-in-session)))
   (values))
 
+(defun abandon-session (session)
+  "Note that SESSION is about to be over though its user has not left it, as when his window is
+lost: others are asked what he cannot answer any more, and told what its run says. Return nothing."
+  (setf (session-abandoned-p session) t)
+  (stop-listening session)
+  (values))
+
+(defun asked-of-others-p (session)
+  "True if what has broken in the thread of SESSION, which is lost, others can answer."
+  (and (session-debugging session) (heirs-of session) t))
+
 (defun end-session (session)
   "Let SESSION be over, from another thread. A line that is under way is interrupted; one that is
 being typed, or has been typed ahead, is not carried out."

@@ -19,15 +19,13 @@
   "Return the file that makes Quicklisp known, where the user has installed it, or NIL."
   (probe-file (merge-pathnames "quicklisp/setup.lisp" (user-homedir-pathname))))
 
-(defun window-loader ()
-  "Return a function that loads the system of windows, or NIL if there is no McCLIM to be had."
-  (cond ((known-system-p "mcclim/looks")
-         (lambda () (asdf:load-system "ars-magna/clim")))
-        ((or (find-package :quicklisp) (quicklisp-file))
-         (lambda ()
-           (unless (find-package :quicklisp) (load (quicklisp-file)))
-           (uiop:symbol-call :quicklisp :quickload "mcclim/looks")
-           (asdf:load-system "ars-magna/clim")))))
+(defun quicklisp-there-p ()
+  (or (find-package :quicklisp) (quicklisp-file)))
+
+(defun get-by-quicklisp ()
+  "Let Quicklisp fetch McCLIM, if need be, and load it."
+  (unless (find-package :quicklisp) (load (quicklisp-file)))
+  (uiop:symbol-call :quicklisp :quickload "mcclim/looks"))
 
 (defun call-as-in-bare-lisp (function)
   "Call FUNCTION, which compiles and loads libraries, in Lisp's own syntax. What the compiler says
@@ -38,11 +36,21 @@ is of no interest."
         (*read-default-float-format* 'single-float))
     (handler-bind ((warning #'muffle-warning)) (funcall function))))
 
-(defun load-windows (loader)
-  (handler-case (call-as-in-bare-lisp loader)
+(defun call-or-say (function trouble)
+  "Call FUNCTION as in a bare Lisp. If that fails, signal BAD-LINE with TROUBLE, the control string
+of a text that says why."
+  (handler-case (call-as-in-bare-lisp function)
     (error (condition)
-      (reject-line "McCLIM is there, but cannot be loaded: ~A"
-                   (one-line (condition-text condition))))))
+      (reject-line trouble (one-line (condition-text condition))))))
+
+(defun load-windows (quicklisp-p)
+  "Load the system of windows, and McCLIM through Quicklisp before if QUICKLISP-P."
+  (when quicklisp-p
+    (call-or-say #'get-by-quicklisp
+                 "No window: Quicklisp could not get McCLIM (~A). Is the network there? Then say ~
+                  WINDOW again."))
+  (call-or-say (lambda () (asdf:load-system "ars-magna/clim"))
+               "No window: McCLIM is there, but cannot be loaded: ~A"))
 
 (defun display-named-p ()
   "True if the environment names an X server."
@@ -60,10 +68,10 @@ is of no interest."
       (reject-line "No display: the environment variable DISPLAY names no X server. MAP draws the ~
                     world here, PICTURE in a file."))
     (configure-asdf)
-    (let ((loader (window-loader)))
-      (unless loader
+    (let ((found-p (known-system-p "mcclim/looks")))
+      (unless (or found-p (quicklisp-there-p))
         (write-string *how-to-get-windows*)
         (reject-line "No window: McCLIM is not installed; what is to be done stands above."))
       (format t "Loading what windows need; the first time that takes some minutes.~%")
       (finish-output)
-      (load-windows loader))))
+      (load-windows (not found-p)))))

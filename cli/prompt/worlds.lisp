@@ -23,14 +23,21 @@ it says otherwise."
   (call-with-syntax 'single-float
                     (lambda () (call-quietly (lambda () (load-forms path))))))
 
+(defun blueprints-defined-by (function)
+  "Call FUNCTION. Return the blueprints that it defines, and leaves defined, in the order in which
+it does; whatever had their names before."
+  (let* ((defined '())
+         (*definition-listener* (lambda (object) (push object defined))))
+    (funcall function)
+    (let ((blueprints (all-blueprints)))
+      (remove-if-not (lambda (object) (member object blueprints)) (reverse defined)))))
+
 (defun load-world (path)
-  "Load the Lisp file at PATH. Return the names of the robots that it defines. Signals BAD-LINE if
-there are none."
-  (let ((before (all-blueprints)))
-    (load-lisp path)
-    (or (mapcar #'blueprint-name (remove-if (lambda (body) (member body before)) (all-blueprints)))
-        (reject-line "~A defines no robot; a world's file has a DEFROBOT."
-                     (native-name path)))))
+  "Load the Lisp file at PATH. Return the names of the robots that it defines, in its order. Signals
+BAD-LINE if there are none."
+  (or (mapcar #'blueprint-name (blueprints-defined-by (lambda () (load-lisp path))))
+      (reject-line "~A defines no robot; a world's file has a DEFROBOT."
+                   (native-name path))))
 
 (defun robot-names ()
   "Return the names of all robots."

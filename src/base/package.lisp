@@ -122,16 +122,17 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:clause-place #:skip-definition #:skip-clause #:read-again)
   ;; facts
   (:export #:facts #:known-facts #:define-facts #:slots-to-show #:listed #:fact-text)
+  ;; places-in-text
+  (:export #:reading-place)
   ;; csv
   (:export #:csv-line #:csv-texts #:broken-line #:broken-line-text)
   ;; user-macros
   (:export #:define-user-macro #:user-macro-form #:call-blaming-form)
   ;; registry
-  (:export #:registry #:define-registry #:registry-objects #:register #:seal-definitions
-           #:lookup-entry #:from-this-file-p #:entry-name #:entry-object #:entry-source
-           #:entry-digest #:registry-entries #:users-p #:current-form-digest #:form-digest
-           #:file-digest #:text-checksum
-           #:name-string
+  (:export #:registry #:define-registry #:registry-objects #:register
+           #:*definition-listener* #:seal-definitions #:lookup-entry #:from-this-file-p
+           #:entry-name #:entry-object #:entry-source #:entry-digest #:registry-entries #:users-p
+           #:current-form-digest #:form-digest #:file-digest #:text-checksum #:name-string
            #:defined-names #:find-definition #:all-definitions #:definition-to-replace
            #:variable-in-use-p
            #:entries-meant

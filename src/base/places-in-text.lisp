@@ -45,3 +45,14 @@ is NIL or FILE cannot be read."
          (let ((text (file-text file)))
            (multiple-value-bind (start end) (bounds-of-place text place)
              (line-number text (or (form-position text form start end) start)))))))
+
+(defun reading-place (condition)
+  "Return which file LOAD was reading when CONDITION came up, as the system calls it, and on which
+line the form begins that it could not read; NIL if CONDITION says something else. Only while that
+file is still open."
+  (let ((stream (and (typep condition 'reader-error) (stream-error-stream condition))))
+    (when (and (typep stream 'sb-int:form-tracking-stream) (open-stream-p stream))
+      (let* ((file (native-name (pathname stream)))
+             (text (file-text (pathname stream)))
+             (start (sb-int:form-tracking-stream-form-start-char-pos stream)))
+        (values file (line-number text (skip-blanks text (min start (length text)))))))))

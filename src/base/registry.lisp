@@ -167,12 +167,12 @@ UNKNOWN-NAME if ERRORP is true."
 (defun entries-with (new old before registry)
   "Return the entries of REGISTRY with NEW: directly before the object BEFORE, in the place of OLD,
 or last. Of several that are called the same the newest comes last, for those who ask by name."
-  (let ((others (remove old (registry-entries registry))))
+  (let* ((entries (registry-entries registry)) (others (remove old entries)))
     (cond (before (let ((tail (member before others :key #'entry-object)))
                     (append (ldiff others tail) (list new) tail)))
-          ((and old (not (find (entry-name new) others
+          ((and old (not (find (entry-name new) (rest (member old entries))
                                :key #'entry-name :test #'same-name-p)))
-           (substitute new old (registry-entries registry)))
+           (substitute new old entries))
           (t (append others (list new))))))
 
 (defun variable-in-use-p (name)
@@ -207,6 +207,9 @@ OLD had, or NAME if it is free."
   (cond ((and old (entry-variable old) (boundp (entry-variable old))) (entry-variable old))
         (t (free-variable name (registry-text registry)))))
 
+(defvar *definition-listener* nil
+  "A function that is called in this thread with each object that is defined, or NIL.")
+
 (defun register (registry name object &key variable (value object) before)
   "Let NAME mean OBJECT in REGISTRY, from now on; it takes the place of what it meant before. With
 VARIABLE, the special variable NAME, if it can be one and is not in use, has VALUE from now on.
@@ -219,6 +222,7 @@ BEFORE is an object of the registry to come directly before, instead of last. Re
       (set-entries registry (entries-with new old before registry))
       (when variable (setf (global-value variable) value)))
     (when old (say-if-replaced old new registry))
+    (when *definition-listener* (funcall *definition-listener* object))
     object))
 
 ;;; Undefining.

@@ -60,16 +60,30 @@ cannot be printed."
       (and (typep condition 'end-of-file)
            (not (typep (stream-error-stream condition) 'file-stream)))))
 
+(defun cause-of-reading-trouble (condition)
+  "Return CONDITION, or if that only says where it came up, as LOAD's does, what it says that of."
+  (if (typep condition 'sb-int:encapsulated-condition)
+      (cause-of-reading-trouble (sb-int:encapsulated-condition condition))
+      condition))
+
+(defun naming-remedy (text)
+  "Return what can be done about what TEXT says of a name that cannot be read; NIL of other texts."
+  (cond ((or (search "not found in the" text) (search "Package" text))
+         "Perhaps it is misspelt, or what defines it has not been loaded")
+        ((search "is not external" text)
+         "With two colons it can be read, if you mean what is that package's own")))
+
 (defun reading-trouble (condition)
   "Return why a text cannot be read, for which CONDITION came up. What Lisp says of that names
 streams that no user knows."
-  (let ((text (if (typep condition 'simple-condition)
-                  (format-briefly nil "~?" (simple-condition-format-control condition)
-                                  (simple-condition-format-arguments condition))
-                  "it ends too early; is a parenthesis or quote missing?")))
+  (let* ((cause (cause-of-reading-trouble condition))
+         (text (if (typep cause 'simple-condition)
+                   (format-briefly nil "~?" (simple-condition-format-control cause)
+                                   (simple-condition-format-arguments cause))
+                   "it ends too early; is a parenthesis or quote missing?")))
     (if (starts-with-subseq "failed to build" text)
         "a number is too large, too small, or divided by 0"
-        (string-right-trim "." text))))
+        (format nil "~A~@[. ~A~]" (string-right-trim "." text) (naming-remedy text)))))
 
 (defun own-text (condition)
   "Return what CONDITION, or another object, says of itself; an empty text if it cannot."

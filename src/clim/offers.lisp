@@ -30,19 +30,8 @@ number."
 (defun inspector-line (form)
   "Return in a list the offer to inspect the value of FORM, a string, in the editor that is
 connected, if there is one."
-  (let ((inspector (loop for package in '("SWANK" "SLYNK")
-                         for symbol = (and (find-package package)
-                                           (find-symbol "INSPECT-IN-EMACS" package))
-                         when (and symbol (fboundp symbol) (editor-connected-p package))
-                           return (format nil "~(~A:~A~)" package symbol))))
-    (and inspector (list (list "Inspect in the editor" (format nil "(~A ~A)" inspector form))))))
-
-(defun editor-connected-p (package)
-  "True if an editor talks to the server in PACKAGE."
-  (let ((variable (find-symbol "*EMACS-CONNECTION*" package))
-        (default (find-symbol "DEFAULT-CONNECTION" package)))
-    (or (and variable (boundp variable) (symbol-value variable) t)
-        (and default (fboundp default) (funcall default) t))))
+  (and (editor-server)
+       (list (list "Inspect in the editor" (format nil "(inspect-in-editor ~A)" form)))))
 
 (defun looking-into (form)
   "Return the offers to look into the value of FORM, a string."

@@ -31,6 +31,20 @@
 (defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event close-event))
   (clim:frame-exit (clim:pane-frame sheet)))
 
+(defclass front-event (clim:window-manager-event) ()
+  (:documentation "The window is to be seen: above others, and not as an icon."))
+
+(defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event front-event))
+  (climb:port-enable-sheet (clim:port sheet) sheet)
+  (clim:raise-sheet sheet))
+
+(defun bring-to-front (window)
+  "Let WINDOW, which is open, be seen. Return nothing."
+  (let ((sheet (clim:frame-top-level-sheet window)))
+    (when sheet
+      (clim:queue-event sheet (make-instance 'front-event :sheet sheet))))
+  (values))
+
 ;;; A window's life.
 
 (defun forget-window (window)
@@ -40,22 +54,36 @@
       (setf *windows* (remove window *windows*))
       t)))
 
-(defun warn-of-closing (window condition)
-  "Say, once, that CONDITION has closed WINDOW."
-  (when (forget-window window)
-    (let* ((simulation (window-simulation window))
-           (*message-queue* (if simulation (simulation-messages simulation) *message-queue*)))
-      (warning-set (format nil "The display of ~A has closed: ~A"
-                           (watcher-robot (window-watcher window))
-                           (substitute #\Space #\Newline
-                                       (handler-case (princ-to-string condition)
-                                         (error () (string (type-of condition))))))))))
-
-;;; Which robot a window shows.
-
 (defun window-session (window)
   "Return the session of the prompt of WINDOW."
   (conversation-session (window-conversation window)))
+
+(defun work-left (window)
+  "Return in words, as they follow a sentence, what the prompt of WINDOW, which is lost, leaves: the
+line under way, lines that wait, a break."
+  (let* ((session (window-session window))
+         (line (busy-with (window-conversation window)))
+         (lines (ars-magna.cli:take-waiting (ars-magna.cli:session-input session))))
+    (ars-magna.cli:abandon-session session)
+    (format nil "~@[. The line under way there was ended: ~A~]~
+                 ~@[. These waited there and were not done: ~{~A~^; ~}~]~
+                 ~:[~;. What has broken there waits for an answer at another prompt~]"
+            (and line (cut (one-line line) 200))
+            (loop for line in lines repeat 10 collect (cut (one-line line) 200))
+            (ars-magna.cli:asked-of-others-p session))))
+
+(defun warn-of-closing (window condition)
+  "Say, once, that CONDITION has closed WINDOW, and what that leaves undone."
+  (when (forget-window window)
+    (let* ((simulation (window-simulation window))
+           (*message-queue* (if simulation (simulation-messages simulation) *message-queue*)))
+      (warning-set (format nil "The display of ~A has closed: ~A~A"
+                           (watcher-robot (window-watcher window))
+                           (one-line (handler-case (princ-to-string condition)
+                                       (error () (string (type-of condition)))))
+                           (work-left window))))))
+
+;;; Which robot a window shows.
 
 (defun show-robot-called (window name simulation)
   "Let WINDOW show the robot called NAME of SIMULATION from now on."
@@ -152,7 +180,7 @@ else, if its user has chosen another one of the same run, that that is shown."
     (reject-use "No display: there is no X server; set the environment variable DISPLAY."))
   (handler-case (clim:find-port)
     (error (condition)
-      (reject-use "No display: the X server ~A does not answer (~A)."
+      (reject-use "No display: the X server ~A, which DISPLAY names, does not answer (~A)."
                   (environment-value "DISPLAY")
                   (substitute #\Space #\Newline (princ-to-string condition))))))
 
@@ -210,12 +238,13 @@ is in a trial or fork."
 
 (defun open-window (robot)
   "Show ROBOT in a window: in the one that it has, or that shows the trial or fork that it is in, in
-one whose run is over, or else in a new one. Return the window. Signals MISUSE where there is no X
-server."
+one whose run is over, or else in a new one. It comes to the front. Return the window. Signals
+MISUSE where there is no X server."
   (let ((window (window-for robot)))
     (cond ((null window) (open-new-window robot))
           (t (unless (shows-p window (robot-name robot) (robot-simulation robot))
                (lead-window window robot))
+             (bring-to-front window)
              window))))
 
 (defun await-windows ()

@@ -19,6 +19,7 @@ McCLIM's symbols are written with their packages. Manual B.")
                 #:task-image-look #:tree-image-rows #:tree-image-tasks #:tree-image-plans
                 #:plan-runner-tasks #:plan-runner-tick #:task-label #:task-state #:task-result
                 #:task-runner #:failure-text #:*plan-end-hooks*)
+  (:import-from :ars-magna.faces #:editor-server)
   (:import-from :ars-magna.rpl-pictures
                 #:draw-task-tree #:fold-mark #:fold-mark-serial #:draw-page #:make-page
                 #:page-start #:page-end #:scale-for #:tick-at)

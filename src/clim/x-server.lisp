@@ -21,6 +21,8 @@
 (defun lose-port (port)
   "Close the windows on PORT, whose X server has gone; end the thread that reads its events."
   (when (forget-port port)
+    ;; None of them can answer for another.
+    (dolist (window (windows-on port)) (ars-magna.cli:abandon-session (window-session window)))
     (dolist (window (windows-on port))
       (warn-of-closing window "the X server has gone. The run goes on; WINDOW opens it anew")
       (close-window window))

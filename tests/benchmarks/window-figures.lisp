@@ -10,7 +10,8 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (sb-ext:add-package-local-nickname :window :ars-magna.clim)
-  (sb-ext:add-package-local-nickname :canvas :ars-magna.canvas))
+  (sb-ext:add-package-local-nickname :canvas :ars-magna.canvas)
+  (sb-ext:add-package-local-nickname :client :ars-magna.window-client))
 
 (defparameter *movers* 30)
 (defparameter *seconds* 5 "How long what takes its own time is watched.")
@@ -29,40 +30,25 @@
 (defun strew-movers (world)
   "Return a list of new things in WORLD, one below the other."
   (loop for mover below *movers*
-        collect (world:make-new-thing 'box (list world 2.5d0 (row mover))
+        collect (world:make-new-thing 'box (list world 6.5d0 (row mover))
                                       '((:size 1) (:color red)))))
 
 (defun step-movers (movers)
-  "Move all MOVERS by a pixel to the right, and from there back to the left."
-  (let ((x (+ 2 (mod (+ (world:thing-x (first movers)) -2 1/8) 64))))
+  "Move all MOVERS by a pixel to the right, and from there back to the left; not so far that the
+numbers of the rows cover them."
+  (let ((x (+ 6 (mod (+ (world:thing-x (first movers)) -6 1/8) 60))))
     (dolist (mover movers)
       (world:place-thing mover :floor x (world:thing-y mover)))))
 
 (defun move-every-tick (movers)
-  "Let MOVERS move by themselves, all in the same tick."
-  (world:put-kicker sidestep (thing (first movers)) ()
-    (declare (ignore thing))
-    (step-movers movers)))
+  "Let MOVERS be moved in each tick by a thing that stays; what moves by itself looks different."
+  (let ((motor (world:make-new-thing 'motor (list (world:thing-world (first movers)) 70.5d0 66.5d0)
+                                     '((:size 1) (:color blue)))))
+    (world:put-kicker sidestep (thing motor) ()
+      (declare (ignore thing))
+      (step-movers movers))))
 
 ;;; The window's own thread paints.
-
-(defclass errand (clim:window-manager-event)
-  ((function :initarg :function :reader errand-function))
-  (:documentation "Something that the window's thread is to do."))
-
-(defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event errand))
-  (funcall (errand-function event)))
-
-(defun run-in-window (window function)
-  "Let the thread of WINDOW call FUNCTION; return its value."
-  (let ((done (base:make-semaphore "done")) (sheet (clim:frame-top-level-sheet window)) value)
-    (clim:queue-event sheet (make-instance 'errand
-                                           :sheet sheet
-                                           :function (lambda ()
-                                                       (setf value (funcall function))
-                                                       (base:signal-semaphore done))))
-    (base:wait-on-semaphore done)
-    value))
 
 (defun world-pane (window) (clim:find-pane-named window 'window::world))
 
@@ -71,9 +57,9 @@
   (let ((pane (world-pane window)))
     (loop until (clim:sheet-grafted-p pane) do (sleep 0.05))
     (sleep 1)
-    (run-in-window window (lambda () (clim:layout-frame window 1100 900)))
+    (client:run-in-window window (lambda () (clim:layout-frame window 1100 900)))
     (sleep 1)
-    (run-in-window window (lambda ()
+    (client:run-in-window window (lambda ()
                             (setf (window::pane-fitting-p pane) nil
                                   (window::pane-scale pane) 8
                                   (window::pane-left pane) 0
@@ -97,7 +83,7 @@
     (clim:medium-finish-output (clim:sheet-medium pane))))
 
 (defun frame-rate (window movers)
-  (run-in-window window (lambda ()
+  (client:run-in-window window (lambda ()
                           (per-second 1000 (lambda ()
                                              (paint-frames 1000 window movers
                                                            #'window::repaint-if-changed))))))
@@ -109,30 +95,9 @@
   (let ((color (canvas:shade 'red)))
     (list (ldb (byte 8 0) color) (ldb (byte 8 8) color) (ldb (byte 8 16) color))))
 
-(defun seek-x-window (name x-window)
-  "Return the X window called NAME that is, or is below, X-WINDOW; NIL if there is none."
-  (if (equal name (ignore-errors (xlib:wm-name x-window)))
-      x-window
-      (some (lambda (child) (seek-x-window name child)) (xlib:query-tree x-window))))
-
-(defun call-with-x-window (function window)
-  "Call FUNCTION with the X window of WINDOW, as another client of the X server knows it."
-  (let ((display (xlib:open-default-display)))
-    (unwind-protect
-         (funcall function
-                  (seek-x-window (clim:frame-pretty-name window)
-                                 (xlib:screen-root (xlib:display-default-screen display))))
-      (xlib:close-display display))))
-
-(defun corner-of (pane)
-  "Return how far right and down in its X window PANE begins, in pixels."
-  (clim:transform-position (clim:sheet-delta-transformation
-                            pane (clim:frame-top-level-sheet (clim:pane-frame pane)))
-                           0 0))
-
 (defun grab (x-window pane)
   "Return the pixels of the map in PANE, four bytes each, as they are on the screen now."
-  (multiple-value-bind (x y) (corner-of pane)
+  (multiple-value-bind (x y) (client:corner-of pane)
     (xlib:get-raw-image x-window :x (round x) :y (round y) :width 600 :height 600
                                  :format :z-pixmap)))
 
@@ -157,7 +122,7 @@ differ from each other."
            (loop with color = (mover-bytes) with pane = (world-pane window)
                  repeat grabs
                  collect (aligned-column (grab x-window pane) color))))
-    (let ((columns (call-with-x-window #'columns window)))
+    (let ((columns (client:call-with-x-window #'columns window)))
       (say name (count nil columns) "frames")
       (say "  positions seen among the others"
            (length (remove-duplicates (remove nil columns))) "positions"))))
@@ -168,7 +133,7 @@ differ from each other."
          (painter (base:start-thread
                    (lambda ()
                      (loop until over-p
-                           do (run-in-window window (lambda ()
+                           do (client:run-in-window window (lambda ()
                                                       (paint-frames 5 window movers paint)))))
                    "painter")))
     (say-torn name 1000 window)
@@ -187,10 +152,11 @@ differ from each other."
   "Return how long processors have worked for us since BEFORE, in milliseconds a second."
   (/ (- (get-internal-run-time) before) (* *seconds* internal-time-units-per-second 1d-3)))
 
-(defun say-live (simulation)
-  "Print frames and ticks a second of the live SIMULATION, which is shown."
+(defun say-shown (name simulation)
+  "Print, of the live SIMULATION, which is shown, how many ticks a second pass, how many pictures of
+them are painted, and how busy processors are."
   (let* ((frames *frames*) (before (get-internal-run-time)) (ticks (tick-rate simulation)))
-    (say "live, shown, at 1000 ticks/s" ticks "ticks/s")
+    (say name ticks "ticks/s")
     (say "  frames shown" (/ (- *frames* frames) *seconds*) "frames/s")
     (say "  time of a processor" (cpu-milliseconds before) "ms a second")))
 
@@ -200,14 +166,13 @@ differ from each other."
                                 (declare (ignore angle))
                                 (unless err (keep-turning robot)))))
 
+;; At that rate ticks pass only while a command is under way.
 (defun say-free (simulation)
-  "Print how many frames a second are shown of SIMULATION while ticks pass as fast as they can."
+  "Print the same while ticks pass as fast as they can, and the movers with each of them."
   (time:set-rate :free simulation)
   (keep-turning (first (run:simulation-robots simulation)))
   (sleep 1)
-  (let ((frames *frames*))
-    (say "live, shown, as fast as possible" (tick-rate simulation) "ticks/s")
-    (say "  frames shown" (/ (- *frames* frames) *seconds*) "frames/s"))
+  (say-shown "live, shown, as fast as possible" simulation)
   (time:set-rate 1000 simulation))
 
 (defun say-idle (simulation)
@@ -238,7 +203,7 @@ differ from each other."
                        (clim:medium-force-output (clim:sheet-medium pane)))))
 
 (defun say-living (window simulation)
-  (say-live simulation)
+  (say-shown "live, shown, at 1000 ticks/s" simulation)
   (say-torn "torn frames of 10,000, live" 10000 window)
   (say-free simulation)
   (say-idle simulation))

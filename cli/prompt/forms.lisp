@@ -1,0 +1,61 @@
+;;;; forms.lisp -- a form of Lisp that goes on over lines is read while its lines come.
+
+(in-package :ars-magna.cli)
+
+;;; Each character is read once or twice, however many lines there are, and what is evaluated while
+;;; it is read, after #., is so as often.
+
+(defun read-more (session text)
+  "Return TEXT with the next line of SESSION after it."
+  (let ((line (read-input session +going-on+ text)))
+    (unless line (reject-line "The form is not complete: ~A" (one-line text)))
+    (concatenate 'string text '(#\Newline) line)))
+
+(defclass growing-text (fundamental-character-input-stream)
+  ((text :initarg :text :accessor grown-text)
+   (position :initarg :position :accessor grown-position)
+   (more :initarg :more :reader text-grower))
+  (:documentation "The characters of TEXT from POSITION on. After its end comes a newline, and then
+what the function MORE returns of it: the same text, that newline and another line."))
+
+(defmethod stream-read-char ((stream growing-text))
+  (when (< (length (grown-text stream)) (grown-position stream))
+    (setf (grown-text stream) (funcall (text-grower stream) (grown-text stream))))
+  (let ((text (grown-text stream)) (position (grown-position stream)))
+    (incf (grown-position stream))
+    (if (< position (length text)) (char text position) #\Newline)))
+
+(defmethod stream-unread-char ((stream growing-text) char)
+  (declare (ignore char))
+  (decf (grown-position stream))
+  nil)
+
+(defun read-growing (session text start)
+  "Return what READ-FORM does, of a form that goes on after TEXT."
+  (let* ((stream (make-instance 'growing-text
+                                :text text :position start
+                                :more (lambda (text) (read-more session text))))
+         (form (read-preserving-whitespace stream)))
+    (values form
+            (min (grown-position stream) (length (grown-text stream)))
+            (grown-text stream))))
+
+(defun left-out-p (text start)
+  "True if TEXT has from START on no form but one that Lisp leaves out, as after #-sbcl."
+  (let ((start (position-if-not #'blank-p text :start start)))
+    (and start
+         (< (1+ start) (length text))
+         (char= #\# (char text start))
+         (find (char text (1+ start)) "+-")
+         ;; Then what is put behind it is what is read.
+         (eql 0 (ignore-errors (read-from-string (format nil "~A~%0" text) t nil :start start))))))
+
+(defun read-form (session text &optional (start 0))
+  "Return the form in TEXT at START, reading on in SESSION while it is incomplete; where it ends;
+and TEXT with what was read. Where Lisp leaves out what is there, the form is one without values."
+  (handler-case (read-from-string text t nil :start start)
+    (end-of-file ()
+      (if (left-out-p text start)
+          (values '(values) (length text) text)
+          (read-growing session text start)))
+    (:no-error (form end) (values form end text))))
