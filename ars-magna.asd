@@ -365,7 +365,7 @@
                  (:file "worlds-searching")
                  (:file "svg-reading") (:file "display") (:file "display-files")
                  (:file "palette") (:file "pictures") (:file "display-details")
-                 (:file "display-drawing") (:file "films")
+                 (:file "display-drawing") (:file "films") (:file "moments")
                  (:file "plots") (:file "plots-text")
                  (:file "clim") (:file "cli") (:file "text-maps") (:file "cli-quantities")
                  (:file "editing") (:file "editing-screens") (:file "completing")

@@ -58,7 +58,12 @@
   (cli:end-session (talk-session talk))
   (base:join-thread (talk-thread talk)))
 
-(defun told-to (talk) (get-output-stream-string (talk-output talk)))
+(defun told-to (talk)
+  "Return what TALK has said since this was asked last, while nobody goes on writing there."
+  (let ((text ""))
+    (cli::with-console (output (cli::session-console (talk-session talk)))
+      (setf text (get-output-stream-string output)))
+    text))
 
 (defmacro in-talk ((talk) &body body)
   "Run BODY with TALK bound to a prompt of the studio's robot."

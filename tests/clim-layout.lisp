@@ -173,12 +173,12 @@
         (is (= (- extent height) (window::pane-offset pane)))))))
 
 (defun cameras-drawn (window pane)
-  "Return the numbers of the cameras of WINDOW of which something was drawn in PANE in view."
+  "Return the numbers of the cameras of WINDOW of which the upper line is in view in PANE."
   (multiple-value-bind (width height) (window::pane-size pane)
     (loop for camera in (display:robot-image-cameras (window::window-robot window))
           for top from 0 by (/ (window::pane-extent pane) 3)
           for shown = (- top (window::pane-offset pane))
-          when (and (plusp width) (<= 0 shown (- height 40)))
+          when (and (plusp width) (<= 0 shown (- height 16)))
             collect (display:camera-image-index camera))))
 
 (test layout.each-of-three-cameras-can-be-reached-in-a-small-window

@@ -132,7 +132,10 @@
       (window::start-conversation conversation (time:current-simulation) 'studio-robot)
       (window::give-line conversation "(progn (ars-magna.base:signal-semaphore *there*) (loop))")
       (is (base:wait-on-semaphore there 20))
-      (clim:execute-frame-command window '(window::com-interrupt))
+      (window::com-interrupt)
+      ;; What is entered before that is said would be dropped with the line.
+      (loop repeat 2000 until (mentions-p (said-in window) "Interrupted.")
+            do (base:wait-on-semaphore there 0.01))
       (window::give-line conversation "(+ 20 22)")
       (window::give-line conversation "quit")
       (base:join-thread (window::conversation-thread conversation))

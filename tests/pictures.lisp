@@ -174,6 +174,17 @@
         (is-true (spared-p :tracks 70 50))
         (is (null (spared-p :tracks 80 30)))))))
 
+(test names.of-what-is-tracked-stand-beside-its-ring
+  (in-studio (robot)
+    (let* ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 16)
+           (ring (display::box-around (* 16 5.5) (* 16 4.5) (+ 2 (display::track-radius))))
+           (texts (drawn-with :text (format nil "~{~A~}"
+                                            (drawing (canvas)
+                                              (let ((canvas:graphics-scale* 16))
+                                                (display:draw-names canvas snapshot '()
+                                                                    (list ring))))))))
+      (is (find "pen" texts :key (lambda (text) (of-element text :text)) :test #'equal)))))
+
 (test legend.counts-as-people-do
   (in-studio (robot)
     (dolist (name '(r10 r9 r1 r2))

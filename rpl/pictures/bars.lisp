@@ -167,8 +167,8 @@ and TO; or its beginning on it. Return where that ends."
         (max (+ x width) (if at (+ at length) 0))))))
 
 (defun draw-command (canvas span next from y scale)
-  "Draw SPAN, a command, in a lane at Y in which NEXT, a command or NIL, comes after it, and which is
-free from FROM on. Return from where on it is free then."
+  "Draw SPAN, a command, in a lane at Y in which NEXT, a command or NIL, comes after it, and which
+is free from FROM on. Return from where on it is free then."
   (let ((x (place (span-start span) scale)) (width (span-width span scale))
         (to (if next
                 (place (span-start next) scale)

@@ -149,6 +149,31 @@ else, if its user has chosen another one of the same run, that that is shown."
   (forget-pixmaps window)
   (clim:disown-frame (clim:frame-manager window) window))
 
+;;; When the X server goes, the thread that reads the events notices, or that of a window which
+;;; paints just then.
+
+(defun windows-on (port)
+  (with-lock (*windows-lock*)
+    (remove port *windows* :key #'clim:port :test-not #'eq)))
+
+(defun lose-windows (port)
+  "Let all windows on PORT, whose X server has gone, close, and say so."
+  ;; None of them can answer for another.
+  (dolist (window (windows-on port)) (ars-magna.cli:abandon-session (window-session window)))
+  (dolist (window (windows-on port))
+    (warn-of-closing window "the X server has gone. The run goes on; WINDOW opens it anew")
+    (close-window window)))
+
+(defun x-server-gone-p (condition)
+  "True if CONDITION, which has come up in the thread of a window, means that its server has gone."
+  (typep condition '(or stream-error xlib:closed-display)))
+
+(defun close-for (condition window)
+  "Say that CONDITION closes WINDOW, in whose thread it has come up, or all on its X server."
+  (if (x-server-gone-p condition)
+      (lose-windows (clim:port window))
+      (warn-of-closing window condition)))
+
 (defun run-window (window)
   "Show WINDOW until it is closed, or something goes wrong."
   (let* ((simulation (window-simulation window))
@@ -157,7 +182,7 @@ else, if its user has chosen another one of the same run, that that is shown."
                         (watcher-robot (window-watcher window)))
     (unwind-protect
          (handler-case (without-debugger (clim:run-frame-top-level window))
-           (error (condition) (warn-of-closing window condition)))
+           (error (condition) (close-for condition window)))
       (forget-window window)
       (end-conversation (window-conversation window))
       (stop-watching (window-watcher window))

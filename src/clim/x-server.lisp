@@ -7,10 +7,6 @@
 ;;; the server about windows that have just been closed, and other programs may send events that
 ;;; make no sense. These events are dropped, and all windows stay.
 
-(defun windows-on (port)
-  (with-lock (*windows-lock*)
-    (remove port *windows* :key #'clim:port :test-not #'eq)))
-
 (defun forget-port (port)
   "Count PORT as gone; true if windows had come to it, though they may have closed since."
   (with-lock (*windows-lock*)
@@ -21,11 +17,7 @@
 (defun lose-port (port)
   "Close the windows on PORT, whose X server has gone; end the thread that reads its events."
   (when (forget-port port)
-    ;; None of them can answer for another.
-    (dolist (window (windows-on port)) (ars-magna.cli:abandon-session (window-session window)))
-    (dolist (window (windows-on port))
-      (warn-of-closing window "the X server has gone. The run goes on; WINDOW opens it anew")
-      (close-window window))
+    (lose-windows port)
     (ignore-errors (clim:destroy-port port))
     (abort)))
 

@@ -23,6 +23,13 @@ first."
                                   (list (- x (/ gap 2) width) (+ y gap)))
           collect (list left top (+ left width) (+ top high)))))
 
+(defun boxes-beside (x y half width marks)
+  "Return boxes as NAME-BOXES does; if one of the boxes MARKS lies there, such as that of the ring
+of a track, also boxes beside such a ring. Elsewhere a name so far away would be taken for others'."
+  (append (name-boxes x y half width)
+          (and (some (lambda (mark) (overlap-p mark (box-around x y half))) marks)
+               (name-boxes x y (max half (+ 2 (track-radius))) width))))
+
 (defun on-map-p (map box)
   (destructuring-bind (left top right bottom) box
     (and (<= 0 left) (<= 0 top)
@@ -122,10 +129,8 @@ have small letters of their own."
                  (list (box-around (to-pixels (first end)) (to-pixels (second end))
                                    (+ 2 +way-end+)))))))
 
-(defun boxes-taken (snapshot layers spots)
-  "Return the boxes of SPOTS, and of what LAYERS show besides that a name must not hide."
-  (append (loop for (nil x y half) in spots collect (widened (box-around x y half) 2))
-          (loop for robot in (snapshot-robots snapshot) append (marked-spots robot layers))))
+(defun boxes-of-spots (spots)
+  (loop for (nil x y half) in spots collect (widened (box-around x y half) 2)))
 
 (defun write-name (canvas name box)
   "Write NAME in BOX, on white: what lines lie there end before it."
@@ -140,10 +145,13 @@ have small letters of their own."
   "Write the names of robots and things where there is room beside what LAYERS list and BOXES."
   (let* ((spots (named-spots snapshot))
          (per-character (character-width canvas +name-size+))
-         (taken (append boxes (boxes-taken snapshot layers spots))))
+         (marks (append boxes (loop for robot in (snapshot-robots snapshot)
+                                    append (marked-spots robot layers))))
+         (taken (append marks (boxes-of-spots spots))))
     (loop for (name x y half) in spots
           for width = (+ 2 (* per-character (length name)))
-          for box = (best-box snapshot layers (name-boxes x y half width) taken)
+          for box = (best-box snapshot layers (boxes-beside x y half width marks)
+                            taken)
           when box
             do (push (widened box +apart+) taken)
                (write-name canvas name box))))
