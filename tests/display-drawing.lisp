@@ -164,3 +164,21 @@
     (uiop:with-temporary-file (:pathname file)
       (finishes (ars:save-simulation file))
       (finishes (ars:save-journal file)))))
+
+(test draw-functions.a-name-that-is-defined-anew-is-drawn-anew
+  "What shows a thing drawn by it differs then, though nothing has moved."
+  (let ((name 'draw-anew))
+    (setf (fdefinition name) #'draw-word)
+    (unwind-protect
+         (with-hand-that-holds (thing robot draw-anew)
+           (flet ((content ()
+                    (display:display-content
+                     :hands
+                     (first (display:snapshot-robots (display:snapshot-of robot))))))
+             (let ((before (content)))
+               (is (equal before (content)))
+               (setf (fdefinition name)
+                     (lambda (window thing x y width height)
+                       (declare (ignore window thing x y width height))))
+               (is (not (equal before (content)))))))
+      (fmakunbound name))))

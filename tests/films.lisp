@@ -222,6 +222,12 @@
                                   (base:wrong-argument (condition) (text-of condition))))))
       (signals base:wrong-argument (display:save-animation journal "run.html" :series t))
       (signals base:wrong-argument (ars:save-run-picture "run.gif" :journal journal))
+      (is-true (search "STUDIO-ROBOT"
+                       (string-upcase
+                        (handler-case (ars:save-run-picture "run.svg" :journal journal
+                                                                      :moments '((5 "a" nobody)))
+                          (base:wrong-argument (condition) (text-of condition)))))
+               "A robot that is not there is refused, and those that are, are named.")
       (signals base:wrong-argument (ars:save-run-picture "run.svg" :journal journal :title 7)))
     (signals base:misuse
       (run:with-simulation (ars-worlds:dot :journal nil) (ars:save-run-picture "run.svg")))))

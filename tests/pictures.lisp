@@ -349,3 +349,22 @@
         do (is (<= 4 scale 40))
            (is (<= (* scale width) 900))
            (is (<= (* scale height) 700))))
+
+(test pictures.no-legend-stands-on-the-scale-bar-of-a-narrow-map
+  (with-own-definitions
+    (eval '(world:defmap cubbyhole (1 1) (obj speck (0.5 0.5) ((:size 1)))))
+    (eval '(robot:defrobot dweller (cubbyhole (0.5 0.5) 0)))
+    (run::call-with-simulation
+     (lambda ()
+       (let* ((canvas:graphics-scale* 4)
+              (snapshot (display:snapshot-of (robot:find-robot 'dweller)))
+              (bar (display::scale-bar-width (display:snapshot-map snapshot)))
+              (entries (display::legend-entries snapshot '())))
+         (is (< 4 bar))
+         (loop for (layers edge) in `(((:scale-bar :legend) ,bar) ((:legend) 4))
+               for arrangement = (display::arrange snapshot layers entries 0)
+               do (is (< edge (display::arrangement-legend-left arrangement) (+ edge 20)))
+                  (is (<= (+ edge (display::columns-width
+                                   (display::arrangement-columns arrangement)))
+                          (display::arrangement-width arrangement))))))
+     (list 'dweller))))

@@ -205,7 +205,8 @@ else, if its user has chosen another one of the same run, that that is shown."
     (reject-use "No display: there is no X server; set the environment variable DISPLAY."))
   (handler-case (clim:find-port)
     (error (condition)
-      (reject-use "No display: the X server ~A, which DISPLAY names, does not answer (~A)."
+      (reject-use "No display: the X server ~A, which DISPLAY names, does not answer (~A). ~
+                   Start it, or set DISPLAY to another."
                   (environment-value "DISPLAY")
                   (substitute #\Space #\Newline (princ-to-string condition))))))
 

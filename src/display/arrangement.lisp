@@ -16,8 +16,10 @@
 
 (defstruct (arrangement (:copier nil))
   "Where the map begins, how much room there is to its right and below, and the legend: COLUMNS,
-lists of entries, beside the map or BELOW-P; and how wide and high the whole is."
-  (left 0) (top 0) (right 0) (bottom 0) (columns '()) (below-p nil) (width 0) (height 0))
+lists of entries, BELOW-P or beside the map, there so far from the left of the map as LEGEND-LEFT
+says; and how wide and high the whole is."
+  (left 0) (top 0) (right 0) (bottom 0) (columns '()) (below-p nil) (legend-left 0)
+  (width 0) (height 0))
 
 (defun room-for (layers)
   "Return how much room there is left of, above, right of and below the map for LAYERS without
@@ -29,6 +31,32 @@ legend."
               14
               (if (shown-p :scale-bar) 28 8))
         '(0 0 0 0))))
+
+;;; The scale bar, which may be wider than a small map.
+
+(defun round-numbers (limit)
+  "Return 1, 2, 5, 10 and so on up to LIMIT."
+  (loop for unit = 1 then (* 10 unit)
+        while (<= unit limit)
+        append (remove-if (lambda (number) (< limit number)) (list unit (* 2 unit) (* 5 unit)))))
+
+(defun bar-metres (map)
+  "Return how many metres a scale bar is long."
+  (or (first (last (round-numbers (min (map-width map) (/ 140 graphics-scale*)))))
+      1))
+
+(defun metres-text (metres)
+  "Return what stands beside a scale bar of METRES."
+  (format nil "~D m" metres))
+
+(defun scale-bar-width (map)
+  "Return how wide the scale bar of MAP is with its text, in pixels."
+  (let ((metres (bar-metres map)))
+    (+ (to-pixels metres) 8 (words-width (metres-text metres)))))
+
+(defun right-edge (map layers)
+  "Return how far right MAP and the scale bar below it reach, in pixels."
+  (max (to-pixels (map-width map)) (if (member :scale-bar layers) (scale-bar-width map) 0)))
 
 ;;; Scales.
 
@@ -90,15 +118,16 @@ LAYERS is drawn, and how much that is then to be magnified as a whole."
 
 ;;; The whole. What has been drawn with the origin in the corner of the map is known by now.
 
-(defun arrangement-with (room map-width map-height title-width columns below-p)
-  "Return an arrangement around a map of MAP-WIDTH by MAP-HEIGHT pixels, with a title TITLE-WIDTH
-pixels wide. ROOM is as ROOM-FOR has it."
+(defun arrangement-with (room edge map-height title-width columns below-p)
+  "Return an arrangement around a map MAP-HEIGHT pixels high that reaches EDGE pixels right, with a
+title TITLE-WIDTH pixels wide. ROOM is as ROOM-FOR has it."
   (destructuring-bind (left top right bottom) room
     (let ((below (if (and columns below-p) (+ 8 (columns-height columns)) 0))
           (beside (if (and columns (not below-p)) (columns-width columns) 0)))
       (make-arrangement
        :left left :top top :right right :bottom bottom :columns columns :below-p below-p
-       :width (+ left right (max (+ map-width beside) title-width
+       :legend-left (+ edge 14)
+       :width (+ left right (max (+ edge beside) title-width
                                  (if below-p (columns-width columns) 0)))
        :height (+ top (max (+ map-height bottom below)
                            (if below-p 0 (+ 8 (columns-height columns)))))))))
@@ -112,7 +141,7 @@ TITLE-WIDTH pixels wide that takes the least room."
   (let* ((map (snapshot-map snapshot)) (room (room-for layers))
          (width (to-pixels (map-width map))) (height (to-pixels (map-height map))))
     (flet ((with (columns below-p)
-             (arrangement-with room width height title-width columns below-p)))
+             (arrangement-with room (right-edge map layers) height title-width columns below-p)))
       (let ((beside (with (columns-beside entries height) nil))
             (below (with (columns-below entries (max width 480)) t)))
         (if (< (area below) (area beside)) below beside)))))

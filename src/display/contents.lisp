@@ -10,7 +10,9 @@
   (:method (object) object)
   (:method ((list cons)) (cons (content (car list)) (content (cdr list))))
   (:method ((image thing-image))
-    (list (thing-image-thing image) (thing-image-attributes image)))
+    (list (thing-image-thing image) (thing-image-attributes image)
+          ;; A name may mean another function now.
+          (drawing-code (thing-image-draw-function image))))
   (:method ((image designator-image))
     (list (designator-image-number image) (designator-image-type image)
           (designator-image-angle image) (designator-image-distance image)

@@ -31,6 +31,9 @@
     Array.prototype.forEach.call(list.children, function (item, index) {
       item.className = index === passed ? "now" : "";
     });
+    // The list alone is scrolled, not the page.
+    if (passed >= 0)
+      list.scrollTop = list.children[passed].offsetTop - list.offsetTop - list.clientHeight / 2;
   }
 
   function step(time) {

@@ -125,8 +125,8 @@ a vector of such numbers."
 <button id=\"on\" title=\"One frame on\">&gt;</button>
 <label>Speed <select id=\"speed\">~{<option value=\"~A\"~A>~A</option>~}</select></label>
 <output id=\"tick\"></output>
-<span id=\"help\"><kbd>space</kbd> plays and stops, arrows step, <kbd>+</kbd> and <kbd>-</kbd>
-change the speed</span>
+<span id=\"help\"><kbd>space</kbd> plays and stops, arrows step, <kbd>Home</kbd> and
+<kbd>End</kbd> lead to the ends, <kbd>+</kbd> and <kbd>-</kbd> change the speed</span>
 </div></footer>~%"
           (loop for (value text) in '(("0.25" "a quarter") ("0.5" "half") ("1" "as made")
                                       ("2" "twice") ("4" "4 times") ("10" "10 times"))

@@ -34,22 +34,11 @@
             do (draw-segments canvas draw-gcontext* (list -6 y -2 y))
                (draw-text canvas (- -8 (words-width text)) (+ y 4) text)))))
 
-(defun round-numbers (limit)
-  "Return 1, 2, 5, 10 and so on up to LIMIT."
-  (loop for unit = 1 then (* 10 unit)
-        while (<= unit limit)
-        append (remove-if (lambda (number) (< limit number)) (list unit (* 2 unit) (* 5 unit)))))
-
-(defun bar-metres (map)
-  "Return how many metres a scale bar is long."
-  (or (first (last (round-numbers (min (map-width map) (/ 140 graphics-scale*)))))
-      1))
-
 (defun draw-scale-bar (canvas map y)
   (let* ((metres (bar-metres map)) (x (to-pixels metres)))
     (with-lines (:width 2)
       (draw-segments canvas draw-gcontext* (list 0 y x y 0 (- y 4) 0 (+ y 4) x (- y 4) x (+ y 4))))
-    (draw-text canvas (+ x 8) (+ y 4) (format nil "~D m" metres))))
+    (draw-text canvas (+ x 8) (+ y 4) (metres-text metres))))
 
 (defun draw-entry (canvas entry x y)
   "Draw ENTRY, its upper left corner at X, Y."
@@ -81,7 +70,7 @@
       (when (arrangement-columns arrangement)
         (if (arrangement-below-p arrangement)
             (draw-legend canvas arrangement 0 (+ height (if (shown-p :scale-bar) 32 8)))
-            (draw-legend canvas arrangement (+ width 14) 0))))))
+            (draw-legend canvas arrangement (arrangement-legend-left arrangement) 0))))))
 
 (defun arrangement-for (canvas snapshot layers title more)
   "Return the arrangement for a picture of SNAPSHOT with LAYERS on CANVAS, with TITLE, and with MORE

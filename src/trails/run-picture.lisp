@@ -23,9 +23,19 @@
         (make-moment (moment-tick moment) (moment-kind moment) (moment-text moment)
                      (robot-x robot) (robot-y robot) (robot-name robot)))))
 
+(defun check-robots-of (moments simulation)
+  "Signal WRONG-ARGUMENT unless the robots that MOMENTS, an argument of SAVE-RUN-PICTURE, name are
+those of SIMULATION."
+  (dolist (moment moments)
+    (when (and (moment-robot moment) (not (robot-of moment simulation)))
+      (reject-argument 'save-run-picture :moments (moment-robot moment)
+                       (format nil "a robot's name in each list, if any: ~{~(~A~)~^, ~}"
+                               (mapcar #'robot-name (simulation-robots simulation)))))))
+
 (defun watch-run (journal until own)
   "Repeat JOURNAL up to UNTIL. Return a snapshot of its end, the ways of its robots by their names,
-moments that were seen, and the moments OWN with their places."
+moments that were seen, and the moments OWN with their places. Signals WRONG-ARGUMENT if these are
+of robots that are not there."
   (let ((trails '()) (placed '()))
     (multiple-value-bind (watch seen) (moments-watcher)
       (flet ((look (simulation)
@@ -36,6 +46,7 @@ moments that were seen, and the moments OWN with their places."
                    (push (place-moment moment simulation) placed)))))
         (call-with-replay
          (lambda ()
+           (check-robots-of own (current-simulation))
            (values (take-snapshot (simulation-world (current-simulation)))
                    (loop for (robot . points) in (note-places (current-simulation) trails)
                          collect (cons (robot-name robot) (reverse points)))
@@ -162,8 +173,8 @@ one failed or was ended, that there was an error in your code. KINDS, a list, ch
 any number if it is NIL: where there is more to tell, what matters least is left out, and counted;
 that a robot was blocked or lost a track, as plans expect, before other failures of commands and of
 parts of plans, and these before the rest. MOMENTS, a list of moments or of lists of a tick, a
-string and, if you like, a robot's name, are told of besides. TITLE stands above. FILE and the other
-arguments are those of SAVE-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, what REPLAY
+string and, if you like, the name of a robot of the run, are told of besides. TITLE stands above.
+FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, what REPLAY
 does, and MISUSE without the program that PNG needs, or where no journal is kept."
   (let* ((kind (picture-kind 'save-run-picture file))
          (journal (journal-meant journal))
