@@ -174,8 +174,9 @@ any number if it is NIL: where there is more to tell, what matters least is left
 that a robot was blocked or lost a track, as plans expect, before other failures of commands and of
 parts of plans, and these before the rest. MOMENTS, a list of moments or of lists of a tick, a
 string and, if you like, the name of a robot of the run, are told of besides. TITLE stands above.
-FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT,
-what REPLAY does, and MISUSE without the program that PNG needs, or where no journal is kept."
+FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename.
+Signals WRONG-ARGUMENT, what REPLAY does, and MISUSE without the program that
+PNG needs, or where no journal is kept."
   (let* ((kind (picture-kind 'save-run-picture file))
          (journal (journal-meant journal))
          (own (check-run-picture journal moments until :kinds kinds :limit limit :title title
