@@ -27,6 +27,17 @@
       (is (mentions-p (note-above window) "1 more waits. How does it go on? mine"))
       (is (mentions-p (window::time-text window) "the prompt asks how two programs go on")))))
 
+(test awaiting.is-said-once-where-the-simulator-waits
+  "The strip's word for how time goes tells of that one."
+  (in-window (window robot)
+    (let ((session (window::window-session window)) (thread (base:current-thread)))
+      (setf (window::watcher-progress (window:window-watcher window))
+            (window::make-progress :state :broken)
+            (cli::session-breaks session) (list (broken "oh" thread)))
+      (is (= 1 (occurrences "asks how" (window::time-text window))))
+      (setf (cli::session-breaks session) (list (broken "oh" thread) (broken "ah" thread)))
+      (is (mentions-p (window::time-text window) "the prompt asks how two programs go on")))))
+
 (test awaiting.what-breaks-while-another-is-answered-leaves-the-prompt-there
   "What it says would else stand where the line was, which would not be seen."
   (in-window (window robot)

@@ -147,6 +147,15 @@
         (is (member "Go there   go-to 3.50 4.50" rows :test #'equal))
         (is (find "obj-desig 0 non-local ((:color red))" rows :test #'search))))))
 
+(test pointing.offers-the-same-when-a-tick-has-passed-since-the-picture
+  "What was painted is an image of a moment that is over; the robot is still the one commanded."
+  (in-window (window robot)
+    (let ((before (window::window-robot window)))
+      (window::publish (window:window-watcher window) (time:current-simulation))
+      (is (not (eq before (window::window-robot window))))
+      (is (member '("Stop" "stop") (window::offers before window) :test #'equal))
+      (is (equal "pos 3 4" (window::carrying-line before "3" "4" window))))))
+
 (test pointing.offers-what-can-be-done-with-a-designator
   "Track, and what is tracked, grasp."
   (in-window (window robot)

@@ -64,9 +64,10 @@ another, so that nobody waits for the tick to end, which it may never."
   "Let SESSION know what others that listen to SIMULATION have been told often, as a new window does
 not."
   (dolist (other (remove session (sessions-hearing simulation)))
-    (loop for (text count) in (counts-of other)
-          do (setf (gethash text (session-told session))
-                   (max count (gethash text (session-told session) 0))))))
+    (let ((counts (counts-of other)) (told (session-told session)))
+      (with-lock ((session-lock session))
+        (loop for (text count) in counts
+              do (setf (gethash text told) (max count (gethash text told 0))))))))
 
 (defun listen-to (session simulation)
   "Let SESSION show what SIMULATION has to say when it says it."

@@ -50,8 +50,8 @@ that."
         (cond ((and line (not (session-batch-p session)) (or given (session-echo-p session)))
                (show-answer console (visible line)))
               (t (unless (or line (session-batch-p session)) (fresh-line console))
-                 (answered console))))
-      (clrhash (session-told session))
+                 (answered console)))
+        (clrhash (session-told session)))
       (note-read (session-account session))
       line)))
 

@@ -28,8 +28,9 @@
   (echo-p nil :type boolean :read-only t)
   ;; What comes of the commands that plans and programs give is not shown.
   (quiet-p nil :type boolean)
-  ;; How often each error has been told since a line was read, by its text.
-  (told (make-hash-table :test 'equal :synchronized t) :type hash-table :read-only t)
+  ;; How often each error has been told since a line was read, by its text: any thread tells, so the
+  ;; lock guards it.
+  (told (make-hash-table :test 'equal) :type hash-table :read-only t)
   (lock (make-lock "session") :read-only t)
   ;; The simulation whose messages are shown as they arrive, and its observer if it is live.
   (simulation nil)

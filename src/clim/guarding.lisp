@@ -10,7 +10,7 @@
   (declare (ignore hook))
   (reject-use "It calls for the debugger (~A), and a window does not wait for that. SAVE-PICTURE ~
                at the prompt draws it where the debugger answers."
-              (substitute #\Space #\Newline (princ-to-string condition))))
+              (one-line-text condition)))
 
 (defmacro without-debugger (&body body)
   "Run BODY, in which what calls for a debugger is an error."
@@ -21,8 +21,7 @@
   (handler-case (funcall function)
     (error (condition)
       (say (window-transcript window)
-           (format nil "*ERROR* -> ~A: ~A~%" title
-                   (substitute #\Space #\Newline (princ-to-string condition)))))))
+           (format nil "*ERROR* -> ~A: ~A.~%" title (one-line-text condition))))))
 
 (defmacro with-guarded-command ((window title) &body body)
   "Run BODY, the work of the command TITLE; what goes wrong is said in WINDOW."

@@ -130,7 +130,7 @@ connected, if there is one."
 
 (defmethod offers ((image robot-image) window)
   (let ((form (format nil "(find-robot '~(~A~))" (robot-image-name image))))
-    (append (if (eq image (window-robot window))
+    (append (if (shown-robot-p window image)
                 '(("How is it?" "status") ("Stop" "stop") ("Turn about" "about-face")
                   ("What place is this?" "place"))
                 (list (list "Command it" (format nil "robot ~(~A~)" (robot-image-name image)))))

@@ -58,9 +58,9 @@
   "Return the session of the prompt of WINDOW."
   (conversation-session (window-conversation window)))
 
-(defun work-left (window)
-  "Return in words, as they follow a sentence, what the prompt of WINDOW, which is lost, leaves: the
-line under way, lines that wait, a break."
+(defun take-work-left (window)
+  "Let the prompt of WINDOW, which is lost, forget what it leaves: the line under way, lines that
+wait, a break. Return that in words, as they follow a sentence."
   (let* ((session (window-session window))
          (line (busy-with (window-conversation window)))
          (lines (ars-magna.cli:take-waiting (ars-magna.cli:session-input session))))
@@ -81,7 +81,7 @@ line under way, lines that wait, a break."
                            (watcher-robot (window-watcher window))
                            (one-line (handler-case (princ-to-string condition)
                                        (error () (string (type-of condition)))))
-                           (work-left window))))))
+                           (take-work-left window))))))
 
 ;;; Which robot a window shows.
 
@@ -208,7 +208,7 @@ else, if its user has chosen another one of the same run, that that is shown."
       (reject-use "No display: the X server ~A, which DISPLAY names, does not answer (~A). ~
                    Start it, or set DISPLAY to another."
                   (environment-value "DISPLAY")
-                  (substitute #\Space #\Newline (princ-to-string condition))))))
+                  (one-line-text condition)))))
 
 (defun open-new-window (robot)
   (let* ((port (window-port))

@@ -102,6 +102,12 @@
   (let ((snapshot (window-snapshot window)))
     (and snapshot (snapshot-robot snapshot (shown-robot window)))))
 
+(defun shown-robot-p (window image)
+  "True if IMAGE is of the robot whose details WINDOW shows, then or now: images are made anew for
+each snapshot."
+  (let ((shown (window-robot window)))
+    (and shown (eq (robot-image-name image) (robot-image-name shown)))))
+
 (defun window-simulation (window)
   (watcher-simulation (window-watcher window)))
 

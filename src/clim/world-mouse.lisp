@@ -82,7 +82,7 @@
     (declare (ignore window))
     (format nil "(move-thing ~A ~A ~A)" (thing-form image) x y))
   (:method ((image robot-image) x y window)
-    (if (eq (robot-image-name image) (robot-image-name (window-robot window)))
+    (if (shown-robot-p window image)
         (format nil "pos ~A ~A" x y)
         (format nil "(place-robot (find-robot '~(~A~)) ~A ~A ~,3F)" (robot-image-name image) x y
                 (robot-image-angle image)))))
