@@ -142,7 +142,7 @@
         (is (mentions-p written part))))))
 
 (defun await-break (talk)
-  (loop until (cli::session-breaks (talk-session talk)) do (base:yield-thread)))
+  (awaiting (cli::session-breaks (talk-session talk))))
 
 (test sessions.a-simulator-that-breaks-asks-those-who-watch-it
   (in-studio (robot)
@@ -163,7 +163,11 @@
         (run:stop-clock simulation)))))
 
 (defun await-debugging (talk)
-  (loop until (cli::session-debugging (talk-session talk)) do (base:yield-thread)))
+  "Wait until the user of TALK is asked how a line goes on: before that, to end the session ends the
+line."
+  (let ((session (talk-session talk)))
+    (awaiting (and (cli::session-debugging session)
+                   (cli::being-typed-p (cli::session-input session))))))
 
 (test sessions.break-of-one-that-is-lost-is-answered-in-another
   "As when the X server dies under a window."
