@@ -101,6 +101,44 @@
         (let ((line (first (drawn-with :path picture :stroke (web ink)))))
           (is (= 5 (count #\M (of-element line :d)))))))))
 
+(defun layer-pictured (layer)
+  "Return a picture with LAYER alone of a robot that has looked and gone, without colours."
+  (in-studio (robot)
+    (display:keep-history)
+    (setf (robot::camera-last-view (robot:robot-camera robot 0))
+          (make-list 5 :initial-element 10d0))
+    (run:run-ticks 1)
+    (robot:place-robot robot 4.5 4.5 0)
+    (run:run-ticks 2)
+    (display:svg-picture robot :layers layer :in-color nil)))
+
+(test layers.have-lines-of-their-own-without-colours
+  "A line looks as its sample in the legend does, and as no other layer's."
+  (let ((own (loop for layer in '(:odometer :trail :rays)
+                   for text = (layer-pictured (list layer))
+                   for dashes = (web-dashes (display::layer-dashes layer))
+                   do (is (search dashes text) "~A" layer)
+                      (is (< 1 (times-written dashes (layer-pictured (list layer :legend))))
+                          "~A" layer)
+                   collect dashes)))
+    (is (= 3 (length (remove-duplicates own :test #'string=)))))
+  (is (null (display::layer-dashes :wedges)))
+  (let ((all (loop for (nil dashes) on display::+layer-dashes+ by #'cddr collect dashes)))
+    (is (= (length all) (length (remove-duplicates all :test #'equal))))))
+
+(defun web-dashes (dashes)
+  "Return DASHES as they are written in pictures."
+  (format nil "stroke-dasharray=\"~{~A~^,~}\"" dashes))
+
+(defun times-written (part text)
+  "Return how often PART is in TEXT."
+  (loop for start = (search part text) then (search part text :start2 (1+ start))
+        while start count t))
+
+(test legend.has-an-entry-for-rays-without-colours
+  (is (has-words-p (layer-pictured '(:rays :legend)) ">rays<"))
+  (is (not (search ">rays<" (layer-pictured '(:legend))))))
+
 (test layers.designators-join-what-is-believed-to-what-is-so
   (in-studio (robot)
     (let ((designator (robot:add-designator robot :denotation (world:find-thing 'box))))

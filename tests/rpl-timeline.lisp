@@ -166,6 +166,28 @@
     (is (subsetp (colors-in text) '("000000" "ffffff") :test #'string=))
     (is-true (has-words-p text "runs its parts" "command with an error"))))
 
+(test timeline.has-no-two-kinds-that-look-alike-without-colours
+  "Neither as wide as in the legend nor as narrow as a tick may be."
+  (dolist (width '(6 18))
+    (let ((looks (loop for (kind) in ars-magna.rpl-pictures::*looks*
+                       collect (drawing (canvas)
+                                 (let ((canvas:in-color* nil))
+                                   (ars-magna.rpl-pictures::look-box canvas kind 0 0 width 14))))))
+      (is (= 8 (length looks) (length (remove-duplicates looks :test #'equal)))))))
+
+(test timeline.has-no-lines-through-the-names-of-commands
+  "A name beside its command has a white ground."
+  (let* ((span (ars-magna.rpl.seeing::make-span :command 0 "(rpl-robot-turn 1)"))
+         (drawn (drawing (canvas)
+                  (ars-magna.rpl-pictures::write-command canvas span 100 40 10 0 400)))
+         (elements (elements (format nil "~{~A~}" drawn)))
+         (plate (first elements)) (name (find :text elements :key #'first)))
+    (is (eq :rect (first plate)))
+    (is (equal "#ffffff" (of-element plate :fill)))
+    (is (< (of-element plate :x) (of-element name :x)))
+    (is (< (of-element plate :y) (of-element name :y)
+           (+ (of-element plate :y) (of-element plate :height))))))
+
 (test timeline.gives-names-the-room-that-they-need
   (flet ((width (label)
            (ars-magna.rpl-pictures::labels-width

@@ -14,11 +14,11 @@
   '((:parts #x9DB9DC :hatching "runs its parts") (:call #xDDD3EF :dots "commands in a call")
     (:waiting #xE6ECF5 :plain "waits")
     (:blocked #x8C8C94 :chequers "is blocked") (:cleaning #xF2BE6A :crosses "cleans up")
-    (:failure #xF08C78 :solid "a failure happened")
+    (:failure #xF08C78 :wedge "a failure happened")
     (:command #x3C68FF :solid "command under way")
-    (:trouble #xE0301E :plain "command with an error"))
+    (:trouble #xE0301E :frame "command with an error"))
   "Lists (kind color texture text): what the parts of a bar look like, without colours by texture,
-and what the legend says.")
+:SOLID, :FRAME or :WEDGE, and what the legend says.")
 
 (defparameter *end-looks*
   '((:succeeded #x1E9632 "succeeded") (:failed #xE0301E "failed")
@@ -63,14 +63,39 @@ and what the legend says.")
   (with-color color
     (draw-rectangle canvas draw-gcontext* x y (max 1 width) height t)))
 
+(defun frame (canvas x y width height)
+  "Draw an outline in black, a thick one where there is room, around white."
+  (with-color black* (draw-rectangle canvas draw-gcontext* x y width height t))
+  (let ((thick (if (< width 7) 1 2)))
+    (with-gcontext (draw-gcontext* :foreground white*)
+      (draw-rectangle canvas draw-gcontext* (+ x thick) (+ y thick)
+                      (max 0 (- width thick thick)) (- height thick thick) t))))
+
+(defun wedge (canvas x y width height)
+  "Draw a black wedge that points down, with a white rim."
+  (flet ((draw (color more)
+           (with-gcontext (draw-gcontext* :foreground color)
+             (draw-lines canvas draw-gcontext*
+                         (list (- x more) y (+ x width more) y (+ x (/ width 2)) (+ y height more))
+                         :fill-p t))))
+    (draw white* 2)
+    (draw black* 0)))
+
 (defun textured-box (canvas texture x y width height)
-  "Draw a box with a black outline, full of TEXTURE or :SOLID."
-  (with-gcontext (draw-gcontext* :foreground (if (eq :solid texture) black* white*))
+  "Draw a box with a black outline, full of TEXTURE."
+  (with-gcontext (draw-gcontext* :foreground white*)
     (draw-rectangle canvas draw-gcontext* x y width height t))
   (with-color black*
-    (unless (eq :solid texture)
-      (draw-texture canvas draw-gcontext* texture (list x y width height) 6))
+    (draw-texture canvas draw-gcontext* texture (list x y width height) 6)
     (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) (max 0 (1- height)))))
+
+(defun colourless-box (canvas texture x y width height)
+  "Draw a box that TEXTURE, one of *LOOKS*, tells from others without colours."
+  (case texture
+    (:solid (box canvas black* x y width height))
+    (:frame (frame canvas x y width height))
+    (:wedge (wedge canvas x y width height))
+    (t (textured-box canvas texture x y width height))))
 
 (defun look-box (canvas kind x y width height)
   "Draw a box with the look of KIND."
@@ -78,7 +103,7 @@ and what the legend says.")
     (declare (ignore text))
     (if in-color*
         (box canvas color x y width height)
-        (textured-box canvas texture x y (max 1 width) height))))
+        (colourless-box canvas texture x y (max 1 width) height))))
 
 (defun write-at (canvas x y text &optional (color black*))
   (with-color color (draw-glyphs canvas draw-gcontext* x y text)))
@@ -151,6 +176,11 @@ nowhere is room."
         ((<= (+ x width 6 length) to) (+ x width 3))
         ((<= from (- x 6 length)) (- x 3 length))))
 
+(defun draw-plate (canvas x y width)
+  "Draw the white ground of a name in a lane at Y, so that no line runs through it."
+  (with-gcontext (draw-gcontext* :foreground white*)
+    (draw-rectangle canvas draw-gcontext* (- x 1) y (+ 2 width) +lane-height+ t)))
+
 (defun write-command (canvas span x y width from to)
   "Write the command of SPAN, which is WIDTH pixels wide from X on, where there is room between FROM
 and TO; or its beginning on it. Return where that ends."
@@ -162,6 +192,7 @@ and TO; or its beginning on it. Return where that ends."
              (with-gcontext (draw-gcontext* :foreground color)
                (draw-words canvas draw-gcontext* at (+ y 9) text :size +command-size+))))
       (multiple-value-bind (at on-it-p) (place-for-name length x width from to)
+        (when (and at (not on-it-p)) (draw-plate canvas at y length))
         (cond (at (words (if on-it-p (ink-in-lane span) black*) at name))
               ((<= 6 fitting) (words (ink-in-lane span) (+ x 2) (subseq name 0 fitting))))
         (max (+ x width) (if at (+ at length) 0))))))
@@ -188,7 +219,8 @@ is free from FROM on. Return from where on it is free then."
 (defun draw-failure (canvas span y scale)
   (with-subject (canvas (format nil "failed at tick ~A: ~A" (span-start span)
                                 (cut (one-line (span-text span)) 200)))
-    (look-box canvas :failure (- (place (span-start span) scale) 2) y 4 6)))
+    (let ((half (if in-color* 2 4)))
+      (look-box canvas :failure (- (place (span-start span) scale) half) y (* 2 half) (* 3 half)))))
 
 (defun draw-mark (canvas outcome x y)
   "Draw how a task ended: a line, crossed if it failed, and struck through if it was ended. NIL: it

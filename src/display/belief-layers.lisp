@@ -13,7 +13,7 @@
 (defun draw-track (canvas robot designator)
   "Draw a line to where ROBOT believes what a camera tracks to be."
   (let ((target (believed-place robot designator)))
-    (inked ((layer-ink :tracks) :style :dash)
+    (inked ((layer-ink :tracks) :dashes (layer-dashes :tracks))
       (draw-segments canvas draw-gcontext*
                      (list* (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
                             target)))
@@ -39,7 +39,7 @@ to what it denotes."
           (color (layer-ink :designators)))
       (with-subject (canvas designator)
         (when true-x
-          (inked (color :style :dash)
+          (inked (color :dashes (layer-dashes :designators))
             (draw-segments canvas draw-gcontext*
                            (list x y (to-pixels true-x) (to-pixels true-y)))))
         (inked (color :width 2) (draw-cross canvas x y 4))
@@ -62,7 +62,7 @@ that the bounds of its heading."
   (let* ((x (odometer-image-x odometer)) (y (odometer-image-y odometer))
          (heading (odometer-image-heading odometer))
          (half (* 1/2 (odometer-image-spread odometer))))
-    (inked ((layer-ink :odometer))
+    (inked ((layer-ink :odometer) :dashes (layer-dashes :odometer))
       (draw-lines canvas draw-gcontext* (pixels-of (odometer-box odometer)))
       (dolist (angle (list (- heading half) (+ heading half)))
         (draw-segments canvas draw-gcontext* (pixels-of (list* x y (around x y angle 3))))))))
@@ -70,7 +70,7 @@ that the bounds of its heading."
 (defun draw-trail (canvas points color)
   "Draw a line of COLOR through POINTS, a list x y tick ..., newest first."
   (when (cdddr points)
-    (inked (color)
+    (inked (color :dashes (layer-dashes :trail))
       (draw-lines canvas draw-gcontext*
                   (loop for (x y) on points by #'cdddr
                         repeat +trail-length+
@@ -83,6 +83,6 @@ that the bounds of its heading."
   "Draw the way through POINTS, lists (x y), with a spot where it ends."
   (when (rest points)
     (let ((color (layer-ink :planned-way)) (end (pixels-of (first (last points)))))
-      (inked (color :width 2 :style :dash)
+      (inked (color :width 2 :dashes (layer-dashes :planned-way))
         (draw-lines canvas draw-gcontext* (pixels-of (apply #'append points))))
       (inked (color :width 2) (draw-circle canvas (first end) (second end) +way-end+ nil)))))

@@ -5,17 +5,25 @@
 ;;; Lines are dark and have a light halo: on light ground the line is seen, on dark ground the halo,
 ;;; on what is between both. So nobody need know what is below.
 
-(defun call-inked (function color width style)
+(defmacro with-dashes ((dashes &key (width 1)) &body body)
+  "Run BODY drawing lines WIDTH pixels wide with DASHES, a list (dash gap ...), or solid if NIL."
+  (with-gensyms (value)
+    `(let ((,value ,dashes))
+       (with-gcontext (draw-gcontext* :line-width ,width :line-style (if ,value :dash :solid)
+                                      :dashes (or ,value '(4)))
+         ,@body))))
+
+(defun call-inked (function color width dashes)
   (with-gcontext (draw-gcontext* :foreground white* :line-width (+ width 2))
     (funcall function))
   (with-color color
-    (with-lines (:width width :style style)
+    (with-dashes (dashes :width width)
       (funcall function))))
 
-(defmacro inked ((color &key (width 1) (style :solid)) &body body)
+(defmacro inked ((color &key (width 1) dashes) &body body)
   "Run BODY, which draws lines, twice: for a halo, and then in COLOR, a dark one, WIDTH pixels
-wide."
-  `(call-inked (lambda () ,@body) ,color ,width ,style))
+wide, with DASHES."
+  `(call-inked (lambda () ,@body) ,color ,width ,dashes))
 
 (defun to-pixels (metres)
   "Return how many pixels METRES are."
@@ -67,6 +75,17 @@ wide."
   :documentation "The colours of what layers draw, by name.")
 
 (defun layer-ink (name) (getf +layer-inks+ name))
+
+;;; No two layers' lines look alike without colours, either. Patterns are so short that samples in
+;;; legends, 15 pixels long, show them.
+
+(define-constant +layer-dashes+
+    '(:wedges nil :tracks (5 2 1 2) :designators (4) :odometer (7 2) :trail (2 2)
+      :planned-way (6 4) :reach (3 3) :rays (1 3))
+  :test #'cl:equal
+  :documentation "The dashes and gaps of what layers draw, in pixels; NIL is a solid line.")
+
+(defun layer-dashes (name) (getf +layer-dashes+ name))
 
 (define-constant +ray-inks+ '(#x10308C #x4A2480 #x801850 #x8A3010 #x604800)
   :test #'cl:equal

@@ -139,9 +139,12 @@ than the line."
 (define-constant +line-words+
     '((:wedges . "in view") (:tracks . "tracked") (:designators . "believed, true")
       (:odometer . "odometer") (:trail . "trail") (:planned-way . "planned way")
-      (:reach . "may move"))
+      (:reach . "may move") (:rays . "rays"))
   :test #'cl:equal
   :documentation "What lines of layers are called in legends.")
+
+(defun look-shown-p (robot)
+  (some #'camera-image-look (robot-image-cameras robot)))
 
 (defun line-shown-p (snapshot layer)
   "True if there is something of LAYER in SNAPSHOT."
@@ -153,21 +156,28 @@ than the line."
                     (:odometer (robot-image-odometer robot))
                     (:trail (cdddr (robot-image-trail robot)))
                     (:planned-way (robot-image-planned-way robot))
+                    (:rays (look-shown-p robot))
                     (:reach (find-if #'thing-image-moving-p (snapshot-things snapshot))))))
+
+(defun line-ink (layer)
+  "Return the colour of lines of LAYER in legends."
+  (case layer
+    (:trail (robot-color 0))
+    (:rays (first +ray-inks+))
+    (t (layer-ink layer))))
 
 (defun line-entries (snapshot layers)
   (loop for (layer . words) in +line-words+
         when (and (member layer layers) (line-shown-p snapshot layer))
           collect (let ((layer layer))
                     (sample-of (canvas x y) words
-                      (inked ((or (layer-ink layer) (robot-color 0))
-                              :style (if (member layer '(:wedges :odometer :trail)) :solid :dash))
+                      (inked ((line-ink layer) :dashes (layer-dashes layer)
+                              :width (if (eq :planned-way layer) 2 1))
                         (draw-segments canvas draw-gcontext* (list (- x 8) y (+ x 7) y)))))))
 
 (defun ray-entries (snapshot layers)
   (when (and in-color* (member :rays layers)
-             (some (lambda (robot) (some #'camera-image-look (robot-image-cameras robot)))
-                   (snapshot-robots snapshot)))
+             (some #'look-shown-p (snapshot-robots snapshot)))
     (list (sample-of (canvas x y) "read: low to high"
             (loop for ink in +ray-inks+ for at from -8 by 3
                   do (with-color ink

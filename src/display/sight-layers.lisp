@@ -62,4 +62,6 @@ WIDTH."
                            when (= class number)
                              append (pixels-of (list (look-x look) (look-y look) x y)))
           when rays
-            do (with-color ink (draw-segments canvas draw-gcontext* rays)))))
+            do (with-color ink
+                 (with-dashes ((layer-dashes :rays))
+                   (draw-segments canvas draw-gcontext* rays))))))

@@ -95,7 +95,7 @@ or :DIAMOND."
   "Draw a ring around each thing that moves by itself."
   (loop for image across images
         when (thing-image-moving-p image)
-          do (inked ((layer-ink :reach) :style :dash)
+          do (inked ((layer-ink :reach) :dashes (layer-dashes :reach))
                (draw-circle canvas (to-pixels (thing-image-x image))
                             (to-pixels (thing-image-y image))
                             (+ (half-width image) (/ graphics-scale* 2) 2) nil))))
