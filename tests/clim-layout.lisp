@@ -308,3 +308,11 @@
   "Manual B.1: a circle inscribed in a cell has all of its pixels there."
   (is (equal '(8 8 7 7) (multiple-value-list (window::outline-box 8 8 8 8 1))))
   (is (equal '(9 9 5 5) (multiple-value-list (window::outline-box 8 8 8 8 3)))))
+
+(test canvas.has-the-dashes-that-are-asked-for
+  (flet ((dashes-of (&rest options)
+           (apply #'canvas::call-with-gcontext
+                  (lambda () (window::dashes canvas:draw-gcontext*)) canvas:draw-gcontext* options)))
+    (is (null (dashes-of :line-style :solid :dashes '(3 1))))
+    (is (equal '(5 5) (dashes-of :line-style :dash :dashes 5)))
+    (is (equal '(7 2) (dashes-of :line-style :dash :dashes '(7 2))))))

@@ -28,7 +28,12 @@
             (flet ((part (position) (/ (ldb (byte 8 position) color) 255)))
               (clim:make-rgb-color (part 16) (part 8) (part 0))))))
 
-(defun dashes (gcontext) (not (eq (gcontext-line-style gcontext) :solid)))
+(defun dashes (gcontext)
+  "Return the lengths of the dashes and gaps of GCONTEXT, a list; NIL if its lines are solid."
+  (let ((dashes (gcontext-dashes gcontext)))
+    (cond ((eq :solid (gcontext-line-style gcontext)) nil)
+          ((listp dashes) dashes)
+          (t (list dashes dashes)))))
 
 (defun extend-reach (canvas left top right bottom)
   (let ((reach (canvas-reach canvas)))
