@@ -312,7 +312,8 @@
 (test canvas.has-the-dashes-that-are-asked-for
   (flet ((dashes-of (&rest options)
            (apply #'canvas::call-with-gcontext
-                  (lambda () (window::dashes canvas:draw-gcontext*)) canvas:draw-gcontext* options)))
+                  (lambda () (window::dashes canvas:draw-gcontext*))
+                  canvas:draw-gcontext* options)))
     (is (null (dashes-of :line-style :solid :dashes '(3 1))))
     (is (equal '(5 5) (dashes-of :line-style :dash :dashes 5)))
     (is (equal '(7 2) (dashes-of :line-style :dash :dashes '(7 2))))))
