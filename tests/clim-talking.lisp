@@ -228,6 +228,10 @@
   "Return the numbers of the lines in view in PANE."
   (mapcar #'window::text-row-number (window::pane-rows pane)))
 
+(defun last-numbers (pane count)
+  "Return the numbers of the last COUNT lines in view in PANE, the newest first."
+  (subseq (reverse (rows-shown pane)) 0 count))
+
 (test transcript.long-lines-go-on-in-the-next-row
   (is (equal '((0 10) (10 18) (18 26))
              (mapcar (lambda (row) (list (window::text-row-start row) (window::text-row-stop row)))
@@ -265,6 +269,27 @@
         (is (equal before (rows-shown pane))))
       (window::wheel pane 1000 0 0)
       (is (null (window::pane-last pane))))))
+
+(test transcript.goes-to-its-end-when-a-line-is-entered
+  (in-window (window robot)
+    (let ((pane (fill-transcript window 100)))
+      (window::wheel pane -10 0 0)
+      (window::say-entered (window::window-transcript window) (format nil "Robot> status~%"))
+      (is (equal (list 101 100 99)
+                 (progn (fill-transcript window 0) (last-numbers pane 3)))))))
+
+(test transcript.shows-something-where-one-has-scrolled-to-is-forgotten
+  (in-window (window robot)
+    (let* ((transcript (window::window-transcript window)) (pane (fill-transcript window 100)))
+      (window::wheel pane -1000 0 0)
+      (let ((room (length (rows-shown pane))))
+        (is (equal (list 0 (1- room)) (list (first (rows-shown pane))
+                                            (first (last (rows-shown pane))))))
+        (fill-transcript window (* 3 window::+transcript-length+))
+        (is (= room (length (rows-shown pane))))
+        (window::empty-transcript transcript)
+        (fill-transcript window 2)
+        (is (= 2 (length (rows-shown pane))))))))
 
 (test transcript.what-is-selected-can-be-copied
   (in-window (window robot)

@@ -46,8 +46,9 @@ there is room."
   (let ((line (ars-magna.cli:console-line console)))
     (setf (console-entered console) (ars-magna.cli:drawn-line-text line))
     (fresh-line stream)
-    (format stream "~A~A~%" (ars-magna.cli:drawn-line-label line)
-            (ars-magna.cli:drawn-line-text line))))
+    (say-entered (console-transcript console)
+                 (format nil "~A~A~%" (ars-magna.cli:drawn-line-label line)
+                         (ars-magna.cli:drawn-line-text line)))))
 
 ;; The transcript breaks its lines itself, anew whenever its width changes.
 (defmethod ars-magna.cli:fitted (text (console window-console) &optional label)

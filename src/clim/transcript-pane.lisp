@@ -2,13 +2,16 @@
 
 (in-package :ars-magna.clim)
 
-;;; The end of the text is in view, unless the user has scrolled up: then what is in view stays.
+;;; The end of the text is in view, unless the user has scrolled up: then what is in view stays, as
+;;; long as it is kept and until a line is entered.
 ;;; Dragging selects; what is selected can be pasted by the middle button of the mouse, here and in
 ;;; other programs, and copied.
 
 (defclass transcript-pane (display-pane)
-  (;; The number of the last line in view, or NIL for the newest.
-   (last :initform nil :accessor pane-last)
+  (;; The number of the line that the user has scrolled to, or NIL for the newest, and how many
+   ;; lines had been entered then.
+   (scrolled :initform nil :accessor pane-scrolled)
+   (entered :initform 0 :accessor pane-entered)
    ;; The rows in view, and where the first of them is.
    (rows :initform '() :accessor pane-rows)
    ;; Where the selection was begun and where it ends, each a list (number column), or NIL.
@@ -18,8 +21,8 @@
 (defun pane-transcript (pane) (window-transcript (window-of pane)))
 
 (defmethod pane-content ((pane transcript-pane))
-  (list (multiple-value-list (pane-size pane)) (pane-last pane) (pane-mark pane) (pane-point pane)
-        (transcript-total (pane-transcript pane))))
+  (list (multiple-value-list (pane-size pane)) (pane-scrolled pane)
+        (pane-mark pane) (pane-point pane) (transcript-total (pane-transcript pane))))
 
 ;;; Rows.
 
@@ -47,6 +50,36 @@ the line."
         for end = (row-end text start columns)
         collect (make-text-row number start end spans)
         until (= end (length text))))
+
+(defun columns-and-rows (pane)
+  "Return for how many columns and rows of text PANE has room."
+  (let ((height (nth-value 1 (pane-size pane))))
+    (values (max 10 (floor (- (content-width pane) 8) +character-width+))
+            (max 1 (floor (- height 4) +line-height+)))))
+
+(defun last-of-first-page (pane)
+  "Return the number of the line that ends the first page of what PANE can show."
+  (let ((transcript (pane-transcript pane)))
+    (multiple-value-bind (columns rows) (columns-and-rows pane)
+      (loop for (number line) in (reverse (numbered-lines transcript
+                                                          (transcript-count transcript)))
+            sum (length (rows-of-line number line columns)) into above
+            when (<= rows above) return number))))
+
+(defun kept-in-view (pane last)
+  "Return the number of the line that PANE ends with if it is to end with the line LAST, or NIL if
+that is the newest: no line that is no longer kept, and a whole page of them."
+  (let ((oldest (last-of-first-page pane)))
+    (and oldest
+         (< last (transcript-newest (pane-transcript pane)))
+         (max last oldest))))
+
+(defun pane-last (pane)
+  "Return the number of the last line in view in PANE, or NIL if that is the newest."
+  (let ((scrolled (pane-scrolled pane)))
+    (and scrolled
+         (= (pane-entered pane) (transcript-entered (pane-transcript pane)))
+         (kept-in-view pane scrolled))))
 
 (defun rows-in-view (pane count columns)
   "Return the last COUNT rows of COLUMNS that PANE is to show."
@@ -125,12 +158,6 @@ the line."
           do (when from (paint-selected canvas row y from to))
              (paint-row canvas row y))))
 
-(defun columns-and-rows (pane)
-  "Return for how many columns and rows of text PANE has room."
-  (let ((height (nth-value 1 (pane-size pane))))
-    (values (max 10 (floor (- (content-width pane) 8) +character-width+))
-            (max 1 (floor (- height 4) +line-height+)))))
-
 (defmethod paint ((pane transcript-pane))
   (let ((canvas (make-instance 'clim-canvas :medium pane)))
     (clear pane)
@@ -144,18 +171,18 @@ the line."
 
 (defun scroll-lines (pane count)
   "Show what is COUNT lines further down in PANE, but not more than there is."
-  (let* ((transcript (pane-transcript pane))
-         (newest (transcript-newest transcript))
-         (first (- newest (transcript-count transcript) -1))
-         (last (+ (or (pane-last pane) newest) count)))
-    (setf (pane-last pane) (if (<= newest last) nil (max (1+ first) last)))
+  (let ((transcript (pane-transcript pane)))
+    (setf (pane-scrolled pane)
+          (kept-in-view pane (+ (or (pane-last pane) (transcript-newest transcript)) count))
+          (pane-entered pane) (transcript-entered transcript))
     (repaint-if-changed pane)))
 
 (defmethod scroll-state ((pane transcript-pane))
   (let* ((transcript (pane-transcript pane))
          (count (transcript-count transcript))
          (rows (nth-value 1 (columns-and-rows pane)))
-         (below (if (pane-last pane) (- (transcript-newest transcript) (pane-last pane)) 0)))
+         (last (pane-last pane))
+         (below (if last (- (transcript-newest transcript) last) 0)))
     (values (max 0 (- count rows below)) rows count)))
 
 (defmethod limit-offset ((pane transcript-pane)) nil)

@@ -18,7 +18,9 @@
   ;; The number of the newest line.
   (newest 0 :type fixnum)
   ;; How often something has been said, to know whether there is more.
-  (total 0 :type fixnum))
+  (total 0 :type fixnum)
+  ;; How many lines the user has entered.
+  (entered 0 :type fixnum))
 
 (defun begin-line-of (transcript)
   (push "" (transcript-lines transcript))
@@ -63,6 +65,12 @@ where something is counted."
 (defun say (transcript text)
   "Add TEXT to TRANSCRIPT."
   (call-changing-transcript transcript (lambda () (add-text transcript text))))
+
+(defun say-entered (transcript text)
+  "Add TEXT, a line that the user has entered, to TRANSCRIPT."
+  (call-changing-transcript transcript (lambda ()
+                                         (incf (transcript-entered transcript))
+                                         (add-text transcript text))))
 
 (defun unsay (transcript text)
   "Take TEXT back, if it is all there is of the last line of TRANSCRIPT."
