@@ -57,3 +57,25 @@
         (is (eq window (window::window-for (robot:find-robot 'mole))))
         (setf (cli::session-forks session) 1)
         (is (null (window::window-for (robot:find-robot 'mole))))))))
+
+;;; When something ends the thread of a prompt.
+
+(defun join-prompt (window)
+  "Wait until the thread of the prompt of WINDOW has ended, by itself or not."
+  (ignore-errors
+   (base:join-thread (window::conversation-thread (window::window-conversation window)))))
+
+(test going-on.a-prompt-whose-thread-is-ended-begins-anew
+  (in-window (window robot)
+    (let ((conversation (window::window-conversation window))
+          (simulation (time:current-simulation)))
+      (window::start-conversation conversation simulation 'studio-robot)
+      (window::give-line conversation "(sb-thread:abort-thread)")
+      (join-prompt window)
+      (window::restart-if-lost conversation simulation 'studio-robot)
+      (is (mentions-p (said-in window) "It begins anew"))
+      (window::give-line conversation "(* 6 7)")
+      (window::give-line conversation "quit")
+      (join-prompt window)
+      (is (mentions-p (said-in window) "42"))
+      (is (not (window::conversation-lost-p conversation))))))

@@ -182,8 +182,9 @@ else, if its user has chosen another one of the same run, that that is shown."
                         (watcher-robot (window-watcher window)))
     (unwind-protect
          (handler-case (without-debugger (clim:run-frame-top-level window))
-           (error (condition) (close-for condition window)))
-      (forget-window window)
+           (error (condition) (close-for condition window))
+           (:no-error (&rest values) (declare (ignore values)) (forget-window window)))
+      (warn-of-closing window "its thread was ended")
       (end-conversation (window-conversation window))
       (stop-watching (window-watcher window))
       ;; The X server may have gone.

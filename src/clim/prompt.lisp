@@ -66,7 +66,9 @@ there is room."
   (session nil :read-only t)
   (console nil :type window-console :read-only t)
   (over nil :type function :read-only t)
-  (thread nil))
+  (thread nil)
+  ;; Its thread was ended from elsewhere, not by its user.
+  (lost-p nil :type boolean))
 
 (defun begin-conversation (transcript size place over)
   "Return a prompt that writes to TRANSCRIPT, which has room for as many columns and rows as SIZE
@@ -78,14 +80,31 @@ returns. PLACE is called before each line; OVER when its user leaves it."
                        console over)))
 
 (defun converse (conversation simulation robot-name)
-  (ars-magna.cli:run-session-apart (conversation-session conversation) simulation robot-name)
+  "Let the prompt read lines until its user leaves it, and notice if something else ends its thread."
+  (let ((lost-p t))
+    (unwind-protect
+         (progn (ars-magna.cli:run-session-apart (conversation-session conversation)
+                                                 simulation robot-name)
+                (setf lost-p nil))
+      (setf (conversation-lost-p conversation) lost-p)
+      (tell-news (conversation-console conversation))))
   (funcall (conversation-over conversation)))
 
 (defun start-conversation (conversation simulation robot-name)
   "Let the prompt begin, to command the robot ROBOT-NAME of SIMULATION."
-  (setf (conversation-thread conversation)
+  (setf (conversation-lost-p conversation) nil
+        (conversation-thread conversation)
         (start-thread (lambda () (converse conversation simulation robot-name))
                       (format nil "prompt of ~A's window" robot-name))))
+
+;; The window does this, not the thread that ends: when Lisp ends all threads, none may begin.
+(defun restart-if-lost (conversation simulation robot-name)
+  "If the thread of the prompt was ended, as a line or a program may do to any, begin anew."
+  (when (conversation-lost-p conversation)
+    (say (console-transcript (conversation-console conversation))
+         (format nil "The thread of this prompt was ended, and with it the line under way. ~
+                      It begins anew.~%"))
+    (start-conversation conversation simulation robot-name)))
 
 (defun give-line (conversation line)
   "Let the prompt do what LINE, a string, says, as if it had been typed; what is being typed stays."

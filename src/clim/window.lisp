@@ -153,6 +153,7 @@ each snapshot."
 (defun refresh (window)
   "Paint those panes of WINDOW that would look different now, all at once."
   (let ((snapshot (window-snapshot window)))
+    (restart-if-lost (window-conversation window) (window-simulation window) (shown-robot window))
     (mapc #'repaint-if-changed (display-panes window))
     (settle window)
     ;; The X server may be slower than we are.
