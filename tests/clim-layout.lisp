@@ -241,6 +241,21 @@
         (window::fit pane)
         (is (filled-p))))))
 
+(test view.fits-maps-that-have-more-cells-than-the-pane-has-pixels
+  (loop for (width height) in '((300 200) (1200 900) (100 2000))
+        do (let ((scale (window::fitting-scale (world::%make-map :name 'big :width width
+                                                                 :height height :clauses '())
+                                               290 170)))
+             (is (plusp scale))
+             (is (<= (* scale width) 290))
+             (is (<= (* scale height) 170)))))
+
+(test walls.are-a-pixel-wide-at-least
+  "In a small picture of a big map, too."
+  (let ((canvas:graphics-scale* 1/4))
+    (is (= 1 (display::wall-pixels 0 1)))
+    (is (= 10 (display::wall-pixels 0 40)))))
+
 (test view.leaves-room-for-what-stands-at-its-edges
   "Numbers and scale bar cover nothing of a map that is in view as a whole."
   (in-window (window robot)

@@ -161,7 +161,9 @@ else, if its user has chosen another one of the same run, that that is shown."
   ;; None of them can answer for another.
   (dolist (window (windows-on port)) (ars-magna.cli:abandon-session (window-session window)))
   (dolist (window (windows-on port))
-    (warn-of-closing window "the X server has gone. The run goes on; WINDOW opens it anew")
+    (warn-of-closing window (format nil "the X server has gone. The run goes on; the line ~
+                                         WINDOW, or (open-display ~(~S~)), opens it anew"
+                                    (shown-robot window)))
     (close-window window)))
 
 (defun x-server-gone-p (condition)

@@ -80,7 +80,7 @@ returns. PLACE is called before each line; OVER when its user leaves it."
                        console over)))
 
 (defun converse (conversation simulation robot-name)
-  "Let the prompt read lines until its user leaves it, and notice if something else ends its thread."
+  "Let the prompt read lines until its user leaves it. Notice if something else ends its thread."
   (let ((lost-p t))
     (unwind-protect
          (progn (ars-magna.cli:run-session-apart (conversation-session conversation)

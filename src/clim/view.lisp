@@ -18,6 +18,8 @@
    (following-p :initform nil :accessor pane-following-p))
   (:documentation "A part of the world."))
 
+(define-constant +least-scale+ 1/16
+  :documentation "How many pixels a cell has at least in a window.")
 (define-constant +in-view+ 40
   :documentation "How many pixels of the map stay in view, however it is moved.")
 
@@ -60,7 +62,7 @@
 (defun zoom (pane factor &optional (x 0) (y 0))
   "Make the view of PANE FACTOR times larger, so that what is at X, Y stays there."
   (let ((old (pane-scale pane)))
-    (setf (pane-scale pane) (clamp (* old factor) 1 128))
+    (setf (pane-scale pane) (clamp (* old factor) +least-scale+ 128))
     (let ((ratio (/ (pane-scale pane) old)))
       (move-view pane (round (* (- ratio 1) (+ (pane-left pane) x)))
                  (round (* (- ratio 1) (+ (pane-top pane) y)))))))
@@ -69,8 +71,9 @@
 
 (defun fitting-scale (map width height)
   "Return how many pixels to a cell let all of MAP be in view in WIDTH times HEIGHT pixels."
-  (let ((scale (min (/ width (map-width map)) (/ height (map-height map)))))
-    (clamp (if (< scale 4) (/ (floor scale 1/4) 4) (floor scale)) 1 64)))
+  (let* ((scale (min (/ width (map-width map)) (/ height (map-height map))))
+         (step (cond ((< scale 1) +least-scale+) ((< scale 4) 1/4) (t 1))))
+    (clamp (* step (floor scale step)) +least-scale+ 64)))
 
 (defun fit-view (pane)
   "Let the whole map be in view in the middle of PANE."

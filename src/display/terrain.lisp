@@ -95,6 +95,10 @@ its parameter; plain black on a display without colours."
     (with-color (texture-ink (wall-look-color look))
       (draw-texture canvas draw-gcontext* (wall-look-texture look) rectangles tile))))
 
+(defun wall-pixels (from to)
+  "Return how many pixels a wall takes between the cells FROM and TO: one at least, to be seen."
+  (max 1 (to-pixels (- to from))))
+
 (defun runs-by-look (runs)
   "Return lists (look x y width height ...), in pixels, of the rectangles RUNS of walls."
   (let ((lists '()))
@@ -103,8 +107,8 @@ its parameter; plain black on a display without colours."
                       (first (push (list (wall-run-look run)) lists)))))
         (setf (rest list)
               (list* (to-pixels (wall-run-left run)) (to-pixels (wall-run-top run))
-                     (to-pixels (- (wall-run-right run) (wall-run-left run)))
-                     (to-pixels (- (wall-run-bottom run) (wall-run-top run)))
+                     (wall-pixels (wall-run-left run) (wall-run-right run))
+                     (wall-pixels (wall-run-top run) (wall-run-bottom run))
                      (rest list)))))))
 
 (defun draw-walls (canvas map window)
