@@ -3,8 +3,8 @@
 (in-package :ars-magna.cli)
 
 (defparameter *subjects*
-  '(("KEYS" "At a terminal, and where one types in a window, a line is edited as in a shell or Emacs. Left, right, Home, End,
-control-A and control-E move in it; with Alt or control, left and right go by words. Backspace,
+  '(("KEYS" "At a terminal, and where one types in a window, a line is edited as in a
+shell or Emacs. Left, right, Home, End, control-A and control-E move in it; with Alt or control, left and right go by words. Backspace,
 Delete and control-D delete a character, control-W the word before, control-U and control-K all
 before and after; control-Y brings back what was deleted so. Up and down bring back lines typed
 before, in earlier sessions too (HISTORY); control-R searches them for what is typed next. Tab
