@@ -241,7 +241,7 @@
       :components ((:file "keyboard") (:file "process") (:file "telling") (:file "input")
                    (:file "handed-octets")
                    (:file "escapes") (:file "columns") (:file "drawn-line") (:file "console")
-                   (:file "progress") (:file "json") (:file "layout")))
+                   (:file "asking") (:file "progress") (:file "json") (:file "layout")))
      (:module "editing" :serial t
       :components ((:file "keys") (:file "changes") (:file "history") (:file "pasting")
                    (:file "octet-queue") (:file "editor")
