@@ -52,7 +52,7 @@
                  (:file "location") (:file "thing") (:file "stock")
                  (:file "world") (:file "access")
                  (:file "kickers") (:file "reading-ahead") (:file "gaps") (:file "kicker-groups")
-                 (:file "attaching") (:file "placing") (:file "setting-attributes")
+                 (:file "attaching") (:file "failing-kickers") (:file "placing") (:file "setting-attributes")
                  (:file "recipes") (:file "undeclared") (:file "forking") (:file "residents")
                  (:file "new-thing") (:file "kicking") (:file "defmap") (:file "check")
                  (:file "soundness") (:file "facts")))
@@ -248,7 +248,7 @@
                    (:file "search") (:file "tabbing") (:file "standard")
                    (:file "ahead") (:file "handed-text")))
      (:module "prompt" :serial t
-      :components ((:file "user-names") (:file "reporting") (:file "session")
+      :components ((:file "user-names") (:file "reporting") (:file "repetition") (:file "session")
                    (:file "company") (:file "listening") (:file "going-on")
                    (:file "line")
                    (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")

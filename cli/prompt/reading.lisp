@@ -51,7 +51,7 @@ that."
                (show-answer console (visible line)))
               (t (unless (or line (session-batch-p session)) (fresh-line console))
                  (answered console)))
-        (clrhash (session-told session)))
+        (count-anew (session-told session)))
       (note-read (session-account session))
       line)))
 
