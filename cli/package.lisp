@@ -34,7 +34,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:import-from :ars-magna.geometry #:pt-x #:pt-y)
   (:import-from :ars-magna.floors #:import-map #:export-map)
   (:import-from :ars-magna.ways #:nearest-free-point)
-  (:import-from :ars-worlds #:robot-go-to #:robot-go-distance)
+  (:import-from :ars-worlds #:robot-go-to)
   (:import-from :ars-magna.rpl-pictures #:save-plan-timeline)
   (:import-from :ars-magna.experiment
                 #:find-experiment #:all-experiments #:experiment-name #:experiment-documentation
@@ -62,7 +62,8 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:export #:painted-spans #:unpainted-text #:broken-text
            #:drawn-line-label #:drawn-line-text #:drawn-line-point #:drawn-line-shown
            #:rows-to-show
-           #:console #:console-line #:wipe #:draw #:leave-line #:clear-screen #:fitted)
+           #:console #:console-line #:console-asked-p #:tell-asking
+           #:wipe #:draw #:leave-line #:clear-screen #:fitted)
   ;; handed-text
   (:export #:make-handed-text #:press-key #:typed-ahead)
   ;; line, names

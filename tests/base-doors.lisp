@@ -23,9 +23,22 @@
                                       (base:native-path "/no/such/directory/x") "the picture")
     (base:misuse (condition)
       (is (string= (format nil "The picture cannot be written to /no/such/directory/x: there is ~
-                                no such directory. What was there is as before.")
+                                no such directory. What was there is as before; give the name of ~
+                                a file that you may write.")
                    (princ-to-string condition))))
     (:no-error (path) (is (null path)))))
+
+(test files.that-the-system-refuses-are-told-of-without-its-own-names
+  "A file that is made for a while, and a stream, are nothing that a user knows."
+  (flet ((reason (function)
+           (handler-case (progn (funcall function) nil)
+             (error (trouble) (base:unwritten-reason trouble)))))
+    (is (string= "no file can be made in that directory"
+                 (reason (lambda () (open "/proc/self/x-tmp" :direction :output)))))
+    (is (string= "no space left on device"
+                 (reason (lambda ()
+                           (with-open-file (out "/dev/full" :direction :output :if-exists :append)
+                             (write-string "x" out))))))))
 
 (defun exit-in-thread ()
   "Return what is said, a string, when another thread would end this Lisp."

@@ -189,14 +189,45 @@ line."
              (is (mentions-p (told-to other) "*BREAK* -> oh")))
         (end-talk other)))))
 
+(define-condition dying-window (condition)
+  ((end :initarg :end :reader end-of-window))
+  (:report (lambda (condition stream)
+             (funcall (end-of-window condition))
+             (write-string "oh" stream)))
+  (:documentation "What breaks just when the window dies: when its user is about to be told."))
+
+(defvar *dying* nil "What breaks in a line.")
+
+(test sessions.break-in-the-instant-of-a-loss-is-answered-in-another
+  (in-studio (robot)
+    (let* ((lost (begin-talk robot)) (other (begin-talk robot)) (ended-p nil))
+      (setf (base:global-value '*entered*) '()
+            (base:global-value '*dying*)
+            (make-condition 'dying-window
+                            :end (lambda ()
+                                   (unless (shiftf ended-p t)
+                                     (cli:abandon-session (talk-session lost))
+                                     (cli:end-session (talk-session lost))))))
+      (unwind-protect
+           (progn
+             (enter lost (format nil "(progn (restart-case (invoke-debugger~%
+                                                ars-magna.tests::*dying*)
+                                              (continue ())) ~A)" (pushing 3)))
+             (await-break other)
+             (enter other "continue")
+             (base:join-thread (talk-thread lost))
+             (is (equal '(3) (base:global-value '*entered*)))
+             (is (mentions-p (told-to other) "*BREAK* -> oh")))
+        (end-talk other)))))
+
 (test sessions.that-begin-know-how-often-an-error-has-come-up
   (in-talk (talk)
-    (setf (gethash "jammed" (cli::session-told (talk-session talk))) 42)
+    (setf (gethash "jammed" (cli::session-told (talk-session talk))) (cli::make-tally :count 42))
     (let ((new (cli:make-session :input (make-string-input-stream "")
                                  :output (make-broadcast-stream))))
       (cli::listen-to new (time:current-simulation))
       (cli::stop-listening new)
-      (is (eql 42 (gethash "jammed" (cli::session-told new)))))))
+      (is (eql 42 (cli::tally-count (gethash "jammed" (cli::session-told new))))))))
 
 (test sessions.closing-one-carries-out-nothing
   (in-talk (talk)

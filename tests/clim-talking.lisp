@@ -142,6 +142,37 @@
       (is (mentions-p (said-in window) "Interrupted."))
       (is (mentions-p (said-in window) "42")))))
 
+(defun await-in (conversation news test)
+  "Wait until TEST is true of CONVERSATION, of which NEWS, a semaphore, tells. Return its value."
+  (loop for value = (funcall test conversation)
+        until value while (base:wait-on-semaphore news 20)
+        finally (return value)))
+
+(test talking.a-program-that-reads-says-so-until-it-is-answered
+  (in-window (window robot)
+    (let* ((news (base:make-semaphore "news"))
+           (transcript (window::make-transcript (lambda () (base:signal-semaphore news))))
+           (conversation (window::begin-conversation transcript (lambda () (values 80 24))
+                                                     (constantly nil) (constantly nil))))
+      (setf (window::window-conversation window) conversation)
+      (window::start-conversation conversation (time:current-simulation) 'studio-robot)
+      (is (not (mentions-p (window::time-text window) "waits for your answer")))
+      (window::give-line conversation "(list (read) 2)")
+      (is (equal "(list (read) 2)" (await-in conversation news #'window::asked-by)))
+      (is (mentions-p (note-above window) "(list (read) 2) waits for your answer -- control-C"))
+      (is (mentions-p (window::time-text window) "; a program waits for your answer"))
+      (is (equal "Answer> " (first (await-in conversation news #'window::line-shown))))
+      (window::give-key conversation "half")
+      (window::interrupt-conversation conversation)
+      (is (await-in conversation news
+                    (lambda (conversation)
+                      (declare (ignore conversation))
+                      (find-if (lambda (line) (mentions-p line "Interrupted."))
+                               (window::latest-lines transcript 20)))))
+      (is (null (window::asked-by conversation)))
+      (window::give-line conversation "quit")
+      (base:join-thread (window::conversation-thread conversation)))))
+
 (defvar *typed* nil "A semaphore that a line waits for.")
 
 (defun wait-for-typing () (base:wait-on-semaphore *typed* 60))

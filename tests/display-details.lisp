@@ -125,7 +125,7 @@
           (loop for number from 1 to 80 collect (+ 100d0 number)))
     (run:run-ticks 3)
     (let ((texts (format nil "~{~A~^ ~}" (words-in-picture robot :display :cameras))))
-      (is (mentions-p texts "View 3 ticks ago: 101.0 102.0"))
+      (is (mentions-p texts "View, asked for 3 ticks ago: 101.0"))
       (is (mentions-p texts "180.0"))
       (is (not (find #\~ texts))))
     (let ((other (words-in-picture robot :display :hands)))
@@ -133,4 +133,5 @@
 
 (test details.where-no-view-was-taken-it-says-so
   (in-studio (robot)
-    (is (member "View: none yet" (words-in-picture robot :display :cameras) :test #'string=))))
+    (is (mentions-p (format nil "~{~A~^ ~}" (words-in-picture robot :display :cameras))
+                    "View: not asked for yet, see the line CAM-VIEW"))))

@@ -232,6 +232,27 @@ name in *KEY-CODES*."
       (is-true (y-or-n-p "Really?"))
       (is (search "Really? (y or n) y" (get-output-stream-string out))))))
 
+(defun screen-while-lines-are-done (&rest keys)
+  "Return what the terminal hears while KEYS are pressed at a prompt."
+  (multiple-value-bind (console out) (terminal-console)
+    (cli:run-session (cli:make-session :input (typed-text-for (keyboard-for keys) console)
+                                       :output console :color :never))
+    (get-output-stream-string out)))
+
+(test editing.programs-that-ask-say-so
+  "What is typed next is no line of the prompt. It is told once for each line; control-C ends the
+program, whatever has been typed."
+  (let ((heard (screen-while-lines-are-done "(list (read) (y-or-n-p \"ok?\"))" :enter "7" :enter
+                                            "y" :enter "quit" :enter)))
+    (is (= 1 (occurrences "A program waits for your answer; control-C ends the program." heard)))
+    (is (mentions-p heard "Answer> 7"))
+    (is (mentions-p heard "ok? (y or n) y"))
+    (is (mentions-p heard "(7 T)")))
+  (let ((heard (screen-while-lines-are-done "(read)" :enter "half" #\C "(+ 20 22)" :enter
+                                            "quit" :enter)))
+    (is (mentions-p heard "Interrupted."))
+    (is (mentions-p heard "42"))))
+
 ;;; The history.
 
 (test history.goes-back-and-on

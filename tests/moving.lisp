@@ -200,6 +200,40 @@ exactly once."
     (place-rover 10.5 9.5 0 rover)
     (is (eq :no-corner (code (outcome () command:robot-turn-corner))))))
 
+;;; So far.
+
+(test go-distance.drives-so-far-at-the-speed-there-is
+  (with-rover (:clean t)
+    (place-rover 4.5 4.5 0 rover)
+    (let ((outcome (outcome () command:robot-go-distance 2)))
+      (is (null (code outcome)))
+      (is (= (+ 2 3) (took outcome)))
+      (is (near 6.5 (robot:robot-x rover) 1d-6))
+      (is (= 0.8d0 (robot:robot-speed rover))))
+    (place-rover 4.5 4.5 0 rover)
+    (command:robot-set-speed rover 0.1)
+    (run:run-ticks 2)
+    (is (= (+ 2 7) (took (outcome () command:robot-go-distance 0.7d0)))
+        "what rounding leaves takes no tick")))
+
+(test go-distance.interrupted-leaves-the-speed-as-it-was
+  (loop for tick from 1 to 6
+        do (with-rover ()
+             (place-rover 4.5 4.5 0 rover)
+             (command:robot-go-distance rover 4.1)
+             (run:run-ticks tick)
+             (command:robot-stop rover)
+             (run:run-ticks 5)
+             (is (= 0.8d0 (robot:robot-speed rover))))))
+
+(test go-distance.fails-as-other-driving-does
+  (with-rover (:clean t)
+    (signals base:wrong-argument (command:robot-go-distance rover -1))
+    (is (eq :robot-blocked (code (outcome () command:robot-go-distance 100))))
+    (command:robot-set-speed rover 0)
+    (run:run-ticks 2)
+    (is (eq :not-moving (code (outcome () command:robot-go-distance 1))))))
+
 ;;; What holds for every command.
 
 (defun moving-commands ()

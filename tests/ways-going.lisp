@@ -216,13 +216,7 @@ stop at TICK, and what that then does; NIL if it had ended by then."
                                        (ars-worlds:robot-go-to ars-worlds:marvin 109 24
                                                                continuation))
                                      tick))
-               "~D" tick))
-  (loop for tick from 0 to 4
-        do (is (equal '((:interrupt) nil)
-                      (going-stopped (lambda (continuation)
-                                       (ars-worlds:robot-go-distance ars-worlds:marvin 5
-                                                                     continuation))
-                                     tick)))))
+               "~D" tick)))
 
 (test going.elsewhere-ends-the-way-that-it-was-on
   "Also where there is nothing to drive."
@@ -244,7 +238,7 @@ stop at TICK, and what that then does; NIL if it had ended by then."
   (run:with-simulation (ars-worlds:dot :clean t)
     (ars-worlds:robot-go-to ars-worlds:dot 5 5 nil)
     (run:run-ticks 100)
-    (ars-worlds:robot-go-distance ars-worlds:dot 1 nil)
+    (command:robot-go-distance ars-worlds:dot 1)
     (run:run-ticks 100)
     (is (null (find :error (base:take-messages) :key #'base:message-kind)))))
 
@@ -269,16 +263,4 @@ stop at TICK, and what that then does; NIL if it had ended by then."
                                          (,ars-worlds:marvin 3 3 :tolerance "x")
                                          (,ars-worlds:marvin 3 3 :patience 0))
           do (signals base:wrong-argument
-               (apply #'ars-worlds:robot-go-to robot x y #'list options)))
-    (signals base:wrong-argument (ars-worlds:robot-go-distance 'rex 3 #'list))))
-
-(test going.so-far-needs-a-speed
-  (run:with-simulation (ars-worlds:marvin)
-    (let ((told '()))
-      (command:robot-set-speed ars-worlds:marvin 0)
-      (run:run-ticks 3)
-      (ars-worlds:robot-go-distance ars-worlds:marvin 5 (lambda (err robot)
-                                                          (declare (ignore robot))
-                                                          (push err told)))
-      (run:run-ticks 20)
-      (is (equal '(:not-moving) told)))))
+               (apply #'ars-worlds:robot-go-to robot x y #'list options)))))

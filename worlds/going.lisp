@@ -142,30 +142,6 @@ most. CONTINUATION gets an error code or NIL, and the robot."
                          (lambda () (funcall next journey))
                          (lambda () (note-obstacle journey)))))))
 
-(ars-magna.base:define-argument-type 'distance
-  (lambda (value) (and (realp value) (< 0 value) (<= value 1000000)))
-  "a number of metres, more than 0, at most a million")
-
-(defun robot-go-distance (robot metres continuation)
-  "Let ROBOT drive METRES straight ahead, no faster than it would, and have its speed again
-afterwards. Returns at once. CONTINUATION gets, in the end, an error code of ROBOT-GO-FORWARD or
-NIL, and ROBOT: :INTERRUPT if somebody else has taken the robot over, which then has the speed that
-it drove with; :NOT-MOVING if its speed is 0. Signals WRONG-ARGUMENT unless METRES is more than 0
-and at most a million."
-  (ars-magna.base:check-of-type 'robot-go-distance "the robot" robot 'robot)
-  (ars-magna.base:check-of-type 'robot-go-distance "the distance" metres 'distance)
-  (ars-magna.base:check-of-type 'robot-go-distance "the continuation" continuation 'continuation)
-  (let ((course (make-course robot)) (speed (robot-speed robot))
-        (continuation (or continuation #'no-continuation)))
-    (if (zerop speed)
-        (robot-go-forward (own course) 1 continuation)
-        (drive-metres course metres (min speed max-speed*)
-          (continuation (err robot)
-            (if (over-p course err)
-                (funcall continuation :interrupt robot)
-                (robot-set-speed (own course) speed
-                  (continuation (no-err robot set) (funcall continuation err robot)))))))))
-
 ;;; Trouble.
 
 (defun note-obstacle (journey)

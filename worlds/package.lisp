@@ -49,7 +49,7 @@ and programs for the robots there. Written as users write theirs.")
   ;; an errand with continuations
   (:export #:run-errand)
   ;; a journey with continuations
-  (:export #:robot-go-to #:robot-go-distance))
+  (:export #:robot-go-to))
 
 (in-package :ars-worlds)
 

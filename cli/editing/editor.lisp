@@ -149,8 +149,8 @@ for it.")
   (typed-text-of stream))
 
 (define-action (:control-c) (stream)
-  "Clear the line; if there is nothing typed, end what waits for it."
-  (if (string= "" (typed-text-of stream))
+  "Clear the line; if there is nothing typed, or a program has asked for it, end what waits for it."
+  (if (or (string= "" (typed-text-of stream)) (console-asked-p (edited-console stream)))
       (heed-interrupt)
       (change-to stream "" 0))
   nil)
@@ -277,19 +277,24 @@ they are read."
   (let* ((text (typed-text-of stream)) (end (position #\Newline text)))
     (when end (change-to stream (subseq text 0 end) end))))
 
+(defun press-keys (stream)
+  "Do what the keys that are pressed do, until the line has ended. Return what EDIT-LINE does."
+  (when (console-asked-p (edited-console stream)) (tell-asking (edited-console stream)))
+  (loop for key = (read-key (octet-reader stream))
+        for end = (if (stringp key) (press-text stream key) (press stream key))
+        until end
+        finally (stand-as-first-line stream)
+                (return end)))
+
+(defvar *program-reads-p* nil
+  "True while what is typed is read by a program of its user, not by the prompt.")
+
 (defun edit-line (stream)
   "Let a line be typed. Return it, which has newlines in it if several were pasted; :EOF at the end
 of the input."
-  (prog1 (call-editing (lambda ()
-                         (loop for key = (read-key (octet-reader stream))
-                               for end = (if (stringp key)
-                                             (press-text stream key)
-                                             (press stream key))
-                               until end
-                               finally (stand-as-first-line stream)
-                                       (return end)))
-                       stream)
-    (look-ahead stream)))
+  (flet ((edit () (call-editing (lambda () (press-keys stream)) stream)))
+    (prog1 (if *program-reads-p* (call-asking (edited-console stream) #'edit) (edit))
+      (look-ahead stream))))
 
 ;;; As a stream.
 

@@ -1,4 +1,4 @@
-;;;; way-lines.lisp -- GO and GO-TO: so far ahead, and to a point of the map.
+;;;; way-lines.lisp -- GO-TO: to a point of the map.
 
 (in-package :ars-magna.cli)
 
@@ -25,25 +25,6 @@ of SIMULATION."
     (:no-way (tell-failed-way "There is no way to ~A for ~A" point robot))
     (:gave-up (tell-failed-way "Something was in the way to ~A too often for ~A" point robot))
     (t (tell-failed-way "Interrupted on the way to ~A" point))))
-
-(defun tell-slowed (robot speed)
-  "Queue a message that a line GO was interrupted, and left ROBOT with another speed than SPEED."
-  (unless (= speed (robot-speed robot))
-    (warning-set (format nil "go: Interrupted. The speed is ~,2F now; SET-SPEED ~,2F sets what it ~
-                              was"
-                         (robot-speed robot) speed))))
-
-(define-line "GO" (session (distance distance "how far"))
-    (:moving)
-    "Drive DISTANCE metres straight ahead, no faster than the robot's speed, which must not be 0. If
-that is interrupted, the robot keeps the speed that it drove with. GO-FORWARD drives for a number of
-ticks."
-  (let ((errand (make-errand :name "GO")) (speed (robot-speed (session-robot))))
-    (robot-go-distance (session-robot) distance
-                       (lambda (err robot)
-                         (when (eq :interrupt err) (tell-slowed robot speed))
-                         (setf (errand-done-p errand) t)))
-    (push errand (session-errands session))))
 
 (define-line "GO-TO" (session (x metres "metres from the left") (y metres "metres from the top"))
     (:moving)

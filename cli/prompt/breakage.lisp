@@ -18,6 +18,8 @@ on. ORDER is what it is to do next, a function."
 
 (defvar *session* nil "The session that the debugger asks, in whatever thread; the newest.")
 
+(defvar *asking-p* nil "True in a thread that has broken and asks how to go on.")
+
 (defun restarts-within (condition)
   "Return the restarts for CONDITION up to the one that ends the line, of each name the innermost."
   (let* ((all (remove nil (compute-restarts condition) :key #'restart-name))

@@ -95,10 +95,10 @@ comes after that."
         (tell-break session (first (session-breaks session)))))))
 
 (defun read-lines-for (session breakage)
-  "Read lines for BREAKAGE, of another thread, until that goes on."
+  "Read lines for BREAKAGE, of another thread, until that goes on, or SESSION is over."
   (loop while (member breakage (session-breaks session))
-        do (when (session-over-p session) (invoke-restart 'end-line))
-           (call-complaining session (lambda () (read-debug-line session breakage)))))
+        until (session-over-p session)
+        do (call-complaining session (lambda () (read-debug-line session breakage)))))
 
 (defun answer-those-before (session breakage)
   "Read lines for what has broken in other threads before BREAKAGE, which has in this one."
@@ -221,7 +221,7 @@ does other things too, and no prompt runs in it."
   "Let the user of the prompt say how to go on after CONDITION. Called instead of Lisp's debugger."
   ;; What asks needs the room that is not there.
   (when (typep condition 'storage-condition) (give-up condition))
-  (let ((sessions (sessions-to-ask)))
+  (let* ((*asking-p* t) (sessions (sessions-to-ask)))
     (cond ((others-matter-p) nil)
           (sessions
            (with-debugger-hook ('debugger-disabled-hook)

@@ -54,20 +54,18 @@ another, so that nobody waits for the tick to end, which it may never."
   (setf (message-queue-listener (simulation-messages simulation))
         (and session (lambda () (hear session simulation)))))
 
-(defun counts-of (session)
-  "Return lists (text count) of what SESSION has been told how often."
-  (with-lock ((session-lock session))
-    (loop for text being the hash-keys of (session-told session) using (hash-value count)
-          collect (list text count))))
+(defun copy-of-counts (session)
+  "Return a table of what SESSION has been told how often."
+  (let ((copy (make-hash-table :test 'equal)))
+    (with-lock ((session-lock session)) (take-counts copy (session-told session)))
+    copy))
 
 (defun share-counts (session simulation)
   "Let SESSION know what others that listen to SIMULATION have been told often, as a new window does
 not."
   (dolist (other (remove session (sessions-hearing simulation)))
-    (let ((counts (counts-of other)) (told (session-told session)))
-      (with-lock ((session-lock session))
-        (loop for (text count) in counts
-              do (setf (gethash text told) (max count (gethash text told 0))))))))
+    (let ((counts (copy-of-counts other)))
+      (with-lock ((session-lock session)) (take-counts (session-told session) counts)))))
 
 (defun listen-to (session simulation)
   "Let SESSION show what SIMULATION has to say when it says it."

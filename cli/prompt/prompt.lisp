@@ -96,6 +96,7 @@ tell somebody who sits there."
   "Call FUNCTION, which writes to SESSION and asks its user."
   (let* ((*standard-output* (session-console session))
          (*standard-input* (session-input session))
+         (*program-reads-p* t)
          (*robot-meant* #'session-robot)
          (*robot-to-drive* #'robot-commanded)
          (*query-io* (make-two-way-stream *standard-input* *standard-output*)))

@@ -27,7 +27,7 @@ it, and have it again; if BEFORE is a text, together with that, which it goes on
          (line (progn
                  ;; What goes on over lines is kept whole.
                  (unless before (keep-lines (session-input session)))
-                 (read-line (session-input session) nil)))
+                 (let ((*program-reads-p* nil)) (read-line (session-input session) nil))))
          (line (and line (line-pasted (without-program session line) before))))
     (unless (or (null line) (and (null before) (answer-p session line)))
       (remember-line (session-input session) line before))
@@ -51,7 +51,7 @@ that."
                (show-answer console (visible line)))
               (t (unless (or line (session-batch-p session)) (fresh-line console))
                  (answered console)))
-        (clrhash (session-told session)))
+        (count-anew (session-told session)))
       (note-read (session-account session))
       line)))
 

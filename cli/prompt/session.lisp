@@ -28,8 +28,8 @@
   (echo-p nil :type boolean :read-only t)
   ;; What comes of the commands that plans and programs give is not shown.
   (quiet-p nil :type boolean)
-  ;; How often each error has been told since a line was read, by its text: any thread tells, so the
-  ;; lock guards it.
+  ;; The tallies of errors, by their text, as in repetition.lisp: any thread tells, so the lock
+  ;; guards them.
   (told (make-hash-table :test 'equal) :type hash-table :read-only t)
   (lock (make-lock "session") :read-only t)
   ;; The simulation whose messages are shown as they arrive, and its observer if it is live.
@@ -211,35 +211,11 @@ DISPLAY says so."
   (and (eq :error (message-kind message))
        (funcall *error-counts-p* message session)))
 
-;; What goes wrong in each tick, as in a kicker, is not to drown all else. A transcript has it all.
-(defun power-of-ten-p (number)
-  (or (= 1 number)
-      (and (zerop (mod number 10)) (power-of-ten-p (/ number 10)))))
-
-(defun room-to-count (session)
-  "Return the table of what SESSION has been told, with room for one more."
-  (let ((told (session-told session)))
-    (when (< *message-limit* (hash-table-count told)) (clrhash told))
-    told))
-
-(defun repeated-often-p (text session)
-  "Count TEXT, which SESSION is told. True if it is one of many alike that is not shown."
-  (let ((count (incf (gethash text (room-to-count session) 0))))
-    (and (< 3 count) (not (power-of-ten-p count)))))
-
 (defun told-often-p (message session)
   "True if MESSAGE is an error that somebody who sits at SESSION has been told often."
   (and (eq :error (message-kind message))
        (terminal-p session)
-       (repeated-often-p (message-text message) session)))
-
-(defun repetition-text (message session)
-  "Return what is to be said of how often SESSION has been told MESSAGE, which is shown, or NIL."
-  (let ((count (gethash (message-text message) (session-told session) 0)))
-    (when (and (eq :error (message-kind message)) (<= 3 count))
-      (format nil "That has come up ~D times; it is shown again after ~D. PAUSE stops time.~%"
-              count
-              (loop for next = 10 then (* 10 next) when (< count next) return next)))))
+       (repeated-often-p message (session-told session))))
 
 (defun messages-for (session messages)
   "Count the errors among MESSAGES, and return those that SESSION is to show."
@@ -257,8 +233,8 @@ DISPLAY says so."
       (when (and messages (not flush-all-errors*))
         (or (report-messages (session-account session) messages)
             (write-messages messages console (session-account session)))
-        (dolist (text (remove nil (mapcar (lambda (message) (repetition-text message session))
-                                          messages)))
-          (write-fresh (fitted text console) console)))
+        (loop for message in messages
+              for text = (repetition-text message (session-told session))
+              when text do (write-fresh (fitted text console) console)))
       (restore-prompt console)
       (finish-output console))))

@@ -56,8 +56,10 @@ beside other sessions, until QUIT or the end of its input. Return SESSION."
 ;;; What those do to it who do not type.
 
 (defun heed-in-session ()
-  "Let the session of this thread end the line that is under way, if there is one."
-  (when *session* (heed-interrupt)))
+  "Let the session of this thread end the line that is under way, if there is one. What has broken
+in one whose user is lost is not ended: others are asked, as soon as the session is over."
+  (when (and *session* (not (and *asking-p* (session-abandoned-p *session*))))
+    (heed-interrupt)))
 
 (defun interrupt-session (session)
   "Do what control C does in SESSION, from another thread: clear the line that is typed, or end the

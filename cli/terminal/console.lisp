@@ -23,6 +23,8 @@
    (edited-p :initform nil :accessor console-edited-p)
    (typed :initform nil :accessor console-line)
    (question :initform nil :accessor console-prompt)
+   (asked-p :initform nil :accessor console-asked-p)
+   (asking-told-p :initform nil :accessor console-asking-told-p)
    (overwritten-p :initform nil :accessor console-overwritten-p)
    (trouble :initform nil :accessor console-trouble)
    (colored-p :initform nil :accessor console-colored-p)
@@ -33,12 +35,16 @@ rows of the terminal's window, or NIL if there is none. REST is what was written
 newline, as far as it is short; WRAPPED-P is true if that fills a row, and the cursor has gone on to
 the next. EDITED-P is true if the prompt edits what is typed, TYPED the drawn-line that is being
 typed, or NIL. QUESTION is what stands there for the user to answer, or NIL; OVERWRITTEN-P is true
-if something was written after it. TROUBLE is the condition that what was written could not be
-delivered, or NIL. COLORED-P is true if its messages and prompts have colours. While HELD-BACK-P is
-true, what is written is kept in HELD-BACK, a list of strings, newest first."))
+if something was written after it. ASKED-P is true while a program, not the prompt, reads what is
+typed, ASKING-TOLD-P if the user has been told so since the prompt stood last. TROUBLE is the
+condition that what was written could not be delivered, or NIL. COLORED-P is true if its messages
+and prompts have colours. While HELD-BACK-P is true, what is written is kept in HELD-BACK, a list of
+strings, newest first."))
 
 (setf (documentation 'console-line 'function)
-      "Return the drawn-line that is being typed on the console, or NIL. Can be set.")
+      "Return the drawn-line that is being typed on the console, or NIL. Can be set."
+      (documentation 'console-asked-p 'function)
+      "True while a program, not the prompt, reads what is typed on the console.")
 
 (defun make-console (stream &optional window)
   "Return a console on STREAM, or STREAM if it is one. WINDOW is as in CONSOLE."
@@ -294,6 +300,7 @@ broken between words.")
 
 (defun show-prompt (console prompt)
   "Show PROMPT, a string, at the start of a line."
+  (setf (console-asking-told-p console) nil)
   (with-console (stream console)
     (put-prompt (painted prompt :bold console) console stream)
     (draw console stream)

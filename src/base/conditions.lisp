@@ -48,11 +48,14 @@
    (expected   :initarg :expected   :reader malformed-definition-expected)
    (place      :initarg :place      :initform nil :reader malformed-definition-place))
   (:report (lambda (condition stream)
-             (let ((*print-case* :downcase) (*print-circle* nil))
-               (format stream "~A~@[ (~A)~]: cannot use the clause~%  ~S~%Expected ~A"
+             (let ((*print-case* :downcase) (*print-circle* nil)
+                   (clause (malformed-definition-clause condition)))
+               (format stream "~A~@[ (~A)~]: ~:[nothing, or NIL, is where there should be ~*~;~
+                               cannot use the clause~%  ~S~%Expected ~]~A"
                        (malformed-definition-definition condition)
                        (malformed-definition-place condition)
-                       (abridged (malformed-definition-clause condition))
+                       clause
+                       (abridged clause)
                        (sentence (malformed-definition-expected condition))))))
   (:documentation "A defining form (DEFMAP, DEFROBOT ...) has a clause that makes no sense."))
 

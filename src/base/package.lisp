@@ -59,7 +59,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:host-name #:process-number
            #:environment-value #:real-microseconds #:run-command #:run-attached)
   ;; writing
-  (:export #:call-replacing-file #:write-file-anew)
+  (:export #:call-replacing-file #:write-file-anew #:unwritten-reason)
   ;; environments
   (:export #:variable-kind #:local-variable-p #:known-variable-p #:special-variable-p
            #:local-function-p #:known-function-p #:macro-expander
@@ -158,6 +158,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*
            #:user-calls-waiting-p
            #:as-users-code #:abort-user-code #:brief-text #:text-of-origin
+           #:recurring-code #:recurring-remedy
            #:report-user-error)
   ;; parameters
   (:export #:parameter #:parameter-p #:parameter-name #:parameter-symbol #:parameter-default

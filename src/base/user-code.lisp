@@ -114,6 +114,19 @@ list of items."
   (apply #'message-set "Break in "
          (append (ensure-list origin) (list ": " (brief-text condition)))))
 
+;;; Code that runs by itself, as a kicker does, may fail again and again.
+
+(defgeneric recurring-code (item)
+  (:documentation "Return the user's function that runs again and again without being asked for, if
+that is where trouble came up, by ITEM of the message about it; else NIL.")
+  (:method (item)
+    (declare (ignore item))
+    nil))
+
+(defgeneric recurring-remedy (item)
+  (:documentation "Return in words, as a sentence, how trouble in the RECURRING-CODE of ITEM can be
+ended."))
+
 ;;; Calling.
 
 (document-restarts

@@ -32,12 +32,23 @@ character that is written is an octet."
          (replace-file path new))))
     (truename path)))
 
+(defun unwritten-reason (trouble)
+  "Return why a file could not be written, by the error TROUBLE, as the part of a sentence: of what
+Lisp says only the system's own words, without streams and names that its user does not know."
+  (let* ((text (one-line-text trouble))
+         (end (search ": " text :from-end t))
+         (words (and end (subseq text (+ 2 end)))))
+    (cond ((not (typep trouble '(or file-error stream-error))) text)
+          ((and words (notany (lambda (char) (find char "\"/")) words)) (string-downcase words))
+          (t "no file can be made in that directory"))))
+
 (defun write-file-anew (function file what)
   "Do as CALL-REPLACING-FILE does with FUNCTION and FILE. Signals MISUSE if WHAT, such as
 \"the run\", cannot be written there; then FILE is as it was."
   (handler-case (call-replacing-file function file)
     (ars-magna-error (trouble) (error trouble))
     (error (trouble)
-      (reject-use "~@(~A~) cannot be written to ~A: ~A. What was there is as before."
+      (reject-use "~@(~A~) cannot be written to ~A: ~A. What was there is as before; give the name ~
+                   of a file that you may write."
                   what (cut (princ-to-string (shown-name file)) 200)
-                  (cut (one-line-text trouble) 200)))))
+                  (cut (unwritten-reason trouble) 200)))))

@@ -15,9 +15,16 @@
 
 ;;; What is to be seen.
 
+(defun line-in-short (line)
+  (if (< 40 (length line)) (format nil "~A..." (subseq line 0 37)) line))
+
 (defun busy-text (line)
   (format nil "At work on ~A -- control-C, or Interrupt in the menu Run, ends it."
-          (if (< 40 (length line)) (format nil "~A..." (subseq line 0 37)) line)))
+          (line-in-short line)))
+
+(defun reading-text (line)
+  (format nil "~A waits for your answer -- control-C, or Interrupt in the menu Run, ends it."
+          (line-in-short line)))
 
 (defun waiting-label (count)
   "Return what stands before what is typed while COUNT lines wait."
@@ -49,10 +56,11 @@
 
 (defun row-above (conversation text)
   "Return what is said above TEXT, which is being typed, and its ink."
-  (let ((asked (asked-text (answers-awaited conversation))))
-    (if asked
-        (list asked :red)
-        (list (note-on text) :grey))))
+  (let ((reading (asked-by conversation))
+        (asked (asked-text (answers-awaited conversation))))
+    (cond (reading (list (reading-text reading) :red))
+          (asked (list asked :red))
+          (t (list (note-on text) :grey)))))
 
 (defun what-is-shown (pane)
   "Return what PANE shows: label, text and point, and the row above and its ink, or NIL."

@@ -44,11 +44,16 @@ there is room."
 
 (defmethod ars-magna.cli:leave-line ((console window-console) stream)
   (let ((line (ars-magna.cli:console-line console)))
-    (setf (console-entered console) (ars-magna.cli:drawn-line-text line))
+    (unless (ars-magna.cli:console-asked-p console)
+      (setf (console-entered console) (ars-magna.cli:drawn-line-text line)))
     (fresh-line stream)
     (say-entered (console-transcript console)
                  (format nil "~A~A~%" (ars-magna.cli:drawn-line-label line)
                          (ars-magna.cli:drawn-line-text line)))))
+
+;; That is said where the line is shown, and in the strip, for as long as it is so.
+(defmethod ars-magna.cli:tell-asking ((console window-console))
+  (tell-news console))
 
 ;; The transcript breaks its lines itself, anew whenever its width changes.
 (defmethod ars-magna.cli:fitted (text (console window-console) &optional label)
@@ -131,6 +136,11 @@ returns. PLACE is called before each line; OVER when its user leaves it."
   (and (conversation-thread conversation)
        (ars-magna.cli:at-work-on (conversation-session conversation))
        (console-entered (conversation-console conversation))))
+
+(defun asked-by (conversation)
+  "Return the line that is under way, if a program that it runs waits for what is typed; or NIL."
+  (let ((console (conversation-console conversation)))
+    (and (ars-magna.cli:console-asked-p console) (console-entered console))))
 
 (defun answers-awaited (conversation)
   "Return a list of what waits for the user to say how it goes on, in words, what is asked about now

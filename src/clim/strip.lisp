@@ -26,8 +26,9 @@
 
 (defun time-text (window)
   "Return the upper line of the status strip of WINDOW."
-  (format nil "~A  ~A~@[; ~A~]" (tick-text window)
+  (format nil "~A  ~A~:[~;; a program waits for your answer~]~@[; ~A~]" (tick-text window)
           (progress-text (watcher-progress (window-watcher window)))
+          (asked-by (window-conversation window))
           (answers-text window)))
 
 (defun strip-lines (window)

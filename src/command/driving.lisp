@@ -6,7 +6,7 @@
 ;;; last step, without braking. So it does when anything interrupts it but ROBOT-STOP, which lets
 ;;; the robot coast.
 
-(declaim (inline drive-for-tick drive-in-time drive-time-over-p))
+(declaim (inline drive-for-tick drive-in-time drive-what-is-left drive-time-over-p))
 (defun drive-for-tick (operation)
   "Drive the robot of OPERATION for a tick. Return what blocks it, :WALL, :THING or NIL."
   (drive-tick (operation-resource operation)))
@@ -21,6 +21,16 @@ Return what blocks it, :WALL, :THING or NIL."
     (if (minusp later)
         (drive-tick robot (* left (the double-float (robot-speed-now robot))))
         (drive-tick robot))))
+
+(defun drive-what-is-left (operation)
+  "Drive the robot of OPERATION for a tick, or as many metres as are left if those are fewer. Return
+what blocks it, :WALL, :THING or NIL."
+  (let* ((robot (operation-resource operation))
+         (left (operation-left operation))
+         (later (- left (the double-float (step-now robot)))))
+    ;; What rounding leaves is not driven.
+    (setf (operation-left operation) (if (< later 1d-9) 0d0 later))
+    (drive-tick robot left)))
 
 (defun drive-time-over-p (operation)
   "True if the robot of OPERATION, which has driven for a tick, is to drive no longer."
@@ -73,6 +83,34 @@ and if the robot has stopped meanwhile."
          (begin-movement robot)
          (go-on-now operation 'drive-a-while))
         (t (succeed operation))))
+
+;;; So far, not so long: the last step is the shorter one, and the robot's speed stays what it is.
+
+(define-argument-type 'distance
+  (lambda (value) (and (realp value) (< 0 value) (<= value 1000000)))
+  "a number of metres, more than 0, at most a million")
+
+(defun drive-the-rest (operation)
+  "Drive for a tick, no farther than the metres that are left, and end OPERATION when none are."
+  (drive-on (block operation drive-what-is-left)
+    (cond (block (fail-with operation :robot-blocked))
+          ((drive-time-over-p operation) (succeed operation)))))
+
+(define-command robot-go-distance (operation (robot robot)
+                                   (metres distance "how far"))
+    ()
+    ((:family :moving) (:section "3.5") (:prompt "GO") (:delay robot-move-delay*)
+     (:errors (:robot-blocked "Robot is blocked")
+              (:not-moving "Robot cannot move: its speed is 0"))
+     (:report () "Robot stopped"))
+    "Drive ROBOT straight ahead for METRES, at its speed. ROBOT-GO-FORWARD drives for a number of
+ticks."
+  (setf (operation-left operation) (double metres))
+  (begin-movement robot)
+  (go-on-now operation 'drive-the-rest))
+
+;; The manual has none.
+(addition (robot-go-distance :ars :nisp))
 
 ;; As reading 102 says.
 (define-command robot-goto-wall (operation (robot robot))

@@ -118,9 +118,7 @@ for its resource, and such lists for all that follows. The type is NIL where non
   value)
 
 (defun check-method-options (definition options)
-  (unless (and (proper-list-p options) (evenp (length options))
-               (loop for key in options by #'cddr always (member key '(:success :delay))))
-    (reject-clause definition options "([:success probability] [:delay ticks])")))
+  (check-options definition options '(:success :delay)))
 
 (defun outdated-p (name method source)
   "True if METHOD of NAME is from an earlier version of the file of SOURCE, which has it no more. If

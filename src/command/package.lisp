@@ -39,7 +39,8 @@
   ;; moving
   (:export #:robot-set-speed #:robot-set-turn-angle #:robot-turn #:robot-about-face
            #:robot-turn-left #:robot-turn-right #:robot-align-place #:robot-turn-corner
-           #:robot-go-forward #:robot-goto-wall #:robot-follow-wall #:robot-stop #:robot-place)
+           #:robot-go-forward #:robot-go-distance #:robot-goto-wall #:robot-follow-wall
+           #:robot-stop #:robot-place)
   ;; looking
   (:export #:camera-view #:camera-get-place-designator #:camera-get-all-place-designators
            #:camera-get-object-designator #:camera-get-all-object-designators

@@ -88,7 +88,8 @@ NIL (reading 69)."
               (:camera-enclosed (text-of "~A is inside a container"))
               (:designator-not-found (text-of "~A found no ~A")))
      (:report (designator) (found-text operation (list designator))))
-    "Look with CAMERA for a place of a type; of several, find any one."
+    "Look with CAMERA for a place of a type; of several, find any one. That it found none is an
+answer, not a fault of the robot: :DESIGNATOR-NOT-FOUND."
   (search-for-places operation camera place-type nil))
 
 (define-command camera-get-all-place-designators (operation (camera camera)
@@ -103,7 +104,8 @@ NIL (reading 69)."
               (:camera-enclosed (text-of "~A is inside a container"))
               (:designator-not-found (text-of "~A found no ~A")))
      (:report (designators) (found-text operation designators)))
-    "Look with CAMERA for all places of a type. Takes a tick more for each after the first."
+    "Look with CAMERA for all places of a type. Takes a tick more for each after the first. That it
+found none is an answer: :DESIGNATOR-NOT-FOUND."
   (search-for-places operation camera place-type t))
 
 ;;; Things.
@@ -133,7 +135,8 @@ NIL (reading 69)."
      (:errors (:already-tracking #'already-tracking-text)
               (:designator-not-found (text-of "~A found no such object")))
      (:report (designator) (found-text operation (list designator))))
-    "Look with CAMERA for an object that fits a description; of several, find any one."
+    "Look with CAMERA for an object that fits a description; of several, find any one. That it found
+no such object is an answer, not a fault of the robot: :DESIGNATOR-NOT-FOUND."
   (search-for-things operation camera type specification nil))
 
 (define-command camera-get-all-object-designators
@@ -147,5 +150,5 @@ NIL (reading 69)."
               (:designator-not-found (text-of "~A found no such object")))
      (:report (designators) (found-text operation designators)))
     "Look with CAMERA for all objects that fit a description. Takes a tick more for each after
-the first."
+the first. That it found no such object is an answer: :DESIGNATOR-NOT-FOUND."
   (search-for-things operation camera type specification t))

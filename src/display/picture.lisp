@@ -52,7 +52,9 @@ MISUSE if GRAPHICS-SCALE* is no scale."
            (reject-use "PNG pictures need the program rsvg-convert, of Debian's package ~
                         librsvg2-bin: apt-get install librsvg2-bin. Or save the picture as .svg."))
           ((plusp status)
-           (reject-use "rsvg-convert could not write ~A." file)))
+           (reject-use "The picture cannot be written to ~A, says rsvg-convert. Give the name of a ~
+                        file that you may write."
+                       (shown-name file))))
     (truename file)))
 
 (defun picture-kind (operator file &optional (endings ".svg or .png"))

@@ -77,7 +77,7 @@
     (error (condition)
       (reject-floor file nil "it cannot be written, and is as it was: ~A. Give the name of a file ~
                               that you may write"
-                    (reason-of condition)))))
+                    (unwritten-reason condition)))))
 
 (defun check-description-name (file path)
   "Signal WRONG-ARGUMENT unless FILE, of EXPORT-MAP, whose PATH this is, is called as it must be."

@@ -25,6 +25,7 @@ were (reading 201)."
   (let ((designator (camera-tracks camera)))
     (list :number (camera-index camera)
           :view (glance camera)
+          :asked-tick (and (camera-last-view camera) (camera-last-view-tick camera))
           :tracks (and designator (designator-number designator))
           :angle (camera-angle camera)
           :field-of-view (camera-field-of-view camera)

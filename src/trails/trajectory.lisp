@@ -73,7 +73,4 @@ before, and what REPLAY does."
     (check-trajectory file every until robots journal)
     (let ((text (with-output-to-string (out)
                   (write-trajectory journal out every until robots))))
-      (handler-case (call-replacing-file (lambda (out) (write-string text out)) file)
-        (error (trouble)
-          (reject-use "The trajectory cannot be written to ~A: ~A. What was there is as before."
-                      (native-name file) (own-text trouble)))))))
+      (write-file-anew (lambda (out) (write-string text out)) file "the trajectory"))))

@@ -94,7 +94,7 @@
     (ars-magna-error (condition) (error condition))
     (error (condition)
       (reject-table file nil "it cannot be written (~A). Is it, or its directory, read-only?"
-                    (system-text condition)))))
+                    (unwritten-reason condition)))))
 
 (defun cut-broken-line (file columns)
   "Cut off what a process that was killed has begun to write to FILE, a table with COLUMNS. True if
@@ -149,7 +149,7 @@ anything is left. Signals DAMAGED-TABLE if FILE is something else; then it is as
     (stream-error (condition)
       (reject-table (pathname stream) nil
                     "no more can be written (~A). What is there is kept; go on once there is room."
-                    (system-text condition)))))
+                    (unwritten-reason condition)))))
 
 (defun keep-row (store result milliseconds worker)
   "Append to STORE the row for RESULT, which took MILLISECONDS of WORKER. It is there for good when

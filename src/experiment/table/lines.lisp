@@ -146,18 +146,13 @@ fingerprint and one value of each thing that varies."
 
 ;;; Writing them in order.
 
-(defun system-text (condition)
-  "Return what the system says of a stream, without what CONDITION says of the stream itself."
-  (let* ((text (one-line (own-text condition))) (end (search ">: " text :from-end t)))
-    (if end (subseq text (+ 3 end)) text)))
-
 (defun call-replacing-table (function file)
   "Call FUNCTION with a stream to a file that takes the place of the table FILE. Signals
 DAMAGED-TABLE if that cannot be written; FILE is then as it was."
   (handler-case (call-replacing-file function file)
     ((or stream-error file-error) (condition)
       (reject-table file nil "it cannot be written anew (~A). It is as it was."
-                    (system-text condition)))))
+                    (unwritten-reason condition)))))
 
 (defun call-with-line-reader (function files)
   "Call FUNCTION with a function that returns the line of a row in one of FILES."

@@ -1,0 +1,76 @@
+;;;; repetition.lisp -- what goes wrong again and again, as a kicker in each tick, is told seldom.
+
+(in-package :ars-magna.cli)
+
+;;; An error is shown three times, then at the tenth, the hundredth time and so on. A transcript has
+;;; it all. What a line asks for fails once for each line, so the count begins anew with the next;
+;;; what runs by itself is counted on, until its code is another, or it is in another run.
+
+(defstruct (tally (:copier nil))
+  "How often an error was told, in CODE, a function that runs by itself, or NIL, last at TICK."
+  (count 0 :type (integer 0))
+  (code nil)
+  (tick 0 :type integer))
+
+(defun item-at-fault (message)
+  "Return the item of MESSAGE that says whose code that runs by itself is at fault, or NIL."
+  (find-if #'recurring-code (message-items message)))
+
+(defun code-at-fault (message)
+  (let ((item (item-at-fault message)))
+    (and item (recurring-code item))))
+
+(defun tick-of (message)
+  "Return the tick that the run has come to that MESSAGE is of."
+  (let ((run (message-run message)))
+    (if run (simulation-tick run) 0)))
+
+(defun room-to-count (told)
+  "Return TOLD, a table of tallies by what they are of, with room for one more."
+  (when (< *message-limit* (hash-table-count told)) (clrhash told))
+  told)
+
+(defun tally-for (message told)
+  "Return the tally in TOLD that MESSAGE is to be counted by."
+  (let* ((text (message-text message))
+         (code (code-at-fault message))
+         (tally (gethash text told)))
+    (if (and tally (eq code (tally-code tally)) (<= (tally-tick tally) (tick-of message)))
+        tally
+        (setf (gethash text (room-to-count told)) (make-tally :code code)))))
+
+(defun power-of-ten-p (number)
+  (or (= 1 number)
+      (and (zerop (mod number 10)) (power-of-ten-p (/ number 10)))))
+
+(defun repeated-often-p (message told)
+  "Count MESSAGE in TOLD. True if it is one of many alike that is not shown."
+  (let* ((tally (tally-for message told)) (count (incf (tally-count tally))))
+    (setf (tally-tick tally) (tick-of message))
+    (and (< 3 count) (not (power-of-ten-p count)))))
+
+(defun repetition-text (message told)
+  "Return what is to be said of how often MESSAGE, which is shown, was told by TOLD, or NIL."
+  (let* ((tally (and (eq :error (message-kind message)) (gethash (message-text message) told)))
+         (count (if tally (tally-count tally) 0))
+         (item (item-at-fault message)))
+    (when (<= 3 count)
+      (format nil "That has come up ~D times; it is shown again after ~D.~@[ ~A~] PAUSE stops ~
+                   time.~%"
+              count
+              (loop for next = 10 then (* 10 next) when (< count next) return next)
+              (and item (recurring-remedy item))))))
+
+(defun count-anew (told)
+  "Forget how often was told by TOLD what a line has asked for."
+  (maphash (lambda (text tally) (unless (tally-code tally) (remhash text told))) told))
+
+(defun take-counts (told others)
+  "Let TOLD count on from what the table OTHERS has."
+  (maphash (lambda (text tally)
+             (let ((own (gethash text told)))
+               (when (or (null own) (< (tally-count own) (tally-count tally)))
+                 (setf (gethash text told)
+                       (make-tally :count (tally-count tally) :code (tally-code tally)
+                                   :tick (tally-tick tally))))))
+           others))
