@@ -195,7 +195,7 @@ and TO; or its beginning on it. Return where that ends."
       (multiple-value-bind (at on-it-p) (place-for-name length x width from to)
         (when (and at (not on-it-p)) (draw-plate canvas at y length))
         (cond (at (words (if on-it-p (ink-in-lane span) black*) at name))
-              ((<= 8 fitting) (words (ink-in-lane span) (+ x 2) (cut name fitting))))
+              ((<= 7 fitting) (words (ink-in-lane span) (+ x 2) (cut name fitting))))
         (max (+ x width) (if at (+ at length) 0))))))
 
 (defun draw-command (canvas span next from y scale)
