@@ -166,7 +166,7 @@
                  (:file "words") (:file "page") (:file "series") (:file "legend")
                  (:file "labels") (:file "plane") (:file "line-chart") (:file "curves")
                  (:file "survival-chart") (:file "rows") (:file "difference-chart")
-                 (:file "measure-chart") (:file "drawing-chart") (:file "saving")))
+                 (:file "measure-chart") (:file "saving")))
    (:module "src/trails" :serial t
     :components ((:file "package") (:file "trails") (:file "trajectory") (:file "picture")
                  (:file "spots") (:file "run-picture")))
@@ -364,7 +364,7 @@
                  (:file "rpl-examples-goals") (:file "plans") (:file "plans-killed")
                  (:file "worlds-searching")
                  (:file "svg-reading") (:file "display") (:file "display-files")
-                 (:file "palette") (:file "pictures") (:file "picture-margins")
+                 (:file "palette") (:file "pictures") (:file "picture-margins") (:file "bundles")
                  (:file "display-details")
                  (:file "display-drawing") (:file "films") (:file "moments")
                  (:file "plots") (:file "plots-text")

@@ -304,7 +304,7 @@
   (let ((map (world::small-map 1 1 (constantly nil))))
     (loop for (scale least) in '((40 9) (20 9) (10 5))
           do (let ((canvas:graphics-scale* scale) (middle (/ scale 2)))
-               (dolist (at (trails::place-for-number map middle middle '() '()))
+               (dolist (at (trails::place-for-number map middle middle 4 '() '()))
                  (is (<= least at (- scale least))))))))
 
 (test run-picture.tells-two-robots-apart

@@ -57,6 +57,12 @@
 (test palette.plain-colours-are-told-apart-by-all-eyes-and-in-grey
   (is (<= 10 (least-difference *plain-colors*))))
 
+(test palette.bars-of-timelines-are-told-apart-by-all-eyes-and-in-grey
+  "From each other, and from the page."
+  (is (<= 10 (least-difference (cons canvas:white*
+                                     (mapcar #'second ars-magna.rpl-pictures::*looks*)))))
+  (is (<= 10 (least-difference (mapcar #'third trails::*outcome-looks*)))))
+
 (test palette.the-measure-would-find-colours-that-are-alike
   "Red, green, blue and violet as they come to mind, with their tints, are not told apart in grey."
   (is (> 3 (least-difference '(#xDF3127 #x24AE34 #x3155E2 #x9B48D5

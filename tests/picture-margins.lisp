@@ -108,6 +108,47 @@
                                                    :layers '(:title :coordinates))))))
      '(hermit))))
 
+(test margins.long-titles-have-more-lines-and-leave-the-page-as-wide-as-it-is
+  (in-studio (robot)
+    (let* ((words (loop repeat 30 collect "a-title"))
+           (title (format nil "~{~A~^ ~}" words))
+           (short (display:svg-picture robot :title "short"))
+           (long (display:svg-picture robot :title title))
+           (lines (remove nil (drawn-with :text long)
+                          :key (lambda (text) (of-element text :font-weight)))))
+      (is (= (svg-view-width short) (svg-view-width long)))
+      (is (< 1 (length lines)))
+      (is (equal words (loop for line in lines
+                             append (uiop:split-string (of-element line :text)))))
+      (is (apply #'< (mapcar (lambda (line) (of-element line :y)) lines)))
+      (is-true (has-words-p (display:svg-picture robot :title "<&\"") ">&lt;&amp;"))))
+  (with-own-definitions
+    (eval '(world:defmap cell-of-one (1 1)))
+    (eval '(robot:defrobot hermit (cell-of-one (0.5 0.5) 0)))
+    (run:call-with-simulation
+     (lambda ()
+       (is (> 500 (svg-view-width (display:svg-picture
+                                   (first (run:simulation-robots))
+                                   :title (make-string 200 :initial-element #\x))))))
+     '(hermit))))
+
+(test margins.legend-has-an-entry-for-places-that-look-the-same
+  "Without colours the manual has one mark for concave corners and beaks."
+  (with-own-definitions
+    (eval '(world:defmap beaked (12 9)
+            (rect (0 0) (11 8) bricks 1) (wall (6 1) (6 4) bricks 1)))
+    (eval '(robot:defrobot pecker (beaked (2.5 2.5) 0)))
+    (run:call-with-simulation
+     (lambda ()
+       (flet ((has-p (word &rest options)
+                (member word (apply #'words-in-picture (first (run:simulation-robots)) options)
+                        :test #'string=)))
+         (is-true (has-p "concave"))
+         (is-true (has-p "beak"))
+         (is-true (has-p "concave, beak" :in-color nil))
+         (is (null (has-p "beak" :in-color nil)))))
+     '(pecker))))
+
 (test names.keep-apart
   "Two names on one line are not read as one, and none lies on the mark of a place."
   (in-studio (robot)
@@ -167,11 +208,11 @@
      (lambda ()
        (let* ((canvas:graphics-scale* 4)
               (snapshot (display:snapshot-of (robot:find-robot 'dweller)))
-              (bar (display::scale-bar-width (display:snapshot-map snapshot)))
+              (bar (display::scale-bar-width 1))
               (entries (display::legend-entries snapshot '())))
          (is (< 4 bar))
          (loop for (layers edge) in `(((:scale-bar :legend) ,bar) ((:legend) 4))
-               for arrangement = (display::arrange snapshot layers entries 0)
+               for arrangement = (display::arrange snapshot layers entries)
                do (is (< edge (display::arrangement-legend-left arrangement) (+ edge 20)))
                   (is (<= (+ edge (display::columns-width
                                    (display::arrangement-columns arrangement)))

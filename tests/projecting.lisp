@@ -264,3 +264,34 @@
       (is (typep (failure (lambda (run seed) (declare (ignore run seed)) 1)) 'misuse))
       (is (typep (failure (lambda (run seed) (declare (ignore run seed)) (robot-x runner)))
                  'unbound-variable)))))
+
+;;; To be looked at.
+
+(test projection.is-a-picture
+  (on-court (:seed 1)
+    (let ((path (merge-pathnames "projection.svg" (uiop:temporary-directory)))
+          (projection (project '(run-on .4 40) :trials 5)))
+      (unwind-protect
+           (let ((text (uiop:read-file-string (save-projection-picture projection path))))
+             (is (search "5 trials" text))
+             (is (search "(run-on 0.4 40)" text)))
+        (uiop:delete-file-if-exists path)))))
+
+(test projection.is-told-whole-above-its-picture
+  "However long; and the picture takes what SAVE-PICTURE takes."
+  (on-court (:seed 1)
+    (let* ((path (merge-pathnames "projection.svg" (uiop:temporary-directory)))
+           (projection (project (list 'run-on 1/8 (loop for i below 40 collect i)) :trials 2))
+           (words (format nil "~{~D~^ ~}" (loop for i below 40 collect i))))
+      (is (search words (projection-text projection)))
+      (is (not (search words (prin1-to-string projection))))
+      (unwind-protect
+           (flet ((text (&rest options)
+                    (uiop:read-file-string
+                     (apply #'save-projection-picture projection path options))))
+             (is (search "36 37 38 39" (text)))
+             (let ((text (text :title "Mine" :in-color nil :scale 6 :layers '(:title))))
+               (is (search ">Mine<" text))
+               (is (not (search "trials" text))))
+             (signals wrong-argument (text :layers '(:frob))))
+        (uiop:delete-file-if-exists path)))))

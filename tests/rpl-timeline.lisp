@@ -145,6 +145,26 @@
     (is (string= "robot-turn -0.05 nil" (name "(rpl-robot-turn -0.058755822d0 nil)")))
     (is (string= "camera-track 1 #<Designator 0>" (name "(rpl-camera-track 1 #<Designator 0>)")))))
 
+(test timeline.shows-that-names-of-commands-are-cut-and-has-the-whole-ones-in-titles
+  (let* ((whole (format nil "(rpl-camera-get-all-object-designators~{ word-~D~})"
+                        (loop for i below 20 collect i)))
+         (span (ars-magna.rpl.seeing::make-span :command 0 whole 90))
+         (scale (ars-magna.rpl-pictures::make-scale 0 100 0 100))
+         (drawn (format nil "~{~A~}"
+                        (drawing (canvas)
+                          (ars-magna.rpl-pictures::draw-command canvas span nil 0 0 scale)))))
+    (is-true (has-words-p drawn "<title>" whole "ticks 0 to 90"))
+    (is (equal '("camera-get-a...")
+               (mapcar (lambda (text) (of-element text :text)) (drawn-with :text drawn))))))
+
+(test timeline.has-whole-expressions-in-titles
+  (let ((runner (seen-until 9 :plan (rpl:make-plan
+                                     '(rpl:par
+                                       (rpl:wait-time (+ 1 1 1 (* 1 1 1 1 1) (- 1 1 1 1 1 1 1)
+                                                       (* 1 1 1 1 1 1 1 1 1) 7777))
+                                       (rpl:wait-time 2))))))
+    (is-true (has-words-p (timeline-text runner) "(* 1 1 1 1 1 1 1 1 1) 7777)), ticks"))))
+
 (test timeline.writes-the-last-commands-before-them-where-there-is-no-room-behind
   (flet ((place (x from)
            (multiple-value-list (ars-magna.rpl-pictures::place-for-name 50 x 10 from 140))))

@@ -333,18 +333,6 @@
                                     "choosing")))))
     (is (equal '(40 40 40 40 40 40 40 40 40) counts))))
 
-;;; To be looked at.
-
-(test projection.is-a-picture
-  (on-court (:seed 1)
-    (let ((path (merge-pathnames "projection.svg" (uiop:temporary-directory)))
-          (projection (project '(run-on .4 40) :trials 5)))
-      (unwind-protect
-           (let ((text (uiop:read-file-string (save-projection-picture projection path))))
-             (is (search "5 trials" text))
-             (is (search "(run-on 0.4 40)" text)))
-        (uiop:delete-file-if-exists path)))))
-
 ;;; The shipped errand, on a few seeds. The experiment CHOOSING-BY-ROLLOUTS has many.
 
 (defmacro with-trolleys ((seed) &body body)

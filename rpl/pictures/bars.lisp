@@ -11,14 +11,15 @@
 (defconstant +top+ 74 "How much room there is above the rows, in pixels.")
 
 (defparameter *looks*
-  '((:parts #x9DB9DC :hatching "runs its parts") (:call #xDDD3EF :dots "commands in a call")
-    (:waiting #xE6ECF5 :plain "waits")
-    (:blocked #x8C8C94 :chequers "is blocked") (:cleaning #xF2BE6A :crosses "cleans up")
-    (:failure #xF08C78 :wedge "a failure happened")
-    (:command #x3C68FF :solid "command under way")
-    (:trouble #xE0301E :frame "command with an error"))
+  '((:parts #x5A81C2 :hatching "runs its parts") (:call #xA6BDF7 :dots "commands in a call")
+    (:waiting #xEBD6FC :plain "waits")
+    (:blocked #x564533 :chequers "is blocked") (:cleaning #xDA8C5A :crosses "cleans up")
+    (:failure #x15091B :wedge "a failure happened")
+    (:command #x19168F :solid "command under way")
+    (:trouble #xC41C1A :frame "command with an error"))
   "Lists (kind color texture text): what the parts of a bar look like, without colours by texture,
-:SOLID, :FRAME or :WEDGE, and what the legend says.")
+:SOLID, :FRAME or :WEDGE, and what the legend says. The colours are told apart by all eyes and in
+grey: tests/palette.lisp measures it.")
 
 (defparameter *end-looks*
   '((:succeeded #x1E9632 "succeeded") (:failed #xE0301E "failed")
@@ -159,10 +160,10 @@
 
 (defun command-name (span)
   "Return the command of SPAN as it is written in a lane: without parentheses and prefix, numbers
-cut to two decimals."
+cut to two decimals; of a long one its beginning."
   (let* ((text (string-trim "()" (span-text span)))
          (own (if (eql 0 (search "rpl-" text)) (subseq text 4) text)))
-    (format nil "~{~A~^ ~}" (mapcar #'plain-number (uiop:split-string own)))))
+    (cut (format nil "~{~A~^ ~}" (mapcar #'plain-number (uiop:split-string own))) 56)))
 
 (defun ink-in-lane (span)
   "Return the colour of text on SPAN, a command."
@@ -194,7 +195,7 @@ and TO; or its beginning on it. Return where that ends."
       (multiple-value-bind (at on-it-p) (place-for-name length x width from to)
         (when (and at (not on-it-p)) (draw-plate canvas at y length))
         (cond (at (words (if on-it-p (ink-in-lane span) black*) at name))
-              ((<= 6 fitting) (words (ink-in-lane span) (+ x 2) (subseq name 0 fitting))))
+              ((<= 7 fitting) (words (ink-in-lane span) (+ x 2) (cut name fitting))))
         (max (+ x width) (if at (+ at length) 0))))))
 
 (defun draw-command (canvas span next from y scale)
@@ -236,7 +237,7 @@ goes on."
             (draw-segments canvas draw-gcontext* (list (- x 4) (+ y 3) (+ x 4) (+ y 11)))))))))
 
 (defmethod subject-title ((bar bar))
-  (format nil "~A, ticks ~A to ~A~@[, ~(~A~)~]~@[: ~A~]" (bar-label bar) (bar-start bar)
+  (format nil "~A, ticks ~A to ~A~@[, ~(~A~)~]~@[: ~A~]" (whole-bar-label bar) (bar-start bar)
           (bar-end bar) (bar-outcome bar)
           (and (bar-failure bar) (cut (one-line (own-text (bar-failure bar))) 200))))
 

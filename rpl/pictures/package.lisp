@@ -6,7 +6,7 @@ canvas.")
   (:use :cl :ars-magna.base :ars-magna.canvas)
   (:import-from :ars-magna.rpl
                 #:bar #:bar-call-p #:bar-commands #:bar-depth #:bar-end #:bar-failure #:bar-form
-                #:bar-label #:bar-name
+                #:bar-label #:bar-name #:whole-bar-label
                 #:bar-outcome #:bar-parts #:bar-serial #:bar-spans #:bar-start #:bars
                 #:span-end #:span-error #:span-kind #:span-start #:span-text
                 #:plan-trace #:plan-runner-tick #:runner-to-see

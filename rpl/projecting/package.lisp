@@ -18,15 +18,14 @@ that a robot believes in, and choosing by that.")
                 #:awaited-text #:count-steps #:check-arguments #:failure-class #:failure-of
                 #:failure-text
                 #:find-procedure
-                #:fluent-value #:form-text #:frame #:frame-up #:lisp-failure
+                #:fluent-value #:whole-form-text #:frame #:frame-up #:lisp-failure
                 #:lisp-failure-condition #:node #:park
                 #:plan-failure #:counted-steps #:procedure #:procedure-name #:procedure-p
                 #:runner-client #:runner-dice #:stop-trace #:task #:task-label #:task-p
                 #:task-result #:task-runner #:task-top #:value #:escape-p #:entity
                 #:*realm* #:fork-realm)
-  (:import-from :ars-magna.trails #:note-places #:ways-along #:ways-chart #:part-of-map)
-  (:import-from :ars-magna.display #:take-snapshot #:picture-kind #:snapshot-map)
-  (:import-from :ars-magna.plots #:save-chart)
+  (:import-from :ars-magna.trails #:note-places #:ways-along #:save-bundle)
+  (:import-from :ars-magna.display #:take-snapshot #:picture-kind)
   ;; rollout
   (:export #:rollout-p #:rollout-seed #:rollout-state #:rollout-succeeded-p #:rollout-ticks
            #:rollout-cost #:rollout-failure #:rollout-value)

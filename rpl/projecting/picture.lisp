@@ -15,28 +15,26 @@
 
 (defun subtitle-of (projection)
   (multiple-value-bind (low high) (projection-interval projection)
-    (format nil "~D of ~D rollouts succeeded within ~D ticks: ~,2F to ~,2F. The ways of all, with a
-~
-                 marker at the end of each."
+    (format nil "~D of ~D rollouts succeeded within ~D ticks: ~,2F to ~,2F. The ways of all, with ~
+                 a marker at the end of each."
             (projection-successes projection) (length (projection-rollouts projection))
             (projection-horizon projection) low high)))
 
 (addition save-projection-picture)
-(defun save-projection-picture (projection file &key part)
+(defun save-projection-picture (projection file
+                                &rest options &key part title layers in-color scale)
   "Save in FILE, replacing it, a map with the ways that robots went in the rollouts of PROJECTION:
 in colours that say what became of each, with a marker where it ended. PART (left top right bottom),
-in cells, is what is wanted of the map, by default all. FILE is SVG or, where the program
-rsvg-convert is installed, PNG, as its name ends. Return its truename. Signals WRONG-ARGUMENT, and
-MISUSE without that program."
+in cells, is what is wanted of the map, by default all. TITLE stands above instead of what was
+projected. FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename.
+Signals WRONG-ARGUMENT, and MISUSE without the program that PNG needs."
+  (declare (ignore part title layers in-color scale))
   (check-argument save-projection-picture projection
                   (and (projection-p projection) (projection-rollouts projection) t)
                   "a projection with rollouts, as PROJECT returns")
   (picture-kind 'save-projection-picture file)
-  (let ((snapshot (start-of projection)))
-    (save-chart file
-                (ways-chart snapshot
-                            (mapcan (lambda (rollout) (copy-list (rollout-ways rollout)))
-                                    (projection-rollouts projection))
-                            (part-of-map 'save-projection-picture part (snapshot-map snapshot))
-                            (projection-text projection)
-                            (subtitle-of projection)))))
+  (apply #'save-bundle 'save-projection-picture file (start-of projection)
+         (lambda ()
+           (mapcan (lambda (rollout) (copy-list (rollout-ways rollout)))
+                   (projection-rollouts projection)))
+         (projection-text projection) (subtitle-of projection) options))

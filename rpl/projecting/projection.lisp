@@ -84,7 +84,7 @@ if none did."
     (multiple-value-bind (low high) (projection-interval projection)
       (format stream "~A: ~D of ~D, ~,2F to ~,2F~@[, ~,1F ticks~]~@[; not: ~A~]~
                       ~@[; first error: ~A~]"
-              (projection-text projection)
+              (cut (projection-text projection) 60)
               (projection-successes projection) (trials-of projection) low high
               (projection-mean-ticks projection) (reasons-text projection)
               (first-error-text projection)))))

@@ -28,15 +28,16 @@ rollout how that has ended which the asking task does."
           (question-branches question)
           (if (question-branches question)
               (length (question-branches question))
-              (text-of question))))
+              (cut (text-of question) 60))))
 
 (defun text-of (question &optional (branch 0))
-  "Return a text for what QUESTION is about, or for its BRANCH."
+  "Return a text, not shortened, for what QUESTION is about, or for its BRANCH."
   (cond ((question-branches question) (nth branch (question-branches question)))
-        ((question-subject question) (task-label (question-subject question)))
+        ((question-subject question) (task-label (question-subject question) #'whole-form-text))
         (t (let ((plan (question-plan question)))
-             (form-text (cons (or (if (procedure-p plan) (procedure-name plan) plan) 'interp-lambda)
-                              (question-arguments question)))))))
+             (whole-form-text
+              (cons (or (if (procedure-p plan) (procedure-name plan) plan) 'interp-lambda)
+                    (question-arguments question)))))))
 
 (defun note-ended (question state result)
   "Note that what the task of QUESTION does has ended in STATE with RESULT, for a rollout to see."

@@ -8,7 +8,7 @@ if there is only one."
   (let ((options (checked-options 'try-best options)))
     (and (rest forms)
          (%make-question :operator 'try-best :task task :interface (asking-interface task)
-                         :branches (mapcar #'form-text forms) :options options))))
+                         :branches (mapcar #'whole-form-text forms) :options options))))
 
 (define-construct try-best ((&key trials horizon until cost seed tell print) &body branches)
   "Run in a plan that one of BRANCHES which does best in rollouts, and return its values: each

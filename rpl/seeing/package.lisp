@@ -17,8 +17,8 @@ the debugger's side of plans. Changes nothing.")
   (:export #:why #:reasons)
   ;; spans
   (:export #:bar #:bar-call-p #:bar-commands #:bar-depth #:bar-end #:bar-failure #:bar-form
-           #:bar-label #:bar-name #:bar-outcome #:bar-parent #:bar-parts #:bar-serial
-           #:bar-spans #:bar-start #:bars #:span #:span-error
+           #:bar-label #:whole-bar-label #:bar-name #:bar-outcome #:bar-parent #:bar-parts
+           #:bar-serial #:bar-spans #:bar-start #:bars #:span #:span-error
            #:span-end #:span-kind #:span-start #:span-text)
   ;; breaking
   (:export #:*break-on-plan-failures* #:plan-break #:plan-break-p #:plan-break-frame

@@ -53,11 +53,20 @@ of a procedure within the task, as far as commands were issued in it."
   bar-call-p "True if the bar is of a call of a procedure, within a task."
   bar-parts "Return the bars of the tasks that the task consisted of, oldest first.")
 
+(defun label-with (text bar)
+  "Return what says which task BAR is of, or which call within a task; an expression is told as the
+function TEXT has it."
+  (cond ((bar-call-p bar) (funcall text (bar-form bar)))
+        ((bar-name bar) (format nil "~D ~(~A~)" (bar-serial bar) (bar-name bar)))
+        (t (format nil "~D ~A" (bar-serial bar) (funcall text (bar-form bar))))))
+
 (defun bar-label (bar)
   "Return a short text that says which task BAR is of, or which call within a task."
-  (cond ((bar-call-p bar) (form-text (bar-form bar) 60))
-        ((bar-name bar) (format nil "~D ~(~A~)" (bar-serial bar) (bar-name bar)))
-        (t (format nil "~D ~A" (bar-serial bar) (form-text (bar-form bar) 60)))))
+  (label-with #'form-text bar))
+
+(defun whole-bar-label (bar)
+  "Return a text that says which task BAR is of, or which call within a task, and is not cut."
+  (label-with #'whole-form-text bar))
 
 ;;; From entries to bars.
 
@@ -113,7 +122,9 @@ first."
                           stack)))
 
 (defun begin-command (bar entry commands)
-  (let ((span (make-span :command (trace-entry-tick entry) (trace-entry-detail entry))))
+  (let* ((issue (trace-entry-subject entry))
+         (span (make-span :command (trace-entry-tick entry)
+                          (whole-form-text (cons (issue-name issue) (issue-arguments issue))))))
     (setf (span-calls span) (calls-in (first (trace-entry-value entry)))
           (gethash (trace-entry-subject entry) commands) span)
     (push span (bar-commands bar))))

@@ -14,7 +14,7 @@ plans nor a simulator.")
            #:failure-tick #:lisp-failure #:lisp-failure-backtrace #:lisp-failure-condition
            #:make-failure #:plan-failure #:write-failure)
   ;; task
-  (:export #:current-form #:form-text #:forms-under-way
+  (:export #:current-form #:form-text #:whole-form-text #:forms-under-way
            #:frame-runs #:frame #:frame-counter #:frame-data #:frame-environment
            #:frame-node #:frame-state #:frame-up #:make-frame #:make-task #:node #:node-form
            #:task #:task-awaiting #:task-blocked #:task-children #:task-cleaning #:task-form

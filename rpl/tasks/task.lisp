@@ -205,11 +205,11 @@ first."
       (unqualified-text object)
       (prin1-to-string object)))
 
-(defun form-text (form &optional (width 60))
-  "Return FORM, or any other object, on one line of at most WIDTH characters, and symbols without
-their packages."
+(defun form-text (form &optional (width 60) (length 8) (level 4))
+  "Return FORM, or any other object, on one line of at most WIDTH characters, with at most LENGTH
+elements of each list in it, to the depth LEVEL, and symbols without their packages."
   (let ((*print-case* :downcase) (*print-pretty* nil) (*print-readably* nil)
-        (*print-length* 8) (*print-level* 4))
+        (*print-length* length) (*print-level* level))
     (cut (substitute #\Space #\Newline
                      (handler-case (written form)
                        ((or error storage-condition) () "what cannot be printed")))
@@ -223,10 +223,15 @@ their packages."
   (print-unreadable-object (frame stream :type t)
     (write-string (form-text (node-form (frame-node frame)) 40) stream)))
 
-(defun task-label (task)
-  "Return a short text that says which task TASK is."
+(defun whole-form-text (form)
+  "Return FORM on one line as it is, unless it is longer than a page."
+  (form-text form 3000 200 20))
+
+(defun task-label (task &optional (text (lambda (form) (form-text form 40))))
+  "Return a short text that says which task TASK is; of one without a name, what the function TEXT
+makes of its expression."
   (let ((name (task-name task)))
-    (cond ((null name) (form-text (node-form (task-node task)) 40))
+    (cond ((null name) (funcall text (node-form (task-node task))))
           ((and (symbolp name) (< (length (symbol-name name)) 100)) (string-downcase name))
           (t (string-downcase (safe-text name :escape nil))))))
 

@@ -160,7 +160,7 @@ these, and the entries of lines, the latest first."
 (defun film-scale (scale snapshot layers)
   "Return how many pixels a cell has in a film that begins as SNAPSHOT shows. The page magnifies the
 picture itself, as far as there is room: more than suits the map would only make its text small."
-  (min (suitable-scale scale snapshot layers) (fitting-scale (snapshot-map snapshot) layers)))
+  (min (suitable-scale scale snapshot layers) (fitting-scale snapshot layers)))
 
 (defun film-moments (journal seen until kinds own)
   (in-order (append (of-kinds kinds (append seen (remarked-moments journal until))) own)))
@@ -298,8 +298,7 @@ a part of one failed or was ended, or an error came up in users' code. Signals w
     (unless (and (finite-p rate) (<= 1/1000 rate 1000))
       (reject "rate" rate "a number of frames a second, from 0.001 to 1000"))
     (check-display 'save-animation display)
-    (check-layers 'save-animation layers)
-    (check-scale 'save-animation scale)))
+    (check-map-options 'save-animation :layers layers :scale scale)))
 
 (defun save-series (journal file &key every until display layers in-color scale)
   (let ((robot (first (getf (journal-header journal) :robots))) (files '()))

@@ -17,9 +17,9 @@
 (defstruct (arrangement (:copier nil))
   "Where the map begins, how much room there is to its right and below, and the legend: COLUMNS,
 lists of entries, BELOW-P or beside the map, there so far from the left of the map as LEGEND-LEFT
-says; and how wide and high the whole is."
+says; TITLE and SUBTITLE, lists of lines; and how wide and high the whole is."
   (left 0) (top 0) (right 0) (bottom 0) (columns '()) (below-p nil) (legend-left 0)
-  (width 0) (height 0))
+  (title '()) (subtitle '()) (width 0) (height 0))
 
 (defun room-for (layers)
   "Return how much room there is left of, above, right of and below the map for LAYERS without
@@ -40,46 +40,46 @@ legend."
         while (<= unit limit)
         append (remove-if (lambda (number) (< limit number)) (list unit (* 2 unit) (* 5 unit)))))
 
-(defun bar-metres (map)
-  "Return how many metres a scale bar is long."
-  (or (first (last (round-numbers (min (map-width map) (/ 140 graphics-scale*)))))
+(defun bar-metres (width)
+  "Return how many metres a scale bar below WIDTH metres is long."
+  (or (first (last (round-numbers (min width (/ 140 graphics-scale*)))))
       1))
 
 (defun metres-text (metres)
   "Return what stands beside a scale bar of METRES."
   (format nil "~D m" metres))
 
-(defun scale-bar-width (map)
-  "Return how wide the scale bar of MAP is with its text, in pixels."
-  (let ((metres (bar-metres map)))
+(defun scale-bar-width (width)
+  "Return how wide the scale bar below WIDTH metres is with its text, in pixels."
+  (let ((metres (bar-metres width)))
     (+ (to-pixels metres) 8 (words-width (metres-text metres)))))
 
-(defun right-edge (map layers)
-  "Return how far right MAP and the scale bar below it reach, in pixels."
-  (max (to-pixels (map-width map)) (if (member :scale-bar layers) (scale-bar-width map) 0)))
+(defun right-edge (width layers)
+  "Return how far right a map WIDTH metres wide and the scale bar below it reach, in pixels."
+  (max (to-pixels width) (if (member :scale-bar layers) (scale-bar-width width) 0)))
 
 ;;; Scales.
 
-(defun fitting-scale (map layers)
-  "Return how many pixels a cell of MAP has for a picture with LAYERS not to be too large."
+(defun fitting-scale (snapshot layers)
+  "Return how many pixels a cell has for a picture of SNAPSHOT with LAYERS not to be too large."
   (destructuring-bind (left top right bottom) (room-for layers)
-    (clamp (floor (min (/ (- +widest+ left right) (map-width map))
-                       (/ (- +highest+ top bottom) (map-height map))))
-           +least-scale+ +greatest-scale+)))
+    (multiple-value-bind (width height) (shown-size snapshot)
+      (clamp (floor (min (/ (- +widest+ left right) width) (/ (- +highest+ top bottom) height)))
+             +least-scale+ +greatest-scale+))))
 
 (defun suitable-scale (scale snapshot layers)
   "Return SCALE, or if it is NIL, GRAPHICS-SCALE* if the user has set that, or else the scale that
 suits the map of SNAPSHOT. Signals MISUSE if GRAPHICS-SCALE* is no scale."
   (or scale
       (users-scale)
-      (fitting-scale (snapshot-map snapshot) layers)))
+      (fitting-scale snapshot layers)))
 
 (defun magnification (scale snapshot layers)
   "Return how much a picture of SNAPSHOT with SCALE pixels to a cell is magnified as a whole, text
 and lines included, 1 at least: as far as SCALE is more than suits the map and than is needed to
 read all."
   (max 1 (/ (rational scale)
-            (max +readable-scale+ (fitting-scale (snapshot-map snapshot) layers)))))
+            (max +readable-scale+ (fitting-scale snapshot layers)))))
 
 (defun drawn-scale (scale snapshot layers)
   "Return how many pixels a cell has where a picture of SNAPSHOT with SCALE (see SUITABLE-SCALE) and
@@ -118,30 +118,68 @@ LAYERS is drawn, and how much that is then to be magnified as a whole."
 
 ;;; The whole. What has been drawn with the origin in the corner of the map is known by now.
 
-(defun arrangement-with (room edge map-height title-width columns below-p)
-  "Return an arrangement around a map MAP-HEIGHT pixels high that reaches EDGE pixels right, with a
-title TITLE-WIDTH pixels wide. ROOM is as ROOM-FOR has it."
+(defun arrangement-with (room edge map-height columns below-p)
+  "Return an arrangement around a map MAP-HEIGHT pixels high that reaches EDGE pixels right. ROOM is
+as ROOM-FOR has it."
   (destructuring-bind (left top right bottom) room
     (let ((below (if (and columns below-p) (+ 8 (columns-height columns)) 0))
           (beside (if (and columns (not below-p)) (columns-width columns) 0)))
       (make-arrangement
        :left left :top top :right right :bottom bottom :columns columns :below-p below-p
        :legend-left (+ edge 14)
-       :width (+ left right (max (+ edge beside) title-width
-                                 (if below-p (columns-width columns) 0)))
+       :width (+ left right (max (+ edge beside) (if below-p (columns-width columns) 0)))
        :height (+ top (max (+ map-height bottom below)
                            (if below-p 0 (+ 8 (columns-height columns)))))))))
 
 (defun area (arrangement)
   (* (arrangement-width arrangement) (arrangement-height arrangement)))
 
-(defun arrange (snapshot layers entries title-width)
-  "Return the arrangement for a picture of SNAPSHOT with LAYERS, a legend of ENTRIES and a title
-TITLE-WIDTH pixels wide that takes the least room."
-  (let* ((map (snapshot-map snapshot)) (room (room-for layers))
-         (width (to-pixels (map-width map))) (height (to-pixels (map-height map))))
+(defun arrange (snapshot layers entries)
+  "Return the arrangement for a picture of SNAPSHOT with LAYERS and a legend of ENTRIES that takes
+the least room."
+  (multiple-value-bind (width height) (shown-size snapshot)
     (flet ((with (columns below-p)
-             (arrangement-with room (right-edge map layers) height title-width columns below-p)))
-      (let ((beside (with (columns-beside entries height) nil))
-            (below (with (columns-below entries (max width 480)) t)))
+             (arrangement-with (room-for layers) (right-edge width layers) (to-pixels height)
+                               columns below-p)))
+      (let ((beside (with (columns-beside entries (to-pixels height)) nil))
+            (below (with (columns-below entries (max (to-pixels width) 480)) t)))
         (if (< (area below) (area beside)) below beside)))))
+
+;;; The title is as wide as the rest, and has as many lines as it needs for that.
+
+(define-constant +title-size+ 13 :documentation "How high the font of titles is, in pixels.")
+(define-constant +title-step+ 17 :documentation "How far lines of a title are apart, in pixels.")
+(define-constant +subtitle-size+ 11 :documentation "How high the font below titles is, in pixels.")
+(define-constant +subtitle-step+ 15 :documentation "How far lines below titles are apart.")
+(define-constant +least-title+ 360
+  :documentation "How wide a line of a title may be at least, in pixels.")
+
+(defun lines-within (text width per-character)
+  "Return TEXT, or NIL, as lines of at most WIDTH pixels, of which a character has PER-CHARACTER."
+  (and text
+       (loop for line in (uiop:split-string text :separator '(#\Newline))
+             append (wrapped-text line (max 1 (floor width per-character))))))
+
+(defun lines-width (lines per-character)
+  (ceiling (* per-character (reduce #'max lines :key #'length :initial-value 0))))
+
+(defun with-title (arrangement title subtitle per-pixel)
+  "Return ARRANGEMENT with TITLE, and SUBTITLE, a string or NIL, below that; a character is
+PER-PIXEL pixels wide for each pixel that its font is high."
+  (let* ((room (max +least-title+ (arrangement-width arrangement)))
+         (room (- room (arrangement-left arrangement) (arrangement-right arrangement)))
+         (title-character (* per-pixel +title-size+))
+         (subtitle-character (* per-pixel +subtitle-size+))
+         (titles (lines-within title room title-character))
+         (subtitles (lines-within subtitle room subtitle-character))
+         (more (+ (* +title-step+ (1- (length titles))) (* +subtitle-step+ (length subtitles)))))
+    (setf (arrangement-title arrangement) titles
+          (arrangement-subtitle arrangement) subtitles
+          (arrangement-width arrangement)
+          (max (arrangement-width arrangement)
+               (+ (arrangement-left arrangement) (arrangement-right arrangement)
+                  (max (lines-width titles title-character)
+                       (lines-width subtitles subtitle-character)))))
+    (incf (arrangement-top arrangement) more)
+    (incf (arrangement-height arrangement) more)
+    arrangement))

@@ -46,22 +46,22 @@ height."
         (draw-rectangle canvas draw-gcontext* 0 0 +detail-width+ (+ top height))))
     (+ top height 1)))
 
-(defun draw-all (canvas snapshot robot layers)
+(defun draw-all (canvas snapshot robot layers title)
   "Draw the six displays side by side; return the width and height of that."
-  (multiple-value-bind (width height) (draw-framed-world canvas snapshot layers)
+  (multiple-value-bind (width height) (draw-framed-world canvas snapshot layers :title title)
     (let ((left (+ width +margin+)) (bottom 0))
       (dolist (display (rest +displays+))
         (incf bottom (+ (draw-titled canvas display robot left bottom) +margin+)))
       (values (+ left +detail-width+ 1) (max height bottom)))))
 
 (defun draw-display (canvas display snapshot robot &key (layers *picture-layers*)
-                                                     (width +detail-width+))
+                                                     (width +detail-width+) title)
   "Draw DISPLAY, one of +DISPLAYS+ or :ALL, on CANVAS from SNAPSHOT and ROBOT, the image of a robot
 in it. Return the width and height drawn, in pixels. WIDTH is that of the details, LAYERS what
-the world shows. To be called within WITH-CANVAS."
+the world shows, TITLE what stands above it: see DRAW-FRAMED. To be called within WITH-CANVAS."
   (case display
-    (:all (draw-all canvas snapshot robot layers))
-    (:world (draw-framed-world canvas snapshot layers))
+    (:all (draw-all canvas snapshot robot layers title))
+    (:world (draw-framed-world canvas snapshot layers :title title))
     (t (values width (draw-detail canvas display robot width)))))
 
 (defun check-display (operator display)

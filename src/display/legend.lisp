@@ -35,18 +35,31 @@
 
 ;;; Walls: the substances, with the range of their parameters.
 
-(defun parameter-ranges (map)
-  "Return lists (number least greatest) of the substances of the walls of MAP, by their numbers."
-  (let ((ranges '()))
-    (loop for flag across (map-flags map)
-          for substance across (map-substances map)
-          for parameter across (map-parameters map)
-          when (logtest +wall+ flag)
-            do (let ((range (assoc substance ranges)))
-                 (if range
-                     (setf (second range) (min parameter (second range))
-                           (third range) (max parameter (third range)))
-                     (push (list substance parameter parameter) ranges))))
+(defun call-with-cells-shown (function snapshot)
+  "Call FUNCTION with the index of each cell that is to be shown of the map of SNAPSHOT."
+  (destructuring-bind (left top right bottom) (shown-part snapshot)
+    (loop with width = (map-width (snapshot-map snapshot))
+          for row from top below bottom
+          do (loop for index from (+ left (* row width)) below (+ right (* row width))
+                   do (funcall function index)))))
+
+(defmacro do-cells-shown ((index snapshot) &body body)
+  "Run BODY with INDEX bound to that of each cell that is to be shown of the map of SNAPSHOT."
+  `(call-with-cells-shown (lambda (,index) ,@body) ,snapshot))
+
+(defun parameter-ranges (snapshot)
+  "Return lists (number least greatest) of the substances of the walls that SNAPSHOT shows, by their
+numbers."
+  (let ((map (snapshot-map snapshot)) (ranges '()))
+    (do-cells-shown (index snapshot)
+      (when (logtest +wall+ (aref (map-flags map) index))
+        (let* ((substance (aref (map-substances map) index))
+               (parameter (aref (map-parameters map) index))
+               (range (assoc substance ranges)))
+          (if range
+              (setf (second range) (min parameter (second range))
+                    (third range) (max parameter (third range)))
+              (push (list substance parameter parameter) ranges)))))
     (sort ranges #'< :key #'first)))
 
 (defun range-text (least greatest)
@@ -60,8 +73,9 @@
     (loop for look in (list left right) for start in '(0 9)
           do (draw-wall-look canvas look (list start 0 9 12) +sample-tile+))))
 
-(defun wall-entries (map)
-  (let ((materials (materials-of map)) (ranges (parameter-ranges map)))
+(defun wall-entries (snapshot)
+  (let* ((map (snapshot-map snapshot))
+         (materials (materials-of map)) (ranges (parameter-ranges snapshot)))
     (cond ((null ranges) '())
           ((not in-color*)
            (let ((black (make-wall-look black*)))
@@ -77,19 +91,48 @@
 
 ;;; Places.
 
-(defun place-types-of (map)
-  "Return the place types that are marked on MAP."
-  (let ((numbers (remove-duplicates (map-places map))))
+(defun place-types-of (snapshot)
+  "Return the place types that are marked on the map of SNAPSHOT."
+  (let ((map (snapshot-map snapshot)) (numbers '()))
+    (do-cells-shown (index snapshot)
+      (pushnew (aref (map-places map) index) numbers))
     (loop for type across (map-place-types map) for number from 0
-          when (and (find number numbers) (plusp number) (drawn-place-type-p type))
+          when (and (member number numbers) (plusp number) (drawn-place-type-p type))
             collect type)))
 
-(defun place-entries (map)
-  (loop for type in (place-types-of map)
-        collect (let ((type type))
-                  (sample-of-name (canvas x y) ((drawn-name (place-type-name type)))
-                    (let ((graphics-scale* 12))
-                      (draw-place-at canvas type (- x 6) (- y 6)))))))
+(defun draw-place-sample (canvas type x y)
+  (let ((graphics-scale* 12))
+    (draw-place-at canvas type (- x 6) (- y 6))))
+
+(defun mark-of (type)
+  "Return what the mark of the place type TYPE looks like here, as a string for comparison."
+  (let ((color-p in-color*))
+    (with-output-to-string (out)
+      (with-svg (canvas out :color-p color-p)
+        (with-canvas (canvas)
+          (draw-place-sample canvas type 8 8)
+          (values 16 16))))))
+
+;; Without colours, concave places and beaks have the same mark, as the manual wants it.
+(defun place-types-by-mark (snapshot)
+  "Return lists of the place types that are marked on the map of SNAPSHOT, each of those that look
+the same."
+  (let ((groups '()))
+    (dolist (type (place-types-of snapshot) (mapcar #'reverse (mapcar #'rest (reverse groups))))
+      (let* ((mark (mark-of type))
+             (group (assoc mark groups :test #'string=)))
+        (if group
+            (push type (rest group))
+            (push (list mark type) groups))))))
+
+(defun place-entries (snapshot)
+  (loop for types in (place-types-by-mark snapshot)
+        collect (let ((type (first types)))
+                  (sample-of-name (canvas x y)
+                      ((format nil "~{~A~^, ~}"
+                               (loop for each in types
+                                     collect (drawn-name (place-type-name each)))))
+                    (draw-place-sample canvas type x y)))))
 
 ;;; Things, by what they are called and look like.
 
@@ -191,9 +234,8 @@ than the line."
                        &optional (lines (append (line-entries snapshot layers)
                                                 (ray-entries snapshot layers))))
   "Return the entries of the legend of a picture of SNAPSHOT with LAYERS; LINES are those of lines."
-  (let* ((map (snapshot-map snapshot))
-         (entries (append (robot-entries snapshot) (wall-entries map)
-                          (and (member :places layers) (place-entries map))
+  (let* ((entries (append (robot-entries snapshot) (wall-entries snapshot)
+                          (and (member :places layers) (place-entries snapshot))
                           lines
                           (shape-entries snapshot) (thing-entries snapshot)))
          (more (- (length entries) +entry-limit+)))

@@ -4,38 +4,43 @@
 
 ;;; The parts. The origin is that of the map.
 
-(define-constant +title-size+ 13 :documentation "How high the font of titles is, in pixels.")
-
 (defun map-title (snapshot)
   "Return what stands above a picture of SNAPSHOT unless somebody says what."
   (format nil "~{~A~^, ~} in ~A, tick ~D"
           (mapcar #'robot-title (snapshot-robots snapshot))
           (drawn-name (map-name (snapshot-map snapshot))) (snapshot-tick snapshot)))
 
-(defun title-width (canvas title layers)
-  "Return how wide TITLE is, in pixels, if LAYERS show it: 0 if not."
-  (if (member :title layers)
-      (ceiling (* (character-width canvas +title-size+) (length title)))
-      0))
-
-(defun draw-map-title (canvas title y)
-  (draw-words canvas draw-gcontext* 0 y title :size +title-size+ :bold-p t))
-
-(defun draw-coordinates (canvas map)
-  "Write metres above and to the left of MAP."
-  (let ((step (steps-apart 40)))
+(defun draw-title (canvas arrangement)
+  (let ((y (- 16 (arrangement-top arrangement))))
+    (dolist (line (arrangement-title arrangement))
+      (draw-words canvas draw-gcontext* 0 y line :size +title-size+ :bold-p t)
+      (incf y +title-step+))
     (with-color +frame-ink+
-      (loop for metres from 0 to (map-width map) by step
-            for x = (to-pixels metres) for text = (princ-to-string metres)
-            do (draw-segments canvas draw-gcontext* (list x -6 x -2))
-               (draw-text canvas (- x (/ (words-width text) 2)) -8 text))
-      (loop for metres from 0 to (map-height map) by step
-            for y = (to-pixels metres) for text = (princ-to-string metres)
-            do (draw-segments canvas draw-gcontext* (list -6 y -2 y))
-               (draw-text canvas (- -8 (words-width text)) (+ y 4) text)))))
+      (dolist (line (arrangement-subtitle arrangement))
+        (draw-words canvas draw-gcontext* 0 (- y 2) line :size +subtitle-size+)
+        (incf y +subtitle-step+)))))
 
-(defun draw-scale-bar (canvas map y)
-  (let* ((metres (bar-metres map)) (x (to-pixels metres)))
+(defun round-metres (start end)
+  "Return numbers of metres from START to END to be written at an edge."
+  (let ((step (steps-apart 40)))
+    (loop for metres from (* step (ceiling start step)) to end by step collect metres)))
+
+(defun draw-coordinates (canvas snapshot)
+  "Write metres above and to the left of what is to be shown of the map of SNAPSHOT."
+  (destructuring-bind (left top right bottom) (shown-part snapshot)
+    (with-color +frame-ink+
+      (dolist (metres (round-metres left right))
+        (let ((x (to-pixels (- metres left))) (text (princ-to-string metres)))
+          (draw-segments canvas draw-gcontext* (list x -6 x -2))
+          (draw-text canvas (- x (/ (words-width text) 2)) -8 text)))
+      (dolist (metres (round-metres top bottom))
+        (let ((y (to-pixels (- metres top))) (text (princ-to-string metres)))
+          (draw-segments canvas draw-gcontext* (list -6 y -2 y))
+          (draw-text canvas (- -8 (words-width text)) (+ y 4) text))))))
+
+(defun draw-scale-bar (canvas width y)
+  "Draw a scale bar around Y that suits WIDTH metres."
+  (let* ((metres (bar-metres width)) (x (to-pixels metres)))
     (with-lines (:width 2)
       (draw-segments canvas draw-gcontext* (list 0 y x y 0 (- y 4) 0 (+ y 4) x (- y 4) x (+ y 4))))
     (draw-text canvas (+ x 8) (+ y 4) (metres-text metres))))
@@ -56,45 +61,59 @@
           do (draw-entry canvas entry x (+ y (* row +line-height+))))
     (incf x (column-width column))))
 
-(defun draw-margins (canvas snapshot layers arrangement title)
-  (let* ((map (snapshot-map snapshot))
-         (width (to-pixels (map-width map))) (height (to-pixels (map-height map))))
-    (flet ((shown-p (layer) (member layer layers)))
-      (when (intersection layers (layers-of-kind :margin))
-        (with-color +frame-ink+
-          (draw-rectangle canvas draw-gcontext* -1 -1 (1+ width) (1+ height))))
-      (when (shown-p :title)
-        (draw-map-title canvas title (- 16 (arrangement-top arrangement))))
-      (when (shown-p :coordinates) (draw-coordinates canvas map))
-      (when (shown-p :scale-bar) (draw-scale-bar canvas map (+ height 14)))
-      (when (arrangement-columns arrangement)
-        (if (arrangement-below-p arrangement)
-            (draw-legend canvas arrangement 0 (+ height (if (shown-p :scale-bar) 32 8)))
-            (draw-legend canvas arrangement (arrangement-legend-left arrangement) 0))))))
+(defun draw-margins (canvas snapshot layers arrangement)
+  (multiple-value-bind (metres-wide metres-high) (shown-size snapshot)
+    (let ((width (to-pixels metres-wide)) (height (to-pixels metres-high)))
+      (flet ((shown-p (layer) (member layer layers)))
+        (when (intersection layers (layers-of-kind :margin))
+          (with-color +frame-ink+
+            (draw-rectangle canvas draw-gcontext* -1 -1 (1+ width) (1+ height))))
+        (when (shown-p :title) (draw-title canvas arrangement))
+        (when (shown-p :coordinates) (draw-coordinates canvas snapshot))
+        (when (shown-p :scale-bar) (draw-scale-bar canvas metres-wide (+ height 14)))
+        (when (arrangement-columns arrangement)
+          (if (arrangement-below-p arrangement)
+              (draw-legend canvas arrangement 0 (+ height (if (shown-p :scale-bar) 32 8)))
+              (draw-legend canvas arrangement (arrangement-legend-left arrangement) 0)))))))
 
-(defun arrangement-for (canvas snapshot layers title more)
-  "Return the arrangement for a picture of SNAPSHOT with LAYERS on CANVAS, with TITLE, and with MORE
-entries of the legend."
-  (arrange snapshot layers
-           (and (member :legend layers) (append more (legend-entries snapshot layers)))
-           (title-width canvas title layers)))
+(defun arrangement-for (canvas snapshot layers title subtitle more)
+  "Return the arrangement for a picture of SNAPSHOT with LAYERS on CANVAS, with TITLE and SUBTITLE,
+and with MORE entries of the legend."
+  (let ((arrangement (arrange snapshot layers
+                              (and (member :legend layers)
+                                   (append more (legend-entries snapshot layers))))))
+    (if (member :title layers)
+        (with-title arrangement (or title (map-title snapshot)) subtitle
+          (character-width canvas 1))
+        arrangement)))
 
-(defun draw-framed (canvas snapshot layers draw &key title more)
+(defun call-on-part (function canvas snapshot)
+  "Call FUNCTION with the origin in the corner of the map of SNAPSHOT; what it draws on CANVAS
+beside what is to be shown of that stays invisible."
+  (if (snapshot-part snapshot)
+      (destructuring-bind (left top right bottom) (pixels-of (snapshot-part snapshot))
+        (with-clipping (canvas 0 0 (- right left) (- bottom top))
+          (with-origin (canvas (- left) (- top)) (funcall function))))
+      (funcall function)))
+
+(defun draw-framed (canvas snapshot layers draw &key title subtitle more)
   "Draw around the map of SNAPSHOT what LAYERS lists, and call DRAW, which draws the map and what is
 on it; return width and height of all that, and how far from the left the map begins. TITLE stands
-above, or if it is NIL, robots, map and tick; MORE are entries of the legend that come first."
-  (let* ((title (or title (map-title snapshot)))
-         (arrangement (arrangement-for canvas snapshot layers title more))
+above, or if it is NIL, robots, map and tick; then SUBTITLE, if any. MORE are entries of the legend
+that come first."
+  (let* ((arrangement (arrangement-for canvas snapshot layers title subtitle more))
          (left (arrangement-left arrangement)))
     (with-origin (canvas left (arrangement-top arrangement))
-      (draw-margins canvas snapshot layers arrangement title)
-      (funcall draw))
+      (draw-margins canvas snapshot layers arrangement)
+      (call-on-part draw canvas snapshot))
     (values (arrangement-width arrangement) (arrangement-height arrangement) left)))
 
-(defun draw-framed-world (canvas snapshot layers)
-  "Draw the world of SNAPSHOT and around it what LAYERS lists; return width and height of that."
+(defun draw-framed-world (canvas snapshot layers &key title)
+  "Draw the world of SNAPSHOT and around it what LAYERS lists, with TITLE as DRAW-FRAMED has it;
+return width and height of that."
   (draw-framed canvas snapshot layers
-               (lambda () (draw-world canvas snapshot :layers layers))))
+               (lambda () (draw-world canvas snapshot :layers layers))
+               :title title))
 
 (defun call-with-map-svg (function stream snapshot &key layers in-color scale)
   "Call FUNCTION with a canvas, then write what it has drawn, a picture of SNAPSHOT with LAYERS, to

@@ -30,10 +30,11 @@ of a track, also boxes beside such a ring. Elsewhere a name so far away would be
           (and (some (lambda (mark) (overlap-p mark (box-around x y half))) marks)
                (name-boxes x y (max half (+ 2 (track-radius))) width))))
 
-(defun on-map-p (map box)
-  (destructuring-bind (left top right bottom) box
-    (and (<= 0 left) (<= 0 top)
-         (<= right (to-pixels (map-width map))) (<= bottom (to-pixels (map-height map))))))
+(defun within-shown-p (snapshot box)
+  "True if BOX lies within what is to be shown of the map of SNAPSHOT."
+  (destructuring-bind ((left top right bottom) (first-x first-y last-x last-y))
+      (list box (pixels-of (shown-part snapshot)))
+    (and (<= first-x left) (<= first-y top) (<= right last-x) (<= bottom last-y))))
 
 (defun cells-below (map box function)
   "True if FUNCTION, of the index of a cell, is true for one of the cells of MAP that BOX, which is
@@ -67,7 +68,7 @@ mark of a place that LAYERS show, and rather no trail; or NIL."
   (let* ((map (snapshot-map snapshot))
          (free (remove-if-not
                 (lambda (box)
-                  (and (on-map-p map box)
+                  (and (within-shown-p snapshot box)
                        (notany (lambda (other) (overlap-p box other)) taken)
                        (not (on-wall-p map box))
                        (not (and (member :places layers) (on-mark-p map box)))))

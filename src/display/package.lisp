@@ -28,9 +28,11 @@
            #:layers-of-kind)
   ;; inks, user-drawing, terrain, names, world-display, legend, scales, margins, way-picture
   ;; and displays
-  (:export #:draw-terrain #:draw-movers #:draw-world #:users-scale #:check-layers #:check-scale
-           #:draw-framed #:with-map-svg #:sample-of #:robot-color #:robot-title #:draw-names
+  (:export #:draw-terrain #:draw-movers #:draw-world #:users-scale #:check-map-options
+           #:in-part #:draw-framed #:with-map-svg #:sample-of #:robot-color #:robot-title
+           #:draw-names
            #:telling-what-breaks #:draw-way-line #:draw-start #:way-entry #:to-pixels
+           #:inked #:around #:draw-circle #:half-width
            #:box-around #:overlap-p #:draw-view-margins #:view-edges
            #:draw-display #:display-title #:+displays+)
   ;; moments

@@ -3,25 +3,33 @@
 (in-package :ars-magna.display)
 
 (defun write-picture (stream snapshot robot &key (display :world) (layers *picture-layers*)
-                                              (in-color t) scale)
+                                              (in-color t) scale title)
   "Write an SVG document of DISPLAY from SNAPSHOT to STREAM; ROBOT is the image of a robot in it."
-  (flet ((draw (canvas) (draw-display canvas display snapshot robot :layers layers)))
+  (flet ((draw (canvas)
+           (draw-display canvas display snapshot robot :layers layers :title title)))
     (if (member display '(:world :all))
         (with-map-svg (canvas stream snapshot :layers layers :in-color in-color :scale scale)
           (draw canvas))
         (with-svg (canvas stream :color-p in-color)
           (with-canvas (canvas :scale (suitable-scale scale snapshot layers)) (draw canvas))))))
 
-(defun check-picture (operator robot display layers scale)
+(defun check-map-options (operator &key title layers scale)
+  "Signal WRONG-ARGUMENT unless these are arguments of OPERATOR, which draws a map, for the title
+above it, its layers and its scale."
+  (unless (typep title '(or null string))
+    (reject-argument operator :title title "a string or NIL"))
+  (check-layers operator layers)
+  (check-scale operator scale))
+
+(defun check-picture (operator robot display layers scale title)
   (unless (robot-p robot)
     (error 'wrong-argument :operator operator :name "robot" :value robot
                            :expected "a robot"))
   (check-display operator display)
-  (check-layers operator layers)
-  (check-scale operator scale))
+  (check-map-options operator :title title :layers layers :scale scale))
 
 (addition svg-picture)
-(defun svg-picture (robot &key (display :world) (layers *picture-layers*) (in-color t) scale)
+(defun svg-picture (robot &key (display :world) (layers *picture-layers*) (in-color t) scale title)
   "Return a picture of the world of ROBOT as it is now: an SVG document, as a string. DISPLAY is one
 of :WORLD, :STATE, :DESIGNATORS, :CAMERAS, :HANDS and :BINS, the displays of the manual, or :ALL.
 LAYERS lists what the picture shows besides walls, things and robots: *PICTURE-LAYERS* tells what
@@ -29,13 +37,15 @@ there is; the list () gives the bare map. SCALE is how many pixels there are to 
 256. Without SCALE it is GRAPHICS-SCALE*, if you have set that to another value than 8, or else what
 suits the map: from 4 to 40, so that the picture without its legend is 900 x 700 pixels at most, if
 4 do for that. Where SCALE is more than that, and more than 20, the picture grows as a whole, text
-and lines, too. IN-COLOR is false for a picture in black and white. Signals WRONG-ARGUMENT, and
-MISUSE if GRAPHICS-SCALE* is no scale."
-  (check-picture 'svg-picture robot display layers scale)
+and lines, too. IN-COLOR is false for a picture in black and white. TITLE, a string, stands above,
+where the layers have a title, instead of the robots, the map and the tick. Signals WRONG-ARGUMENT,
+and MISUSE if GRAPHICS-SCALE* is no scale."
+  (check-picture 'svg-picture robot display layers scale title)
   (let ((snapshot (snapshot-of robot)))
     (with-output-to-string (stream)
       (write-picture stream snapshot (snapshot-robot snapshot (robot-name robot))
-                     :display display :layers layers :in-color in-color :scale scale))))
+                     :display display :layers layers :in-color in-color :scale scale
+                     :title title))))
 
 ;;; Files.
 
@@ -77,22 +87,24 @@ picture there; then it says that a name has one of ENDINGS."
     (:png (convert-to-png svg (merge-pathnames file)))))
 
 (defun save-snapshot (snapshot robot file &key (display :all) (layers *picture-layers*)
-                                            (in-color t) scale)
+                                            (in-color t) scale title)
   "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does; ROBOT is the image of a robot in it."
   (save-svg (telling-what-breaks
               (with-output-to-string (stream)
                 (write-picture stream snapshot robot :display display :layers layers
-                                                     :in-color in-color :scale scale)))
+                                                     :in-color in-color :scale scale
+                                                     :title title)))
             file (picture-kind 'save-snapshot file)))
 
 (addition save-picture)
 (defun save-picture (robot file &key (display :world) (layers *picture-layers*) (in-color t)
-                                  scale)
+                                  scale title)
   "Save a picture of the world of ROBOT as it is now in FILE, replacing it: SVG or, where the
 program rsvg-convert is installed, PNG, as its name ends. The other arguments are those of
 SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE without that program."
   (picture-kind 'save-picture file)
-  (check-picture 'save-picture robot display layers scale)
+  (check-picture 'save-picture robot display layers scale title)
   (let ((snapshot (snapshot-of robot)))
     (save-snapshot snapshot (snapshot-robot snapshot (robot-name robot)) file
-                   :display display :layers layers :in-color in-color :scale scale)))
+                   :display display :layers layers :in-color in-color :scale scale
+                   :title title)))

@@ -12,8 +12,9 @@
      ,documentation
      ,@(loop for (slot default) in slots collect `(,slot ,default :read-only t))))
 
-(define-image snapshot "What a world looks like at one moment."
-  (tick 0) (map nil) (things #()) (robots '()))
+(define-image snapshot "What a world looks like at one moment; PART is what is to be shown of its
+map, a list (left top right bottom) in cells, or NIL for all."
+  (tick 0) (map nil) (things #()) (robots '()) (part nil))
 
 (define-image thing-image "What a snapshot knows of a thing; COLOR is that of the display. It is
 MOVING-P if it has kickers."
@@ -231,3 +232,32 @@ snapshot of WORLD, makes it cheaper."
   "Return the image of the robot called NAME in SNAPSHOT; of its first robot if none is so called."
   (or (find name (snapshot-robots snapshot) :key #'robot-image-name :test #'same-name-p)
       (first (snapshot-robots snapshot))))
+
+;;; A part of it.
+
+(defun shown-part (snapshot)
+  "Return what is to be shown of the map of SNAPSHOT, as a list (left top right bottom) in cells."
+  (or (snapshot-part snapshot)
+      (list 0 0 (map-width (snapshot-map snapshot)) (map-height (snapshot-map snapshot)))))
+
+(defun shown-size (snapshot)
+  "Return how wide and how high what is to be shown of the map of SNAPSHOT is, in cells."
+  (destructuring-bind (left top right bottom) (shown-part snapshot)
+    (values (- right left) (- bottom top))))
+
+(defun in-part (snapshot part)
+  "Return SNAPSHOT with PART (left top right bottom) of its map, in cells, and what is in that. NIL
+means all."
+  (flet ((within-p (x y)
+           (destructuring-bind (left top right bottom) part
+             (and (<= left x right) (<= top y bottom)))))
+    (if part
+        (make-snapshot
+         :tick (snapshot-tick snapshot) :map (snapshot-map snapshot) :part part
+         :things (remove-if-not (lambda (image) (within-p (thing-image-x image)
+                                                          (thing-image-y image)))
+                                (snapshot-things snapshot))
+         :robots (remove-if-not (lambda (image) (within-p (robot-image-x image)
+                                                          (robot-image-y image)))
+                                (snapshot-robots snapshot)))
+        snapshot)))

@@ -30,12 +30,13 @@ a list of all glyphs that mean something there."
   (let ((table (make-hash-table)))
     (loop for (number . glyph) in (layer-of (sheet-view sheet) robot layer)
           do (push glyph (gethash number table)))
-    (setf (getf (sheet-marks sheet) layer) table)
-    (loop for glyphs being the hash-values of table do (explain sheet glyphs))))
+    (setf (getf (sheet-marks sheet) layer) table)))
 
 (defun marked (sheet layer number)
-  (let ((table (getf (sheet-marks sheet) layer)))
-    (and table (gethash number table))))
+  "Return a list of the glyph that LAYER has in the block NUMBER of SHEET, or NIL."
+  (let* ((table (getf (sheet-marks sheet) layer))
+         (glyphs (and table (gethash number table))))
+    (and glyphs (list (first glyphs)))))
 
 (defun robots-in (view indices)
   (remove-if-not (lambda (robot) (member (robot-cell-index robot) indices))

@@ -67,4 +67,4 @@ WITH-CANVAS, with the origin in that corner."
       (when (member :scale-bar layers)
         (draw-strip canvas left bottom width bottom-edge)
         (with-origin (canvas (+ left 36) 0)
-          (draw-scale-bar canvas map (+ bottom (floor bottom-edge 2))))))))
+          (draw-scale-bar canvas (map-width map) (+ bottom (floor bottom-edge 2))))))))

@@ -102,9 +102,7 @@ simulation is in MAP, its things and robots are shown as they are now. TITLE, a 
 above. FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename. Signals
 WRONG-ARGUMENT, UNKNOWN-NAME, and MISUSE without the program that PNG needs."
   (check-ways ways)
-  (check-argument save-way-picture title (typep title '(or null string)) "a string or NIL")
-  (check-layers 'save-way-picture layers)
-  (check-scale 'save-way-picture scale)
+  (check-map-options 'save-way-picture :title title :layers layers :scale scale)
   (let* ((map (find-map map)) (kind (picture-kind 'save-way-picture file)))
     (save-svg (telling-what-breaks
                 (way-picture-text (snapshot-of-map map) ways

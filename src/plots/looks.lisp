@@ -65,11 +65,11 @@
                   (* 2 radius) (* 2 radius) 0 (* 2 pi) t)
         (draw-lines canvas draw-gcontext* (shape-points outline x y radius) :fill-p t))))
 
-(defun draw-marker (canvas index x y &optional (radius 4))
-  "Draw the marker of the series INDEX around X, Y, with a white rim."
+(defun draw-marker (canvas index x y &optional (radius 4) (color (look-color index)))
+  "Draw the marker of the series INDEX around X, Y, in COLOR, with a white rim."
   (destructuring-bind (outline filled-p) (look index *shapes*)
     (fill-shape canvas outline white* x y (+ radius 6/5))
-    (fill-shape canvas outline (look-color index) x y radius)
+    (fill-shape canvas outline color x y radius)
     (unless filled-p
       (fill-shape canvas outline white* x y (- radius 8/5)))))
 

@@ -8,8 +8,8 @@ no experiment and no robot. Each chart is a function that returns an SVG documen
   ;; figures
   (:export #:figure-text)
   ;; charts
-  (:export #:line-chart #:survival-chart #:difference-chart #:measure-chart #:drawing-chart)
+  (:export #:line-chart #:survival-chart #:difference-chart #:measure-chart)
   ;; looks
-  (:export #:look-color #:draw-marker)
+  (:export #:draw-marker)
   ;; saving
   (:export #:save-chart))

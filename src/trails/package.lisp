@@ -16,22 +16,22 @@
                 #:snapshot-map #:snapshot-robots #:snapshot-things #:robot-image-name
                 #:robot-image-x #:robot-image-y #:thing-image-x #:thing-image-y
                 #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:draw-way-line
-                #:draw-start #:way-entry #:sample-of #:robot-color #:to-pixels #:box-around
+                #:draw-start #:way-entry #:robot-color #:to-pixels #:box-around
+                #:inked #:around #:draw-circle #:half-width
                 #:overlap-p #:telling-what-breaks #:with-map-svg #:robot-title #:*picture-layers*
-                #:check-layers #:check-scale
+                #:check-map-options #:in-part #:sample-of
                 #:take-snapshot #:picture-kind #:save-svg
                 #:make-moment #:moment-tick #:moment-kind #:moment-text #:moment-x #:moment-y
                 #:moment-robot #:moment-weight #:moment-words #:moments-watcher
                 #:remarked-moments #:checked-moments #:check-kinds #:of-kinds #:in-order
                 #:shown-end)
-  (:import-from :ars-magna.plots
-                #:drawing-chart #:look-color #:draw-marker)
+  (:import-from :ars-magna.plots #:draw-marker)
   ;; trails
   (:export #:way-trial #:way-outcome #:way-points #:note-places #:ways-along
            #:straightened)
   ;; trajectory
   (:export #:save-trajectory)
   ;; picture
-  (:export #:ways-chart #:part-of-map)
+  (:export #:save-bundle)
   ;; run-picture
   (:export #:save-run-picture))

@@ -1,77 +1,98 @@
-;;;; picture.lisp -- a map with the ways of many trials over it, by what became of these.
+;;;; picture.lisp -- a map with a bundle of ways over it, by what became of the trials they are of.
 
 (in-package :ars-magna.trails)
 
 (defparameter *outcome-looks*
-  '(("success" 0 "succeeded") ("limit" 4 "came to the limit") ("failure" 1 "failed")
-    ("error" 3 "broke off with an error"))
-  "Lists (outcome look words), in the order of the legend.")
+  '(("success" 0 #x0C3C9C 3/2 nil "succeeded") ("limit" 4 #xB07000 2 (6 3) "came to the limit")
+    ("failure" 1 #xC22418 5/2 nil "failed")
+    ("error" 3 #x000000 5/2 (2 3) "broke off with an error"))
+  "Lists (outcome marker color width dashes words), in the order of the legend, in which ways are
+drawn, too: so those that failed, of which one wants to know, lie above others.")
 
-(defun scale-for (width height)
-  "Return how many pixels a metre has in a picture of WIDTH by HEIGHT metres."
-  (clamp (floor 720 (max width height)) 4 40))
+(defun look-of (way)
+  (rest (assoc (way-outcome way) *outcome-looks* :test #'string=)))
+
+(defun ways-of-outcome (outcome ways)
+  (remove outcome ways :key #'way-outcome :test-not #'string=))
+
+(defun ways-in-order (ways)
+  "Return WAYS as they are drawn: those that lie above others last."
+  (loop for (outcome) in *outcome-looks* append (ways-of-outcome outcome ways)))
 
 (defun way-opacity (count)
-  "Return how much one of COUNT ways hides what is below."
+  "Return how much one of COUNT ways of one outcome hides what is below."
   (clamp (/ 8 (max 1 count)) 12/100 6/10))
 
-(defun draw-way (canvas way look)
+(defun draw-line-of-way (canvas points look)
+  "Draw a line with LOOK through POINTS, x y ... in pixels."
+  (destructuring-bind (marker color width dashes words) look
+    (declare (ignore marker words))
+    (with-color color
+      (with-gcontext (draw-gcontext* :line-width width :line-style (if dashes :dash :solid)
+                                     :dashes (or dashes '(4)))
+        (draw-lines canvas draw-gcontext* points)))))
+
+(defun draw-way (canvas way)
   (let ((points (straightened (way-points way) (/ 1/2 graphics-scale*))))
     (when (rest points)
-      (with-gcontext (draw-gcontext* :foreground (look-color look) :line-width 1.6)
-        (draw-lines canvas draw-gcontext*
-                    (loop for (x . y) in points
-                          collect (* graphics-scale* x) collect (* graphics-scale* y)))))))
+      (draw-line-of-way canvas
+                        (loop for (x . y) in points collect (to-pixels x) collect (to-pixels y))
+                        (look-of way)))))
 
-(defun draw-end (canvas way look)
+(defun draw-marker-of (canvas look x y)
+  (draw-marker canvas (first look) x y 4 (if in-color* (second look) black*)))
+
+(defun draw-end (canvas way)
   (let ((points (way-points way)))
     (when (plusp (length points))
       (destructuring-bind (x . y) (svref points (1- (length points)))
-        (draw-marker canvas look (* graphics-scale* x) (* graphics-scale* y) 4)))))
-
-(defun look-of (way)
-  (second (assoc (way-outcome way) *outcome-looks* :test #'string=)))
+        (draw-marker-of canvas (look-of way) (to-pixels x) (to-pixels y))))))
 
 (defun draw-ways (canvas ways)
-  "Draw WAYS, in order, so faint that many can be told apart, and above them where they end."
+  "Draw WAYS so faint that many can be told apart."
   (dolist (way ways)
-    (with-opacity (canvas (way-opacity (length ways))) (draw-way canvas way (look-of way))))
-  (dolist (way ways)
-    (with-opacity (canvas 8/10) (draw-end canvas way (look-of way)))))
+    (with-opacity (canvas (way-opacity (length (ways-of-outcome (way-outcome way) ways))))
+      (draw-way canvas way))))
 
-(defun ways-entries (ways)
+(defun bundle-entry (look text)
+  "Return an entry of the legend with TEXT for ways with LOOK."
+  (sample-of (canvas x y) text
+    (draw-line-of-way canvas (list (- x 8) y (+ x 8) y) look)
+    (draw-marker-of canvas look (+ x 4) y)))
+
+(defun bundle-entries (ways)
   "Return the entries of the legend for WAYS."
-  (loop for (outcome look words) in *outcome-looks*
+  (loop for (outcome . look) in *outcome-looks*
         for count = (length (remove-duplicates
-                             (loop for way in ways
-                                   when (string= outcome (way-outcome way))
-                                     collect (way-trial way))))
+                             (mapcar #'way-trial (ways-of-outcome outcome ways))))
         when (plusp count)
-          collect (list look (format nil "~A: ~D trial~:P" words count))))
+          collect (bundle-entry look (format nil "~A: ~D trial~:P" (first (last look)) count))))
 
-(defun draw-ways-on-map (canvas snapshot ways left top)
-  "Draw WAYS and the world of SNAPSHOT, so that the point LEFT, TOP of it is in the upper left."
-  (with-origin (canvas (- (* graphics-scale* left)) (- (* graphics-scale* top)))
-    (with-opacity (canvas 1/2) (draw-terrain canvas (snapshot-map snapshot)))
+(defun draw-bundle (canvas snapshot ways layers)
+  "Draw the world of SNAPSHOT, its map faintly where there are colours, and WAYS in it; above robots
+and things where these end."
+  (let ((ways (ways-in-order ways)))
+    (with-opacity (canvas (if in-color* 1/2 1))
+      (draw-terrain canvas (snapshot-map snapshot) :layers layers))
     (draw-ways canvas ways)
-    (draw-movers canvas snapshot '())))
+    (draw-movers canvas snapshot (remove :names layers))
+    (dolist (way ways)
+      (with-opacity (canvas 8/10) (draw-end canvas way)))
+    (when (member :names layers) (draw-names canvas snapshot layers))))
 
-(defun ways-chart (snapshot ways part title subtitle)
-  "Return a picture of the world in SNAPSHOT with WAYS in it, of its PART (left top right bottom),
-under TITLE and SUBTITLE."
-  (destructuring-bind (left top right bottom) part
-    (let* ((width (- right left)) (height (- bottom top)) (scale (scale-for width height)))
-      (drawing-chart (lambda (canvas)
-                       (let ((graphics-scale* scale))
-                         (draw-ways-on-map canvas snapshot ways left top)))
-                     (* scale width) (* scale height)
-                     :title title
-                     :subtitle subtitle
-                     :entries (ways-entries ways)))))
+(defun bundle-text (snapshot ways &key title subtitle layers in-color scale)
+  "Return an SVG document of SNAPSHOT and WAYS in it, under TITLE and SUBTITLE."
+  (let ((more (bundle-entries ways)))
+    (with-output-to-string (out)
+      (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
+        (draw-framed canvas snapshot layers
+                     (lambda () (draw-bundle canvas snapshot ways layers))
+                     :title title :subtitle subtitle :more more)))))
 
-(defun part-of-map (operator part map)
-  "Return the list (left top right bottom) that PART, an argument of OPERATOR, means of MAP: all if
-it is NIL. Signals WRONG-ARGUMENT."
+;;; What the pictures of bundles have in common.
+
+(defun check-part (operator part map)
+  "Signal WRONG-ARGUMENT unless PART, an argument of OPERATOR, is NIL or a part of MAP in cells."
   (let ((width (map-width map)) (height (map-height map)))
     (unless (or (null part)
                 (and (proper-list-p part) (= 4 (length part)) (every #'integerp part)
@@ -79,5 +100,20 @@ it is NIL. Signals WRONG-ARGUMENT."
                        (and (< -1 left right (1+ width)) (< -1 top bottom (1+ height))))))
       (reject-argument operator 'part part
                        (format nil "a list (left top right bottom) of integers within ~D x ~D, or ~
-                                    NIL" width height)))
-    (or part (list 0 0 width height))))
+                                    NIL" width height)))))
+
+(defun save-bundle (operator file snapshot ways-of own-title subtitle
+                    &key part title (layers (remove :tracks *picture-layers*)) (in-color t) scale)
+  "Save in FILE, for OPERATOR, a picture of SNAPSHOT and of the ways that the function WAYS-OF
+returns, under TITLE, or if it is NIL OWN-TITLE, and SUBTITLE. PART (left top right bottom), in
+cells, is what is wanted of the map, or NIL for all. Return the file's truename. Signals
+WRONG-ARGUMENT, before WAYS-OF is called, and MISUSE."
+  (let ((kind (picture-kind operator file)))
+    (check-part operator part (snapshot-map snapshot))
+    (check-map-options operator :title title :layers layers :scale scale)
+    (let ((ways (funcall ways-of)))
+      (save-svg (telling-what-breaks
+                  (bundle-text (in-part snapshot part) ways
+                               :title (or title own-title) :subtitle subtitle
+                               :layers layers :in-color in-color :scale scale))
+                file kind))))

@@ -95,13 +95,19 @@ of robots that are not there."
 (defun boxes-of-ways (snapshot ways)
   (loop for robot in (snapshot-robots snapshot) append (boxes-along (way-of robot ways))))
 
-(defun run-entries (snapshot spots)
-  "Return the entries of the legend that a picture of a run has besides others."
+(defun moved-p (robot ways)
+  "True if ROBOT, an image, has a way among WAYS that has a length."
+  (and (cddr (assoc (robot-image-name robot) ways)) t))
+
+(defun run-entries (snapshot ways spots)
+  "Return the entries of the legend that a picture of a run with WAYS and SPOTS has besides others."
   (append (loop for robot in (snapshot-robots snapshot)
                 for position from 0
-                collect (way-entry (format nil "way of ~A" (robot-title robot))
-                                   (robot-color position) position))
-          (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*)))
+                when (moved-p robot ways)
+                  collect (way-entry (format nil "way of ~A" (robot-title robot))
+                                     (robot-color position) position))
+          (when (some (lambda (robot) (moved-p robot ways)) (snapshot-robots snapshot))
+            (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
           (and spots (list (sample-of (canvas x y) "see below"
                              (draw-number canvas x y "1"))))))
 
@@ -138,7 +144,7 @@ where the next would be."
   (multiple-value-bind (spots notes)
       (spots-and-notes moments limit (and (rest (snapshot-robots snapshot)) t)
                        (reach-of-spots (snapshot-map snapshot)))
-    (let ((more (run-entries snapshot spots)))
+    (let ((more (run-entries snapshot ways spots)))
       (with-output-to-string (out)
         (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
           (multiple-value-bind (width height left)
@@ -152,12 +158,10 @@ where the next would be."
 
 (defun check-run-picture (journal moments until &key kinds limit title layers scale)
   "Return MOMENTS, an argument of SAVE-RUN-PICTURE, as moments. Signals WRONG-ARGUMENT."
-  (check-argument save-run-picture title (typep title '(or null string)) "a string or NIL")
   (check-argument save-run-picture limit (or (null limit) (whole-p limit 0 1000000))
                   "a whole number, how many lines there are below the map at most, or NIL for all")
   (check-kinds 'save-run-picture kinds)
-  (check-layers 'save-run-picture layers)
-  (check-scale 'save-run-picture scale)
+  (check-map-options 'save-run-picture :title title :layers layers :scale scale)
   (checked-moments 'save-run-picture moments
                    (shown-end journal until)))
 
@@ -169,11 +173,12 @@ one; by default that of the current simulation) up to the tick UNTIL or its end:
 then, the ways that its robots went, and numbers where something happened that is told of below:
 that they grasped, let go of or stowed something, that a command failed, that a plan or a part of
 one failed or was ended, that there was an error in your code. KINDS, a list, chooses among :GRASP,
-:RELEASE, :STOW, :FAILURE, :PLAN, :PART and :ERROR. There are LIMIT lines below the map at most, or
-any number if it is NIL: where there is more to tell, what matters least is left out, and counted;
-that a robot was blocked or lost a track, as plans expect, before other failures of commands and of
-parts of plans, and these before the rest. MOMENTS, a list of moments or of lists of a tick, a
-string and, if you like, the name of a robot of the run, are told of besides. TITLE stands above.
+:RELEASE, :STOW, :FAILURE, :PLAN, :PART, :ERROR and :NOTE, which are your own moments and always
+shown. There are LIMIT lines below the map at most, or any number if it is NIL: where there is more
+to tell, what matters least is left out, and counted; that a robot was blocked or lost a track, as
+plans expect, before other failures of commands and of parts of plans, and these before the rest.
+MOMENTS, a list of moments or of lists of a tick, a string and, if you like, the name of a robot of
+the run, are told of besides. TITLE stands above.
 FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename.
 Signals WRONG-ARGUMENT, what REPLAY does, and MISUSE without the program that
 PNG needs, or where no journal is kept."

@@ -104,9 +104,11 @@ number or NIL and a text, LIMIT at most (NIL: of all). See HAPPENINGS-OF."
     (values spots
             (append (mapcar #'note-of told) (left-out-note (nthcdr count all))))))
 
-;;; On the map: a dot where it was, and beside it, where nothing else is, the number.
+;;; On the map: an open ring where it was, around the thing that lies there, if one does, so that it
+;;; can be seen; and beside it, where nothing else is, the number.
 
 (defconstant +number-radius+ 8 "The radius of the circle around a number, in pixels.")
+(defconstant +ring-radius+ 4 "The radius of a ring around a spot without a thing, in pixels.")
 
 (defun draw-number (canvas x y text)
   "Draw TEXT, a number, in a circle around X, Y."
@@ -117,23 +119,34 @@ number or NIL and a text, LIMIT at most (NIL: of all). See HAPPENINGS-OF."
       (draw-arc canvas draw-gcontext* (- x reach) (- y reach) (* 2 reach) (* 2 reach) 0 (* 2 pi))
       (draw-words canvas draw-gcontext* x (+ y 4) text :size 11 :anchor :middle))))
 
+(defun ring-radius (snapshot x y)
+  "Return the radius of the ring around the spot at X, Y, in pixels, on the map of SNAPSHOT: so
+large that what lies right there, as what was let go of does, is within it."
+  (flet ((reach (image)
+           (let ((off (max (abs (- (to-pixels (thing-image-x image)) x))
+                           (abs (- (to-pixels (thing-image-y image)) y))))
+                 (half (half-width image)))
+             (if (< off (max +ring-radius+ (/ half 3))) (+ half off 3) 0))))
+    (reduce #'max (snapshot-things snapshot) :key #'reach :initial-value +ring-radius+)))
+
 (defun boxes-to-spare (snapshot spots)
   "Return boxes around robots, spots and things: what no number should hide."
   (append (loop for robot in (snapshot-robots snapshot)
                 collect (box-around (to-pixels (robot-image-x robot))
                                     (to-pixels (robot-image-y robot)) (max 8 (to-pixels 1))))
           (loop for spot in spots
-                collect (box-around (to-pixels (spot-x spot)) (to-pixels (spot-y spot)) 3))
+                collect (box-around (to-pixels (spot-x spot)) (to-pixels (spot-y spot))
+                                    +ring-radius+))
           (loop for image across (snapshot-things snapshot)
                 collect (box-around (to-pixels (thing-image-x image))
                                     (to-pixels (thing-image-y image)) (max 4 (to-pixels 1/2))))))
 
-(defun places-around (x y)
-  "Return points (x y), the nearest first, for the number of a spot at X, Y."
-  (loop for distance in '(16 24 34 46 60)
+(defun places-around (x y radius)
+  "Return points (x y), the nearest first, for the number of a spot at X, Y with a ring of RADIUS."
+  (loop for distance in '(12 20 30 42 56)
         append (loop for turn below 12
                      for angle = (+ (/ pi -4) (* turn (/ pi 6)))
-                     collect (list (+ x (* distance (cos angle))) (+ y (* distance (sin angle)))))))
+                     collect (around x y angle (+ radius distance)))))
 
 (defun free-place-p (place map taken)
   "True if the number at PLACE, a point (x y), is on MAP and meets none of the boxes TAKEN."
@@ -152,27 +165,21 @@ that is less wide or high."
       (list (within (first place) (to-pixels (map-width map)))
             (within (second place) (to-pixels (map-height map)))))))
 
-(defun place-for-number (map x y taken rather-not)
-  "Return the point (x y) for the number of a spot at X, Y: on MAP, and if possible where none of
-the boxes TAKEN is, nor of RATHER-NOT."
-  (let ((places (places-around x y)))
+(defun place-for-number (map x y radius taken rather-not)
+  "Return the point (x y) for the number of a spot at X, Y with a ring of RADIUS: on MAP, and if
+possible where none of the boxes TAKEN is, nor of RATHER-NOT."
+  (let ((places (places-around x y radius)))
     (flet ((free (taken) (find-if (lambda (place) (free-place-p place map taken)) places)))
       (or (free (append taken rather-not)) (free taken) (free '())
           (pulled-onto map (first places))))))
 
-(defun draw-spot (canvas x y place text)
-  "Draw a dot at X, Y, and TEXT, its number, at PLACE, with a line from there."
-  (flet ((draw-line-there (color width)
-           (with-gcontext (draw-gcontext* :foreground color :line-width width)
-             (draw-segments canvas draw-gcontext* (list* x y place))))
-         (draw-dot (color radius)
-           (with-gcontext (draw-gcontext* :foreground color)
-             (draw-arc canvas draw-gcontext* (- x radius) (- y radius) (* 2 radius) (* 2 radius)
-                       0 (* 2 pi) t))))
-    (draw-line-there white* 3)
-    (draw-dot white* 4)
-    (draw-line-there black* 1)
-    (draw-dot black* 5/2)
+(defun draw-spot (canvas x y radius place text)
+  "Draw a ring of RADIUS around X, Y, and TEXT, its number, at PLACE, with a line from there."
+  (let* ((angle (atan (- (second place) y) (- (first place) x)))
+         (edge (around x y angle radius)))
+    (inked (black*)
+      (draw-circle canvas x y radius nil)
+      (draw-segments canvas draw-gcontext* (append edge place)))
     (draw-number canvas (first place) (second place) text)))
 
 (defun draw-spots (canvas snapshot spots ways)
@@ -181,6 +188,8 @@ the numbers."
   (let ((spared (boxes-to-spare snapshot spots)) (boxes '()))
     (dolist (spot spots boxes)
       (let* ((x (to-pixels (spot-x spot))) (y (to-pixels (spot-y spot)))
-             (place (place-for-number (snapshot-map snapshot) x y (append boxes spared) ways)))
+             (radius (ring-radius snapshot x y))
+             (place (place-for-number (snapshot-map snapshot) x y radius
+                                      (append boxes spared) ways)))
         (push (box-around (first place) (second place) +number-radius+) boxes)
-        (draw-spot canvas x y place (princ-to-string (spot-number spot)))))))
+        (draw-spot canvas x y radius place (princ-to-string (spot-number spot)))))))

@@ -14,22 +14,27 @@
       (loop for trial from 1 to trials collect trial)))
 
 (addition save-ways-picture)
-(defun save-ways-picture (experiment condition file &key (trials 50) part)
+(defun save-ways-picture (experiment condition file
+                          &rest options &key (trials 50) part title layers in-color scale)
   "Save in FILE, replacing it, a map of the world of CONDITION of EXPERIMENT with the ways that its
 robots went in TRIALS, the first so many or a list of their numbers: in colours that say what became
 of each trial, with a marker where it ended. The trials are run again for that. CONDITION is as for
 FIND-CONDITION. PART (left top right bottom), in cells, is what is wanted of the map, by default
-all. FILE is SVG or, where the program rsvg-convert is installed, PNG, as its name ends. Return its
-truename. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE without that program."
+all. TITLE stands above instead of what the experiment asks. FILE and the other arguments are those
+of SAVE-PICTURE. Return the file's truename. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE
+without the program that PNG needs."
+  (declare (ignore part title layers in-color scale))
   (picture-kind 'save-ways-picture file)
   (let* ((experiment (find-experiment experiment))
          (condition (find-condition experiment condition))
-         (trials (trial-numbers trials))
-         (snapshot (start-of-trial experiment condition (first trials)))
-         (part (part-of-map 'save-ways-picture part (snapshot-map snapshot))))
-    (save-chart file (ways-chart snapshot (ways-of-trials experiment condition trials) part
-                                 (or (question-of (experiment-name experiment))
-                                     (string-downcase (experiment-name experiment)))
-                                 (format nil "~A. The ways of all trials, with a marker at the end ~
-                                              of each. Robots and things are where a trial begins."
-                                         (condition-name condition))))))
+         (trials (trial-numbers trials)))
+    (apply #'save-bundle 'save-ways-picture file
+           (start-of-trial experiment condition (first trials))
+           (lambda () (ways-of-trials experiment condition trials))
+           (or (question-of (experiment-name experiment))
+               (string-downcase (experiment-name experiment)))
+           (format nil "~A. The ways of all trials, with a marker at the end of each. Robots and ~
+                        things are where a trial begins."
+                   (condition-name condition))
+           (loop for (key value) on options by #'cddr
+                 unless (eq :trials key) append (list key value)))))

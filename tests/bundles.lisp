@@ -1,0 +1,104 @@
+;;;; bundles.lisp -- pictures of many ways at once, and of one run: what lies on what, and legends.
+
+(in-package :ars-magna.tests)
+
+(in-suite display)
+
+(defun way-of-outcome (trial outcome)
+  "Return a way through the middle of the studio of TRIAL, which had OUTCOME."
+  (trails::make-way trial outcome (vector '(3 . 5) '(8 . 5) '(8 . 9))))
+
+(defun bundle (robot outcomes &rest options)
+  "Return a picture of ways with OUTCOMES in the world of ROBOT."
+  (with-scratch-file (file "svg")
+    (apply #'trails:save-bundle 'bundle file (display:snapshot-of robot)
+           (lambda ()
+             (loop for outcome in outcomes for trial from 1
+                   collect (way-of-outcome trial outcome)))
+           "A title" "A subtitle" options)
+    (uiop:read-file-string file)))
+
+(defparameter *mixed-outcomes* '("failure" "success" "error" "limit" "success" "failure" "limit"))
+
+(defun looks-in (texts)
+  "Return the outcomes that the colours TEXTS, written as in SVG, mean."
+  (loop for text in texts
+        for look = (find text trails::*outcome-looks*
+                         :test #'equal :key (lambda (look) (format nil "#~(~6,'0X~)" (third look))))
+        collect (first look)))
+
+(test bundle.has-ways-that-failed-above-others
+  (in-studio (robot)
+    (let ((picture (bundle robot *mixed-outcomes* :layers '())))
+      (is (equal '("success" "success" "limit" "limit" "failure" "failure" "error")
+                 (looks-in (mapcar (lambda (line) (of-element line :stroke))
+                                   (drawn-with :polyline picture))))))))
+
+(test bundle.legend-stands-in-the-order-in-which-ways-lie
+  (in-studio (robot)
+    (let ((words (mapcar (lambda (text) (of-element text :text))
+                         (drawn-with :text (bundle robot *mixed-outcomes*)))))
+      (is (equal '("succeeded: 2 trials" "came to the limit: 2 trials" "failed: 2 trials"
+                   "broke off with an error: 1 trial")
+                 (remove-if-not (lambda (word) (search " trial" word)) words)))
+      (dolist (word '("A title" "A subtitle" "bricks 10" "20"))
+        (is (member word words :test #'string=) "~A" word))
+      (is (some (lambda (word) (search " m" word)) words) "the scale bar"))))
+
+(test bundle.needs-no-colours
+  "Outcomes differ in their markers and dashes."
+  (in-studio (robot)
+    (let* ((picture (bundle robot *mixed-outcomes* :in-color nil :layers '()))
+           (lines (drawn-with :polyline picture)))
+      (is (subsetp (colors-in picture) '("000000" "ffffff") :test #'string=))
+      (is (= 4 (length (remove-duplicates
+                        (mapcar (lambda (line)
+                                  (list (of-element line :stroke-width)
+                                        (of-element line :stroke-dasharray)))
+                                lines)
+                        :test #'equal)))))))
+
+(test bundle.of-a-part-tells-of-what-is-there
+  "Numbers of metres are those of the map; what is elsewhere is not in the legend."
+  (in-studio (robot)
+    (flet ((words (&rest options)
+             (mapcar (lambda (text) (of-element text :text))
+                     (drawn-with :text (apply #'bundle robot '("success") options)))))
+      (is-true (member "pen" (words) :test #'string=))
+      (let ((words (words :part '(12 5 16 9) :scale 40)))
+        (is (equal '("12" "13" "14" "15" "16" "5" "6" "7" "8" "9")
+                   (remove-if-not (lambda (word) (every #'digit-char-p word)) words)))
+        (is (null (intersection '("bricks 10" "doorway" "pen") words :test #'string=)))))
+    (dolist (options '((:part (1 2 3)) (:part (0 0 99 99)) (:title 7) (:layers (:frob)) (:scale 0)))
+      (signals base:wrong-argument (apply #'bundle robot '("success") options)))))
+
+;;; Pictures of a run.
+
+(test run-picture.names-no-ways-of-robots-that-never-moved
+  (in-studio (robot)
+    (run:run-ticks 3)
+    (is (not (or (mentions-p (run-picture) "way of") (mentions-p (run-picture) "start of a way")))))
+  (in-studio (robot)
+    (journal-of-a-drive robot)
+    (is (mentions-p (run-picture) "way of studio-robot"))
+    (is (mentions-p (run-picture) "start of a way"))))
+
+(test run-picture.has-rings-around-what-lies-where-something-happened
+  "So what was grasped and let go of is seen: the ring is larger than it."
+  (in-studio (robot)
+    (let* ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 20)
+           (image (aref (display:snapshot-things snapshot) 0))
+           (x (* 20 (display:thing-image-x image))) (y (* 20 (display:thing-image-y image))))
+      (is (< (display:half-width image) (trails::ring-radius snapshot (+ x 2) y)))
+      (is (= trails::+ring-radius+ (trails::ring-radius snapshot (+ x 200) y)))
+      (is (null (drawn-with :ellipse
+                            (format nil "~{~A~}"
+                                    (drawing (canvas)
+                                      (trails::draw-spot canvas 50 50 9 '(80 80) "1")))
+                            :cx 50 :fill "#000000"))))))
+
+(test run-picture.documentation-lists-all-kinds-of-moments
+  (let ((text (documentation 'ars:save-run-picture 'function)))
+    (dolist (kind display::+moment-kinds+)
+      (is (search (format nil "~S" kind) text) "~S" kind)
+      (is-true (assoc kind trails::*kind-words*)))))
