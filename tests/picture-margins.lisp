@@ -119,6 +119,15 @@
       (is (null (display::best-box snapshot '(:places) '((8 8 20 19)) '())))
       (is (equal '(8 8 20 19) (display::best-box snapshot '() '((8 8 20 19)) '()))))))
 
+(test names.are-written-on-a-wall-where-there-is-no-other-room
+  "Of a thing in a niche the name is too long for; what is free comes first, along the thing, too."
+  (in-studio (robot)
+    (let ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 8))
+      (flet ((best (&rest boxes) (display::best-box snapshot '(:places) boxes '())))
+        (is (equal '(70 12 110 23) (best '(70 12 110 23))))
+        (is (equal '(20 40 60 51) (best '(70 12 110 23) '(20 40 60 51))))))
+    (is (find '(97 88 137 99) (display::name-boxes 100 100 3 40) :test #'equal))))
+
 (test margins.trails-have-an-entry
   (flet ((entries (trail)
            (mapcar #'display::entry-text

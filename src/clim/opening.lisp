@@ -184,6 +184,7 @@ else, if its user has chosen another one of the same run, that that is shown."
          (handler-case (without-debugger (clim:run-frame-top-level window))
            (error (condition) (close-for condition window)))
       (forget-window window)
+      (keep-habits window)
       (end-conversation (window-conversation window))
       (stop-watching (window-watcher window))
       ;; The X server may have gone.
@@ -218,9 +219,9 @@ else, if its user has chosen another one of the same run, that that is shown."
                                 (lambda () (when window (request-refresh window)))
                                 (lambda (reason) (when window (leave-run window reason))))))
     (with-lock (*windows-lock*) (pushnew port *ports*))
-    (make-menu-bar)
     (start-watching watcher simulation)
     (setf window (make-robot-window watcher :frame-manager (clim:find-frame-manager :port port)))
+    (take-habits window)
     (with-lock (*windows-lock*) (push window *windows*))
     (setf (window-thread window)
           (start-thread (lambda () (run-window window))

@@ -29,7 +29,8 @@
   ;; inks, user-drawing, terrain, names, world-display, legend, scales, margins, way-picture
   ;; and displays
   (:export #:draw-terrain #:draw-movers #:draw-world #:users-scale #:check-layers #:check-scale
-           #:draw-framed #:with-map-svg #:sample-of #:robot-color #:robot-title #:draw-names
+           #:draw-framed #:with-map-svg #:sample-of #:robot-color #:robot-radius #:robot-title
+           #:draw-names
            #:telling-what-breaks #:draw-way-line #:draw-start #:way-entry #:to-pixels
            #:box-around #:overlap-p #:draw-view-margins #:view-edges
            #:draw-display #:display-title #:+displays+)
