@@ -194,7 +194,7 @@
   (in-window (window robot)
     (lay-out window 1180 900)
     (is (high-as-needed-p window))
-    (world:move-thing (world:find-thing "PEN#1") (robot:robot-storage-bin robot 0))
+    (world:move-thing (world:find-thing "PEN#2") (robot:robot-storage-bin robot 0))
     (window::publish (window:window-watcher window) (time:current-simulation))
     (window:refresh window)
     (is (high-as-needed-p window))))

@@ -128,6 +128,11 @@
         (is (equal '(20 40 60 51) (best '(70 12 110 23) '(20 40 60 51))))))
     (is (find '(97 88 137 99) (display::name-boxes 100 100 3 40) :test #'equal))))
 
+(test names.of-robots-on-one-spot-are-beside-each-other
+  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 1)
+    (dolist (robot (run:simulation-robots)) (robot:place-robot robot 60.5 38.5 0))
+    (is-true (has-words-p (display:svg-picture ars-worlds:marvin) ">marvin<" ">gofer<"))))
+
 (test margins.trails-have-an-entry
   (flet ((entries (trail)
            (mapcar #'display::entry-text

@@ -78,7 +78,7 @@
   (arrange-panes pane))
 
 (defparameter *first-needs*
-  '((state 108) (designators 22) (cameras 140) (hands 84) (bins 84) (plan 240))
+  '((state 108) (designators 22) (cameras 140) (hands 84) (bins 84) (plan 100))
   "How many pixels high sections would like to be of which nothing is known yet; designators and
 plans would never like to be lower.")
 

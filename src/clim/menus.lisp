@@ -120,10 +120,3 @@ and NIL for a gap."
 (defmethod hover-text ((pane menu-pane) x y)
   (let ((menu (menu-at pane x y)))
     (if menu (subject-title menu) "")))
-
-;; As menus do everywhere: while one is open, the mouse opens each that it comes to.
-(defmethod hover ((pane menu-pane) x y)
-  (let ((menu (menu-at pane x y)) (opener (open-opener (window-of pane))))
-    (if (and menu (menu-p opener) (not (eq menu opener)))
-        (open-menu-of-bar pane menu)
-        (call-next-method))))

@@ -70,9 +70,13 @@ on it, meets."
                         repeat +trail-length+
                         thereis (and (< left (to-pixels x) right) (< top (to-pixels y) bottom))))))
 
+(define-constant +thick-wall+ 4
+  :documentation "From how many pixels to a cell on a name may hide a part of a wall.")
+
 (defun best-box (snapshot layers boxes taken)
   "Return the first of BOXES that is on the map of SNAPSHOT and meets none of TAKEN: rather no wall
-and no mark of a place that LAYERS show, and then rather no trail; or NIL."
+and no mark of a place that LAYERS show, and then rather no trail; if need
+be a thick wall; or NIL."
   (let* ((map (snapshot-map snapshot))
          (possible (remove-if-not
                     (lambda (box)
@@ -86,7 +90,9 @@ and no mark of a place that LAYERS show, and then rather no trail; or NIL."
     (or (and (member :trail layers)
              (find-if-not (lambda (box) (on-trail-p snapshot box)) free))
         (first free)
-        (find-if-not (lambda (box) (and (member :places layers) (on-mark-p map box))) possible))))
+        (and (<= +thick-wall+ graphics-scale*)
+             (find-if-not (lambda (box) (and (member :places layers) (on-mark-p map box)))
+                          possible)))))
 
 (define-constant +longest-name+ 24
   :documentation "How many characters of a name are written beside a sample, or on the map.")
@@ -114,7 +120,7 @@ have small letters of their own."
                 for robot in robots
                 collect (list (short-name (robot-title robot))
                               (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
-                              (* 8/5 (ring-radius robot robots))))
+                              (* 8/5 (spot-radius robot robots))))
           (loop for image in (stable-sort (coerce (snapshot-things snapshot) 'list) #'>
                                           :key #'thing-image-size)
                 collect (list (short-name (thing-image-name image))

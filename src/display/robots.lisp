@@ -21,9 +21,14 @@
   "Return the radius of the ring that IMAGE, one of ROBOTS, is drawn as, in pixels: around those of
 them before it that are on the same spot."
   (+ (robot-radius)
-     (* +between-rings+
-        (count-if (lambda (other) (one-spot-p image other))
-                  (ldiff robots (member image robots))))))
+     (* +between-rings+ (count-on-spot image (ldiff robots (member image robots))))))
+
+(defun count-on-spot (image robots)
+  (count-if (lambda (other) (one-spot-p image other)) robots))
+
+(defun spot-radius (image robots)
+  "Return the radius of the widest ring of ROBOTS on the spot of IMAGE, in pixels."
+  (+ (robot-radius) (* +between-rings+ (1- (count-on-spot image robots)))))
 
 (define-constant +robot-inks+ '(#x10018C #x0A5018 #x5C0086 #x600C0C)
   :test #'cl:equal
