@@ -84,7 +84,7 @@
     (flet ((choose (&rest texts)
              (open-menu-called window "Robot")
              (dolist (text texts) (choose-in-menu window text))))
-      (choose "Running >" "< Robot" "Prompt >" "STATUS")
+      (choose "Running >" "< Robot" "Seeing >" "STATUS")
       (is (equal '("status") (lines-given window)))
       (is (null (rows-of-popup window)))
       (choose "Moving >" "TURN")

@@ -123,10 +123,10 @@
   "Of a thing in a niche the name is too long for; what is free comes first, along the thing, too."
   (in-studio (robot)
     (let ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 8))
-      (flet ((best (&rest boxes) (display::best-box snapshot '(:places) boxes '())))
+      (flet ((best (&rest boxes) (display::best-box snapshot '() boxes '())))
         (is (equal '(70 12 110 23) (best '(70 12 110 23))))
         (is (equal '(20 40 60 51) (best '(70 12 110 23) '(20 40 60 51))))))
-    (is (find '(97 88 137 99) (display::name-boxes 100 100 3 40) :test #'equal))))
+    (is (find '(97 84 137 95) (display::name-boxes 100 100 3 40) :test #'equal))))
 
 (test names.of-robots-on-one-spot-are-beside-each-other
   (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 1)
