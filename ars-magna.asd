@@ -102,7 +102,8 @@
                  (:file "restoring") (:file "loading") (:file "status")))
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "contrast") (:file "gcontext")
-                 (:file "canvas") (:file "drawing") (:file "textures")
+                 (:file "canvas") (:file "blank-canvas") (:file "drawing")
+                 (:file "textures")
                  (:file "text") (:file "svg")
                  (:file "package") (:file "layers") (:file "scales") (:file "history")
                  (:file "snapshot")
@@ -292,7 +293,7 @@
                  (:file "plan-mouse") (:file "world-mouse") (:file "keys") (:file "keyboard")
                  (:file "help")
                  (:file "robots") (:file "window") (:file "line-menus") (:file "commands")
-                 (:file "opening") (:file "x-server") (:file "replies")
+                 (:file "menus") (:file "habits") (:file "opening") (:file "x-server") (:file "replies")
                  (:file "following")))))
 
 (defsystem "ars-magna/fiveam"
@@ -323,7 +324,8 @@
   :serial t
   :components ((:module "tests" :serial t
                 :components ((:file "clim-client") (:file "clim-window") (:file "clim-layout")
-                             (:file "clim-pointing") (:file "clim-progress") (:file "clim-plans")
+                             (:file "clim-pointing") (:file "clim-menus")
+                             (:file "clim-progress") (:file "clim-plans")
                              (:file "clim-talking") (:file "clim-going-on")
                              (:file "clim-awaiting")
                              (:file "clim-x-server") (:file "clim-keyboard")))))

@@ -100,6 +100,14 @@
       (is (every (lambda (place) (inside-p place 1500 900)) (mapcar #'rest places)))
       (is (<= 120 (third (place-of 'window::world places)))))))
 
+(test layout.a-plan-can-be-read-at-640-by-480
+  (let ((places (places-at 640 480 (window::make-wishes :folded '()))))
+    (destructuring-bind (left top width height) (place-of 'window::plan places)
+      (declare (ignore left top))
+      (is (<= 280 width))
+      (is (<= 130 height)))
+    (is (<= 320 (third (place-of 'window::world places))))))
+
 ;;; In a window.
 
 (defun lay-out (window width height)
@@ -152,6 +160,44 @@
                    (mapcar #'width '(window::world window::plan window::state))))
         (window::fold window 'window::plan)
         (is (not (window::shown-p (pane window 'window::plan-splitter))))))))
+
+(defun high-as-needed-p (window)
+  "True if each display of details in WINDOW is as high as what it shows, designators at least so."
+  (loop for section in '(window::state window::designators window::cameras window::hands
+                         window::bins)
+        for pane = (pane window section)
+        for height = (nth-value 1 (window::pane-size pane))
+        always (funcall (if (eq section 'window::designators) #'<= #'=)
+                        (window::pane-extent pane) height)))
+
+(test layout.displays-have-room-for-what-they-show-of-another-robot
+  "MARVIN has three cameras, GOFER one; also after a display has been folded away meanwhile."
+  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 1)
+    (call-with-window
+     (lambda (window)
+       (flet ((show (name)
+                (window::show-robot-called window name (time:current-simulation))
+                (window::publish (window:window-watcher window) (time:current-simulation))
+                (window:refresh window)
+                (high-as-needed-p window)))
+         (lay-out window 1180 900)
+         (is (show 'ars-worlds:gofer))
+         (is (show 'ars-worlds:marvin))
+         (window::fold window 'window::cameras)
+         (show 'ars-worlds:gofer)
+         (window::fold window 'window::cameras nil)
+         (is (high-as-needed-p window))))
+     ars-worlds:marvin)))
+
+(test layout.displays-get-room-for-what-is-new-in-them
+  "A bin of the same robot contains something now."
+  (in-window (window robot)
+    (lay-out window 1180 900)
+    (is (high-as-needed-p window))
+    (world:move-thing (world:find-thing "PEN#2") (robot:robot-storage-bin robot 0))
+    (window::publish (window:window-watcher window) (time:current-simulation))
+    (window:refresh window)
+    (is (high-as-needed-p window))))
 
 (defun show-many-designators (window robot)
   "Let ROBOT have 40 designators; return the pane of WINDOW that shows them."

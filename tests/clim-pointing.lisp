@@ -59,6 +59,51 @@
     (window::click (pane window 'window::strip) :left 5 5)
     (is (mentions-p (remove #\Newline (said-in window)) (make-string 300 :initial-element #\x)))))
 
+(defun robot-beneath (window thing-spot)
+  "Let the robot of WINDOW stand at THING-SPOT; return its display of the world, painted."
+  (apply #'robot:place-robot (first (run:simulation-robots)) (append thing-spot '(0)))
+  (window::publish (window:window-watcher window) (time:current-simulation))
+  (window:refresh window)
+  (painted-world window))
+
+(test pointing.a-drag-at-its-middle-takes-a-robot-that-stands-on-a-thing
+  "Unless the thing is picked, as by a click."
+  (in-window (window robot)
+    (let ((pane (robot-beneath window '(5.5 4.5))))
+      (flet ((taken () (display::subject-title (window::grip-at pane 44 36))))
+        (is (mentions-p (window::hover-text pane 44 36) "PEN#"))
+        (is (mentions-p (window::hover-text pane 44 36) "STUDIO-ROBOT"))
+        (is (equal "STUDIO-ROBOT" (taken)))
+        (window::pick-next pane 44 36)
+        (is (mentions-p (taken) "PEN#"))))))
+
+(defun same-place-p (box other)
+  "True if the rings in BOX and OTHER, left top right bottom, would be taken for one."
+  (every (lambda (one two) (< (abs (- one two)) 3)) box other))
+
+(test pointing.two-robots-on-one-spot-are-told-apart
+  "One ring is around the other; a drag takes the robot whose details are shown; the right button
+leads to both."
+  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 1)
+    (dolist (robot (run:simulation-robots)) (robot:place-robot robot 60.5 38.5 0))
+    (dolist (shown (run:simulation-robots))
+      (call-with-window
+       (lambda (window)
+         (lay-out window 1180 820)
+         (let* ((pane (pane window 'window::world))
+                (boxes (loop for (subject . box) in (window::pane-subjects pane)
+                             when (typep subject 'display:robot-image) collect box)))
+           (is (= 2 (length boxes)))
+           (is (not (same-place-p (first boxes) (second boxes))))
+           (multiple-value-bind (x y) (window::robot-place pane)
+             (is (eq (robot:robot-name shown)
+                     (display:robot-image-name (window::grip-at pane (round x) (round y)))))
+             (dolist (name '("MARVIN" "GOFER"))
+               (is (mentions-p (window::hover-text pane (round x) (round y)) name))
+               (is (mentions-p (format nil "~{~A~}" (offered pane (round x) (round y)))
+                               name))))))
+       shown))))
+
 ;;; Panels, and where keys go.
 
 (defun press-key-in (pane name)

@@ -160,6 +160,20 @@
       (is (null (display::best-box snapshot '(:places) '((8 8 20 19)) '())))
       (is (equal '(8 8 20 19) (display::best-box snapshot '() '((8 8 20 19)) '()))))))
 
+(test names.are-written-on-a-wall-where-there-is-no-other-room
+  "Of a thing in a niche the name is too long for; what is free comes first, along the thing, too."
+  (in-studio (robot)
+    (let ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 8))
+      (flet ((best (&rest boxes) (display::best-box snapshot '() boxes '())))
+        (is (equal '(70 12 110 23) (best '(70 12 110 23))))
+        (is (equal '(20 40 60 51) (best '(70 12 110 23) '(20 40 60 51))))))
+    (is (find '(97 84 137 95) (display::name-boxes 100 100 3 40) :test #'equal))))
+
+(test names.of-robots-on-one-spot-are-beside-each-other
+  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 1)
+    (dolist (robot (run:simulation-robots)) (robot:place-robot robot 60.5 38.5 0))
+    (is-true (has-words-p (display:svg-picture ars-worlds:marvin) ">marvin<" ">gofer<"))))
+
 (test margins.trails-have-an-entry
   (flet ((entries (trail)
            (mapcar #'display::entry-text

@@ -3,15 +3,15 @@
 (in-package :ars-magna.cli)
 
 (defparameter *subjects*
-  '(("KEYS" "At a terminal, and where one types in a window, a line is edited as in a
-shell or Emacs. Left, right, Home, End, control-A and control-E move in it; with Alt or control, left and right go by words. Backspace,
-Delete and control-D delete a character, control-W the word before, control-U and control-K all
-before and after; control-Y brings back what was deleted so. Up and down bring back lines typed
-before, in earlier sessions too (HISTORY); control-R searches them for what is typed next. Tab
-completes; twice, it lists what there is. Control-L clears the screen. Control-C clears the line,
-or ends what is under way. Control-D in an empty line leaves. At a terminal only, control-Z goes
-back to the shell, where fg comes here again, and control-\\ ends the program at once. A window's
-button Help lists the keys of its displays.")
+  '(("KEYS" "At a terminal, and where one types in a window, a line is edited as in a shell or
+Emacs. Left, right, Home, End, control-A and control-E move in it; with Alt or control, left and
+right go by words. Backspace, Delete and control-D delete a character, control-W the word before,
+control-U and control-K all before and after; control-Y brings back what was deleted so. Up and down
+bring back lines typed before, in earlier sessions too (HISTORY); control-R searches them for what
+is typed next. Tab completes; twice, it lists what there is. Control-L clears the screen. Control-C
+clears the line, or ends what is under way. Control-D in an empty line leaves. At a terminal only,
+control-Z goes back to the shell, where fg comes here again, and control-\\ ends the program at
+once. A window's button Help lists the keys of its displays.")
     ("HISTORY" "What was typed at a terminal is kept in ~/.local/state/ars-magna/history, or under
 $XDG_STATE_HOME: the last thousand lines. Up and control-R bring them back. Remove the file, and
 they are forgotten.")

@@ -2,14 +2,15 @@
 
 (in-package :ars-magna.clim)
 
-;;; Rows from top to bottom: the bar, the displays, a splitter, the transcript, the line that is
-;;; typed, the strip. In the row of displays the world is on the left, then a splitter, then a
-;;; column of sections, each a title with a display below it; where there is room, plans have a
+;;; Rows from top to bottom: the menus, the bar, the displays, a splitter, the transcript, the line
+;;; that is typed, the strip. In the row of displays the world is on the left, then a splitter, then
+;;; a column of sections, each a title with a display below it; where there is room, plans have a
 ;;; column of their own before that, and a splitter. In a low window the column of sections goes on
 ;;; down beside the transcript, for else there would be room for few of their lines. Nothing here
 ;;; knows CLIM: a part is a name, a place is (name left top width height), in pixels.
 
 (define-constant +title-height+ 17 :documentation "How high titles of displays are, in pixels.")
+(define-constant +menus-height+ 20 :documentation "How high the bar of menus is, in pixels.")
 (define-constant +bar-height+ 26 :documentation "How high the tool bar is, in pixels.")
 (define-constant +strip-height+ 36 :documentation "How high the status strip is, in pixels.")
 (define-constant +prompt-height+ 36 :documentation "How high the place to type in is, in pixels.")
@@ -34,7 +35,7 @@
   :test #'equal
   :documentation "The parts of the window that can be dragged to make others larger.")
 
-(defstruct (wishes (:copier nil))
+(defstruct wishes
   "What the user wants of an arrangement. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are in
 pixels, or NIL for what suits the window; FOLDED lists sections of which only the title is to be
 seen."
@@ -50,14 +51,21 @@ seen."
     (cameras 'cameras-title) (hands 'hands-title) (bins 'bins-title) (plan 'plan-title)
     (transcript 'transcript-title)))
 
-(defun details-width (wishes width)
-  "Return how wide the column of sections is in a window WIDTH pixels wide."
-  (let ((wish (or (wishes-details-width wishes) (clamp (floor width 3) 200 360))))
-    (clamp (round wish) 120 (max 120 (- width 160)))))
-
 (defun plan-column-p (wishes width)
   "True if plans have a column of their own in a window WIDTH pixels wide."
   (and (>= width +wide+) (not (member 'plan (wishes-folded wishes)))))
+
+(defun usual-details-width (wishes width)
+  "Return how wide the column of sections is, unless the user wants another width, in a window WIDTH
+pixels wide: wider where plans are shown in it, whose lines are long."
+  (if (or (member 'plan (wishes-folded wishes)) (plan-column-p wishes width))
+      (clamp (floor width 3) 200 360)
+      (clamp (floor (* 9 width) 20) 200 400)))
+
+(defun details-width (wishes width)
+  "Return how wide the column of sections is in a window WIDTH pixels wide."
+  (let ((wish (or (wishes-details-width wishes) (usual-details-width wishes width))))
+    (clamp (round wish) 120 (max 120 (- width 160)))))
 
 (defun plan-width (wishes width)
   "Return how wide the column of plans is in a window WIDTH pixels wide; 0 if there is none."
@@ -70,7 +78,7 @@ seen."
 (defun transcript-height (wishes height)
   "Return how high the transcript, with its title, is in a window HEIGHT pixels high."
   (let ((wish (or (wishes-transcript-height wishes) (clamp (floor height 5) 80 260)))
-        (fixed (+ +bar-height+ +splitter+ +prompt-height+ +strip-height+)))
+        (fixed (+ +menus-height+ +bar-height+ +splitter+ +prompt-height+ +strip-height+)))
     (clamp (round wish) 40 (max 40 (- height fixed 120)))))
 
 ;;; Sections.
@@ -80,7 +88,18 @@ seen."
 is left over goes to the designators, or the plan; or else what is fair."
   (cond ((null needs) '())
         ((<= (reduce #'+ needs :key #'second) height) (give-rest needs height))
-        (t (share-fairly needs height))))
+        (t (share-with-plan needs height))))
+
+(defun share-with-plan (needs height)
+  "Return shares of HEIGHT, which is not enough for NEEDS: the plan, if it is among them, gets half
+of it at least, if it needs that, since a tree of few lines tells nothing; the others what is fair."
+  (let ((plan (find 'plan needs :key #'first)) (others (remove 'plan needs :key #'first)))
+    (if (and plan others)
+        (let ((share (min (second plan)
+                          (max (floor height 2)
+                               (- height (reduce #'+ others :key #'second))))))
+          (cons (list 'plan share) (share-height others (- height share))))
+        (share-fairly needs height))))
 
 (defun whole-lines (height)
   "Return the most pixels up to HEIGHT that hold whole lines of text, but one line at least."
@@ -169,14 +188,16 @@ column of sections, DOWN pixels."
 (defun arrange (wishes needs width height)
   "Return the places of all parts of a window of WIDTH times HEIGHT pixels, as WISHES want it. NEEDS
 is a function from a section to how many pixels high it would like to be."
-  (let* ((strip (- height +strip-height+))
+  (let* ((top (+ +menus-height+ +bar-height+))
+         (strip (- height +strip-height+))
          (prompt (- strip +prompt-height+))
          (splitter (- prompt (transcript-height wishes height) +splitter+))
          (down-p (< height +low+))
          (column (+ (details-width wishes width) +splitter+)))
-    (append (list (list 'bar 0 0 width +bar-height+))
-            (place-displays wishes needs width +bar-height+ (- splitter +bar-height+)
-                            (- (if down-p prompt splitter) +bar-height+))
+    (append (list (list 'menus 0 0 width +menus-height+)
+                  (list 'bar 0 +menus-height+ width +bar-height+))
+            (place-displays wishes needs width top (- splitter top)
+                            (- (if down-p prompt splitter) top))
             (place-low (if down-p (- width column) width) splitter prompt)
             (list (list 'interactor 0 prompt width +prompt-height+)
                   (list 'strip 0 strip width +strip-height+)))))

@@ -1,4 +1,4 @@
-;;;; commands.lisp -- the menus of the window.
+;;;; commands.lisp -- what the menus, buttons and keys of the window do.
 
 (in-package :ars-magna.clim)
 
@@ -118,7 +118,7 @@
   (switch-color window))
 
 (defun open-below-bar (window rows opener)
-  (open-popup window rows 8 (+ +bar-height+ 2) opener))
+  (open-popup window rows 8 (+ +menus-height+ +bar-height+ 2) opener))
 
 (define-window-command (com-layers "Layers") (window)
     "Choose what the display of the world shows."
@@ -154,56 +154,3 @@
 (define-window-command (com-save-png "Save as PNG") (window)
     "Save a picture of the displays as PNG."
   (save-window window "png"))
-
-;;; The prompt's commands.
-
-(clim:define-command (com-line :command-table robot-window) ((name 'string))
-  (let ((window clim:*application-frame*))
-    (with-guarded-command (window name) (choose-line window name))))
-
-;;; The menu bar.
-
-(defun item (command title) (list title :command (list command)))
-
-(defun make-menu (name &rest items)
-  "Make a command table called NAME with ITEMS as its menu. Return NAME."
-  (clim:make-command-table name :inherit-from '(robot-window) :menu items :errorp nil)
-  name)
-
-(defun make-robot-menu ()
-  (apply #'make-menu 'robot-menu
-         (loop for (nil group) in *line-groups*
-               for items = (line-menu group)
-               when items
-                 collect (list group :menu
-                               (apply #'make-menu (symbolicate (string-upcase group) "-MENU")
-                                      items)))))
-
-(defun make-menu-bar ()
-  "Make the menu bar, with the line commands that there are now."
-  (make-menu 'run-menu
-             (item 'com-pause "Pause") (item 'com-resume "Resume") (item 'com-step "Step")
-             (item 'com-back "Back")
-             '(nil :divider nil)
-             (item 'com-slower "Half as fast") (item 'com-faster "Twice as fast")
-             (item 'com-default-rate "Default rate") (item 'com-free "As fast as possible")
-             '(nil :divider nil)
-             (item 'com-interrupt "Interrupt"))
-  (make-menu 'edit-menu
-             (item 'com-copy "Copy") (item 'com-paste "Paste"))
-  (make-menu 'view-menu
-             (item 'com-zoom-in "Zoom in") (item 'com-zoom-out "Zoom out")
-             (item 'com-fit "Whole map") (item 'com-find "Go to the robot")
-             '(nil :divider nil)
-             (item 'com-robots "Which robot ...") (item 'com-follow "Follow the robot")
-             (item 'com-layers "Layers ...")
-             (item 'com-color "Colours on or off"))
-  (make-menu 'picture-menu
-             (item 'com-save-svg "Save as SVG") (item 'com-save-png "Save as PNG")
-             '(nil :divider nil)
-             (item 'com-help "Keys and mouse") (item 'com-close "Close window"))
-  (make-menu 'menu-bar
-             '("Run" :menu run-menu) '("Edit" :menu edit-menu) '("View" :menu view-menu)
-             (list "Robot" :menu (make-robot-menu)) '("Window" :menu picture-menu)))
-
-(make-menu-bar)

@@ -11,10 +11,13 @@
         (setf (gethash name (window-panes window)) (clim:find-pane-named window name)))))
 
 (defclass layout-pane (clim:bboard-pane)
-  ((wishes :initform (make-wishes) :reader pane-wishes))
+  (;; Where its children were put last, as ARRANGE says it.
+   (places :initform '() :accessor pane-places))
   (:documentation "The pane that holds all parts of the window."))
 
-(define-constant +first-size+ '(1180 800)
+(defun pane-wishes (layout) (window-wishes (clim:pane-frame layout)))
+
+(define-constant +first-size+ '(1180 820)
   :test #'equal
   :documentation "How wide and high a window is at first, in pixels, where the screen has room.")
 
@@ -46,16 +49,23 @@
       (clim:move-and-resize-sheet pane left top width height)
       (clim:allocate-space pane width height))))
 
-(defun arrange-panes (layout)
-  "Put all parts of the window where the wishes of LAYOUT, their pane, want them."
+(defun places (layout)
+  "Return where all parts of the window belong now, as the wishes of LAYOUT, their pane, want it."
   (multiple-value-bind (width height) (pane-size layout)
-    (let ((window (clim:pane-frame layout)))
-      (point-nowhere window)
-      (loop for (name . place) in (arrange (pane-wishes layout)
-                                           (lambda (section) (section-need window section))
-                                           width height)
-            for pane = (child-with layout (pane-named window name))
-            when pane do (apply #'place-pane pane place)))))
+    (let* ((window (clim:pane-frame layout))
+           (column (details-width (pane-wishes layout) width)))
+      (arrange (pane-wishes layout)
+               (lambda (section) (section-need (pane-named window section) section column))
+               width height))))
+
+(defun arrange-panes (layout)
+  "Put all parts of the window where they belong now."
+  (let ((window (clim:pane-frame layout)))
+    (point-nowhere window)
+    (setf (pane-places layout) (places layout))
+    (loop for (name . place) in (pane-places layout)
+          for pane = (child-with layout (pane-named window name))
+          when pane do (apply #'place-pane pane place))))
 
 (defun child-with (layout pane)
   "Return the child of LAYOUT that is or holds PANE; CLIM may put borders around panes."
@@ -68,27 +78,37 @@
   (arrange-panes pane))
 
 (defparameter *first-needs*
-  '((state 108) (designators 22) (cameras 140) (hands 84) (bins 84) (plan 240))
-  "How many pixels high sections would like to be, as long as nothing has been painted in them.")
+  '((state 108) (designators 22) (cameras 140) (hands 84) (bins 84) (plan 100))
+  "How many pixels high sections would like to be of which nothing is known yet; designators and
+plans would never like to be lower.")
 
-(defun section-need (window section)
-  "Return how many pixels high SECTION of WINDOW would like to be."
-  (let ((extent (pane-extent (pane-named window section)))
-        (first (second (assoc section *first-needs*))))
-    (if (member section '(designators plan))
-        (max extent first)
-        (if (plusp extent) extent first))))
+(defun first-need (section) (second (assoc section *first-needs*)))
+
+(defgeneric section-need (pane section width)
+  (:documentation "Return how many pixels high PANE, which shows SECTION, would like to be if it is
+WIDTH pixels wide.")
+  (:method (pane section width)
+    (declare (ignore width))
+    (max (pane-extent pane) (first-need section)))
+  (:method ((pane detail-pane) section width)
+    (if (window-robot (window-of pane))
+        (max (detail-height pane (max 1 (- width +scroll-bar+)))
+             (if (eq section 'designators) (first-need section) 0))
+        (first-need section))))
 
 (defun window-layout (window)
   "Return the pane that holds all parts of WINDOW."
   (pane-named window 'layout))
 
-(defun window-wishes (window) (pane-wishes (window-layout window)))
-
 (defun rearrange (window)
   "Put all parts of WINDOW where its wishes want them now."
   (arrange-panes (window-layout window))
   (repaint-all window))
+
+(defun settle (window)
+  "Give each display of WINDOW the room that it needs for what it shows now."
+  (let ((layout (window-layout window)))
+    (unless (equal (places layout) (pane-places layout)) (rearrange window))))
 
 ;;; Folding.
 

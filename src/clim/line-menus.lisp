@@ -15,13 +15,12 @@
   (second (or (assoc (ars-magna.cli:line-family line) *line-groups*)
               (assoc :general *line-groups*))))
 
-(defun line-menu (group)
-  "Return the items of the menu GROUP, for a command table."
+(defun line-items (group)
+  "Return the items of the menu GROUP."
   (loop for line in (sort (copy-list (ars-magna.cli:all-lines)) #'string<
                           :key #'ars-magna.cli:line-name)
         when (string= group (line-group line))
-          collect (list (ars-magna.cli:line-name line)
-                        :command (list 'com-line (ars-magna.cli:line-name line)))))
+          collect (list (ars-magna.cli:line-name line) 'com-line (ars-magna.cli:line-name line))))
 
 (defun choose-line (window name)
   "Give the prompt the line command called NAME, or let the user add its arguments."
@@ -30,3 +29,7 @@
            (begin-line-with conversation (format nil "~A " text))
            (type-into (pane-named window 'interactor)))
           (t (give-line conversation text)))))
+
+(defun com-line (name)
+  "Do what the menus do for the line command called NAME."
+  (choose-line clim:*application-frame* name))

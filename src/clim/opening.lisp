@@ -187,6 +187,7 @@ else, if its user has chosen another one of the same run, that that is shown."
            (error (condition) (close-for condition window))
            (:no-error (&rest values) (declare (ignore values)) (forget-window window)))
       (warn-of-closing window "its thread was ended")
+      (keep-habits window)
       (end-conversation (window-conversation window))
       (stop-watching (window-watcher window))
       ;; The X server may have gone.
@@ -221,9 +222,9 @@ else, if its user has chosen another one of the same run, that that is shown."
                                 (lambda () (when window (request-refresh window)))
                                 (lambda (reason) (when window (leave-run window reason))))))
     (with-lock (*windows-lock*) (pushnew port *ports*))
-    (make-menu-bar)
     (start-watching watcher simulation)
     (setf window (make-robot-window watcher :frame-manager (clim:find-frame-manager :port port)))
+    (take-habits window)
     (with-lock (*windows-lock*) (push window *windows*))
     (setf (window-thread window)
           (start-thread (lambda () (run-window window))

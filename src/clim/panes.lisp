@@ -111,7 +111,24 @@ remember what was painted where."
 
 ;;; Details of the robot.
 
-(defclass detail-pane (display-pane) ())
+(defclass detail-pane (display-pane)
+  (;; What was measured last, and how high it was.
+   (measured :initform '(nil 0) :accessor pane-measured)))
+
+(defun measure-detail (pane width)
+  "Return how many pixels high a drawing is of all that PANE shows, WIDTH pixels wide."
+  (let ((canvas (make-instance 'blank-canvas)) (window (window-of pane)))
+    (with-canvas (canvas)
+      (nth-value 1 (draw-display canvas (pane-display pane) (window-snapshot window)
+                                 (window-robot window) :width width)))))
+
+(defun detail-height (pane width)
+  "Return what MEASURE-DETAIL does, without drawing again what looks as before."
+  (let ((key (list width (display-content (pane-display pane)
+                                          (window-robot (window-of pane))))))
+    (unless (equal key (first (pane-measured pane)))
+      (setf (pane-measured pane) (list key (measure-detail pane width))))
+    (second (pane-measured pane))))
 
 (defmethod pane-content ((pane detail-pane))
   (list (pane-offset pane) (multiple-value-list (pane-size pane))

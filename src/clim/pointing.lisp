@@ -107,11 +107,28 @@ now."
          (drag-scroll-bar pane y))
         (t (press pane button x y))))
 
+(defgeneric press-past-popup (pane button x y opener)
+  (:documentation "The mouse's BUTTON was pressed at X, Y of PANE, which has closed the popup that
+OPENER had opened.")
+  (:method (pane button x y opener)
+    (declare (ignore opener))
+    (unless (eq button :left) (press-somewhere pane button x y)))
+  ;; A button opens its own panel at once, but only closes that if it is open.
+  (:method ((pane bar-pane) button x y opener)
+    (let ((pressed (subject-at (pane-subjects pane) x y)))
+      (when (and pressed (not (eq opener (button-command pressed))))
+        (press-somewhere pane button x y)))))
+
+(defun take-press (pane button x y)
+  "The mouse's BUTTON was pressed at X, Y of PANE, which may not be the popup that is open."
+  (take-keys pane)
+  (let ((opener (and (not (typep pane 'popup-pane)) (close-popup (window-of pane)))))
+    (if opener
+        (press-past-popup pane button x y opener)
+        (press-somewhere pane button x y))))
+
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-press-event))
-  (let ((window (window-of pane)) (button (button-name event)))
-    (take-keys pane)
-    (unless (and (not (typep pane 'popup-pane)) (close-popup window) (eq button :left))
-      (press-somewhere pane button (clim:pointer-event-x event) (clim:pointer-event-y event)))))
+  (take-press pane (button-name event) (clim:pointer-event-x event) (clim:pointer-event-y event)))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-release-event))
   (let ((drag (pane-drag pane)))

@@ -20,7 +20,7 @@ away then unless STAYS-P. TICK, a function, says whether a row that is TICK-P is
   ((rows :initform '() :accessor pane-rows)
    ;; The row under the mouse, or NIL.
    (pointed :initform nil :accessor pane-pointed)
-   ;; The command that has opened it, or T.
+   ;; The command or menu that has opened it, or T.
    (opener :initform t :accessor pane-opener))
   (:default-initargs :background clim:+gray97+)
   (:documentation "A list of rows on top of the window."))
@@ -94,7 +94,7 @@ away then unless STAYS-P. TICK, a function, says whether a row that is TICK-P is
 
 (defun open-popup (window rows x y &optional (opener t))
   "Show ROWS on top of WINDOW, the upper left corner at X, Y of it. OPENER is the command that does
-so, a symbol, or T."
+so, a symbol, or the menu, or T."
   (let ((popup (window-popup window)))
     (setf (pane-rows popup) rows
           (pane-opener popup) opener
@@ -103,12 +103,17 @@ so, a symbol, or T."
     (clim:raise-sheet popup)
     (repaint popup)))
 
+(defun open-opener (window)
+  "Return what has opened the popup that is on top of WINDOW, or NIL if there is none."
+  (and (popup-open-p window) (pane-opener (window-popup window))))
+
 (defun close-popup (window)
   "Let the popup of WINDOW go away. Return what has opened it, or NIL if it was not there."
-  (when (popup-open-p window)
-    (setf (clim:sheet-enabled-p (window-popup window)) nil)
-    (repaint-all window)
-    (pane-opener (window-popup window))))
+  (let ((opener (open-opener window)))
+    (when opener
+      (setf (clim:sheet-enabled-p (window-popup window)) nil)
+      (repaint-all window)
+      opener)))
 
 ;;; The mouse.
 

@@ -80,6 +80,15 @@ where something is counted."
      (when (string= text (first (transcript-lines transcript)))
        (setf (first (transcript-lines transcript)) "")))))
 
+(defun go-on-from (transcript lines)
+  "Let TRANSCRIPT, of which nobody has seen anything, begin with LINES, newest first."
+  (call-changing-transcript
+   transcript
+   (lambda ()
+     (setf (transcript-lines transcript) lines
+           (transcript-count transcript) (length lines)
+           (transcript-newest transcript) (1- (length lines))))))
+
 (defun empty-transcript (transcript)
   (call-changing-transcript
    transcript

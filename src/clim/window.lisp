@@ -24,6 +24,8 @@
    (layers :initarg :layers :initform *picture-layers* :accessor window-layers
            :documentation "Which layers the window's display of the world shows.")
    (color-p :initarg :color-p :initform t :accessor window-color-p)
+   ;; How the user wants its parts to be arranged.
+   (wishes :initform (make-wishes) :accessor window-wishes)
    (transcript :initform nil :accessor window-transcript)
    (conversation :initform nil :accessor window-conversation)
    ;; For how many columns and rows its transcript has room.
@@ -37,17 +39,16 @@
    (focus :initform nil :accessor window-focus)
    ;; True if a line was begun by a key that came to a display.
    (typing-p :initform nil :accessor window-typing-p)
-   ;; The name of the robot that the displays have been given room for.
-   (settled :initform nil :accessor window-settled)
    ;; The parts found so far, by name.
    (panes-found :initform (make-hash-table :test 'eq) :reader window-panes)
    ;; Its car is true while an event is queued.
    (queued :initform (list nil) :reader window-queued)
    (painted :initform nil :accessor window-painted)
    (thread :initform nil :accessor window-thread))
-  (:menu-bar menu-bar)
+  (:menu-bar nil)
   (:command-table (robot-window))
   (:panes
+   (menus (clim:make-pane 'menu-pane :name 'menus))
    (bar (clim:make-pane 'bar-pane :name 'bar))
    (world (clim:make-pane 'world-pane :name 'world :display :world))
    (state (make-detail-pane 'detail-pane 'state :state))
@@ -64,7 +65,7 @@
    (default
     (clim:make-pane 'layout-pane
                     :name 'layout
-                    :contents (list* bar world state designators cameras hands bins plan
+                    :contents (list* menus bar world state designators cameras hands bins plan
                                      transcript interactor strip popup
                                      (append (mapcar #'make-title +titled+)
                                              (mapcar #'make-splitter +splitters+))))))
@@ -113,7 +114,7 @@ each snapshot."
 
 (defparameter *painted-parts*
   (append '(world state designators cameras hands bins plan transcript interactor
-            strip bar)
+            strip bar menus)
           (mapcar #'title-name +titled+) +splitters+)
   "The names of the parts of the window that we paint.")
 
@@ -143,13 +144,6 @@ each snapshot."
     (when (and sheet (swap-if (car (window-queued window)) nil t))
       (clim:queue-event sheet (make-instance 'refresh-event :sheet sheet)))))
 
-(defun settle (window)
-  "The first time, and when WINDOW has got another robot, give each display the room that it needs."
-  (let ((robot (shown-robot window)))
-    (unless (eq robot (window-settled window))
-      (setf (window-settled window) robot)
-      (rearrange window))))
-
 (defun refresh (window)
   "Paint those panes of WINDOW that would look different now, all at once."
   (let ((snapshot (window-snapshot window)))
@@ -169,7 +163,7 @@ each snapshot."
     (refresh window)))
 
 
-;;; Reading commands from the menus.
+;;; CLIM's loop reads commands, of which none come: all that happens are events.
 
 (defmethod clim:read-frame-command ((window robot-window) &key stream)
   (declare (ignore stream))

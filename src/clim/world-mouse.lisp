@@ -39,10 +39,33 @@
 
 ;;; Dragging.
 
+(defun at-middle-p (pane image x y)
+  "True if X, Y of PANE is at the middle of the robot that IMAGE is of."
+  (multiple-value-bind (to-x to-y) (point-at pane x y)
+    (let ((reach (/ (with-canvas ((make-instance 'blank-canvas) :scale (pane-scale pane))
+                      (robot-radius))
+                    2 (pane-scale pane))))
+      (<= (max (abs (- to-x (robot-image-x image))) (abs (- to-y (robot-image-y image))))
+          reach))))
+
+(defun robots-at-middle (pane subjects x y)
+  "Return those of SUBJECTS that are robots with X, Y of PANE at their middle, the one shown first."
+  (let ((robots (remove-if-not (lambda (subject)
+                                 (and (typep subject 'robot-image)
+                                      (at-middle-p pane subject x y)))
+                               subjects)))
+    (stable-sort robots (lambda (one other) (and one (not other)))
+                 :key (lambda (image) (shown-robot-p (window-of pane) image)))))
+
 (defun grip-at (pane x y)
-  "Return the thing or robot that a drag from X, Y of PANE takes along, or NIL."
-  (find-if (lambda (subject) (typep subject '(or thing-image robot-image)))
-           (picked-first (window-of pane) (subjects-under pane x y))))
+  "Return the thing or robot that a drag from X, Y of PANE takes along, or NIL: what is picked, or a
+robot at its middle, whatever it stands on, or what is smallest there."
+  (let ((subjects (remove-if-not (lambda (subject) (typep subject '(or thing-image robot-image)))
+                                 (subjects-under pane x y)))
+        (key (window-selection (window-of pane))))
+    (or (and key (find key subjects :key #'subject-key :test #'equal))
+        (first (robots-at-middle pane subjects x y))
+        (first subjects))))
 
 (defun movable-p (pane subject)
   "True if SUBJECT can be dragged in PANE: a thing or a robot, while time stands still."

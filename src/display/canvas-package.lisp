@@ -20,6 +20,8 @@
            #:paint-segments #:paint-string #:call-with-clipping #:with-clipping
            #:call-with-origin #:with-origin #:call-with-subject #:with-subject
            #:subject-title #:call-on-canvas #:with-canvas #:+character-width+ #:+line-height+)
+  ;; blank-canvas
+  (:export #:blank-canvas)
   ;; drawing
   (:export #:*calls-left*)
   (:export #:draw-rectangle #:draw-rectangles #:draw-arc #:draw-arcs #:draw-line #:draw-lines

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.display)
 
-;;; A name is written near by where its box meets no wall, thing, robot, number of a designator,
-;;; mark of a place or other name, and rather no trail; if there is no such room, not at all.
+;;; A name is written near by where its box meets no thing, robot, number of a designator, mark of a
+;;; place or other name, and rather no wall and no trail; if there is no such room, not at all.
 ;;; Other lines end before a name. Robots come first, then large things.
 
 (define-constant +name-size+ 10 :documentation "How high the font of names is, in pixels.")
@@ -20,7 +20,16 @@ first."
                                   (list (+ x (/ gap 2)) (- y gap high))
                                   (list (+ x (/ gap 2)) (+ y gap))
                                   (list (- x (/ gap 2) width) (- y gap high))
-                                  (list (- x (/ gap 2) width) (+ y gap)))
+                                  (list (- x (/ gap 2) width) (+ y gap))
+                                  ;; In a corner of walls: along a side.
+                                  (list (- x half) (- y gap high))
+                                  (list (- x half) (+ y gap))
+                                  (list (- (+ x half) width) (- y gap high))
+                                  (list (- (+ x half) width) (+ y gap))
+                                  (list (+ x gap) (- y half))
+                                  (list (+ x gap) (- (+ y half) high))
+                                  (list (- x gap width) (- y half))
+                                  (list (- x gap width) (- (+ y half) high)))
           collect (list left top (+ left width) (+ top high)))))
 
 (defun boxes-beside (x y half width marks)
@@ -62,20 +71,29 @@ on it, meets."
                         repeat +trail-length+
                         thereis (and (< left (to-pixels x) right) (< top (to-pixels y) bottom))))))
 
+(define-constant +thick-wall+ 4
+  :documentation "From how many pixels to a cell on a name may hide a part of a wall.")
+
 (defun best-box (snapshot layers boxes taken)
-  "Return the first of BOXES that is on the map of SNAPSHOT, meets no wall, none of TAKEN and no
-mark of a place that LAYERS show, and rather no trail; or NIL."
+  "Return the first of BOXES that is in the part of the map that SNAPSHOT shows and meets none of
+TAKEN: rather no wall and no mark of a place that LAYERS show, and then rather no trail; if need be
+a thick wall; or NIL."
   (let* ((map (snapshot-map snapshot))
-         (free (remove-if-not
-                (lambda (box)
-                  (and (within-shown-p snapshot box)
-                       (notany (lambda (other) (overlap-p box other)) taken)
-                       (not (on-wall-p map box))
-                       (not (and (member :places layers) (on-mark-p map box)))))
-                boxes)))
+         (possible (remove-if-not
+                    (lambda (box)
+                      (and (within-shown-p snapshot box)
+                           (notany (lambda (other) (overlap-p box other)) taken)))
+                    boxes))
+         (free (remove-if (lambda (box)
+                            (or (on-wall-p map box)
+                                (and (member :places layers) (on-mark-p map box))))
+                          possible)))
     (or (and (member :trail layers)
              (find-if-not (lambda (box) (on-trail-p snapshot box)) free))
-        (first free))))
+        (first free)
+        (and (<= +thick-wall+ graphics-scale*)
+             (find-if-not (lambda (box) (and (member :places layers) (on-mark-p map box)))
+                          possible)))))
 
 (define-constant +longest-name+ 24
   :documentation "How many characters of a name are written beside a sample, or on the map.")
@@ -99,10 +117,11 @@ have small letters of their own."
 
 (defun named-spots (snapshot)
   "Return lists (name x y half) of what has a name on the map, in order of importance."
-  (append (loop for robot in (snapshot-robots snapshot)
+  (append (loop with robots = (snapshot-robots snapshot)
+                for robot in robots
                 collect (list (short-name (robot-title robot))
                               (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
-                              (* 8/5 (robot-radius))))
+                              (* 8/5 (spot-radius robot robots))))
           (loop for image in (stable-sort (coerce (snapshot-things snapshot) 'list) #'>
                                           :key #'thing-image-size)
                 collect (list (short-name (thing-image-name image))

@@ -47,8 +47,7 @@
     (loop for robot in robots for position from 0
           do (draw-layers canvas snapshot robot (robot-color position) layers))
     (when (member :reach layers) (draw-reach canvas (snapshot-things snapshot)))
-    (loop for robot in robots for position from 0
-          do (draw-robot canvas robot (robot-color position)))
+    (draw-robots canvas robots)
     (draw-things canvas (snapshot-things snapshot))
     (draw-labels canvas snapshot layers)))
 

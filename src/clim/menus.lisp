@@ -1,0 +1,122 @@
+;;;; menus.lisp -- the bar of menus at the top of the window.
+
+(in-package :ars-magna.clim)
+
+;;; A menu is shown by the window's popup, so it is never beyond the window, and scrolls if it is
+;;; higher; nothing waits for it. A menu of menus shows one of these in its place.
+
+(defstruct (menu (:constructor make-menu (title items)) (:copier nil))
+  "A menu called TITLE. ITEMS, a list or a function that returns one, are (title command), menus,
+and NIL for a gap."
+  (title "" :type string :read-only t)
+  (items '() :type (or list function) :read-only t))
+
+(defmethod subject-title ((menu menu)) (format nil "Menu ~A" (menu-title menu)))
+
+(defun line-menus ()
+  "Return the menus of the prompt's lines that there are now."
+  (loop for (nil group) in *line-groups*
+        for items = (line-items group)
+        when items collect (make-menu group items)))
+
+(defparameter *menus*
+  (list (make-menu "Run" '(("Pause" com-pause) ("Resume" com-resume) ("Step" com-step)
+                           ("Back" com-back)
+                           nil
+                           ("Half as fast" com-slower) ("Twice as fast" com-faster)
+                           ("Default rate" com-default-rate) ("As fast as possible" com-free)
+                           nil
+                           ("Interrupt" com-interrupt)))
+        (make-menu "Edit" '(("Copy" com-copy) ("Paste" com-paste)))
+        (make-menu "View" '(("Zoom in" com-zoom-in) ("Zoom out" com-zoom-out)
+                            ("Whole map" com-fit) ("Go to the robot" com-find)
+                            nil
+                            ("Which robot ..." com-robots) ("Follow the robot" com-follow)
+                            ("Layers ..." com-layers) ("Colours on or off" com-color)))
+        (make-menu "Robot" #'line-menus)
+        (make-menu "Window" '(("Save as SVG" com-save-svg) ("Save as PNG" com-save-png)
+                              nil
+                              ("Keys and mouse" com-help) ("Close window" com-close))))
+  "The menus of the bar, from left to right.")
+
+(defun menu-items-now (menu)
+  (let ((items (menu-items menu)))
+    (if (functionp items) (funcall items) items)))
+
+;;; As rows of the popup.
+
+(defun submenu-row (window menu outer x y)
+  "Return the row of OUTER, a menu at X, Y of WINDOW, that leads to MENU."
+  (make-row (format nil "~A >" (menu-title menu))
+            :action (lambda () (open-menu window menu x y outer))))
+
+(defun item-row (window item menu x y)
+  "Return the row of ITEM of MENU, which is at X, Y of WINDOW."
+  (cond ((null item) (make-row ""))
+        ((menu-p item) (submenu-row window item menu x y))
+        (t (destructuring-bind (title command &rest arguments) item
+             (make-row title :action (lambda () (apply command arguments)))))))
+
+(defun way-back (window outer x y)
+  "Return in a list the row that leads back to OUTER, the menu at X, Y of WINDOW, if there is one."
+  (and outer
+       (list (make-row (format nil "< ~A" (menu-title outer))
+                       :action (lambda () (open-menu window outer x y))))))
+
+(defun open-menu (window menu x y &optional outer)
+  "Show MENU at X, Y of WINDOW; OUTER is the menu that it is part of."
+  (open-popup window
+              (append (way-back window outer x y)
+                      (loop for item in (menu-items-now menu)
+                            collect (item-row window item menu x y)))
+              x y (or outer menu)))
+
+;;; The bar.
+
+(defclass menu-pane (display-pane) ()
+  (:default-initargs :background clim:+gray75+)
+  (:documentation "The bar of menus."))
+
+(defmethod pane-content ((pane menu-pane))
+  (list (multiple-value-list (pane-size pane)) (open-opener (window-of pane))))
+
+(defun draw-menu-title (canvas menu x open-p)
+  "Draw the title of MENU from X on, lit if OPEN-P; return where it ends."
+  (let ((width (+ 14 (* +character-width+ (length (menu-title menu))))))
+    (with-subject (canvas menu)
+      (with-gcontext (draw-gcontext* :foreground (if open-p
+                                                     (svref lightblue* 9)
+                                                     (svref grey* 48)))
+        (draw-rectangle canvas draw-gcontext* x 0 width +menus-height+ t))
+      (draw-glyphs canvas draw-gcontext* (+ x 7) 14 (menu-title menu)))
+    (+ x width)))
+
+(defmethod paint ((pane menu-pane))
+  (clear pane clim:+gray75+)
+  (painting (canvas pane)
+    (loop with x = 0
+          with opener = (open-opener (window-of pane))
+          for menu in *menus*
+          do (setf x (draw-menu-title canvas menu x (eq menu opener))))))
+
+(defun menu-left (pane menu)
+  "Return where the title of MENU begins in PANE."
+  (second (assoc menu (pane-subjects pane))))
+
+(defun open-menu-of-bar (pane menu)
+  (open-menu (window-of pane) menu (floor (menu-left pane menu)) +menus-height+)
+  (repaint-if-changed pane))
+
+(defun menu-at (pane x y) (subject-at (pane-subjects pane) x y))
+
+(defmethod click ((pane menu-pane) button x y)
+  (declare (ignore button))
+  (let ((menu (menu-at pane x y)))
+    (when menu (open-menu-of-bar pane menu))))
+
+(defmethod press-past-popup ((pane menu-pane) button x y opener)
+  (unless (eq opener (menu-at pane x y)) (click pane button x y)))
+
+(defmethod hover-text ((pane menu-pane) x y)
+  (let ((menu (menu-at pane x y)))
+    (if menu (subject-title menu) "")))

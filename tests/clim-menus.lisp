@@ -1,0 +1,124 @@
+;;;; clim-menus.lisp -- the bar of menus: each entry can be reached, at any size of the window.
+
+(in-package :ars-magna.tests)
+
+(in-suite clim)
+
+(defun open-menu-called (window title)
+  "Click on the menu called TITLE in the bar of WINDOW."
+  (let ((bar (pane window 'window::menus)))
+    (window::take-press bar :left
+                        (+ 5 (window::menu-left bar (find title window::*menus*
+                                                          :key #'window::menu-title
+                                                          :test #'equal)))
+                        5)))
+
+(defun rows-of-popup (window)
+  "Return the texts of the menu or panel that is open in WINDOW, or NIL."
+  (and (window::popup-open-p window)
+       (cl:mapcar #'window::row-text (window::pane-rows (window::window-popup window)))))
+
+(defun choose-in-menu (window text)
+  "Click on the row called TEXT of the menu that is open in WINDOW."
+  (let* ((popup (window::window-popup window))
+         (position (position text (rows-of-popup window) :test #'equal)))
+    (window::scroll-to popup (* position window::+row-height+))
+    (window::take-press popup :left 20
+                        (- (+ 8 (* position window::+row-height+)) (window::pane-offset popup)))))
+
+(defun popup-inside-p (window)
+  (let ((popup (window::window-popup window)))
+    (multiple-value-bind (width height) (window::pane-size popup)
+      (multiple-value-bind (left top)
+          (clim:transform-position (clim:sheet-transformation popup) 0 0)
+        (multiple-value-call #'inside-p (list left top width height)
+          (window::pane-size (clim:sheet-parent popup)))))))
+
+(test window.a-new-one-is-as-the-user-left-the-last
+  "Layers, displays folded away, sizes, and what was said."
+  (in-window (window robot)
+    (window::switch-layer window :grid)
+    (window::fold window 'window::hands)
+    (setf (window::wishes-details-width (window::window-wishes window)) 300)
+    (window::say (window::window-transcript window) (format nil "That was said.~%"))
+    (let ((window::*habits* '()) (window::*said* '()) (layers (window:window-layers window)))
+      (window::keep-habits window)
+      (call-with-window
+       (lambda (next)
+         (window::take-habits next)
+         (is (equal layers (window:window-layers next)))
+         (is (window::folded-p next 'window::hands))
+         (is (= 300 (window::wishes-details-width (window::window-wishes next))))
+         (is (mentions-p (said-in next) "That was said."))
+         (window::fold next 'window::hands nil)
+         (is (window::folded-p window 'window::hands) "each has its own"))
+       robot))))
+
+(test menus.open-one-another
+  "A click on another title opens that menu at once, on the same one closes it."
+  (in-window (window robot)
+    (lay-out window 640 480)
+    (open-menu-called window "Run")
+    (is (member "Pause" (rows-of-popup window) :test #'equal))
+    (open-menu-called window "Edit")
+    (is (equal '("Copy" "Paste") (rows-of-popup window)))
+    (open-menu-called window "Edit")
+    (is (null (rows-of-popup window)))))
+
+(test menus.are-inside-of-a-small-window
+  "Each of the prompt's lines can be chosen in a menu, at 640 x 480."
+  (in-window (window robot)
+    (lay-out window 640 480)
+    (dolist (group (window::line-menus))
+      (open-menu-called window "Robot")
+      (is (popup-inside-p window))
+      (choose-in-menu window (format nil "~A >" (window::menu-title group)))
+      (is (popup-inside-p window))
+      (is (equal (cons "< Robot" (cl:mapcar #'first (window::menu-items-now group)))
+                 (rows-of-popup window)))
+      (window::close-popup window))))
+
+(test menus.give-lines-to-the-prompt
+  (in-window (window robot)
+    (lay-out window 640 480)
+    (flet ((choose (&rest texts)
+             (open-menu-called window "Robot")
+             (dolist (text texts) (choose-in-menu window text))))
+      (choose "Running >" "< Robot" "Seeing >" "STATUS")
+      (is (equal '("status") (lines-given window)))
+      (is (null (rows-of-popup window)))
+      (choose "Moving >" "TURN")
+      (is (equal '("turn ") (cl:mapcar #'second (keys-handed window)))))))
+
+(test menus.do-what-they-say
+  (in-window (window robot)
+    (lay-out window 640 480)
+    (let ((pane (pane window 'window::world)))
+      (open-menu-called window "View")
+      (choose-in-menu window "Zoom in")
+      (is (not (window::pane-fitting-p pane)))
+      (open-menu-called window "View")
+      (choose-in-menu window "Whole map")
+      (is (window::pane-fitting-p pane))
+      (open-menu-called window "View")
+      (choose-in-menu window "Layers ...")
+      (is (member "In colour" (rows-of-popup window) :test #'equal)))))
+
+(test panels.open-one-another
+  "A button of the tool bar opens its panel at once while another is open."
+  (in-window (window robot)
+    (lay-out window 640 480)
+    (let ((bar (pane window 'window::bar)))
+      (flet ((press (label)
+               (destructuring-bind (left top . rest)
+                   (rest (find label (window::pane-subjects bar)
+                               :key (lambda (subject) (window::button-label (first subject)))
+                               :test #'equal))
+                 (declare (ignore rest))
+                 (window::take-press bar :left (+ left 3) (+ top 3)))))
+        (press "Layers")
+        (is (member "In colour" (rows-of-popup window) :test #'equal))
+        (press "Help")
+        (is (member "Mouse" (rows-of-popup window) :test #'equal))
+        (press "Help")
+        (is (null (rows-of-popup window)))))))
