@@ -62,7 +62,7 @@
     (setf (robot::camera-last-view (robot:robot-camera robot 0)) '(1.0d0 20.25d0)
           (robot::camera-location (robot:robot-camera robot 0)) (world:find-thing 'box))
     (let ((picture (detail robot :cameras)))
-      (is (mentions-p picture "View now: 1.0 20.3"))
+      (is (mentions-p picture "View, asked for now: 1.0"))
       (is (mentions-p picture ">in </text>"))
       (is (mentions-p picture ">BOX#1</text>")))))
 

@@ -207,13 +207,13 @@ exactly once."
     (place-rover 4.5 4.5 0 rover)
     (let ((outcome (outcome () command:robot-go-distance 2)))
       (is (null (code outcome)))
-      (is (= (+ 2 3) (took outcome)))
+      (is (= (+ 4 3) (took outcome)))
       (is (near 6.5 (robot:robot-x rover) 1d-6))
       (is (= 0.8d0 (robot:robot-speed rover))))
     (place-rover 4.5 4.5 0 rover)
     (command:robot-set-speed rover 0.1)
     (run:run-ticks 2)
-    (is (= (+ 2 7) (took (outcome () command:robot-go-distance 0.7d0)))
+    (is (= (+ 4 7) (took (outcome () command:robot-go-distance 0.7d0)))
         "what rounding leaves takes no tick")))
 
 (test go-distance.interrupted-leaves-the-speed-as-it-was

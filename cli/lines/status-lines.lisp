@@ -69,8 +69,8 @@
   "Say that the views shown, of CAMERAS, are those of now, and when one was asked for, as the window
 shows it."
   (when cameras
-    (format t "Views are those of now. Asked for by CAM-VIEW: ~:{camera ~D ~:[never~;~:*at tick ~D~]~
-               ~:^, ~}.~%"
+    (format t "Views are those of now. Asked for by CAM-VIEW: ~
+               ~:{camera ~D ~:[never~;~:*at tick ~D~]~:^, ~}.~%"
             (loop for camera in cameras
                   collect (list (getf camera :number) (getf camera :asked-tick))))))
 
@@ -84,8 +84,8 @@ shows it."
 (define-line "STATUS" (session)
     (:seeing)
     "Show the robot: position, last change of position, real and estimated, heading, speed, turning
-speed, what its cameras have in view now, the place it sensed last, whose commands it and its parts carry
-out, whose was interrupted last by whose, what thinking costs unless that is as usual, its
+speed, what its cameras have in view now, the place it sensed last, whose commands it and its parts
+carry out, whose was interrupted last by whose, what thinking costs unless that is as usual, its
 designators; and that no ticks pass, if so. In Lisp: (status)."
   (let ((robot (session-robot)))
     (still (or (report-status session robot)

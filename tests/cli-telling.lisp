@@ -1,0 +1,63 @@
+;;;; cli-telling.lisp -- what somebody is told who sits at the prompt, and how often.
+
+(in-package :ars-magna.tests)
+
+(in-suite cli)
+
+(defun told-at-prompt (&rest lines)
+  "Return what somebody is told who types LINES at a prompt, of which each waits for the last."
+  (let ((out (make-string-output-stream)))
+    (cli:run-session
+     (cli:make-session
+      :input (make-instance 'cli::typed-text
+                            :octets (make-string-input-stream (format nil "~{~A~%~}" lines))
+                            :by-hand-p t)
+      :output out :patient t))
+    (base:one-line (get-output-stream-string out))))
+
+(test status.says-which-views-were-asked-for
+  "The window shows these, and STATUS those of now."
+  (run:call-with-simulation
+   (lambda ()
+     (let ((cli:*prompt-robot* 'ars-user::butler))
+       (is (mentions-p (told-at-prompt "cam-view 0" "status")
+                       "Views are those of now. Asked for by CAM-VIEW: camera 0 at tick"))
+       (is (mentions-p (told-at-prompt "status") ", camera 1 never."))))
+   '(ars-user::butler)))
+
+(test messages.that-repeat-are-told-less-and-less-often
+  (let ((told (make-hash-table :test 'equal)) (message (base::make-message :error '("again"))))
+    (is (equal '(1 2 3 10 100 1000)
+               (loop for count from 1 to 1001
+                     unless (cli::repeated-often-p message told) collect count)))))
+
+(defun failing-kicker-room ()
+  (eval '(world:defkicker fail-often (thing) () (error "no ~A" (world:thing-name thing))))
+  (eval '(world:defmap failing-room (9 9)
+          (rect (0 0) (8 8) bricks 10)
+          (obj (pot :kickers (fail-often)) (4.5 5.5) ((:size 1)))))
+  (eval '(robot:defrobot tester (failing-room (2.5 2.5) 0))))
+
+(test messages.of-kickers-that-fail-say-how-to-end-that
+  "They are counted on when lines are typed, until the kicker is another."
+  (with-own-definitions
+    (failing-kicker-room)
+    (run:call-with-simulation
+     (lambda ()
+       (let ((cli:*prompt-robot* 'tester))
+         (flet ((shown (&rest lines)
+                  (let ((told (apply #'told-at-prompt lines)))
+                    (values (occurrences "*ERROR* -> Error in kicker FAIL-OFTEN of POT#1: no POT"
+                                         told)
+                            told))))
+           (multiple-value-bind (count told) (shown "step 5" "step 5" "step 5")
+             (is (= 4 count))
+             (is (mentions-p told "Mend the kicker FAIL-OFTEN by DEFKICKER; or take it off: (put-"))
+             (is (mentions-p told "(thing (find-thing \"POT#1\"))). PAUSE stops time.")))
+           (is (= 6 (shown "step 5"
+                           (format nil "(defkicker ars-magna.tests::fail-often (it) () ~
+                                          (error \"no ~~A\" (thing-name it)))")
+                           "step 5")))
+           (is (= 2 (shown "step 2" "(put-kicker fail-often (thing (find-thing \"POT#1\")))"
+                           "step 2"))))))
+     '(tester))))
