@@ -88,7 +88,7 @@
       (is (equal '("status") (lines-given window)))
       (is (null (rows-of-popup window)))
       (choose "Moving >" "TURN")
-      (is (equal '("turn ") (cl:mapcar #'second (keys-handed window)))))))
+      (is (equal '("status" "turn ") (cl:mapcar #'second (keys-handed window)))))))
 
 (test menus.do-what-they-say
   (in-window (window robot)

@@ -178,7 +178,7 @@
       (is (loop for (box . others) on boxes
                 never (some (lambda (other) (display::overlap-p box other)) others)))
       (let ((canvas:graphics-scale* 24))
-        (is (< (* 4 (count-if (lambda (box) (display::on-wall-p map box)) boxes))
+        (is (< (* 2 (count-if (lambda (box) (display::on-wall-p map box)) boxes))
                (length boxes))
             "on a wall only where there is no other room")))))
 
