@@ -15,16 +15,6 @@
       :output out :patient t))
     (base:one-line (get-output-stream-string out))))
 
-(test status.says-which-views-were-asked-for
-  "The window shows these, and STATUS those of now."
-  (run:call-with-simulation
-   (lambda ()
-     (let ((cli:*prompt-robot* 'ars-user::butler))
-       (is (mentions-p (told-at-prompt "cam-view 0" "status")
-                       "Views are those of now. Asked for by CAM-VIEW: camera 0 at tick"))
-       (is (mentions-p (told-at-prompt "status") ", camera 1 never."))))
-   '(ars-user::butler)))
-
 (test messages.that-repeat-are-told-less-and-less-often
   (let ((told (make-hash-table :test 'equal)) (message (base::make-message :error '("again"))))
     (is (equal '(1 2 3 10 100 1000)

@@ -134,4 +134,4 @@
 (test details.where-no-view-was-taken-it-says-so
   (in-studio (robot)
     (is (mentions-p (format nil "~{~A~^ ~}" (words-in-picture robot :display :cameras))
-                    "View: not asked for yet, see the line CAM-VIEW"))))
+                    "View: none asked for yet"))))

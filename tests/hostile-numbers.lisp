@@ -88,7 +88,7 @@ what went wrong after it."
     (:camera (robot:robot-camera counter 0))
     (:hand (robot:robot-hand counter 0))
     (:storage-bin (robot:robot-storage-bin counter 0))
-    ((:number :angle :speed :ticks :tick-span) 1)
+    ((:number :angle :speed :distance :ticks :tick-span) 1)
     (:designator-type :non-local)
     (:specification '((:color world:red)))
     (:place-type 'world::corner)

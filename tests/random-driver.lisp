@@ -160,7 +160,7 @@ another command, and sometimes fails."
     (:designator-type (if (luck .7) :local :non-local))
     (:specification (any-specification))
     (:place-type (pick '(doorway convex concave beak "concave" nonsense)))
-    ((:number :speed) (pick '(0 1 .3 .8 -1 5)))
+    ((:number :speed :distance) (pick '(0 1 .3 .8 -1 5)))
     (:angle (pick '(0 1 -2 .1 3.2d0 1/2)))
     ((:ticks :tick-span) (pick '(0 1 2 5 20)))))
 

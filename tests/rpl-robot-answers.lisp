@@ -93,6 +93,8 @@
     (command:robot-go-forward :not-moving (driver:rpl-robot-go-forward 2)
      (driver:rpl-robot-set-speed 0))
     (command:robot-go-forward :robot-blocked (driver:rpl-robot-go-forward 30))
+    (command:robot-go-distance nil (driver:rpl-robot-go-distance 1.5))
+    (command:robot-go-distance :robot-blocked (driver:rpl-robot-go-distance 30))
     (command:robot-goto-wall nil (driver:rpl-robot-goto-wall))
     (command:robot-goto-wall :robot-blocked (driver:rpl-robot-goto-wall)
      (robot:place-robot fitter 3.5 5.5 (/ pi -2)))

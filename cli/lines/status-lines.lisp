@@ -64,16 +64,6 @@
   (format t "Designators:~%")
   (mapc #'write-designator (getf status :designators)))
 
-;; The manual's session does without, and who reads it into a program.
-(defun write-views-asked (cameras)
-  "Say that the views shown, of CAMERAS, are those of now, and when one was asked for, as the window
-shows it."
-  (when cameras
-    (format t "Views are those of now. Asked for by CAM-VIEW: ~
-               ~:{camera ~D ~:[never~;~:*at tick ~D~]~:^, ~}.~%"
-            (loop for camera in cameras
-                  collect (list (getf camera :number) (getf camera :asked-tick))))))
-
 (defun write-standstill (session simulation)
   "Say that SIMULATION, in which SESSION is, is live, but no ticks pass now, if that is so."
   (when (and (live-p simulation)
@@ -89,10 +79,8 @@ carry out, whose was interrupted last by whose, what thinking costs unless that 
 designators; and that no ticks pass, if so. In Lisp: (status)."
   (let ((robot (session-robot)))
     (still (or (report-status session robot)
-               (let ((status (status robot)))
-                 (write-status status)
-                 (when (terminal-p session) (write-views-asked (getf status :cameras)))
-                 (write-standstill session (current-simulation)))))))
+               (progn (write-status (status robot))
+                      (write-standstill session (current-simulation)))))))
 
 (defun where-text (thing)
   (let ((location (thing-location thing)))

@@ -18,9 +18,12 @@
   (:error robot-movement-error*)
   (:pulse robot-stopped*))
 
-(define-outcome (robot-go-forward robot-goto-wall robot-follow-wall robot-stop) ()
+(define-outcome (robot-go-forward robot-go-distance robot-goto-wall robot-follow-wall robot-stop) ()
   (:error robot-movement-error*)
   (:pulse robot-stopped*))
+
+;; The manual has no such command.
+(addition rpl-robot-go-distance)
 
 (define-outcome (robot-goto-designator) (camera designator)
   (:when (null err) (:set robot-arrived-at* designator))

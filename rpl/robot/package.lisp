@@ -66,7 +66,8 @@
   (:export #:rpl-robot-set-speed #:rpl-robot-set-turn-angle #:rpl-robot-turn
            #:rpl-robot-about-face #:rpl-robot-turn-left #:rpl-robot-turn-right
            #:rpl-robot-turn-corner #:rpl-robot-align-place #:rpl-robot-go-forward
-           #:rpl-robot-goto-wall #:rpl-robot-follow-wall #:rpl-robot-goto-designator
+           #:rpl-robot-go-distance #:rpl-robot-goto-wall #:rpl-robot-follow-wall
+           #:rpl-robot-goto-designator
            #:rpl-robot-stop #:rpl-robot-place #:rpl-camera-turn #:rpl-camera-align-place
            #:rpl-camera-align-robot #:rpl-camera-view #:rpl-camera-get-object-designator
            #:rpl-camera-get-all-object-designators #:rpl-camera-get-place-designator

@@ -193,7 +193,7 @@ view, with a tick in the direction in which it believes what it tracks to be."
   (if (camera-image-view camera)
       (format nil "View, asked for ~[now~:;~:*~D tick~:P ago~]: ~{~,1F~^ ~}"
               (camera-image-view-age camera) (camera-image-view camera))
-      "View: not asked for yet, see the line CAM-VIEW"))
+      "View: none asked for yet"))
 
 (defun draw-track-line (canvas track x y width)
   "Write what TRACK, the image of a designator, is, and draw what it denotes."
