@@ -140,14 +140,17 @@
 
 (defvar *breaking* nil "The thread of BREAK-ELSEWHERE.")
 (defvar *went-on* nil "What that has done.")
+(defvar *breaking-said* nil "The queue of its messages.")
 
 (defun break-elsewhere ()
   "Let another thread break, and wait until it asks how to go on."
   (setf *went-on* '()
+        *breaking-said* (base:make-message-queue)
         *breaking* (base:start-thread (lambda ()
-                                        (push (restart-case (progn (break "there") :went-on)
-                                                (turn-back () :turned-back))
-                                              *went-on*))
+                                        (let ((base:*message-queue* *breaking-said*))
+                                          (push (restart-case (progn (break "there") :went-on)
+                                                  (turn-back () :turned-back))
+                                                *went-on*)))
                                       "breaking"))
   (loop until (cli::session-breaks cli::*session*) do (base:yield-thread)))
 
@@ -228,7 +231,20 @@
 (test break.of-another-thread-goes-on-when-the-prompt-is-left
   (type-at-terminal "(ars-magna.tests::break-elsewhere)" "quit")
   (base:join-thread *breaking*)
-  (is (equal '(:went-on) *went-on*)))
+  (is (equal '(:went-on) *went-on*))
+  (is (mentions-p (base:message-text (first (base:take-messages *breaking-said*)))
+                  "continue was chosen")))
+
+(test break.that-only-windows-ask-about-is-told-in-lisps-own-repl
+  "Who waits there would see nothing else."
+  (let ((cli::*own-process-p* nil)
+        (window (cli:make-session :place (constantly nil)))
+        (breakage (cli::make-breakage (make-condition 'simple-condition :format-control "look")
+                                      '() (base:current-thread) '())))
+    (is (mentions-p (cli::words-for-repl (list window) breakage) "look"))
+    (is (null (cli::words-for-repl (list window (cli:make-session)) breakage)))
+    (setf cli::*own-process-p* t)
+    (is (null (cli::words-for-repl (list window) breakage)))))
 
 ;;; Whose matter a break is.
 

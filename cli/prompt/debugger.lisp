@@ -127,11 +127,25 @@ comes after that."
              (show-prompt console "Robot> "))))
     (signal-semaphore (breakage-done breakage))))
 
+(defvar *own-process-p* nil "True in a process that does nothing but this program.")
+
+(defun words-for-repl (sessions breakage)
+  "Return what to say on the error output if BREAKAGE is asked about in SESSIONS that are all in
+windows, as somebody may wait in Lisp's own REPL meanwhile; or NIL."
+  (and (not *own-process-p*)
+       (every #'session-place sessions)
+       (format nil "~A: a window asks how it goes on." (break-line (first sessions) breakage))))
+
+(defun tell-repl (sessions breakage)
+  (let ((words (words-for-repl sessions breakage)))
+    (when words (say-on-error-output words))))
+
 (defun debug-elsewhere (sessions breakage)
   "Do what the thread of one of SESSIONS orders for BREAKAGE, until that is to go on."
   (dolist (session sessions)
     (setf (session-breaks session) (append (session-breaks session) (list breakage))))
   (unwind-protect (progn (dolist (session sessions) (announce-break session breakage))
+                         (tell-repl sessions breakage)
                          (loop
                            (wait-on-semaphore (breakage-ordered breakage))
                            (funcall (breakage-order breakage))
@@ -208,8 +222,6 @@ of this thread, or all that listen to its simulation, or the newest."
           ((remove-if-not #'terminal-p (sessions-hearing *simulation*)))
           ((and own (terminal-p own)) (list own)))))
 
-(defvar *own-process-p* nil "True in a process that does nothing but this program.")
-
 (defun others-matter-p ()
   "True if what breaks in this thread is no matter of prompts: it is a user's own, in a Lisp that
 does other things too, and no prompt runs in it."
@@ -256,12 +268,22 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
 
 ;;; From when to when.
 
+(defun release (session breakage)
+  "Let BREAKAGE, which has waited for SESSION only, go on as it most likely should, and say so."
+  (let ((restart (first (breakage-restarts breakage))))
+    (hand-order session breakage
+                (lambda ()
+                  (warning-set (format nil "The prompt that asked how ~A goes on has gone; ~A was ~
+                                            chosen"
+                                       (break-line session breakage)
+                                       (plain-name (restart-name restart))))
+                  (invoke-restart restart)))))
+
 (defun release-all (session)
   "Let all that waits for SESSION, which is over, and for no other, go on."
   (dolist (breakage (session-breaks session))
     (unless (removef (breakage-sessions breakage) session)
-      (hand-order session breakage
-                  (lambda () (invoke-restart (first (breakage-restarts breakage))))))))
+      (release session breakage))))
 
 (defun call-with-debugger (session function)
   "Call FUNCTION, while SESSION is what the debugger asks."
