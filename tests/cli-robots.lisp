@@ -45,6 +45,15 @@
   (with-names ("MARVIN" "GOFER")
     (is (equal '("15") (type-to 'ars-worlds:marvin "(values (round (robot-position gofer)))")))))
 
+(test robots.that-others-command-are-named-in-messages
+  (with-names ("MARVIN" "GOFER")
+    (is (equal '("robot-turn: Robot turned 1.00" "gofer: robot-turn: Robot turned 1.00"
+                 "*ERROR* -> gofer: Robot cannot move: its speed is 0")
+               (remove-if (lambda (line) (search "set-speed" line))
+                          (type-to 'ars-worlds:marvin "turn 1" "(robot-turn gofer 1 nil)"
+                                   "(robot-set-speed gofer 0 nil)"
+                                   "(robot-go-forward gofer 1 nil)"))))))
+
 (test robots.that-run-live-are-known
   (with-names ("DOT")
     (unwind-protect (run:simulator 'ars-worlds:dot :rate :free :display nil)

@@ -139,7 +139,7 @@ KEYS have been pressed at Robot>."
   (lambda (console)
     (cli::write-messages (loop for (kind text) on kinds-and-texts by #'cddr
                                collect (base::make-message kind (list text)))
-                         console)
+                         (cli::%make-session :console console))
     (finish-output console)))
 
 (test screen.has-messages-above-what-is-typed

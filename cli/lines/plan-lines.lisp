@@ -100,7 +100,10 @@ package; NIL if there is none."
 (defun let-plans-drive (robot)
   "Let ROBOT be the one that plans drive. Signals BAD-LINE while they drive another."
   (unless (and (plan-runner-now) (eq robot (rpl-robot)))
-    (when (plans) (reject-line "Plans are driving ~A. STOP-PLAN ends them." (rpl-robot)))
+    (when (plans)
+      (reject-line "Plans drive one robot of a run at a time, now ~A. STOP-PLAN ends what ~
+                    drives that."
+                   (rpl-robot)))
     (rpl-init-robot robot)))
 
 (defun begin-errand (errand plan arguments)

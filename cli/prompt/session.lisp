@@ -180,24 +180,31 @@ DISPLAY says so."
 (defun message-ink (message)
   (ink-of (if (others-p message) :others (message-kind message))))
 
-(defun placed-message-text (message account)
-  "Return what MESSAGE says; if it is an error in a script, with the place of the line under way."
-  (if (eq :error (message-kind message))
-      (placed-text account (message-text message))
-      (message-text message)))
+(defun other-robot (message session)
+  "Return the name of the robot that MESSAGE tells of, unless it is the one that SESSION commands."
+  (let ((own (session-robot-name session)) (name (message-robot message)))
+    (and own name (not (eq own name)) name)))
 
-(defun write-painted (message console account out)
-  "Write MESSAGE, of what has ACCOUNT, to OUT as CONSOLE is to show it."
+(defun message-words (message session)
+  "Return what SESSION says for MESSAGE: whose command it tells of, if another robot's; and if it is
+an error in a script, with the place of the line under way."
+  (let ((text (format nil "~@[~(~A~): ~]~A" (other-robot message session) (message-text message))))
+    (if (eq :error (message-kind message))
+        (placed-text (session-account session) text)
+        text)))
+
+(defun write-painted (message session out)
+  "Write MESSAGE to OUT as the console of SESSION is to show it."
   (write-string (painted (visible (with-output-to-string (text)
-                                    (write-message message text
-                                                   (placed-message-text message account))))
-                         (message-ink message) console)
+                                    (write-message message text (message-words message session))))
+                         (message-ink message) (session-console session))
                 out))
 
 ;; As reading 197 says.
-(defun write-messages (messages console &optional account)
-  (let ((text (with-output-to-string (out)
-                (dolist (message messages) (write-painted message console account out)))))
+(defun write-messages (messages session)
+  (let ((console (session-console session))
+        (text (with-output-to-string (out)
+                (dolist (message messages) (write-painted message session out)))))
     (if (and (unanswered-p console) (eq (message-kind (first messages)) :message))
         (write-after-prompt (fitted text console (console-prompt console)) console)
         (write-fresh (fitted text console) console))))
@@ -232,7 +239,7 @@ DISPLAY says so."
           (messages (messages-for session messages)))
       (when (and messages (not flush-all-errors*))
         (or (report-messages (session-account session) messages)
-            (write-messages messages console (session-account session)))
+            (write-messages messages session))
         (loop for message in messages
               for text = (repetition-text message (session-told session))
               when text do (write-fresh (fitted text console) console)))

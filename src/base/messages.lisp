@@ -15,16 +15,21 @@
 (defvar *told-of* nil
   "A note of who asked for what messages tell of here, as NOTE-OF-ASKER returns it, or NIL.")
 
+(defvar *robot-told-of* nil
+  "The name of the robot whose doing messages tell of here, or NIL.")
+
 (defvar *run-that-reports* (constantly nil)
   "A function that returns the run that a message queued in this thread belongs to, or NIL.")
 
 (defstruct (message (:constructor make-message (kind items)) (:copier nil))
   "What the simulator or a user has to say: KIND is :error, :warning or :message. ASKER is a note of
-who asked for what it tells of, such as a command that has ended, or NIL. RUN is what it belongs to,
-as several runs may share a queue, or NIL."
+who asked for what it tells of, such as a command that has ended, or NIL; ROBOT is the name of the
+robot whose command that is, or NIL. RUN is what it belongs to, as several runs may share a queue,
+or NIL."
   (kind :message :type (member :error :warning :message) :read-only t)
   (items '() :type list :read-only t)
   (asker *told-of* :read-only t)
+  (robot *robot-told-of* :read-only t)
   (run (funcall *run-that-reports*) :read-only t))
 
 (defstruct (message-queue (:constructor make-message-queue ()) (:copier nil))
@@ -40,6 +45,8 @@ that reports) after each message is queued."
       (documentation 'message-items 'function) "Return the items that the message is made of."
       (documentation 'message-asker 'function)
       "Return a note of who asked for what the message tells of, or NIL."
+      (documentation 'message-robot 'function)
+      "Return the name of the robot whose command the message tells of, or NIL."
       (documentation 'message-run 'function) "Return the run that the message belongs to, or NIL."
       (documentation 'make-message-queue 'function) "Return a new, empty queue of messages."
       (documentation 'message-queue-listener 'function)

@@ -143,7 +143,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:*message-queue* #:make-message-queue #:message-queue
            #:copy-message-queue #:message-queue-listener
            #:message #:message-kind #:message-items #:message-asker
-           #:message-run #:*run-that-reports* #:*told-of*
+           #:message-robot #:*robot-told-of* #:message-run #:*run-that-reports* #:*told-of*
            #:take-messages #:queue-message
            #:message-text #:phrase
            #:write-message #:write-items #:out #:*message-limit*)

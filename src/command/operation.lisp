@@ -96,9 +96,13 @@ command that it cut short, or NIL"))
       (string (format nil "~A" text))
       (function (funcall text operation)))))
 
+(defun name-of-robot (operation)
+  "Return the name of the robot that OPERATION is of, or whose part it is of."
+  (robot-name (resource-robot (operation-resource operation))))
+
 (defun tell-of (operation text)
   "Queue the message TEXT about OPERATION."
-  (let ((*told-of* (request-asker operation)))
+  (let ((*told-of* (request-asker operation)) (*robot-told-of* (name-of-robot operation)))
     (message-set (command-prefix (operation-command operation)) ": " text)))
 
 (defun note-failed (operation code text)
@@ -111,6 +115,7 @@ command that it cut short, or NIL"))
 (defun report (operation code results)
   "Queue the message that OPERATION ends with (reading 229)."
   (let* ((*told-of* (request-asker operation))
+         (*robot-told-of* (name-of-robot operation))
          (command (operation-command operation))
          (report (command-report command)))
     (cond ((eq code :interrupt)

@@ -70,7 +70,9 @@ See reading 161."
     (when track
       (setf (camera-tracking camera) nil)
       (when warning
-        (let ((*told-of* (track-asker track))) (warning-set warning)))
+        (let ((*told-of* (track-asker track))
+              (*robot-told-of* (robot-name (camera-robot camera))))
+          (warning-set warning)))
       (if (eq code :interrupt)
           (tell-track-ended track code)
           (push (cons track code) (robot-ended-tracks (camera-robot camera))))
@@ -93,7 +95,9 @@ is lost and no other camera tracks the designator, that is dropped."
   (let* ((track (camera-tracking camera))
          (designator (stop-track camera code warning)))
     (when (and designator (not (eq code :interrupt)) (not (tracked-p designator)))
-      (let ((*told-of* (track-asker track))) (drop-designator designator)))))
+      (let ((*told-of* (track-asker track))
+            (*robot-told-of* (robot-name (camera-robot camera))))
+        (drop-designator designator)))))
 
 (defun lose-track (camera)
   (end-track camera :lost-track
