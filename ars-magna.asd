@@ -257,7 +257,8 @@
                    (:file "file-trouble") (:file "forms") (:file "evaluation")
                    (:file "carrying-out") (:file "guarding")
                    (:file "plans") (:file "loading") (:file "worlds") (:file "choices")
-                   (:file "breakage") (:file "debugger") (:file "window-system") (:file "completing")
+                   (:file "breakage") (:file "answering") (:file "debugger")
+                   (:file "window-system") (:file "completing")
                    (:file "prompt") (:file "sessions") (:file "visits")))
      (:module "lines" :serial t
       :components ((:file "way-lines") (:file "own-lines") (:file "part-lines")

@@ -48,6 +48,20 @@
     (type-batch "(+ 1 2)")
     (is (eq hook (base:debugger-hook)))))
 
+(test hook.that-threads-share-follows-from-the-prompts-at-work
+  "Whichever comes first: that of a window may, and go before the terminal's does."
+  (let ((before (base:common-debugger-hook)))
+    (cli::begin-sharing 'cli::enter-debugger)
+    (cli::begin-sharing 'cli::enter-debugger)
+    (cli::end-sharing 'cli::enter-debugger)
+    (is (eq 'cli::enter-debugger (base:common-debugger-hook)))
+    (cli::begin-sharing 'cli::debugger-disabled-hook)
+    (is (eq 'cli::enter-debugger (base:common-debugger-hook)))
+    (cli::end-sharing 'cli::enter-debugger)
+    (is (base:disabled-p (base:common-debugger-hook)))
+    (cli::end-sharing 'cli::debugger-disabled-hook)
+    (is (eq before (base:common-debugger-hook)))))
+
 ;;; Where somebody does.
 
 (test break.asks-how-to-go-on

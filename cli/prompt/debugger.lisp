@@ -287,11 +287,12 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
 
 (defun call-with-debugger (session function)
   "Call FUNCTION, while SESSION is what the debugger asks."
-  (let ((outer-session *session*) (outer-hook (debugger-hook)))
+  (let ((outer *session*))
     (setf *session* session
-          (session-thread session) (current-thread)
-          (debugger-hook) (if (terminal-p session) 'enter-debugger 'debugger-disabled-hook))
-    (unwind-protect (call-among-sessions session function)
-      (setf *session* outer-session
-            (debugger-hook) outer-hook)
+          (session-thread session) (current-thread))
+    (unwind-protect (call-sharing (if (terminal-p session)
+                                      'enter-debugger
+                                      'debugger-disabled-hook)
+                                  (lambda () (call-among-sessions session function)))
+      (setf *session* outer)
       (release-all session))))

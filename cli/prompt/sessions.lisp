@@ -4,33 +4,6 @@
 
 ;;; Each has a thread, a robot and a current simulation of its own.
 
-;;; Who answers what breaks.
-
-(defvar *answering* (list 0 nil)
-  "How many sessions there are beside the terminal's, and the debugger's hook before the first.")
-
-(defun begin-answering ()
-  "Let what breaks in any thread ask one of the sessions, if nobody else is there to be asked."
-  (with-lock (*sessions-lock*)
-    (let ((hook (common-debugger-hook)))
-      (when (and (= 1 (incf (first *answering*)))
-                 (or (null hook) (disabled-p hook)))
-        (setf (second *answering*) (list hook)
-              (common-debugger-hook) 'enter-debugger)))))
-
-(defun end-answering ()
-  (with-lock (*sessions-lock*)
-    (when (zerop (decf (first *answering*)))
-      (let ((before (shiftf (second *answering*) nil)))
-        (when before (setf (common-debugger-hook) (first before)))))))
-
-(defun call-answering (function)
-  (begin-answering)
-  (unwind-protect (funcall function)
-    (end-answering)))
-
-;;; A session beside others.
-
 (defun call-apart (simulation robot-name function)
   "Call FUNCTION, in whose thread a prompt commands the robot ROBOT-NAME of SIMULATION, whatever
 others do."
@@ -40,10 +13,9 @@ others do."
         (*world* (simulation-world simulation))
         (*message-queue* (simulation-messages simulation))
         (*forks-to-keep* t))
-    (with-debugger-hook ((debugger-hook))
-      (handler-case (call-answering function)
-        ;; One that has come before the session was ready for it, or after.
-        (user-interrupt () nil)))))
+    (handler-case (funcall function)
+      ;; One that has come before the session was ready for it, or after.
+      (user-interrupt () nil))))
 
 (defun run-session-apart (session simulation robot-name)
   "Read lines of SESSION and do what they say to the robot ROBOT-NAME of SIMULATION, in this thread,

@@ -1,0 +1,47 @@
+;;;; answering.lisp -- what is called, while prompts are at work, when something breaks.
+
+(in-package :ars-magna.cli)
+
+;;; Each prompt has a hook for what breaks in its own thread. All other threads share one, which
+;;; follows from the prompts that are at work, in whatever order they come and go: the debugger's if
+;;; one of them can ask its user; else the one that says that nobody sits there. Without prompts it
+;;; is what it was before.
+
+(defvar *hooks-at-work* '() "The hooks of the prompts that are at work, the newest first.")
+(defvar *hook-before* nil "What hook all threads shared before the first of them.")
+
+(defun hook-to-share ()
+  "Return the hook that all threads are to share."
+  (cond ((member 'enter-debugger *hooks-at-work*) 'enter-debugger)
+        (*hooks-at-work* (first *hooks-at-work*))
+        (t *hook-before*)))
+
+(defun begin-sharing (hook)
+  (with-lock (*sessions-lock*)
+    (unless *hooks-at-work* (setf *hook-before* (common-debugger-hook)))
+    (push hook *hooks-at-work*)
+    (setf (common-debugger-hook) (hook-to-share))))
+
+(defun end-sharing (hook)
+  (with-lock (*sessions-lock*)
+    (setf *hooks-at-work* (remove hook *hooks-at-work* :count 1)
+          (common-debugger-hook) (hook-to-share))))
+
+(defun answered-elsewhere-p ()
+  "True if somebody else answers what breaks, such as an editor, and the prompt is not in the thread
+in which he began it."
+  (let ((hook (common-debugger-hook)))
+    (and (own-thread-p)
+         (null *hooks-at-work*)
+         hook
+         (not (disabled-p hook)))))
+
+(defun call-sharing (hook function)
+  "Call FUNCTION, a prompt at work, while HOOK is the debugger's in this thread, and one of those
+that others may share."
+  (with-debugger-hook (hook)
+    (if (answered-elsewhere-p)
+        (funcall function)
+        (progn (begin-sharing hook)
+               (unwind-protect (funcall function)
+                 (end-sharing hook))))))
