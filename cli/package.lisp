@@ -80,7 +80,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:export #:session #:make-session #:session-robot #:session-errors #:session-input
            #:run-session #:prompt #:*prompt-robot* #:*whereabouts-hooks*)
   ;; listening, going-on
-  (:export #:listen-instead #:go-to-run #:run-after #:tell-of-run #:away-p)
+  (:export #:listen-instead #:go-to-run #:run-after #:tell-of-run #:away-p #:way-in)
   ;; breakage
   (:export #:awaited-answers)
   ;; sessions

@@ -50,6 +50,18 @@
         (is (eq other (window::window-for (robot:find-robot 'heifer))))
         (is (null (window::robot-to-show left)))))))
 
+(test going-on.a-window-stays-when-there-is-no-run-to-go-on-in
+  "As while a file is loaded anew that defines the map: what starts then is shown there."
+  (in-shed
+    (with-window-of (window 'mole)
+      (let ((old time:*simulation*))
+        (run:end-simulation old "enough")
+        (window::leave-run window "enough")
+        (window::leave-run window "enough")
+        (is (equal (list 'mole old) (shown-in window)))
+        (is (= 1 (occurrences "The run of MOLE is over: enough." (said-in window))))
+        (is (eq window (window::window-for (robot:find-robot 'mole))))))))
+
 (test going-on.a-window-is-not-led-out-of-the-trial-of-its-prompt
   (in-shed
     (with-window-of (window 'mole)

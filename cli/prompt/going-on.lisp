@@ -37,6 +37,12 @@ SIMULATION, which is over, and the name of the robot that it commands there; NIL
   "True if SESSION is in a trial or a fork."
   (or (session-visit session) (plusp (session-forks session))))
 
+(defun way-in (simulation)
+  "Return in words how a prompt has come into SIMULATION, if by TRIAL or FORK, or NIL."
+  (loop for session in (sessions-hearing simulation)
+        thereis (cond ((session-visit session) "a trial")
+                      ((plusp (session-forks session)) "a fork"))))
+
 (defun say-in (session text)
   "Show TEXT, a line, in SESSION, and the prompt again. Any thread may ask."
   (with-lock ((session-lock session))

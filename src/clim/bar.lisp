@@ -2,6 +2,9 @@
 
 (in-package :ars-magna.clim)
 
+;;; Keys that are letters are capitals: a line that one types begins with a small one, and is not to
+;;; be taken for "go back", wherever the last click was.
+
 (defstruct (button (:constructor make-button (label key command help &optional lit-p))
                    (:copier nil))
   "COMMAND, a function of no arguments, is what a click on the button called LABEL, or the character
@@ -32,10 +35,10 @@ whether the button is on."
         (make-button "Step" #\. 'com-step "Let one tick pass, and pause")
         (make-button "Slower" #\- 'com-slower "Halve the rate of ticks")
         (make-button "Faster" #\+ 'com-faster "Double the rate of ticks")
-        (make-button "Back" #\b 'com-back "Go back a few ticks, as REWIND does")
-        (make-button "Fit" #\f 'com-fit "Show the whole map")
-        (make-button "Follow" #\r 'com-follow "Keep the robot in view" 'following-p)
-        (make-button "Layers" #\l 'com-layers "Choose what the world shows")
+        (make-button "Back" #\B 'com-back "Go back a few ticks, as REWIND does")
+        (make-button "Fit" #\F 'com-fit "Show the whole map")
+        (make-button "Follow" #\R 'com-follow "Keep the robot in view" 'following-p)
+        (make-button "Layers" #\L 'com-layers "Choose what the world shows")
         (make-button "Help" #\? 'com-help "Tell what keys and mouse do"))
   "The buttons of the tool bar, from left to right.")
 

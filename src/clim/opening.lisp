@@ -116,14 +116,30 @@ that a prompt would, or another of the same run if that is shown in another wind
                              (cons name names))
                 simulation)))))
 
+(defun shown-elsewhere-only-p (window)
+  "True if there is a run in which WINDOW could go on, but other windows show all of its robots."
+  (and (ars-magna.cli:run-after (window-simulation window) (shown-robot window)) t))
+
+(defun stay-when-over (window reason)
+  "Say in WINDOW, once, that the run which it still shows is over for REASON."
+  (let ((over (window-simulation window)))
+    (unless (eq over (shiftf (window-known-over window) over))
+      (say (window-transcript window)
+           (format nil "The run of ~A is over: ~A. This window shows how it ended, until WORLD, ~
+                        or SIMULATOR in Lisp, starts another.~%"
+                   (shown-robot window) reason)))))
+
 (defun leave-run (window reason)
-  "Let WINDOW, which shows a run that is over for REASON, go on in another one, or close."
+  "Let WINDOW, which shows a run that is over for REASON, go on in another one; or else stay, unless
+others show all there is."
   (multiple-value-bind (name simulation) (robot-to-show window)
     (cond (name
            (show-robot-called window name simulation)
            (ars-magna.cli:tell-of-run (window-session window) simulation name))
-          (t (warn-of-closing window (format nil "its run is over, ~A" reason))
-             (close-window window)))))
+          ((shown-elsewhere-only-p window)
+           (warn-of-closing window (format nil "its run is over, ~A" reason))
+           (close-window window))
+          (t (stay-when-over window reason)))))
 
 (defun leave-run-if-over (window)
   (let ((reason (simulation-over (window-simulation window))))

@@ -9,13 +9,20 @@
 
 (defun foldable-p (section) (and (member section +sections+) t))
 
+(defun world-title (window)
+  "Return the map that WINDOW shows, the robot if there are several, and whether that is a fork or
+trial."
+  (let ((map (and (window-snapshot window) (window-map window)))
+        (simulation (window-simulation window)))
+    (format nil "World~@[: ~(~A~)~]~@[, ~A~]~@[, ~A of ~D robots~]" (and map (map-name map))
+            (and simulation (ars-magna.cli:way-in simulation))
+            (and (rest (window-robots window)) (shown-robot window))
+            (length (window-robots window)))))
+
 (defun section-title (window section)
   "Return the title of SECTION of WINDOW."
   (case section
-    (world (let ((map (and (window-snapshot window) (window-map window))))
-             (format nil "World~@[: ~(~A~)~]~@[, ~A of ~D robots~]" (and map (map-name map))
-                     (and (rest (window-robots window)) (shown-robot window))
-                     (length (window-robots window)))))
+    (world (world-title window))
     (transcript "Commands")
     (plan "Plan")
     (t (display-title (pane-display (pane-named window section))))))

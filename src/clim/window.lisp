@@ -28,6 +28,8 @@
    (wishes :initform (make-wishes) :accessor window-wishes)
    (transcript :initform nil :accessor window-transcript)
    (conversation :initform nil :accessor window-conversation)
+   ;; The run that is over, of which that has been said.
+   (known-over :initform nil :accessor window-known-over)
    ;; For how many columns and rows its transcript has room.
    (text-size :initform '(80 24) :accessor window-text-size)
    ;; What the mouse points at, as text; the key of what is picked, or NIL.
