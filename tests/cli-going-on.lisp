@@ -19,6 +19,18 @@
        (unwind-protect (progn (run:simulator 'mole :rate :free :display nil) ,@body)
          (stop-all)))))
 
+(test going-on.a-stopped-simulator-waits-for-resume
+  "It is not one whose time passes as lines need it."
+  (in-shed
+    (let* ((simulation time:*simulation*) (tick (run:simulation-tick simulation))
+           (session (cli:make-session :output (make-broadcast-stream))))
+      (run:stop-simulator)
+      (is (not (cli::waits-p session)))
+      (is (mentions-p (cli::time-text session simulation) "RESUME"))
+      (type-here "resume")
+      (is (time:live-p simulation))
+      (is (= tick (run:simulation-tick simulation))))))
+
 (defun type-here (&rest lines)
   "Type LINES at a prompt in this thread, where it is now. Return what it writes."
   (let ((output (make-string-output-stream)))

@@ -224,6 +224,20 @@
                                            :x 0 :y 0
                                            :modifier-state (apply #'logior modifiers)))))
 
+(test talking.control-shift-c-copies-and-interrupts-nothing
+  "CLIM tells of the shift key by the capital alone."
+  (in-window (window robot)
+    (let ((pane (pane window 'window::interactor)))
+      (flet ((action (character)
+               (window::own-action
+                (make-instance 'clim:key-press-event
+                               :sheet pane :key-name (base::make-keyword (string character))
+                               :key-character character :x 0 :y 0
+                               :modifier-state clim:+control-key+))))
+        (is (eq #'window::copy-text (action #\C)))
+        (is (functionp (action #\V)))
+        (is (null (action #\c)))))))
+
 (test talking.keys-go-to-the-prompt
   (in-window (window robot)
     (press-in window :|t| #\t)

@@ -49,8 +49,10 @@
 
 (defun go-to-fork (session seed)
   "Let SESSION be in a fork of the current run until a line leads out; then forget it."
-  (let ((fork (copied-run seed)))
+  (let ((fork (copied-run seed)) (run *simulation*))
+    (tell-others session run (format nil "Another prompt is in a fork of the run, which waits.~%"))
     (unwind-protect (call-with-others-paused (lambda () (enter-fork session fork)))
+      (tell-others session run (format nil "The fork is left; the run waits no longer.~%"))
       (stop-listening session)
       (release-fork fork)
       (unless (session-over-p session)

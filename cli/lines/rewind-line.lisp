@@ -34,6 +34,9 @@
 (defun rewind-and-tell (session ticks)
   "Let SESSION go on TICKS ticks back, and say where that is."
   (rewind-here session ticks)
+  (tell-others session *simulation*
+               (format nil "Another prompt has let the run go back to tick ~D.~%"
+                       (simulation-tick *simulation*)))
   (format t "~A~@[ Plans under way: ~{~A~^, ~}.~]~%"
           (time-text session *simulation*) (mapcar #'task-label (plans))))
 

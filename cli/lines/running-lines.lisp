@@ -14,7 +14,8 @@
   (format nil "Tick ~D, ~A." (simulation-tick simulation)
           (cond ((session-visit session) (visit-text (session-visit session)))
                 ((simulation-over simulation) (simulation-over simulation))
-                ((not (live-p simulation)) "headless")
+                ((headless-p simulation) "headless")
+                ((not (live-p simulation)) "stopped; RESUME goes on")
                 ((paused-p simulation) "paused")
                 ((idle-p simulation)
                  (format nil "idle, else ~A" (rate-text (simulation-rate simulation))))
@@ -33,11 +34,20 @@
         (pause-now (live-simulation)))
     (format t "~A~%" (time-text session simulation))))
 
+(defun resume-here (session)
+  "Let time go on in the run of SESSION, also if its clock was stopped by STOP-SIMULATOR."
+  (check-run)
+  (let ((simulation (current-simulation)))
+    (cond ((or (live-p simulation) (headless-p simulation)) (resume (live-simulation)))
+          (t (start-clock simulation)
+             (format t "~A~%" (time-text session simulation))))))
+
 (define-line "RESUME" (session) (:running)
-    "Let time go on after PAUSE; in a trial up to its end, where nobody sits."
+    "Let time go on after PAUSE, or after STOP-SIMULATOR; in a trial up to its end, where nobody
+sits."
   (if (session-visit session)
       (resume-visit (session-visit session))
-      (resume (live-simulation))))
+      (resume-here session)))
 
 (defun step-here (count)
   "Let COUNT ticks pass, and say so."

@@ -117,8 +117,10 @@ NIL if it does not in good time, when nothing but the waiting lets time pass."
   (and *simulation*
        (null (session-visit session))
        (null (simulation-over *simulation*))
-       (or (not (live-p *simulation*))
-           (and (session-patient-p session) (not (paused-p *simulation*))))))
+       (if (live-p *simulation*)
+           (and (session-patient-p session) (not (paused-p *simulation*)))
+           ;; One that STOP-SIMULATOR has stopped waits for RESUME.
+           (or (session-patient-p session) (headless-p *simulation*)))))
 
 (defun heed-rewind (session)
   "Let SESSION do what it has to if its run was rewound."

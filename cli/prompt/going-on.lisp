@@ -51,6 +51,11 @@ SIMULATION, which is over, and the name of the robot that it commands there; NIL
       (restore-prompt console)
       (finish-output console))))
 
+(defun tell-others (session simulation text)
+  "Show TEXT, a line about what SESSION has done to SIMULATION, in the other sessions there."
+  (dolist (other (remove session (sessions-hearing simulation)))
+    (say-in other text)))
+
 (defun tell-of-run (session simulation robot-name)
   "Let SESSION, which somebody else leads to the robot ROBOT-NAME of SIMULATION, say so, and listen
 to that. If it listens there already, it knows. Any thread may ask."

@@ -13,8 +13,7 @@
   "True if something has been asked for that waits for time to pass, which stands still, since
 SESSION had ERRANDS, and the simulation INBOX."
   (and *simulation*
-       (live-p *simulation*)
-       (paused-p *simulation*)
+       (if (live-p *simulation*) (paused-p *simulation*) (not (headless-p *simulation*)))
        (null (session-visit session))
        (not (and (eq errands (session-errands session)) (eq inbox (requests-waiting))))
        (requests-waiting)

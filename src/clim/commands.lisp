@@ -36,8 +36,9 @@
 (define-constant +back+ 10 :documentation "How many ticks a step back is.")
 
 (define-window-command (com-back "Go back") (window)
-    "Go back some ticks, as the prompt's REWIND does."
-  (give-line (window-conversation window) (format nil "rewind ~D" +back+)))
+    "Go back some ticks, as the prompt's REWIND does, or to tick 0."
+  (let ((passed (simulation-tick (window-simulation window))))
+    (give-line (window-conversation window) (format nil "rewind ~D" (min +back+ passed)))))
 
 (define-window-command (com-step "Step") (window)
     "Pass one tick and pause."
@@ -45,10 +46,14 @@
 
 (defun change-rate (window factor)
   (let* ((simulation (window-simulation window)) (rate (simulation-rate simulation)))
-    (when (realp rate)
-      (set-rate (clamp (* rate factor) 1/8 100000) simulation)
-      (say (window-transcript window)
-           (format nil "~A ticks a second.~%" (number-text (simulation-rate simulation)))))))
+    (flet ((tell (&rest arguments)
+             (say (window-transcript window) (apply #'format nil arguments))))
+      (cond ((not (live-p simulation))
+             (tell "Here time passes only as commands need it: there is no rate.~%"))
+            ((realp rate)
+             (set-rate (clamp (* rate factor) 1/8 100000) simulation)
+             (tell "~A ticks a second.~%" (number-text (simulation-rate simulation))))
+            (t (tell "Ticks pass as fast as they can; RATE sets how many a second.~%"))))))
 
 (define-window-command (com-faster "Twice as fast") (window)
     "Double the rate of ticks."

@@ -152,11 +152,12 @@
 
 (defun own-action (event)
   "Return a function of a window that EVENT stands for, or NIL."
-  (let ((name (clim:keyboard-event-key-name event))
-        (shift-p (pressed-with-p event clim:+shift-key+))
-        (control-p (pressed-with-p event clim:+control-key+)))
-    (flet ((is-p (char) (eql char (let ((char (clim:keyboard-event-character event)))
-                                    (and char (char-downcase char))))))
+  (let* ((name (clim:keyboard-event-key-name event))
+         (typed (clim:keyboard-event-character event))
+         ;; CLIM tells of shift by the capital alone.
+         (shift-p (or (pressed-with-p event clim:+shift-key+) (and typed (upper-case-p typed))))
+         (control-p (pressed-with-p event clim:+control-key+)))
+    (flet ((is-p (char) (and typed (char= char (char-downcase typed)))))
       (cond ((and control-p shift-p (is-p #\c)) #'copy-text)
             ((or (and control-p shift-p (is-p #\v)) (and shift-p (eq name :insert)))
              (lambda (window) (paste-text window :clipboard)))

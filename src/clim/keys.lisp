@@ -3,7 +3,8 @@
 (in-package :ars-magna.clim)
 
 ;;; A click on the world or the details gives them the keys; return, escape, a click on the
-;;; transcript, or a character that is none of theirs gives them back to the prompt.
+;;; transcript, or a character that is none of theirs gives them back to the prompt. A line that is
+;;; half typed gets all characters.
 
 (defun give-keys-to-prompt (window)
   (type-into (pane-named window 'interactor)))
@@ -28,6 +29,11 @@
   (take-key window (string character))
   (give-keys-to-prompt window))
 
+(defun half-typed-p (window)
+  "True if a line is being typed in WINDOW, and has something in it."
+  (let ((shown (line-shown (window-conversation window))))
+    (and shown (string/= "" (second shown)))))
+
 (define-constant +arrow-step+ 60 :documentation "How far an arrow moves the view, in pixels.")
 
 (defun arrow (key-name)
@@ -47,7 +53,9 @@
   "Do what the key called KEY-NAME, which types CHARACTER or NIL, does in WINDOW. True if anything."
   (let ((button (and character (find character *buttons* :key #'button-key))))
     (multiple-value-bind (dx dy) (arrow key-name)
-      (cond ((and (window-typing-p window) character (graphic-char-p character))
+      (cond ((and (or (window-typing-p window) (half-typed-p window))
+                  character
+                  (graphic-char-p character))
              (type-at-prompt window character)
              t)
             (button (press-button window button) t)

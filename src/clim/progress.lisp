@@ -19,11 +19,17 @@ had been; the tick and second from which on the rate is being measured, and that
   (seconds 0d0 :type double-float)
   (reached nil :type (or null real)))
 
+(defun begin-pulse (simulation)
+  "Return the pulse of SIMULATION, of which nothing was seen before."
+  (let ((tick (simulation-tick simulation)))
+    (make-pulse :last-tick tick :tick tick :seconds (seconds-now))))
+
 (defun state-words (state)
   (ecase state
     (:running "running")
     (:paused "paused")
     (:still "not live: ticks pass when a program asks for them")
+    (:stopped "stopped: the line RESUME goes on")
     (:over "over")
     (:idle "idle: time stands still until there is something to do")
     (:waiting "waiting for a plan")
@@ -58,7 +64,7 @@ had been; the tick and second from which on the rate is being measured, and that
   "Return the state of SIMULATION, and NIL or a text that goes on from what that is called."
   (let ((busy (busy-p simulation pulse)))
     (cond ((simulation-over simulation) :over)
-          ((not (live-p simulation)) :still)
+          ((not (live-p simulation)) (if (headless-p simulation) :still :stopped))
           ((users-code-broken-p simulation) :broken)
           (busy (values :busy busy))
           ((paused-p simulation) :paused)

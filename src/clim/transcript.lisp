@@ -49,9 +49,11 @@ where something is counted."
         do (begin-line-of transcript)))
 
 (defun forget-lines (transcript)
+  "Keep the newest lines of TRANSCRIPT, if there are many, and say in their first that others went."
   (when (> (transcript-count transcript) (* 2 +transcript-length+))
     (setf (transcript-lines transcript)
-          (subseq (transcript-lines transcript) 0 +transcript-length+)
+          (append (subseq (transcript-lines transcript) 0 (1- +transcript-length+))
+                  (list "(What was said before this is kept no longer.)"))
           (transcript-count transcript) +transcript-length+)))
 
 (defun call-changing-transcript (transcript function)

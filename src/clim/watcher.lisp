@@ -158,6 +158,7 @@ itself: it will come with the next tick."
     (unless (eq simulation old)
       (keep-history simulation)
       (setf (watcher-observer watcher) (observer-of watcher)
+            (watcher-pulse watcher) (begin-pulse simulation)
             (watcher-simulation watcher) simulation)
       (leave-simulation old observer)
       (direct-look (watcher-plans watcher) simulation)

@@ -21,6 +21,19 @@
     (ignore-errors (clim:destroy-port port))
     (abort)))
 
+;;; Another program may destroy a window, as XKILL does with all of ours.
+
+;; McCLIM does not export the event's name.
+(defun of-destruction-p (event)
+  (string= "WINDOW-DESTROY-EVENT" (type-of event)))
+
+(defmethod clim:handle-event :before ((sheet clime:top-level-sheet-mixin)
+                                      (event clim:window-event))
+  (let ((window (and (of-destruction-p event) (robot-window-of sheet))))
+    (when window
+      (warn-of-closing window "another program has destroyed it")
+      (clim:frame-exit window))))
+
 (defun of-one-event-p (condition)
   "True if CONDITION came of a single event, and says nothing of the connection to the X server."
   (typep condition '(or xlib:request-error xlib:lookup-error type-error)))
