@@ -199,7 +199,9 @@ else, if its user has chosen another one of the same run, that that is shown."
     (start-conversation (window-conversation window) simulation
                         (watcher-robot (window-watcher window)))
     (unwind-protect
-         (handler-case (without-debugger (clim:run-frame-top-level window))
+         (handler-case (without-debugger
+                         (handler-bind ((warning 'muffle-servers-warning))
+                           (clim:run-frame-top-level window)))
            (error (condition) (close-for condition window))
            (:no-error (&rest values) (declare (ignore values)) (forget-window window)))
       (warn-of-closing window "its thread was ended")

@@ -45,6 +45,8 @@
    (panes-found :initform (make-hash-table :test 'eq) :reader window-panes)
    ;; Its car is true while an event is queued.
    (queued :initform (list nil) :reader window-queued)
+   ;; True if what is on the screen may be gone: all is to be painted, changed or not.
+   (torn-p :initform nil :accessor window-torn-p)
    (painted :initform nil :accessor window-painted)
    (thread :initform nil :accessor window-thread))
   (:menu-bar nil)
@@ -150,13 +152,20 @@ each snapshot."
   "Paint those panes of WINDOW that would look different now, all at once."
   (let ((snapshot (window-snapshot window)))
     (restart-if-lost (window-conversation window) (window-simulation window) (shown-robot window))
-    (mapc #'repaint-if-changed (display-panes window))
+    (if (shiftf (window-torn-p window) nil)
+        (repaint-all window)
+        (mapc #'repaint-if-changed (display-panes window)))
     (settle window)
     ;; The X server may be slower than we are.
     (clim:medium-finish-output (clim:sheet-medium (pane-named window 'world)))
     (unless (eq snapshot (window-painted window))
       (setf (window-painted window) snapshot)
       (painted (window-watcher window)))))
+
+(defun request-repaint (window)
+  "Let all of WINDOW be painted soon. Any thread may ask."
+  (setf (window-torn-p window) t)
+  (request-refresh window))
 
 (defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event refresh-event))
   (let ((window (clim:pane-frame sheet)))

@@ -23,16 +23,31 @@
 
 ;;; Another program may destroy a window, as XKILL does with all of ours.
 
-;; McCLIM does not export the event's name.
-(defun of-destruction-p (event)
-  (string= "WINDOW-DESTROY-EVENT" (type-of event)))
+;;; A window manager that comes or goes takes windows off the screen and puts them there again.
 
-(defmethod clim:handle-event :before ((sheet clime:top-level-sheet-mixin)
+;; McCLIM does not export the names of these events.
+(defun event-called-p (name event)
+  (string= name (type-of event)))
+
+(defmethod clim:handle-event :after ((sheet clime:top-level-sheet-mixin)
+                                     (event clim:window-event))
+  (let ((window (robot-window-of sheet)))
+    (cond ((null window))
+          ((event-called-p "WINDOW-DESTROY-EVENT" event)
+           (warn-of-closing window "another program has destroyed it")
+           (clim:frame-exit window))
+          ((event-called-p "WINDOW-MAP-EVENT" event) (request-repaint window)))))
+
+;; McCLIM would take the window off the screen itself then, after the manager has put it there.
+(defmethod clim:handle-event :around ((sheet clime:top-level-sheet-mixin)
                                       (event clim:window-event))
-  (let ((window (and (of-destruction-p event) (robot-window-of sheet))))
-    (when window
-      (warn-of-closing window "another program has destroyed it")
-      (clim:frame-exit window))))
+  (unless (and (robot-window-of sheet) (event-called-p "WINDOW-UNMAP-EVENT" event))
+    (call-next-method)))
+
+(defun muffle-servers-warning (condition)
+  "If CONDITION is McCLIM's warning of what the X server could not do, say nothing of it."
+  (when (eql 0 (search "Received CLX" (princ-to-string condition)))
+    (muffle-warning condition)))
 
 (defun of-one-event-p (condition)
   "True if CONDITION came of a single event, and says nothing of the connection to the X server."
@@ -52,6 +67,8 @@
                  (error (lambda (condition)
                           (cond ((of-one-event-p condition)
                                  (drop-event port)
+                                 ;; It may have been the word that something is to be painted.
+                                 (mapc #'request-repaint (windows-on port))
                                  (return-from clim:process-next-event t))
                                 (t (lose-port port))))))
     (call-next-method)))
