@@ -199,6 +199,47 @@
     (window:refresh window)
     (is (high-as-needed-p window))))
 
+(defun publish-and-refresh (window)
+  "Let WINDOW show how its run is now."
+  (window::publish (window:window-watcher window) (time:current-simulation))
+  (window:refresh window))
+
+(defun title-tops (window)
+  "Return where the titles of the column of WINDOW begin, from the top."
+  (loop for (name nil top) in (window::pane-places (window::window-layout window))
+        when (search "-TITLE" (symbol-name name)) collect top))
+
+(test layout.titles-stay-when-a-display-shows-less
+  "Until the user folds a display, or makes the window another size; with the plan open, too, where
+there is not room for all."
+  (dolist (plan-p '(nil t))
+    (in-window (window robot)
+      (when plan-p (window::fold window 'window::plan nil))
+      (lay-out window 1280 900)
+      (let ((before (title-tops window)))
+        (dotimes (count 8) (robot:add-designator robot :x 2 :y 2))
+        (world:move-thing (world:find-thing "PEN#2") (robot:robot-storage-bin robot 0))
+        (publish-and-refresh window)
+        (let ((grown (title-tops window)))
+          (is (not (equal before grown)))
+          (mapc #'robot:drop-designator (robot:live-designators robot))
+          (world:move-thing (world:find-thing "PEN#2") 3.5 3.5)
+          (publish-and-refresh window)
+          (is (equal grown (title-tops window)))
+          (window::fold window 'window::hands)
+          (window::fold window 'window::hands nil)
+          (is (equal before (title-tops window))))))))
+
+(test layout.a-display-that-needs-room-gets-what-another-had-needed
+  (in-window (window robot)
+    (lay-out window 1180 900)
+    (dotimes (count 30) (robot:add-designator robot :x 2 :y 2))
+    (publish-and-refresh window)
+    (mapc #'robot:drop-designator (robot:live-designators robot))
+    (world:move-thing (world:find-thing "PEN#2") (robot:robot-storage-bin robot 0))
+    (publish-and-refresh window)
+    (is (high-as-needed-p window))))
+
 (defun show-many-designators (window robot)
   "Let ROBOT have 40 designators; return the pane of WINDOW that shows them."
   (dotimes (count 40) (robot:add-designator robot :x 2 :y 2))

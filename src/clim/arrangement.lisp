@@ -55,6 +55,10 @@ seen."
   "True if plans have a column of their own in a window WIDTH pixels wide."
   (and (>= width +wide+) (not (member 'plan (wishes-folded wishes)))))
 
+(defun column-sections (wishes width)
+  "Return the sections in the column of a window WIDTH pixels wide, from top to bottom."
+  (if (plan-column-p wishes width) (remove 'plan +sections+) +sections+))
+
 (defun usual-details-width (wishes width)
   "Return how wide the column of sections is, unless the user wants another width, in a window WIDTH
 pixels wide: wider where plans are shown in it, whose lines are long."
@@ -176,8 +180,8 @@ column of sections, DOWN pixels."
     (append (place-section 'world 0 top world (- height +title-height+))
             (list (list 'side-splitter world top +splitter+ (if own-p height down)))
             (place-plan-column wishes width left top height down)
-            (place-sections (if own-p (remove 'plan +sections+) +sections+) needs
-                            (wishes-folded wishes) (+ left plan) top column down))))
+            (place-sections (column-sections wishes width) needs (wishes-folded wishes)
+                            (+ left plan) top column down))))
 
 (defun place-low (width top bottom)
   "Return the places of the splitter above the transcript, which begins at TOP, and of that."

@@ -12,7 +12,10 @@
 
 (defclass layout-pane (clim:bboard-pane)
   (;; Where its children were put last, as ARRANGE says it.
-   (places :initform '() :accessor pane-places))
+   (places :initform '() :accessor pane-places)
+   ;; The most pixels that each section has needed, as (section pixels), and what was shown then.
+   (needed :initform '() :accessor pane-needed)
+   (shown :initform nil :accessor pane-shown))
   (:documentation "The pane that holds all parts of the window."))
 
 (defun pane-wishes (layout) (window-wishes (clim:pane-frame layout)))
@@ -49,23 +52,71 @@
       (clim:move-and-resize-sheet pane left top width height)
       (clim:allocate-space pane width height))))
 
+;;; A display grows when it has to show more. It stays so when it shows less, lest titles and
+;;; switches move from under the mouse while a run goes on: until the user changes the arrangement
+;;; or what is shown, or until another display needs the room.
+
+(defun needs-now (layout)
+  "Return how many pixels high each section that is open in the column of LAYOUT would like to be
+now, as (section pixels)."
+  (let* ((window (clim:pane-frame layout)) (wishes (pane-wishes layout))
+         (width (pane-size layout)) (column (details-width wishes width)))
+    (loop for section in (column-sections wishes width)
+          unless (member section (wishes-folded wishes))
+            collect (list section
+                          (section-need (pane-named window section) section column)))))
+
+(defun need-in (needs)
+  "Return a function from a section to how many pixels it needs according to NEEDS."
+  (lambda (section) (or (second (assoc section needs)) 0)))
+
+(defun most-needed (needs before)
+  "Return NEEDS, but for each section what it has needed according to BEFORE if that was more."
+  (loop for (section pixels) in needs
+        collect (list section (max pixels (funcall (need-in before) section)))))
+
+(defun arranged (layout needs)
+  "Return where all parts of LAYOUT belong if its sections need NEEDS."
+  (multiple-value-call #'arrange (pane-wishes layout) (need-in needs) (pane-size layout)))
+
+(defun enough-p (places needs)
+  "True if each section has the height in PLACES that it has in NEEDS."
+  (loop for (section pixels) in needs
+        always (<= pixels (fifth (assoc section places)))))
+
+(defun settled-needs (layout)
+  "Return the heights for which the sections of LAYOUT get room: the most that they have needed, but
+what they need now if only so there is enough for all."
+  (let* ((now (needs-now layout)) (most (most-needed now (pane-needed layout))))
+    (flet ((enough-for-all-p (needs) (enough-p (arranged layout needs) now)))
+      (if (and (not (enough-for-all-p most)) (enough-for-all-p now))
+          now
+          most))))
+
+(defun shown-run-and-robot (window)
+  "Return what is EQUAL to before as long as WINDOW shows the same robot of the same run."
+  (list (window-simulation window) (shown-robot window)))
+
 (defun places (layout)
   "Return where all parts of the window belong now, as the wishes of LAYOUT, their pane, want it."
-  (multiple-value-bind (width height) (pane-size layout)
-    (let* ((window (clim:pane-frame layout))
-           (column (details-width (pane-wishes layout) width)))
-      (arrange (pane-wishes layout)
-               (lambda (section) (section-need (pane-named window section) section column))
-               width height))))
+  (let ((shown (shown-run-and-robot (clim:pane-frame layout))))
+    (unless (equal shown (shiftf (pane-shown layout) shown))
+      (setf (pane-needed layout) '())))
+  (arranged layout (setf (pane-needed layout) (settled-needs layout))))
 
-(defun arrange-panes (layout)
-  "Put all parts of the window where they belong now."
+(defun put-parts (layout places)
+  "Put all parts of the window of LAYOUT where PLACES say."
   (let ((window (clim:pane-frame layout)))
     (point-nowhere window)
-    (setf (pane-places layout) (places layout))
-    (loop for (name . place) in (pane-places layout)
+    (setf (pane-places layout) places)
+    (loop for (name . place) in places
           for pane = (child-with layout (pane-named window name))
           when pane do (apply #'place-pane pane place))))
+
+(defun arrange-panes (layout)
+  "Put all parts of the window where they belong now, whatever they have needed before."
+  (setf (pane-needed layout) '())
+  (put-parts layout (places layout)))
 
 (defun child-with (layout pane)
   "Return the child of LAYOUT that is or holds PANE; CLIM may put borders around panes."
@@ -106,9 +157,11 @@ WIDTH pixels wide.")
   (repaint-all window))
 
 (defun settle (window)
-  "Give each display of WINDOW the room that it needs for what it shows now."
-  (let ((layout (window-layout window)))
-    (unless (equal (places layout) (pane-places layout)) (rearrange window))))
+  "Give each display of WINDOW the room that it needs for what it shows."
+  (let* ((layout (window-layout window)) (places (places layout)))
+    (unless (equal places (pane-places layout))
+      (put-parts layout places)
+      (repaint-all window))))
 
 ;;; Folding.
 
