@@ -299,6 +299,42 @@
                                :key (lambda (text) (of-element text :text)) :test-not #'equal)))
           "On the map and before the words."))))
 
+(test run-picture.has-a-number-for-each-place-where-a-robot-was
+  "Also where it was less than a metre from the last one."
+  (in-studio (robot)
+    (command:robot-go-forward robot 5)
+    (run:run-ticks 20)
+    (let ((picture (run-picture :layers '() :kinds '()
+                                :moments (loop for tick from 1 to 7
+                                               collect (list tick (format nil "note ~D" tick))))))
+      (is (< 3 (loop for number from 1 to 7
+                     count (mentions-p picture (format nil ">~D</text>" number))))))))
+
+(test pictures.of-a-run-with-other-definitions-are-made-anyway
+  (with-own-definitions
+    (flet ((define (width)
+             (eval `(world:defmap moved (,width 9) (rect (0 0) (,(1- width) 8) bricks 1)))
+             (eval '(robot:defrobot mover (moved (2.5 2.5) 0)))))
+      (define 9)
+      (let ((journal (run:call-with-simulation
+                      (lambda () (run:run-ticks 3)
+                        (run:simulation-journal (time:current-simulation)))
+                      '(mover) :journal t)))
+        (define 12)
+        (with-scratch-file (svg "svg")
+          (signals run:different-definitions (ars:save-run-picture svg :journal journal))
+          (is-true (ars:save-run-picture svg :journal journal :anyway t))
+          (is-true (ars:save-animation journal svg :anyway t))
+          (is (null (ars:journal-moments journal :anyway t)))
+          (is-true (ars:save-trajectory svg :journal journal :anyway t)))))))
+
+(test way-picture.refuses-what-is-no-way-on-its-map
+  (flet ((refusal (ways)
+           (handler-case (ars:save-way-picture 'ars-worlds:tiny ways "way.svg")
+             (base:wrong-argument (condition) (princ-to-string condition)))))
+    (is-true (has-words-p (refusal '(((2 2) (50 60)))) "(50 60)" "map tiny" "x from 0 to 12"))
+    (is (not (find #\~ (refusal '(nil)))))))
+
 (test run-picture.keeps-numbers-on-the-smallest-map
   "Where the map is as large as a number, that is wholly on it; on a smaller one, in its middle."
   (let ((map (world::small-map 1 1 (constantly nil))))

@@ -233,7 +233,8 @@ says what is for a film, or for a SERIES."
 
 (addition save-animation)
 (defun save-animation (journal file &key every until (rate 10) series (display :world) moments
-                                      (kinds t) (layers *picture-layers*) (in-color t) scale)
+                                      (kinds t) (layers *picture-layers*) (in-color t) scale
+                                      anyway)
   "Replay JOURNAL (a journal, a file that holds one, or NIL for that of the current simulation so
 far) up to the tick UNTIL or its end and save what it looks like every EVERY ticks (by default as
 few that there are no more than 600 frames), RATE frames a second, to FILE. If its name ends in
@@ -244,7 +245,8 @@ list MOMENTS has besides, each a moment or a list of a tick and a string; KINDS 
 SAVE-RUN-PICTURE. If it ends in .svg, it is an animated picture of the world, in a file about ten
 times as large. With SERIES, pictures of DISPLAY go to a series of files, as FILE ends: for run.png,
 run-0001.png and so on. A page is as large as its window: a SCALE of more than suits the map changes
-nothing there. The first frame shows how the run began. The other arguments are those of
+nothing there. The first frame shows how the run began. With ANYWAY the run is replayed also if its
+definitions are not those at hand. The other arguments are those of
 SVG-PICTURE. Return the truename, or a list of them. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY
 does."
   (let* ((kind (animation-kind file series))
@@ -256,15 +258,16 @@ does."
     (check-animation series every rate display layers scale)
     (check-kinds 'save-animation kinds)
     (telling-what-breaks
-      (cond (series
-             (apply #'save-series journal file :every every :until until :display display look))
-            ((eq kind :html)
-             (save-text (apply #'film-text journal moments :every every :until until :rate rate
-                                                           :kinds kinds look)
-                        file))
-            (t (save-text (apply #'animation-text journal :every every :until until :rate rate
-                                                          look)
-                          file))))))
+      (replaying (anyway)
+        (cond (series
+               (apply #'save-series journal file :every every :until until :display display look))
+              ((eq kind :html)
+               (save-text (apply #'film-text journal moments :every every :until until :rate rate
+                                                             :kinds kinds look)
+                          file))
+              (t (save-text (apply #'animation-text journal :every every :until until :rate rate
+                                                            look)
+                            file)))))))
 
 (defun animation-text (journal &key every until rate layers in-color scale)
   "Return the animated SVG document of JOURNAL."
@@ -276,28 +279,29 @@ does."
                        :layers layers :in-color in-color :scale scale))))
 
 (addition journal-moments)
-(defun journal-moments (journal &key until)
+(defun journal-moments (journal &key until anyway)
   "Replay JOURNAL (a journal, a file that holds one, or NIL for that of the current simulation so
 far) up to the tick UNTIL or its end; return a list of what happened there that people look for, in
 order: moments at which a robot grasped, let go of or stowed something, a command failed, a plan or
-a part of one failed or was ended, or an error came up in users' code. Signals what REPLAY does."
+a part of one failed or was ended, or an error came up in users' code. With ANYWAY it is replayed
+also if its definitions are not those at hand. Signals what REPLAY does."
   (let ((journal (journal-meant journal)))
     (multiple-value-bind (watch seen) (moments-watcher)
-      (in-order (append (call-with-replay seen journal
-                                          :until until :observer watch :beginning watch)
+      (in-order (append (call-with-replay seen journal :until until :anyway anyway
+                                                       :observer watch :beginning watch)
                         (remarked-moments journal until))))))
 
 (defun check-animation (series every rate display layers scale)
   (flet ((reject (name value expected)
            (error 'wrong-argument :operator 'save-animation :name name :value value
                                   :expected expected)))
+    (check-display 'save-animation display)
     (unless (or series (eq display :world))
       (reject "display" display ":world, or :series t for numbered pictures"))
     (unless (or (null every) (whole-p every 1))
       (reject "every" every "a whole number of ticks, from 1 to 1e9"))
     (unless (and (finite-p rate) (<= 1/1000 rate 1000))
       (reject "rate" rate "a number of frames a second, from 0.001 to 1000"))
-    (check-display 'save-animation display)
     (check-map-options 'save-animation :layers layers :scale scale)))
 
 (defun save-series (journal file &key every until display layers in-color scale)

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.display)
 
-;;; A name is written near by where its box meets no thing, robot, number of a designator, mark of a
-;;; place or other name, and rather no wall and no trail; if there is no such room, not at all.
+;;; A name is written near by where its box meets no thing, robot, number of a designator or other
+;;; name, and rather no wall, no mark of a place and no trail; if there is no such room, not at all.
 ;;; Other lines end before a name. Robots come first, then large things.
 
 (define-constant +name-size+ 10 :documentation "How high the font of names is, in pixels.")
@@ -74,26 +74,27 @@ on it, meets."
 (define-constant +thick-wall+ 4
   :documentation "From how many pixels to a cell on a name may hide a part of a wall.")
 
+(defun box-cost (snapshot layers box)
+  "Return how much a name in BOX would hide on the map that SNAPSHOT shows with LAYERS, from 0 for
+nothing; NIL if it may not stand there, on a wall that is not thick."
+  (let ((map (snapshot-map snapshot)))
+    (cond ((not (on-wall-p map box))
+           (+ (if (and (member :places layers) (on-mark-p map box)) 2 0)
+              (if (and (member :trail layers) (on-trail-p snapshot box)) 1 0)))
+          ((<= +thick-wall+ graphics-scale*) 4))))
+
 (defun best-box (snapshot layers boxes taken)
-  "Return the first of BOXES that is in the part of the map that SNAPSHOT shows and meets none of
-TAKEN: rather no wall and no mark of a place that LAYERS show, and then rather no trail; if need be
-a thick wall; or NIL."
-  (let* ((map (snapshot-map snapshot))
-         (possible (remove-if-not
-                    (lambda (box)
-                      (and (within-shown-p snapshot box)
-                           (notany (lambda (other) (overlap-p box other)) taken)))
-                    boxes))
-         (free (remove-if (lambda (box)
-                            (or (on-wall-p map box)
-                                (and (member :places layers) (on-mark-p map box))))
-                          possible)))
-    (or (and (member :trail layers)
-             (find-if-not (lambda (box) (on-trail-p snapshot box)) free))
-        (first free)
-        (and (<= +thick-wall+ graphics-scale*)
-             (find-if-not (lambda (box) (and (member :places layers) (on-mark-p map box)))
-                          possible)))))
+  "Return the first of those of BOXES that hide least, are in the part of the map that SNAPSHOT
+shows, and meet none of TAKEN; or NIL. Rather than nothing a name hides a trail, then the mark of a
+place, and at last a part of a thick wall."
+  (loop with best = nil and least = nil
+        for box in boxes
+        for cost = (and (within-shown-p snapshot box)
+                        (notany (lambda (other) (overlap-p box other)) taken)
+                        (box-cost snapshot layers box))
+        when (and cost (or (null least) (< cost least)))
+          do (setf best box least cost)
+        finally (return best)))
 
 (define-constant +longest-name+ 24
   :documentation "How many characters of a name are written beside a sample, or on the map.")

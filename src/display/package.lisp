@@ -29,8 +29,8 @@
   ;; inks, user-drawing, terrain, names, world-display, legend, scales, margins, way-picture
   ;; and displays
   (:export #:draw-terrain #:draw-movers #:draw-world #:users-scale #:check-map-options
-           #:in-part #:draw-framed #:with-map-svg #:sample-of #:robot-color #:robot-radius
-           #:robot-title
+           #:in-part #:draw-framed #:with-map-svg #:drawn-scale #:sample-of
+           #:robot-color #:robot-radius #:robot-title
            #:draw-names
            #:telling-what-breaks #:draw-way-line #:draw-start #:way-entry #:to-pixels
            #:inked #:around #:draw-circle #:half-width

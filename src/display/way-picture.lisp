@@ -61,10 +61,23 @@
   "Signal WRONG-ARGUMENT unless WAYS is a list of ways."
   (when (and (proper-list-p ways) (member nil ways))
     (reject-argument 'save-way-picture 'ways ways
-                     "a list of ways. There is a NIL in it, which FIND-WAY returns where there is ~
-                      no way: leave that out"))
+                     (format nil "a list of ways. There is a NIL in it, which FIND-WAY returns ~
+                                  where there is no way: leave that out")))
   (check-argument save-way-picture ways (and (proper-list-p ways) (every #'way-p ways))
                   "a list of ways, each a list of PTs or of lists (x y)"))
+
+(defun point-on-map-p (point map)
+  (destructuring-bind (x y) (if (pt-p point) (list (pt-x point) (pt-y point)) point)
+    (and (<= 0 x (map-width map)) (<= 0 y (map-height map)))))
+
+(defun check-ways-on (map ways)
+  "Signal WRONG-ARGUMENT unless all points of WAYS are on MAP."
+  (dolist (way ways)
+    (dolist (point way)
+      (unless (point-on-map-p point map)
+        (reject-argument 'save-way-picture 'ways point
+                         (format nil "ways on the map ~A, with x from 0 to ~D and y from 0 to ~D"
+                                 (drawn-name (map-name map)) (map-width map) (map-height map)))))))
 
 (defun ways-entries (ways)
   "Return the entries of the legend for WAYS."
@@ -104,6 +117,7 @@ WRONG-ARGUMENT, UNKNOWN-NAME, and MISUSE without the program that PNG needs."
   (check-ways ways)
   (check-map-options 'save-way-picture :title title :layers layers :scale scale)
   (let* ((map (find-map map)) (kind (picture-kind 'save-way-picture file)))
+    (check-ways-on map ways)
     (save-svg (telling-what-breaks
                 (way-picture-text (snapshot-of-map map) ways
                                   :layers layers :in-color in-color :scale scale

@@ -145,6 +145,17 @@ recorded with, unless ANYWAY is true."
   `(call-with-replay (lambda () ,@body) ,journal
                      :until ,until :anyway ,anyway :keep ,keep))
 
+(defun call-replaying (function anyway)
+  (handler-bind ((different-definitions (lambda (condition)
+                                          (declare (ignore condition))
+                                          (when anyway (invoke-restart 'replay-anyway)))))
+    (funcall function)))
+
+(defmacro replaying ((anyway) &body body)
+  "Run BODY, which replays a journal: if ANYWAY is true, all the same where what is defined is not
+what the run was recorded with."
+  `(call-replaying (lambda () ,@body) ,anyway))
+
 (defun journal-meant (journal)
   "Return the journal that JOURNAL is: one, the name of a file with one, or, if it is NIL, that of
 the current simulation up to now."

@@ -5,7 +5,8 @@
   (:use :cl :ars-magna.base :ars-magna.canvas)
   (:import-from :ars-magna.time #:current-simulation)
   (:import-from :ars-magna.run
-                #:simulation-robots #:simulation-tick #:call-with-replay #:journal-meant
+                #:simulation-robots #:simulation-tick #:call-with-replay #:replaying
+                #:journal-meant
                 #:journal-header #:journal-end #:simulation-world)
   (:import-from :ars-magna.robot
                 #:robot-x #:robot-y #:robot-angle #:robot-name #:robot-hands #:robot-last-place
@@ -15,6 +16,7 @@
   (:import-from :ars-magna.display
                 #:snapshot-map #:snapshot-robots #:snapshot-things #:robot-image-name
                 #:robot-image-x #:robot-image-y #:thing-image-x #:thing-image-y
+                #:drawn-scale
                 #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:draw-way-line
                 #:draw-start #:way-entry #:robot-color #:to-pixels #:box-around
                 #:inked #:around #:draw-circle #:half-width

@@ -135,15 +135,16 @@ where the next would be."
                (incf y +note-step+)))
     y))
 
-(defun reach-of-spots (map)
-  "Return how near to each other, in metres, what happened on MAP is at one place."
-  (max 1 (/ (max (map-width map) (map-height map)) 60)))
+(defun reach-of-spots (scale)
+  "Return how near to each other, in metres, what happened is at one place, where a cell has SCALE
+pixels: where the rings around two places would be one."
+  (/ (* 2 +ring-radius+) scale))
 
 (defun run-picture-text (snapshot ways moments &key limit title layers in-color scale)
   "Return an SVG document of a run that ended as SNAPSHOT shows, with WAYS and MOMENTS."
   (multiple-value-bind (spots notes)
       (spots-and-notes moments limit (and (rest (snapshot-robots snapshot)) t)
-                       (reach-of-spots (snapshot-map snapshot)))
+                       (reach-of-spots (drawn-scale scale snapshot layers)))
     (let ((more (run-entries snapshot ways spots)))
       (with-output-to-string (out)
         (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
@@ -167,7 +168,8 @@ where the next would be."
 
 (addition save-run-picture)
 (defun save-run-picture (file &key journal until moments (kinds t) (limit 24) title
-                                (layers (remove :tracks *picture-layers*)) (in-color t) scale)
+                                (layers (remove :tracks *picture-layers*)) (in-color t) scale
+                                anyway)
   "Save in FILE, replacing it, a picture of the run that JOURNAL holds (a journal, or a file with
 one; by default that of the current simulation) up to the tick UNTIL or its end: its world as it is
 then, the ways that its robots went, and numbers where something happened that is told of below:
@@ -178,7 +180,8 @@ shown. There are LIMIT lines below the map at most, or any number if it is NIL: 
 to tell, what matters least is left out, and counted; that a robot was blocked or lost a track, as
 plans expect, before other failures of commands and of parts of plans, and these before the rest.
 MOMENTS, a list of moments or of lists of a tick, a string and, if you like, the name of a robot of
-the run, are told of besides. TITLE stands above.
+the run, are told of besides. TITLE stands above. With ANYWAY
+also of a run whose definitions are not those at hand, though it may have gone differently.
 FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename.
 Signals WRONG-ARGUMENT, what REPLAY does, and MISUSE without the program that
 PNG needs, or where no journal is kept."
@@ -186,7 +189,7 @@ PNG needs, or where no journal is kept."
          (journal (journal-meant journal))
          (own (check-run-picture journal moments until :kinds kinds :limit limit :title title
                                                        :layers layers :scale scale)))
-    (multiple-value-bind (snapshot ways seen own) (watch-run journal until own)
+    (multiple-value-bind (snapshot ways seen own) (replaying (anyway) (watch-run journal until own))
       (save-svg (telling-what-breaks
                   (run-picture-text snapshot ways (in-order (append (of-kinds kinds seen) own))
                                     :limit limit :title title :layers layers

@@ -60,17 +60,19 @@
         (reject-name "robot of that run" name known)))))
 
 (addition save-trajectory)
-(defun save-trajectory (file &key journal (every 1) until robots)
+(defun save-trajectory (file &key journal (every 1) until robots anyway)
   "Write to FILE, replacing it, as a table of commas (CSV), where the robots of a run were: of that
 of JOURNAL (a journal, or a file that holds one), or else the current one up to now, which must keep
 one. A row for every EVERY ticks, up to the tick UNTIL, and for each robot, or those that ROBOTS, a
 name or a list of names, means: the tick, the robot, x and y in metres and the heading in radians;
 the same as its main odometer has it, put on the map; what its hands hold; the place type that it
-sensed last. The run is repeated for that. Return the file's truename. Signals WRONG-ARGUMENT,
-UNKNOWN-NAME, MISUSE if there is no journal or FILE cannot be written, when what was there is as
+sensed last. The run is repeated for that, with
+ANYWAY even if its definitions are not those at hand. Return the file's truename. Signals
+WRONG-ARGUMENT, UNKNOWN-NAME, MISUSE if there is no journal or FILE cannot be written, when what was there is as
 before, and what REPLAY does."
   (let ((journal (journal-meant journal)) (robots (ensure-list robots)))
     (check-trajectory file every until robots journal)
     (let ((text (with-output-to-string (out)
-                  (write-trajectory journal out every until robots))))
+                  (replaying (anyway)
+                    (write-trajectory journal out every until robots)))))
       (write-file-anew (lambda (out) (write-string text out)) file "the trajectory"))))
