@@ -425,7 +425,8 @@
                  (:file "experiments-tables") (:file "experiments-fingerprints")
                  (:file "thinking-experiments")
                  (:file "experiments-report") (:file "experiment-compare")
-                 (:file "experiments-pictures") (:file "experiment-compare-levels")
+                 (:file "experiments-pictures") (:file "pictures-kept")
+                 (:file "experiment-compare-levels")
                  (:file "experiment-compare-versions") (:file "rates") (:file "projecting")
                  (:file "projecting-mistakes") (:file "projecting-apart") (:file "trying-best")
                  (:module "newcomer" :serial t

@@ -54,6 +54,12 @@ nothing."
   (= sb-posix:s-ifreg
      (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (native-name path))))))
 
+(defun dangling-link-p (path)
+  "True if PATH, a pathname or string, is a link to something that there is not."
+  (let ((name (native-name (merge-pathnames path))))
+    (and (ignore-errors (sb-posix:lstat name))
+         (not (ignore-errors (sb-posix:stat name))))))
+
 (defun unusable-file-text (path)
   "Return why PATH, a pathname or string, is the name of no file of bytes, in words, or NIL."
   (cond ((wild-pathname-p path)

@@ -57,7 +57,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:encoded #:decoded #:file-text #:cut-file
            #:call-with-file-lock #:make-directories #:make-new-directory
            #:host-name #:process-number
-           #:environment-value #:real-microseconds #:run-command #:run-attached)
+           #:environment-value #:real-microseconds #:run-command #:run-attached
+           #:run-filter)
   ;; writing
   (:export #:call-replacing-file #:write-file-anew #:unwritten-reason)
   ;; environments

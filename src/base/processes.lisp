@@ -30,17 +30,41 @@ status, or NIL if it cannot be run, and as a string what it wrote if OUTPUT is :
   "What a shell does to run a program that the system tells to end when this process ends, however
 it does: where the system can.")
 
-(defun run-attached (program arguments)
-  "Run PROGRAM, looked for where programs are, with the strings ARGUMENTS: it reads and writes what
-this process would. Wait for its end; if this is left, or this process is killed, it is told to end.
-Return its exit status, as of a shell, or NIL if no program can be run."
-  (let ((process (handler-case (uiop:launch-program
-                                (list* "sh" "-c" *tied-start* "sh" program arguments)
-                                :input :interactive :output :interactive
-                                :error-output :interactive)
-                   (error () (return-from run-attached nil))))
+(defun run-tied (program arguments &rest streams)
+  "Run PROGRAM, looked for where programs are, with the strings ARGUMENTS and STREAMS, keywords of
+UIOP:LAUNCH-PROGRAM. Wait for its end; if this is left, or this process is killed, it is told to
+end. Return its exit status, as of a shell, or NIL if no program can be run, and as a string what it
+said of errors if STREAMS have that as :STREAM."
+  (let ((process (handler-case (apply #'uiop:launch-program
+                                      (list* "sh" "-c" *tied-start* "sh" program arguments)
+                                      streams)
+                   (error () (return-from run-tied nil))))
+        (errors (eq :stream (getf streams :error-output)))
         (status nil))
-    (unwind-protect (setf status (uiop:wait-process process))
+    (unwind-protect
+         (let ((text (and errors
+                          (uiop:slurp-stream-string (uiop:process-info-error-output process)))))
+           (setf status (uiop:wait-process process))
+           (values status text))
       (unless status
         (uiop:terminate-process process)
-        (uiop:wait-process process)))))
+        (uiop:wait-process process))
+      (when errors (uiop:close-streams process)))))
+
+(defun run-attached (program arguments)
+  "Do as RUN-TIED does with PROGRAM and ARGUMENTS: it reads and writes what this process would.
+Return its exit status or NIL."
+  (run-tied program arguments
+            :input :interactive :output :interactive :error-output :interactive))
+
+(defconstant +not-found+ 127 "The exit status of a shell that finds no program of a name.")
+
+(defun run-filter (program arguments input output)
+  "Do as RUN-TIED does with PROGRAM and ARGUMENTS: it reads the string INPUT and writes into the
+stream OUTPUT to a file. Return its exit status, or NIL if there is no such program, and as a string
+what it said of errors."
+  (with-input-from-string (in input)
+    (multiple-value-bind (status errors)
+        (run-tied program arguments :input in :output output :error-output :stream
+                                    :external-format :utf-8)
+      (values (if (eql status +not-found+) nil status) errors))))

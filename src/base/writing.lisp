@@ -7,6 +7,8 @@
 is one. Signals an error if there is something that is no file of bytes, or no directory for it, or
 the name is illegible."
   (check-name-legible file)
+  (when (dangling-link-p file)
+    (error "it is a link to a file that there is not"))
   (let ((path (or (probe-file file)
                   (uiop:ensure-absolute-pathname (merge-pathnames file) #'uiop:getcwd))))
     (when (and (probe-file path) (not (plain-file-p path)))

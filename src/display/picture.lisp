@@ -52,20 +52,31 @@ and MISUSE if GRAPHICS-SCALE* is no scale."
 (defun save-text (text file)
   (write-file-anew (lambda (out) (write-string text out)) file "the picture"))
 
-(defun convert-to-png (svg file)
-  "Write the SVG document SVG to FILE as PNG, by the program rsvg-convert."
-  (let ((status (with-input-from-string (in svg)
-                  (run-command "rsvg-convert"
-                               (list "--unlimited" "-f" "png" "-o" (native-name file))
-                               :input in))))
+(defun png-remedy (words)
+  "Return what can be done where rsvg-convert says WORDS."
+  (cond ((search "larger than" words) "Choose a smaller scale, or save it as .svg")
+        ((search "No space" words) "Make room there, or choose another directory")
+        (t "Choose a smaller scale if it is very large, or save it as .svg")))
+
+(defun reject-png (file words)
+  "Signal MISUSE: the picture cannot be written to FILE, as rsvg-convert says in WORDS."
+  (let ((words (one-line words)))
+    (reject-use "The picture cannot be written to ~A: rsvg-convert ~:[says nothing, but ~
+                 failed~;~:*says ~S~]. What was there is as before. ~A."
+                (shown-name file) (and (plusp (length words)) (cut words 300))
+                (png-remedy words))))
+
+(defun write-png (svg out file)
+  "Write the SVG document SVG to the stream OUT, as PNG, by the program rsvg-convert: to be FILE."
+  (multiple-value-bind (status words)
+      (run-filter "rsvg-convert" '("--unlimited" "-f" "png") svg out)
     (cond ((null status)
            (reject-use "PNG pictures need the program rsvg-convert, of Debian's package ~
                         librsvg2-bin: apt-get install librsvg2-bin. Or save the picture as .svg."))
-          ((plusp status)
-           (reject-use "The picture cannot be written to ~A, says rsvg-convert. Give the name of a ~
-                        file that you may write."
-                       (shown-name file))))
-    (truename file)))
+          ((plusp status) (reject-png file words)))))
+
+(defun convert-to-png (svg file)
+  (write-file-anew (lambda (out) (write-png svg out file)) file "the picture"))
 
 (defun picture-kind (operator file &optional (endings ".svg or .png"))
   "Return :SVG or :PNG, as the name of FILE ends. Signals WRONG-ARGUMENT if OPERATOR cannot save a
