@@ -4,7 +4,8 @@
 
 ;;; A name is written near by where its box meets no thing, robot, number of a designator, mark of a
 ;;; place or other name, and rather no wall and no trail; if there is no such room, not at all.
-;;; Other lines end before a name. Robots come first, then large things.
+;;; Other lines end before a name. Robots come first, and their names may lie on walls and marks if
+;;; need be; then come large things.
 
 (define-constant +name-size+ 10 :documentation "How high the font of names is, in pixels.")
 (define-constant +name-height+ 11 :documentation "How high the box of a name is, in pixels.")
@@ -74,10 +75,10 @@ on it, meets."
 (define-constant +thick-wall+ 4
   :documentation "From how many pixels to a cell on a name may hide a part of a wall.")
 
-(defun best-box (snapshot layers boxes taken)
+(defun best-box (snapshot layers boxes taken &key anywhere-p)
   "Return the first of BOXES that is in the part of the map that SNAPSHOT shows and meets none of
 TAKEN: rather no wall and no mark of a place that LAYERS show, and then rather no trail; if need be
-a thick wall; or NIL."
+a thick wall; if ANYWHERE-P, any wall or mark; or NIL."
   (let* ((map (snapshot-map snapshot))
          (possible (remove-if-not
                     (lambda (box)
@@ -93,7 +94,8 @@ a thick wall; or NIL."
         (first free)
         (and (<= +thick-wall+ graphics-scale*)
              (find-if-not (lambda (box) (and (member :places layers) (on-mark-p map box)))
-                          possible)))))
+                          possible))
+        (and anywhere-p (first possible)))))
 
 (define-constant +longest-name+ 24
   :documentation "How many characters of a name are written beside a sample, or on the map.")
@@ -116,17 +118,17 @@ have small letters of their own."
   (drawn-name (thing-name (thing-image-thing image))))
 
 (defun named-spots (snapshot)
-  "Return lists (name x y half) of what has a name on the map, in order of importance."
+  "Return lists (name x y half robot-p) of what has a name on the map, in order of importance."
   (append (loop with robots = (snapshot-robots snapshot)
                 for robot in robots
                 collect (list (short-name (robot-title robot))
                               (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
-                              (* 8/5 (spot-radius robot robots))))
+                              (* 8/5 (spot-radius robot robots)) t))
           (loop for image in (stable-sort (coerce (snapshot-things snapshot) 'list) #'>
                                           :key #'thing-image-size)
                 collect (list (short-name (thing-image-name image))
                               (to-pixels (thing-image-x image)) (to-pixels (thing-image-y image))
-                              (half-width image)))))
+                              (half-width image) nil))))
 
 (define-constant +apart+ 6
   :documentation "How far names on a line are apart at least, not to be read as one, in pixels.")
@@ -150,7 +152,7 @@ have small letters of their own."
                                    (+ 2 +way-end+)))))))
 
 (defun boxes-of-spots (spots)
-  (loop for (nil x y half) in spots collect (widened (box-around x y half) 2)))
+  (loop for (nil x y half nil) in spots collect (widened (box-around x y half) 2)))
 
 (defun write-name (canvas name box)
   "Write NAME in BOX, on white: what lines lie there end before it."
@@ -168,10 +170,10 @@ have small letters of their own."
          (marks (append boxes (loop for robot in (snapshot-robots snapshot)
                                     append (marked-spots robot layers))))
          (taken (append marks (boxes-of-spots spots))))
-    (loop for (name x y half) in spots
+    (loop for (name x y half robot-p) in spots
           for width = (+ 2 (* per-character (length name)))
-          for box = (best-box snapshot layers (boxes-beside x y half width marks)
-                            taken)
+          for box = (best-box snapshot layers (boxes-beside x y half width marks) taken
+                              :anywhere-p robot-p)
           when box
             do (push (widened box +apart+) taken)
                (write-name canvas name box))))
