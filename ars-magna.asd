@@ -325,7 +325,7 @@
   :serial t
   :components ((:module "tests" :serial t
                 :components ((:file "clim-client") (:file "clim-window") (:file "clim-layout")
-                             (:file "clim-pointing") (:file "clim-menus")
+                             (:file "clim-view") (:file "clim-pointing") (:file "clim-menus")
                              (:file "clim-progress") (:file "clim-plans")
                              (:file "clim-talking") (:file "clim-going-on")
                              (:file "clim-awaiting")

@@ -129,6 +129,36 @@
         (window::click pane :right x 60)
         (is (row-with window "rewind-to 10"))))))
 
+(test canvas.what-is-clipped-away-is-not-there
+  "It is neither marked nor pointed at; of what is half hidden the half that is seen is there."
+  (in-window (window robot)
+    (let ((pane (seen-plans window)) (switch (window::make-switch "x" "" #'identity)))
+      (flet ((box-of (y)
+               (window::painting (canvas pane)
+                 (canvas:with-clipping (canvas 0 23 200 100)
+                   (canvas:with-origin (canvas 0 (- y))
+                     (canvas:with-subject (canvas switch)
+                       (canvas:draw-rectangle canvas canvas:draw-gcontext* 10 30 50 17 t)))))
+               (nth-value 1 (drawn-in pane (lambda (subject) (eq subject switch))))))
+        (is (equal '(10 30 60 47) (box-of 0)))
+        (is (equal '(10 23 60 37) (box-of 10)))
+        (is (null (box-of 40)))))))
+
+(test plan-timeline.ticks-stay-above-the-rows
+  (in-window (window robot)
+    (let ((ars-magna.rpl-robot:*trace-plans* t))
+      (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
+      (run:run-ticks 30)
+      (let ((page (window::plan-look-page
+                   (window::plan-look-of (seen-plans window :timeline)))))
+        (loop for from in '(0 20)
+              for picture = (with-output-to-string (stream)
+                              (canvas:with-svg (canvas stream)
+                                (canvas:with-canvas (canvas)
+                                  (ars-magna.rpl-pictures:draw-page canvas page :from from))
+                                (values 640 400)))
+              do (is (mentions-p picture (format nil "y=\"~D\"" (+ 16 from)))))))))
+
 (test plan-timeline.names-have-the-room-that-they-need
   (in-window (window robot)
     (let ((ars-magna.rpl-robot:*trace-plans* t))

@@ -287,6 +287,24 @@ leads to both."
     (robot:place-robot robot 2.5 3 0)
     (is (null (base:take-messages)))))
 
+(defun move-mouse (pane x y)
+  "Let CLIM tell PANE that the mouse has moved to X, Y of it."
+  (clim:handle-event pane (make-instance 'clim:pointer-motion-event
+                                         :sheet pane :x x :y y :modifier-state 0)))
+
+(test pointing.what-is-dragged-over-another-display-is-told-of-until-it-is-dropped
+  (in-window (window robot)
+    (let ((pane (painted-world window)) (title (pane window 'window::state-title)))
+      (window::press pane :left 28 36)
+      (window::drag pane 124 20)
+      (move-mouse title 5 5)
+      (is (mentions-p (window::window-hint window) "BOX#1 to 15.50, 2.50"))
+      (window::drag pane 5000 20)
+      (is (mentions-p (window::window-hint window) "BOX#1: that is not on the map"))
+      (setf (window::pane-drag pane) nil)
+      (move-mouse title 5 5)
+      (is (mentions-p (window::window-hint window) "Click to fold")))))
+
 (test pointing.dragging-the-map-moves-the-view
   (in-window (window robot)
     (let ((pane (painted-world window)))

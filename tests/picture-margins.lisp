@@ -185,6 +185,14 @@ room."
         (is (equal '(20 40 60 51) (best '(70 12 110 23) '(20 40 60 51))))))
     (is (find '(97 84 137 95) (display::name-boxes 100 100 3 40) :test #'equal))))
 
+(test names.of-robots-are-written-on-thin-walls-if-need-be
+  "Those of things are left out there."
+  (in-studio (robot)
+    (let ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 3) (box '(6 0 26 11)))
+      (is (null (display::best-box snapshot '() (list box) '())))
+      (is (equal box (display::best-box snapshot '() (list box) '() :anywhere-p t)))
+      (is (null (display::best-box snapshot '() (list box) (list box) :anywhere-p t))))))
+
 (test names.of-robots-on-one-spot-are-beside-each-other
   (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 1)
     (dolist (robot (run:simulation-robots)) (robot:place-robot robot 60.5 38.5 0))

@@ -123,14 +123,20 @@ half."
   (let ((left (labels-width (page-rows page) 100 (max 100 (floor width 2)))))
     (make-scale (page-start page) (page-end page) left (max 60 (- width left 24)))))
 
+(define-constant +axis-height+ 26
+  :documentation "How high the numbers above the rows of a page are, in pixels.")
+
 (defun draw-page (canvas page &key (width 640) (top 0) (from 0) to)
-  "Draw PAGE on CANVAS, WIDTH pixels wide, from TOP down; of its rows only those between FROM and
-TO, in pixels from the top, need be seen. Return where it ends, in pixels."
+  "Draw PAGE on CANVAS, WIDTH pixels wide, from TOP down. Of its rows only those between FROM and
+TO, in pixels from the top, need be seen; the numbers of ticks are above them as long as any is.
+Return where it ends, in pixels."
   (let* ((scale (scale-for page width))
-         (first (+ top 26))
-         (bottom (+ first (rows-height (page-rows page)))))
-    (draw-axis canvas scale first bottom)
-    (draw-rows canvas (page-rows page) scale first :from from :to to)
+         (first (+ top +axis-height+))
+         (bottom (+ first (rows-height (page-rows page))))
+         (axis (min (+ first from) bottom)))
+    (draw-axis canvas scale axis bottom)
+    (with-clipping (canvas 0 axis width (max 1 (- bottom axis)))
+      (draw-rows canvas (page-rows page) scale first :from from :to to))
     (draw-unseen canvas page (+ bottom 34))
     (nth-value 1 (draw-legend canvas :y (+ bottom (if (plusp (page-unseen page)) 44 24))
                                      :width width))))

@@ -12,12 +12,14 @@
    (reach :initform nil :accessor canvas-reach)
    ;; How high what it paints on is, in pixels, if text that would be cut there is left out; or NIL.
    (bottom :initarg :bottom :initform nil :reader canvas-bottom)
+   ;; The box (left top right bottom) of what it paints on in which anything is seen, or NIL: all.
+   (seen :initform nil :accessor canvas-seen)
    (dx :initform 0 :accessor canvas-dx)
    (dy :initform 0 :accessor canvas-dy))
   (:documentation "A canvas that paints on a medium of CLIM."))
 
 (setf (documentation 'canvas-subjects 'function)
-      "Return what was drawn where: a list (subject left top right bottom).")
+      "Return what was drawn where, as far as it is seen: a list (subject left top right bottom).")
 
 (defvar *inks* (make-hash-table :synchronized t) "From colours to CLIM's, as far as used.")
 
@@ -134,13 +136,31 @@ it is inside the box X, Y, WIDTH, HEIGHT of pixels."
 
 ;;; Where.
 
+(defun shifted (canvas left top right bottom)
+  "Return the box LEFT, TOP, RIGHT, BOTTOM as it is on what CANVAS paints on."
+  (let ((dx (canvas-dx canvas)) (dy (canvas-dy canvas)))
+    (list (+ dx left) (+ dy top) (+ dx right) (+ dy bottom))))
+
+(defun seen-part (canvas box)
+  "Return the part of BOX, on what CANVAS paints on, that is not clipped away, or NIL."
+  (if (canvas-seen canvas)
+      (destructuring-bind ((left top right bottom) (from-x from-y to-x to-y))
+          (list box (canvas-seen canvas))
+        (and (< from-x right) (< left to-x) (< from-y bottom) (< top to-y)
+             (list (max left from-x) (max top from-y) (min right to-x) (min bottom to-y))))
+      box))
+
 (defmethod call-with-clipping (function (canvas clim-canvas) x y width height)
-  (let ((reach (shiftf (canvas-reach canvas) nil)) (right (+ x width)) (bottom (+ y height)))
+  (let* ((reach (shiftf (canvas-reach canvas) nil)) (right (+ x width)) (bottom (+ y height))
+         (seen (canvas-seen canvas)))
+    (setf (canvas-seen canvas) (or (seen-part canvas (shifted canvas x y right bottom))
+                                   '(0 0 -1 -1)))
     (unwind-protect
          (clim:with-drawing-options ((canvas-medium canvas)
                                      :clipping-region (clim:make-rectangle* x y right bottom))
            (funcall function))
-      (setf (canvas-reach canvas) reach)
+      (setf (canvas-reach canvas) reach
+            (canvas-seen canvas) seen)
       (extend-reach canvas x y right bottom))))
 
 (defmethod call-with-origin (function (canvas clim-canvas) x y)
@@ -161,9 +181,8 @@ it is inside the box X, Y, WIDTH, HEIGHT of pixels."
       (destructuring-bind (left top right bottom) (canvas-reach canvas)
         (setf (canvas-reach canvas) outer)
         (extend-reach canvas left top right bottom)
-        (let ((dx (canvas-dx canvas)) (dy (canvas-dy canvas)))
-          (push (list subject (+ dx left) (+ dy top) (+ dx right) (+ dy bottom))
-                (canvas-subjects canvas)))))))
+        (let ((box (seen-part canvas (shifted canvas left top right bottom))))
+          (when box (push (cons subject box) (canvas-subjects canvas))))))))
 
 (define-constant +aim+ 3 :documentation "By how many pixels a click may miss a subject.")
 

@@ -136,16 +136,22 @@ OPENER had opened.")
       (drop pane (clim:pointer-event-x event) (clim:pointer-event-y event)))
     (setf (pane-drag pane) nil)))
 
+;; While something is dragged, the strip tells of that, wherever the mouse is.
+(defun dragging-pane (window)
+  "Return the pane of WINDOW from which something is dragged, or NIL."
+  (find-if #'pane-drag (display-panes window)))
+
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-motion-event))
   (let ((x (clim:pointer-event-x event)) (y (clim:pointer-event-y event)))
     (case (pane-drag pane)
-      ((nil) (hover pane x y))
+      ((nil) (unless (dragging-pane (window-of pane)) (hover pane x y)))
       (:scroll-bar (drag-scroll-bar pane y))
       (t (drag pane x y)))))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-exit-event))
-  (point-nowhere (window-of pane))
-  (repaint-if-changed (pane-named (window-of pane) 'strip)))
+  (unless (dragging-pane (window-of pane))
+    (point-nowhere (window-of pane))
+    (repaint-if-changed (pane-named (window-of pane) 'strip))))
 
 ;;; A turn of the wheel is an event of a button, too, but no press of it.
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-event))

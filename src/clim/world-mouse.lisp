@@ -86,9 +86,11 @@ robot at its middle, whatever it stands on, or what is smallest there."
   "Show in PANE where SUBJECT would be if it were dropped at X, Y."
   (multiple-value-bind (to-x to-y) (point-at pane x y)
     (setf (pane-ghost pane) (list x y))
-    (hint (window-of pane) (format nil "~A to ~,2F, ~,2F~:[~;, inside a wall~]"
-                                   (subject-title subject) to-x to-y
-                                   (wall-at-p (view-map pane) to-x to-y)))
+    (hint (window-of pane)
+          (if (cell-at pane x y)
+              (format nil "~A to ~,2F, ~,2F~:[~;, inside a wall~]" (subject-title subject)
+                      to-x to-y (wall-at-p (view-map pane) to-x to-y))
+              (format nil "~A: that is not on the map" (subject-title subject))))
     (repaint-if-changed pane)))
 
 (defun paint-ghost (pane)

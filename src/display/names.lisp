@@ -4,7 +4,8 @@
 
 ;;; A name is written near by where its box meets no thing, robot, number of a designator or other
 ;;; name, and rather no wall, no mark of a place and no trail; if there is no such room, not at all.
-;;; Other lines end before a name. Robots come first, then large things.
+;;; Other lines end before a name. Robots come first, whose names may lie on any wall if need be;
+;;; then come large things.
 
 (define-constant +name-size+ 10 :documentation "How high the font of names is, in pixels.")
 (define-constant +name-height+ 11 :documentation "How high the box of a name is, in pixels.")
@@ -74,24 +75,24 @@ on it, meets."
 (define-constant +thick-wall+ 4
   :documentation "From how many pixels to a cell on a name may hide a part of a wall.")
 
-(defun box-cost (snapshot layers box)
+(defun box-cost (snapshot layers box anywhere-p)
   "Return how much a name in BOX would hide on the map that SNAPSHOT shows with LAYERS, from 0 for
-nothing; NIL if it may not stand there, on a wall that is not thick."
+nothing; NIL if it may not stand there, on a wall that is not thick, unless ANYWHERE-P."
   (let ((map (snapshot-map snapshot)))
     (cond ((not (on-wall-p map box))
            (+ (if (and (member :places layers) (on-mark-p map box)) 2 0)
               (if (and (member :trail layers) (on-trail-p snapshot box)) 1 0)))
-          ((<= +thick-wall+ graphics-scale*) 4))))
+          ((or anywhere-p (<= +thick-wall+ graphics-scale*)) 4))))
 
-(defun best-box (snapshot layers boxes taken)
+(defun best-box (snapshot layers boxes taken &key anywhere-p)
   "Return the first of those of BOXES that hide least, are in the part of the map that SNAPSHOT
 shows, and meet none of TAKEN; or NIL. Rather than nothing a name hides a trail, then the mark of a
-place, and at last a part of a thick wall."
+place, and at last a part of a wall that is thick, or of any if ANYWHERE-P."
   (loop with best = nil and least = nil
         for box in boxes
         for cost = (and (within-shown-p snapshot box)
                         (notany (lambda (other) (overlap-p box other)) taken)
-                        (box-cost snapshot layers box))
+                        (box-cost snapshot layers box anywhere-p))
         when (and cost (or (null least) (< cost least)))
           do (setf best box least cost)
         finally (return best)))
@@ -117,17 +118,17 @@ have small letters of their own."
   (drawn-name (thing-name (thing-image-thing image))))
 
 (defun named-spots (snapshot)
-  "Return lists (name x y half) of what has a name on the map, in order of importance."
+  "Return lists (name x y half robot-p) of what has a name on the map, in order of importance."
   (append (loop with robots = (snapshot-robots snapshot)
                 for robot in robots
                 collect (list (short-name (robot-title robot))
                               (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
-                              (* 8/5 (spot-radius robot robots))))
+                              (* 8/5 (spot-radius robot robots)) t))
           (loop for image in (stable-sort (coerce (snapshot-things snapshot) 'list) #'>
                                           :key #'thing-image-size)
                 collect (list (short-name (thing-image-name image))
                               (to-pixels (thing-image-x image)) (to-pixels (thing-image-y image))
-                              (half-width image)))))
+                              (half-width image) nil))))
 
 (define-constant +apart+ 6
   :documentation "How far names on a line are apart at least, not to be read as one, in pixels.")
@@ -151,7 +152,7 @@ have small letters of their own."
                                    (+ 2 +way-end+)))))))
 
 (defun boxes-of-spots (spots)
-  (loop for (nil x y half) in spots collect (widened (box-around x y half) 2)))
+  (loop for (nil x y half nil) in spots collect (widened (box-around x y half) 2)))
 
 (defun write-name (canvas name box)
   "Write NAME in BOX, on white: what lines lie there end before it."
@@ -169,10 +170,10 @@ have small letters of their own."
          (marks (append boxes (loop for robot in (snapshot-robots snapshot)
                                     append (marked-spots robot layers))))
          (taken (append marks (boxes-of-spots spots))))
-    (loop for (name x y half) in spots
+    (loop for (name x y half robot-p) in spots
           for width = (+ 2 (* per-character (length name)))
-          for box = (best-box snapshot layers (boxes-beside x y half width marks)
-                            taken)
+          for box = (best-box snapshot layers (boxes-beside x y half width marks) taken
+                              :anywhere-p robot-p)
           when box
             do (push (widened box +apart+) taken)
                (write-name canvas name box))))

@@ -4,7 +4,8 @@
 
 ;;; A window shows a part of the map. Numbers and bar stand in strips at its edges, from one end to
 ;;; the other, and the map is in view between these: so they hide nothing that one could see there
-;;; otherwise. All is in pixels of the whole map: LEFT and TOP are where the view begins.
+;;; otherwise. A number at the end of its strip is moved so that it is whole. All is in pixels of
+;;; the whole map: LEFT and TOP are where the view begins.
 
 (define-constant +strip-height+ 17 :documentation "How high the strip of numbers is, in pixels.")
 (define-constant +bar-strip-height+ 24
@@ -38,10 +39,10 @@ strip that begins at LEFT, TOP."
   (draw-strip canvas left top (- end left) +strip-height+)
   (dolist (metres (marks-between (max 0 start) (min end (to-pixels (map-width map)))
                                  (steps-apart 60)))
-    (let* ((text (princ-to-string metres)) (x (to-pixels metres)) (half (/ (words-width text) 2)))
+    (let* ((text (princ-to-string metres)) (x (to-pixels metres)) (width (words-width text)))
       (draw-notch canvas x (+ top 14) x (+ top 17))
-      (when (<= (+ left half) x (- end half))
-        (draw-text canvas (- x half) (+ top 11) text)))))
+      (draw-text canvas (clamp (- x (/ width 2)) left (max left (- end width))) (+ top 11)
+                 text))))
 
 (defun draw-rows-strip (canvas map left top width end)
   "Draw the numbers of metres from the top of MAP that are between the pixels TOP and END, in a
@@ -51,8 +52,7 @@ strip at LEFT that is WIDTH pixels wide."
                                  (steps-apart 60)))
     (let* ((text (princ-to-string metres)) (y (to-pixels metres)) (right (+ left width)))
       (draw-notch canvas (- right 3) y right y)
-      (when (<= y (- end 6))
-        (draw-text canvas (- right 8 (words-width text)) (+ y 4) text)))))
+      (draw-text canvas (- right 8 (words-width text)) (min (+ y 4) (- end 2)) text))))
 
 (defun draw-view-margins (canvas map layers left top width height)
   "Draw what LAYERS lists of :COORDINATES and :SCALE-BAR of MAP at the edges of a view of it, WIDTH
