@@ -66,10 +66,9 @@ of JOURNAL (a journal, or a file that holds one), or else the current one up to 
 one. A row for every EVERY ticks, up to the tick UNTIL, and for each robot, or those that ROBOTS, a
 name or a list of names, means: the tick, the robot, x and y in metres and the heading in radians;
 the same as its main odometer has it, put on the map; what its hands hold; the place type that it
-sensed last. The run is repeated for that, with
-ANYWAY even if its definitions are not those at hand. Return the file's truename. Signals
-WRONG-ARGUMENT, UNKNOWN-NAME, MISUSE if there is no journal or FILE cannot be written, when what was there is as
-before, and what REPLAY does."
+sensed last. The run is repeated for that, with ANYWAY even if its definitions are not
+those at hand. Return the file's truename. Signals WRONG-ARGUMENT, UNKNOWN-NAME, MISUSE if there is
+no journal or FILE cannot be written, when what was there is as before, and what REPLAY does."
   (let ((journal (journal-meant journal)) (robots (ensure-list robots)))
     (check-trajectory file every until robots journal)
     (let ((text (with-output-to-string (out)
