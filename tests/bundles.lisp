@@ -72,6 +72,14 @@
     (dolist (options '((:part (1 2 3)) (:part (0 0 99 99)) (:title 7) (:layers (:frob)) (:scale 0)))
       (signals base:wrong-argument (apply #'bundle robot '("success") options)))))
 
+;;; Trials that broke off.
+
+(test bundles.count-trials-that-broke-off-before-robots-were-seen
+  (is (equal '("broke off with an error: 2 trials")
+             (mapcar #'display::entry-text
+                     (trails::bundle-entries (append (trails:ways-along '() 1 "error")
+                                                     (trails:ways-along '() 2 "error")))))))
+
 ;;; Pictures of a run.
 
 (test run-picture.names-no-ways-of-robots-that-never-moved

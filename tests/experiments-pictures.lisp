@@ -322,3 +322,10 @@
                  (is (search file page) "~A is not on the page" file)
                  (is-true (probe-file (project-file (format nil "worlds/~A" file)))))))
     (is (plusp shown))))
+
+(test charts.say-how-many-trials-broke-off-with-an-error
+  (with-report (results '("way") '() '((("a") ("error" :error "boom") ("success" :ticks 3))
+                                       (("b") ("success" :ticks 5) ("success" :ticks 4))))
+    (is-true (mentions-p (experiment::intervals-words
+                          :rate (experiment::summarize-results results))
+                         "1 trial broke off with an error"))))

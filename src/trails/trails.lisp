@@ -21,8 +21,9 @@ Return it."
 
 (defun ways-along (trails trial outcome)
   "Return the ways that TRAILS, as NOTE-PLACES keeps them, say robots went in TRIAL, which ended
-with OUTCOME."
-  (loop for (nil . points) in (reverse trails)
+with OUTCOME. A trial that broke off before robots were seen has one way, without points: so it
+counts."
+  (loop for (nil . points) in (or (reverse trails) '((nil)))
         collect (make-way trial outcome (coerce (reverse points) 'simple-vector))))
 
 (document-functions

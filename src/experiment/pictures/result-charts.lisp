@@ -18,12 +18,22 @@
   "Return SENTENCES, which are strings or NIL, after what the conditions of PANEL have in common."
   (format nil "~@[~A. ~]~{~A~^ ~}" (panel-where panel) (remove nil sentences)))
 
+(defun errors-words (summaries)
+  "Return how many trials of SUMMARIES broke off with an error, in a sentence; \"\" if none did."
+  (let ((count (reduce #'+ summaries :key #'summary-errors)))
+    (if (zerop count)
+        ""
+        (format nil " ~D trial~:P broke off with an error, and did not succeed." count))))
+
 (defun intervals-words (kind summaries)
-  "Return what the intervals of SUMMARIES are, of a KIND of estimates, in a sentence."
-  (format nil "~A intervals~:[ of 95 %~;, with the confidence of the look that was the last~]; ~A."
+  "Return what the intervals of SUMMARIES are, of a KIND of estimates, in a sentence; and another on
+trials that broke off with an error, if there are any."
+  (format nil "~A intervals~:[ of 95 %~;, with the confidence of the look that was the last~]; ~
+               ~A.~A"
           (ecase kind (:rate "Wilson's") (:mean "Student's") (:median "Rank"))
           (some (lambda (summary) (/= .95d0 (summary-confidence summary))) summaries)
-          (trials-text summaries)))
+          (trials-text summaries)
+          (errors-words summaries)))
 
 ;;; Estimates against what varies.
 
