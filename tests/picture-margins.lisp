@@ -153,15 +153,31 @@ end is there as well, and whole."
      '(pecker))))
 
 (test names.keep-apart
-  "Two names on one line are not read as one, and none lies on the mark of a place."
+  "Two names on one line are not read as one, and none lies on the mark of a place if there is other
+room."
   (in-studio (robot)
     (let* ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 8)
            (boxes '((20 20 60 31) (40 40 80 51))))
       (is (equal (second boxes)
                  (display::best-box snapshot '() boxes
                                     (list (display::widened '(-26 20 15 31) 6)))))
-      (is (null (display::best-box snapshot '(:places) '((8 8 20 19)) '())))
-      (is (equal '(8 8 20 19) (display::best-box snapshot '() '((8 8 20 19)) '()))))))
+      (flet ((best (layers &rest boxes) (display::best-box snapshot layers boxes '())))
+        (is (equal '(40 40 80 51) (best '(:places) '(8 8 20 19) '(40 40 80 51))))
+        (is (equal '(8 8 20 19) (best '() '(8 8 20 19) '(40 40 80 51))))
+        (is (equal '(8 8 20 19) (best '(:places) '(70 12 110 23) '(8 8 20 19))))))))
+
+(test names.of-things-in-the-corners-of-a-room-are-written
+  "Though a corner is a place, which has a mark."
+  (with-own-definitions
+    (eval '(world:defmap cornered (8 6)
+            (rect (0 0) (7 5) bricks 1) (obj broom (1.5 1.5) ()) (obj vase (6.5 4.5) ())))
+    (eval '(robot:defrobot sweeper (cornered (3.5 3.5) 0)))
+    (run:call-with-simulation
+     (lambda ()
+       (is-true (has-words-p (display:svg-picture (first (run:simulation-robots))
+                                                  :layers '(:names :places))
+                             ">sweeper</text>" ">broom</text>" ">vase</text>")))
+     '(sweeper))))
 
 (test names.are-written-on-a-wall-where-there-is-no-other-room
   "Of a thing in a niche the name is too long for; what is free comes first, along the thing, too."
