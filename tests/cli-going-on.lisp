@@ -29,6 +29,7 @@
       (is (mentions-p (cli::time-text session simulation) "RESUME"))
       (type-here "resume")
       (is (time:live-p simulation))
+      (is (eq :free (run:simulation-rate simulation)) "it has the rate that it had")
       (is (= tick (run:simulation-tick simulation))))))
 
 (defun type-here (&rest lines)
