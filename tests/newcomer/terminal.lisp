@@ -159,7 +159,8 @@ it was written."
 
 (defun await-fact (terminal fact function)
   "Wait until FUNCTION, called with TERMINAL, is true; return its value. Signals NEWCOMER-STUCK,
-which says that there is no FACT, a string."
+which says that there is no FACT, a string. A machine that slept longer than the limit is no
+sign that something hangs, so the screen is asked once more at the end."
   (flet ((give-up ()
            (error 'newcomer-stuck :fact fact
                                   :screen (format nil "~{|~A~%~}" (screen-lines terminal)))))
@@ -167,7 +168,7 @@ which says that there is no FACT, a string."
             (sb-sys:with-deadline (:seconds *longest-wait*)
               (loop thereis (funcall function terminal)
                     do (await-news terminal)))
-          (sb-sys:deadline-timeout () nil))
+          (sb-sys:deadline-timeout () (funcall function terminal)))
         (give-up))))
 
 (defun await-text (terminal text)
