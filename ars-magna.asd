@@ -284,8 +284,8 @@
   :components
   ((:module "src/clim" :serial t
     :components ((:file "package") (:file "progress") (:file "plan-look") (:file "watcher")
-                 (:file "canvas")
-                 (:file "guarding") (:file "arrangement") (:file "buffering")
+                 (:file "arrangement") (:file "magnification") (:file "canvas")
+                 (:file "guarding") (:file "buffering")
                  (:file "panes") (:file "scrolling") (:file "selection")
                  (:file "view") (:file "world-pane") (:file "transcript") (:file "transcript-pane")
                  (:file "prompt") (:file "plan-pane") (:file "layout-pane") (:file "titles")
@@ -329,7 +329,7 @@
                              (:file "clim-progress") (:file "clim-plans")
                              (:file "clim-talking") (:file "clim-going-on")
                              (:file "clim-awaiting")
-                             (:file "clim-x-server") (:file "clim-keyboard")))))
+                             (:file "clim-x-server") (:file "clim-magnification") (:file "clim-keyboard")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."

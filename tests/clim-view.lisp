@@ -110,10 +110,13 @@
   (is (equal '(9 9 5 5) (multiple-value-list (window::outline-box 8 8 8 8 3)))))
 
 (test canvas.has-the-dashes-that-are-asked-for
-  (flet ((dashes-of (&rest options)
-           (apply #'canvas::call-with-gcontext
-                  (lambda () (window::dashes canvas:draw-gcontext*))
-                  canvas:draw-gcontext* options)))
-    (is (null (dashes-of :line-style :solid :dashes '(3 1))))
-    (is (equal '(5 5) (dashes-of :line-style :dash :dashes 5)))
-    (is (equal '(7 2) (dashes-of :line-style :dash :dashes '(7 2))))))
+  (flet ((dashes-of (magnification &rest options)
+           (let ((canvas (make-instance 'window:clim-canvas :medium nil
+                                                            :magnification magnification)))
+             (apply #'canvas::call-with-gcontext
+                    (lambda () (window::dashes canvas canvas:draw-gcontext*))
+                    canvas:draw-gcontext* options))))
+    (is (null (dashes-of 1 :line-style :solid :dashes '(3 1))))
+    (is (equal '(5 5) (dashes-of 1 :line-style :dash :dashes 5)))
+    (is (equal '(7 2) (dashes-of 1 :line-style :dash :dashes '(7 2))))
+    (is (equal '(21 6) (dashes-of 3 :line-style :dash :dashes '(7 2))))))

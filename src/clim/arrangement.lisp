@@ -38,11 +38,13 @@
 (defstruct wishes
   "What the user wants of an arrangement. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are in
 pixels, or NIL for what suits the window; FOLDED lists sections of which only the title is to be
-seen."
+seen. MAGNIFICATION is how many of the screen's pixels one of these is across, or NIL for what suits
+the screen."
   (details-width nil :type (or null real))
   (plan-width nil :type (or null real))
   (transcript-height nil :type (or null real))
-  (folded '(plan) :type list))
+  (folded '(plan) :type list)
+  (magnification nil :type (or null (integer 1))))
 
 (defun title-name (section)
   "Return the name of the title of SECTION."

@@ -9,22 +9,16 @@
 
 (defclass buffered-pane ()
   ((buffer :initform nil :accessor pane-buffer)
-   ;; Its width and height.
+   ;; Its width and height, in pixels of the screen.
    (buffer-size :initform nil :accessor pane-buffer-size))
   (:documentation "What a pane needs in order to be painted out of sight."))
-
-(defun pane-size (pane)
-  "Return width and height of PANE, in pixels."
-  (let ((region (clim:sheet-region pane)))
-    (values (floor (clim:bounding-rectangle-width region))
-            (floor (clim:bounding-rectangle-height region)))))
 
 (defun forget-buffer (pane)
   (let ((old (shiftf (pane-buffer pane) nil)))
     (when old (clim:deallocate-pixmap old))))
 
 (defun buffer-of (pane width height)
-  "Return a pixmap of WIDTH times HEIGHT pixels for PANE."
+  "Return a pixmap of WIDTH times HEIGHT of the screen's pixels for PANE."
   (let ((size (list width height)))
     (unless (and (pane-buffer pane) (equal size (pane-buffer-size pane)))
       (forget-buffer pane)
@@ -33,7 +27,8 @@
     (pane-buffer pane)))
 
 (defun call-in-buffer (function pane width height)
-  "Call FUNCTION, which paints PANE, of WIDTH times HEIGHT pixels; show all of that at once."
+  "Call FUNCTION, which paints PANE, of WIDTH times HEIGHT of the screen's pixels; show all of that
+at once."
   (let ((buffer (buffer-of pane width height)) (medium (clim:sheet-medium pane)))
     (setf (clim:medium-drawable medium) buffer)
     (unwind-protect (funcall function)
@@ -43,10 +38,11 @@
 
 (defun call-buffered (function pane)
   "Call FUNCTION, which paints PANE; nothing is seen of that before it returns."
-  (multiple-value-bind (width height) (pane-size pane)
-    (cond ((not (and (plusp width) (plusp height))))
-          ((clim:sheet-direct-mirror pane) (call-in-buffer function pane width height))
-          (t (clim:with-output-buffered (pane) (funcall function))))))
+  (multiple-value-bind (width height) (size-on-screen pane)
+    (flet ((paint () (call-magnified function pane (magnification pane))))
+      (cond ((not (and (plusp width) (plusp height))))
+            ((clim:sheet-direct-mirror pane) (call-in-buffer #'paint pane width height))
+            (t (clim:with-output-buffered (pane) (paint)))))))
 
 (defmacro buffered ((pane) &body body)
   "Run BODY, which paints PANE; nothing is seen of that before its end."

@@ -10,6 +10,8 @@
    (subjects :initform '() :accessor canvas-subjects)
    ;; The box drawn in so far, or NIL outside of subjects.
    (reach :initform nil :accessor canvas-reach)
+   ;; How many pixels of the screen one of its own is across.
+   (magnification :initarg :magnification :initform 1 :reader canvas-magnification)
    ;; How high what it paints on is, in pixels, if text that would be cut there is left out; or NIL.
    (bottom :initarg :bottom :initform nil :reader canvas-bottom)
    ;; The box (left top right bottom) of what it paints on in which anything is seen, or NIL: all.
@@ -30,12 +32,19 @@
             (flet ((part (position) (/ (ldb (byte 8 position) color) 255)))
               (clim:make-rgb-color (part 16) (part 8) (part 0))))))
 
-(defun dashes (gcontext)
-  "Return the lengths of the dashes and gaps of GCONTEXT, a list; NIL if its lines are solid."
+;;; CLIM magnifies where lines and letters are, but not how thick and large they are.
+
+(defun thickness (canvas gcontext)
+  "Return how many of the screen's pixels thick lines of GCONTEXT are on CANVAS."
+  (* (canvas-magnification canvas) (max 1 (gcontext-line-width gcontext))))
+
+(defun dashes (canvas gcontext)
+  "Return the lengths of the dashes and gaps of GCONTEXT on CANVAS, a list, in pixels of the screen;
+NIL if its lines are solid."
   (let ((dashes (gcontext-dashes gcontext)))
-    (cond ((eq :solid (gcontext-line-style gcontext)) nil)
-          ((listp dashes) dashes)
-          (t (list dashes dashes)))))
+    (unless (eq :solid (gcontext-line-style gcontext))
+      (loop for length in (if (listp dashes) dashes (list dashes dashes))
+            collect (* (canvas-magnification canvas) length)))))
 
 (defun extend-reach (canvas left top right bottom)
   (let ((reach (canvas-reach canvas)))
@@ -62,8 +71,8 @@
     (clim:draw-rectangles* (canvas-medium canvas) corners
                            :filled (and fill-p t)
                            :ink (ink (gcontext-foreground gcontext))
-                           :line-thickness (max 1 (gcontext-line-width gcontext))
-                           :line-dashes (dashes gcontext))))
+                           :line-thickness (thickness canvas gcontext)
+                           :line-dashes (dashes canvas gcontext))))
 
 (defun arc-points (x y width height start extent)
   "Return points along the arc, near enough for their lines to look round."
@@ -78,7 +87,7 @@
   (clim:draw-ellipse* (canvas-medium canvas) (+ x (/ width 2)) (+ y (/ height 2))
                       (/ width 2) 0 0 (/ height 2)
                       :filled (and fill-p t) :ink (ink (gcontext-foreground gcontext))
-                      :line-thickness (max 1 (gcontext-line-width gcontext))))
+                      :line-thickness (thickness canvas gcontext)))
 
 (defun outline-box (x y width height thickness)
   "Return the box through whose sides the middle of a line of THICKNESS has to run, so that all of
@@ -109,19 +118,26 @@ it is inside the box X, Y, WIDTH, HEIGHT of pixels."
     (clim:draw-polygon* (canvas-medium canvas) points
                         :filled (and fill-p t) :closed (and fill-p t)
                         :ink (ink (gcontext-foreground gcontext))
-                        :line-thickness (max 1 (gcontext-line-width gcontext))
-                        :line-dashes (dashes gcontext))))
+                        :line-thickness (thickness canvas gcontext)
+                        :line-dashes (dashes canvas gcontext))))
 
 (defmethod paint-segments ((canvas clim-canvas) gcontext segments)
   (let ((points (coerce segments 'list)))
     (extend-over canvas points)
     (clim:draw-lines* (canvas-medium canvas) points
                       :ink (ink (gcontext-foreground gcontext))
-                      :line-thickness (max 1 (gcontext-line-width gcontext))
-                      :line-dashes (dashes gcontext))))
+                      :line-thickness (thickness canvas gcontext)
+                      :line-dashes (dashes canvas gcontext))))
 
-(defparameter *text-style* (clim:make-text-style :fix :roman 12)
-  "How text is written on CLIM's canvases.")
+(defparameter *text-styles*
+  (coerce (loop for magnification from 1 to +most-magnified+
+                collect (clim:make-text-style :fix :roman (round (* 35/3 magnification))))
+          'vector)
+  "How text is written on CLIM's canvases, by their magnification: so that a letter is as many times
++CHARACTER-WIDTH+ wide.")
+
+(defun text-style (canvas)
+  (svref *text-styles* (1- (canvas-magnification canvas))))
 
 (defun uncut-p (canvas y)
   "True if text whose base line is at Y is not cut at the upper or lower edge of CANVAS."
@@ -132,7 +148,7 @@ it is inside the box X, Y, WIDTH, HEIGHT of pixels."
   (extend-reach canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
   (when (uncut-p canvas y)
     (clim:draw-text* (canvas-medium canvas) string x y
-                     :text-style *text-style* :ink (ink (gcontext-foreground gcontext)))))
+                     :text-style (text-style canvas) :ink (ink (gcontext-foreground gcontext)))))
 
 ;;; Where.
 

@@ -118,6 +118,14 @@
       (hint window "The whole map is in view; the wheel zooms in."))
     (refresh window)))
 
+(define-window-command (com-larger "All larger") (window)
+    "Show all in the window larger, letters and lines, too."
+  (magnify window (1+ (window-magnification window))))
+
+(define-window-command (com-smaller "All smaller") (window)
+    "Show all in the window smaller."
+  (magnify window (1- (window-magnification window))))
+
 (define-window-command (com-color "Colours on or off") (window)
     "Switch between colours and black and white."
   (switch-color window))

@@ -96,7 +96,7 @@
   (paint-line canvas pane label text point (if note 1 0)))
 
 (defmethod paint ((pane interactor-pane))
-  (let ((canvas (make-instance 'clim-canvas :medium pane))
+  (let ((canvas (make-instance 'clim-canvas :medium pane :magnification (magnification pane)))
         (shown (what-is-shown pane)))
     (clear pane)
     (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))

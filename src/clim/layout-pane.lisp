@@ -32,10 +32,11 @@
         (values nil nil))))
 
 (defun first-size (pane)
-  "Return how wide and high PANE should be at first: no larger than the screen."
-  (multiple-value-bind (width height) (screen-size pane)
-    (values (min (first +first-size+) (or width 10000))
-            (min (second +first-size+) (- (or height 10000) 60)))))
+  "Return how wide and high PANE should be at first, in pixels of the screen: no larger than that."
+  (let ((magnification (magnification pane)))
+    (multiple-value-bind (width height) (screen-size pane)
+      (values (min (* magnification (first +first-size+)) (or width 10000))
+              (min (* magnification (second +first-size+)) (- (or height 10000) 60))))))
 
 (defmethod clim:compose-space ((pane layout-pane) &key width height)
   (declare (ignore width height))
@@ -49,8 +50,7 @@
   (let ((there-p (and (plusp width) (plusp height))))
     (setf (clim:sheet-enabled-p pane) there-p)
     (when there-p
-      (clim:move-and-resize-sheet pane left top width height)
-      (clim:allocate-space pane width height))))
+      (put-pane pane left top width height))))
 
 ;;; A display grows when it has to show more. It stays so when it shows less, lest titles and
 ;;; switches move from under the mouse while a run goes on: until the user changes the arrangement

@@ -32,7 +32,9 @@ and NIL for a gap."
                             ("Whole map" com-fit) ("Go to the robot" com-find)
                             nil
                             ("Which robot ..." com-robots) ("Follow the robot" com-follow)
-                            ("Layers ..." com-layers) ("Colours on or off" com-color)))
+                            ("Layers ..." com-layers) ("Colours on or off" com-color)
+                            nil
+                            ("All larger" com-larger) ("All smaller" com-smaller)))
         (make-menu "Robot" #'line-menus)
         (make-menu "Window" '(("Save as SVG" com-save-svg) ("Save as PNG" com-save-png)
                               nil

@@ -241,7 +241,9 @@ else, if its user has chosen another one of the same run, that that is shown."
                                 (lambda (reason) (when window (leave-run window reason))))))
     (with-lock (*windows-lock*) (pushnew port *ports*))
     (start-watching watcher simulation)
-    (setf window (make-robot-window watcher :frame-manager (clim:find-frame-manager :port port)))
+    (setf window (make-robot-window
+                  watcher :frame-manager (clim:find-frame-manager :port port)
+                          :usual-magnification (usual-magnification (screen-resolution port))))
     (take-habits window)
     (with-lock (*windows-lock*) (push window *windows*))
     (setf (window-thread window)

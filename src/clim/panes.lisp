@@ -37,6 +37,7 @@
   "Call FUNCTION with a canvas on which it paints PANE, but for lines of text that would be cut;
 remember what was painted where."
   (let ((canvas (make-instance 'clim-canvas :medium pane :bottom (nth-value 1 (pane-size pane))
+                                            :magnification (magnification pane)
                                             :color-p (window-color-p (window-of pane)))))
     (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))
       (with-canvas (canvas) (funcall function canvas)))

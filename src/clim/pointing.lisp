@@ -72,7 +72,7 @@ now."
   (let ((window (window-of pane)))
     (when subjects
       (select window (first subjects))
-      (multiple-value-bind (x y) (clim:transform-position (clim:sheet-transformation pane) x y)
+      (multiple-value-bind (x y) (place-outside pane x y)
         (offer-at window subjects x y)))))
 
 (defmethod click ((pane display-pane) button x y)
@@ -128,12 +128,12 @@ OPENER had opened.")
         (press-somewhere pane button x y))))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-press-event))
-  (take-press pane (button-name event) (clim:pointer-event-x event) (clim:pointer-event-y event)))
+  (multiple-value-call #'take-press pane (button-name event) (event-place pane event)))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-release-event))
   (let ((drag (pane-drag pane)))
     (unless (member drag '(nil :scroll-bar))
-      (drop pane (clim:pointer-event-x event) (clim:pointer-event-y event)))
+      (multiple-value-call #'drop pane (event-place pane event)))
     (setf (pane-drag pane) nil)))
 
 ;; While something is dragged, the strip tells of that, wherever the mouse is.
@@ -142,7 +142,7 @@ OPENER had opened.")
   (find-if #'pane-drag (display-panes window)))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-motion-event))
-  (let ((x (clim:pointer-event-x event)) (y (clim:pointer-event-y event)))
+  (multiple-value-bind (x y) (event-place pane event)
     (case (pane-drag pane)
       ((nil) (unless (dragging-pane (window-of pane)) (hover pane x y)))
       (:scroll-bar (drag-scroll-bar pane y))
@@ -158,4 +158,4 @@ OPENER had opened.")
   (let ((steps (position (clim:pointer-event-button event)
                          (list clim:+pointer-wheel-up+ nil clim:+pointer-wheel-down+))))
     (when steps
-      (wheel pane (1- steps) (clim:pointer-event-x event) (clim:pointer-event-y event)))))
+      (multiple-value-call #'wheel pane (1- steps) (event-place pane event)))))

@@ -42,7 +42,6 @@
 
 (defmethod drag ((pane splitter-pane) x y)
   (let ((layout (clim:sheet-parent pane)))
-    (multiple-value-bind (x y)
-        (clim:transform-position (clim:sheet-transformation pane) x y)
+    (multiple-value-bind (x y) (place-outside pane x y)
       (drag-splitter (clim:pane-name pane) (pane-wishes layout) layout x y)
       (rearrange (window-of pane)))))

@@ -57,6 +57,5 @@ trial."
     (cond ((foldable-p section)
            (fold window section (not (folded-p window section))))
           ((eq section 'world)
-           (multiple-value-bind (x y)
-               (clim:transform-position (clim:sheet-transformation pane) x y)
+           (multiple-value-bind (x y) (place-outside pane x y)
              (open-popup window (robot-rows window) x y))))))

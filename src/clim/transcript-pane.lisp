@@ -159,7 +159,7 @@ that is the newest: no line that is no longer kept, and a whole page of them."
              (paint-row canvas row y))))
 
 (defmethod paint ((pane transcript-pane))
-  (let ((canvas (make-instance 'clim-canvas :medium pane)))
+  (let ((canvas (make-instance 'clim-canvas :medium pane :magnification (magnification pane))))
     (clear pane)
     (multiple-value-bind (columns rows) (columns-and-rows pane)
       (setf (window-text-size (window-of pane)) (list columns rows)

@@ -24,6 +24,9 @@
    (layers :initarg :layers :initform *picture-layers* :accessor window-layers
            :documentation "Which layers the window's display of the world shows.")
    (color-p :initarg :color-p :initform t :accessor window-color-p)
+   ;; How many of the screen's pixels one of its own is across, if its user wants nothing else.
+   (usual-magnification :initarg :usual-magnification :initform 1
+                        :reader window-usual-magnification)
    ;; How the user wants its parts to be arranged.
    (wishes :initform (make-wishes) :accessor window-wishes)
    (transcript :initform nil :accessor window-transcript)
@@ -85,7 +88,7 @@
 
 (defun make-robot-window (watcher &rest options)
   "Return a window, not shown yet, for the robot of WATCHER. OPTIONS are CLIM's for frames, and
-:layers and :color-p."
+:layers, :color-p and :usual-magnification."
   (let ((window (apply #'clim:make-application-frame 'robot-window
                        :pretty-name (window-title (watcher-robot watcher))
                        :watcher watcher options)))

@@ -25,7 +25,7 @@
 
 (defun terrain-key (pane width height)
   (let* ((window (window-of pane)) (map (window-map window)))
-    (list (pane-left pane) (pane-top pane) (pane-scale pane) width height
+    (list (pane-left pane) (pane-top pane) (pane-scale pane) width height (magnification pane)
           (window-color-p window) (window-layers window) map (map-places map)
           (place-graphics map))))
 
@@ -36,7 +36,7 @@
 
 (defun call-in-view (function pane medium)
   "Call FUNCTION with a canvas that paints on MEDIUM what is in view in PANE."
-  (let ((canvas (make-instance 'clim-canvas :medium medium
+  (let ((canvas (make-instance 'clim-canvas :medium medium :magnification (magnification pane)
                                             :color-p (window-color-p (window-of pane)))))
     (with-canvas (canvas :scale (pane-scale pane))
       (with-origin (canvas (- (pane-left pane)) (- (pane-top pane)))
@@ -69,16 +69,24 @@
     (unless (and (pane-terrain pane) (equal key (pane-terrain-key pane)))
       (forget-terrain pane)
       (setf (pane-terrain pane)
-            (clim:with-output-to-pixmap (medium pane :width width :height height)
-              (paint-terrain pane medium width height))
+            (multiple-value-bind (screen-width screen-height) (size-on-screen pane)
+              (clim:with-output-to-pixmap (medium pane :width screen-width :height screen-height)
+                (call-magnified (lambda () (paint-terrain pane medium width height))
+                                medium (magnification pane))))
             (pane-terrain-key pane) key))
     (pane-terrain pane)))
+
+(defun show-terrain (pane pixmap)
+  "Cover PANE with PIXMAP, which is as large."
+  (clim:with-identity-transformation (pane)
+    (multiple-value-bind (width height) (size-on-screen pane)
+      (clim:copy-from-pixmap pixmap 0 0 width height pane 0 0))))
 
 (defmethod paint ((pane world-pane))
   (multiple-value-bind (width height) (pane-size pane)
     (let* ((window (window-of pane)) (snapshot (window-snapshot window)))
       (when (and snapshot (plusp width) (plusp height))
-        (clim:copy-from-pixmap (terrain pane width height) 0 0 width height pane 0 0)
+        (show-terrain pane (terrain pane width height))
         (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))
           (setf (pane-subjects pane)
                 (canvas-subjects

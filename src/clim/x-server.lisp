@@ -7,6 +7,26 @@
 ;;; the server about windows that have just been closed, and other programs may send events that
 ;;; make no sense. These events are dropped, and all windows stay.
 
+;;; What users set for all programs on a screen, a fine one above all.
+
+(defun resolution-in (resources)
+  "Return the number of Xft.dpi in RESOURCES, the lines that xrdb keeps on an X server, or NIL."
+  (loop for line in (uiop:split-string resources :separator '(#\Newline))
+        for (name value) = (uiop:split-string line :separator '(#\:))
+        when (string= name "Xft.dpi")
+          return (parse-integer value :junk-allowed t)))
+
+(defgeneric screen-resolution (port)
+  (:documentation "Return the resolution in dots per inch that the user of PORT's screen has asked
+for, or NIL.")
+  (:method ((port clim:basic-port)) nil)
+  (:method ((port clim-clx:clx-port))
+    (let ((screen (xlib:display-default-screen (clim-clx:clx-port-display port))))
+      (resolution-in (or (xlib:get-property (xlib:screen-root screen) :resource_manager
+                                            :type :string :result-type 'string
+                                            :transform #'code-char)
+                         "")))))
+
 (defun forget-port (port)
   "Count PORT as gone; true if windows had come to it, though they may have closed since."
   (with-lock (*windows-lock*)

@@ -1,0 +1,70 @@
+;;;; magnification.lisp -- how many of the screen's pixels one pixel of a window is across.
+
+(in-package :ars-magna.clim)
+
+;;; On a fine screen letters of 12 pixels are too small to read. So a window is arranged, painted
+;;; and pointed at in pixels of its own, each of which is as many of the screen's across as the
+;;; user wants: a whole number, so that letters keep the columns that they have.
+
+(define-constant +most-magnified+ 6
+  :documentation "How many of the screen's pixels one of a window's can be across.")
+
+(defun magnification (pane)
+  "Return how many of the screen's pixels one of PANE's is across."
+  (window-magnification (clim:pane-frame pane)))
+
+(defun pane-size (pane)
+  "Return width and height of PANE, in pixels."
+  (let ((region (clim:sheet-region pane)) (magnification (magnification pane)))
+    (values (floor (clim:bounding-rectangle-width region) magnification)
+            (floor (clim:bounding-rectangle-height region) magnification))))
+
+(defun size-on-screen (pane)
+  "Return width and height of PANE in pixels of the screen."
+  (let ((region (clim:sheet-region pane)))
+    (values (floor (clim:bounding-rectangle-width region))
+            (floor (clim:bounding-rectangle-height region)))))
+
+(defun put-pane (pane left top width height)
+  "Put PANE there in the pane that holds it, WIDTH times HEIGHT pixels large."
+  (let ((magnification (magnification pane)))
+    (flet ((on-screen (pixels) (* magnification pixels)))
+      (clim:move-and-resize-sheet pane (on-screen left) (on-screen top)
+                                  (on-screen width) (on-screen height))
+      (clim:allocate-space pane (on-screen width) (on-screen height)))))
+
+(defun place-outside (pane x y)
+  "Return where X, Y of PANE is in the pane that holds it."
+  (let ((magnification (magnification pane)))
+    (multiple-value-bind (left top) (clim:transform-position (clim:sheet-transformation pane) 0 0)
+      (values (+ x (floor left magnification)) (+ y (floor top magnification))))))
+
+(defun event-place (pane event)
+  "Return where on PANE EVENT, of the mouse, has happened."
+  (let ((magnification (magnification pane)))
+    (values (floor (clim:pointer-event-x event) magnification)
+            (floor (clim:pointer-event-y event) magnification))))
+
+(defun call-magnified (function medium magnification)
+  "Call FUNCTION, which paints on MEDIUM in pixels each of which is so many of the screen's across."
+  (clim:with-scaling (medium magnification)
+    (funcall function)))
+
+;;; How many that is.
+
+(defun window-magnification (window)
+  "Return how many of the screen's pixels one of WINDOW's is across: as its user wants, or else as
+the screen asks for."
+  (or (wishes-magnification (window-wishes window)) (window-usual-magnification window)))
+
+(defun usual-magnification (resolution)
+  "Return how many pixels of a screen one of a window's should be across, if the screen has
+RESOLUTION in dots per inch; NIL stands for a resolution that is not known."
+  (clamp (round (or resolution 96) 96) 1 +most-magnified+))
+
+(defun magnify (window magnification)
+  "Let one pixel of WINDOW be MAGNIFICATION of the screen's across, if there may be so many."
+  (let ((magnification (clamp magnification 1 +most-magnified+)))
+    (unless (= magnification (window-magnification window))
+      (setf (wishes-magnification (window-wishes window)) magnification)
+      (rearrange window))))

@@ -1,0 +1,77 @@
+;;;; clim-magnification.lisp -- a window on a fine screen.
+
+(in-package :ars-magna.tests)
+
+(in-suite clim)
+
+(defun sizes-of-panes (window)
+  "Return width and height of each pane of WINDOW that is to be seen."
+  (loop for pane in (window::display-panes window)
+        when (window::shown-p pane) collect (multiple-value-list (window::pane-size pane))))
+
+(test magnification.follows-what-programs-are-told-of-the-screen
+  (flet ((magnification (resources)
+           (window::usual-magnification (window::resolution-in resources))))
+    (is (= 1 (magnification "")))
+    (is (= 1 (magnification (format nil "Xft.antialias: 1~%Xft.dpi: 96~%"))))
+    (is (= 2 (magnification (format nil "*color: red~%Xft.dpi:~C192" #\Tab))))
+    (is (= 3 (magnification "Xft.dpi: 288")))
+    (is (= 1 (magnification "Xft.dpi: fine")))
+    (is (= 1 (magnification "Xft.dpi: 0")))
+    (is (= 6 (magnification "Xft.dpi: 100000")))))
+
+(test magnification.leaves-all-where-it-is
+  "A screen twice as fine is divided as one of half as many pixels."
+  (in-window (window robot)
+    (lay-out window 700 500)
+    (let ((sizes (sizes-of-panes window)))
+      (lay-out window 1400 1000)
+      (is (not (equal sizes (sizes-of-panes window))))
+      (window::magnify window 2)
+      (is (equal sizes (sizes-of-panes window))))))
+
+(test magnification.can-be-chosen-in-a-menu
+  (in-window (window robot)
+    (lay-out window 800 600)
+    (let ((clim:*application-frame* window))
+      (window::com-larger)
+      (is (= 2 (window::window-magnification window)))
+      (window::com-smaller)
+      (window::com-smaller)
+      (is (= 1 (window::window-magnification window)))
+      (dotimes (times 10) (window::com-larger))
+      (is (= window::+most-magnified+ (window::window-magnification window))))))
+
+(test magnification.points-where-the-mouse-is
+  "A click on the screen picks what is drawn there, a drag of a splitter follows."
+  (in-window (window robot)
+    (window::magnify window 3)
+    (lay-out window 2400 1800)
+    (let* ((pane (pane window 'window::world)) (splitter (pane window 'window::side-splitter))
+           (width (window::pane-size pane)))
+      (multiple-value-bind (x y) (window::robot-place pane)
+        (is (mentions-p (window::hover-text pane (floor x) (floor y)) "STUDIO-ROBOT"))
+        (multiple-value-bind (at-x at-y)
+            (window::event-place pane (motion-event pane (* 3 (floor x)) (* 3 (floor y))))
+          (is (= (floor x) at-x))
+          (is (= (floor y) at-y))))
+      (window::press splitter :left 1 1)
+      (clim:handle-event splitter (motion-event splitter -300 0))
+      (is (= (- width 100) (window::pane-size pane))))))
+
+(defun motion-event (pane x y)
+  "Return the event that the mouse has moved to X, Y of PANE, in pixels of the screen."
+  (multiple-value-bind (x y) (clim:transform-position (clim:sheet-transformation pane) x y)
+    (make-instance 'clim:pointer-motion-event :sheet pane :x x :y y :modifier-state 0)))
+
+(test magnification.is-kept-for-the-next-window
+  (in-window (window robot)
+    (window::magnify window 2)
+    (let ((window::*habits* '()) (window::*said* '()))
+      (window::keep-habits window)
+      (call-with-window
+       (lambda (next)
+         (is (= 1 (window::window-magnification next)))
+         (window::take-habits next)
+         (is (= 2 (window::window-magnification next))))
+       robot))))
