@@ -32,9 +32,16 @@
         (draw-designator-on-map canvas robot designator))))
   (when (member :names layers) (draw-names canvas snapshot layers)))
 
+(define-constant +beyond+ 8
+  :documentation "How far movers are seen beyond the edges of the map, in pixels: no more than all
+margins have.")
+
 (defun call-on-map (function canvas map)
-  "Call FUNCTION; what it draws on CANVAS outside of MAP stays invisible."
-  (with-clipping (canvas 0 0 (to-pixels (map-width map)) (to-pixels (map-height map)))
+  "Call FUNCTION; what it draws on CANVAS outside of MAP stays invisible, but for the rings of
+robots at its edges."
+  (with-clipping (canvas (- +beyond+) (- +beyond+)
+                  (+ (to-pixels (map-width map)) (* 2 +beyond+))
+                  (+ (to-pixels (map-height map)) (* 2 +beyond+)))
     (funcall function)))
 
 (defun draw-movers (canvas snapshot layers)
@@ -45,7 +52,7 @@
 (defun draw-all-movers (canvas snapshot layers)
   (let ((robots (snapshot-robots snapshot)))
     (loop for robot in robots for position from 0
-          do (draw-layers canvas snapshot robot (robot-color position) layers))
+          do (draw-layers canvas snapshot robot (turn-ink position) layers))
     (when (member :reach layers) (draw-reach canvas (snapshot-things snapshot)))
     (draw-robots canvas robots)
     (draw-things canvas (snapshot-things snapshot))
