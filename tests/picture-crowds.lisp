@@ -91,6 +91,15 @@ of the lines that lead to names, x y x y each."
     (is (= 10 (length (arrows 0 0 0 0 900 0))))
     (is (near (/ pi 2) (third (second (arrows 0 0 90 0 90 90))) .01))))
 
+(test ways.that-lead-back-have-arrowheads-beside-each-other
+  (destructuring-bind ((x y angle) (back-x back-y back-angle)) (display::arrows-along
+                                                                '(0 0 100 0 0 0))
+    (is (< 9 (abs (- back-x x))))
+    (is (near 0 y 1d-6))
+    (is (near 0 back-y 1d-6))
+    (is (near 0 angle 1d-6))
+    (is (near pi (abs back-angle) 1d-6))))
+
 (test way-picture.shows-which-way-a-way-leads
   (uiop:with-temporary-file (:pathname file :type "svg")
     (dolist (color-p '(t nil))

@@ -26,7 +26,7 @@ wide, with DASHES."
   `(call-inked (lambda () ,@body) ,color ,width ,dashes))
 
 ;;; Where there are several of a sort, such as robots and ways, each has a colour and dashes in its
-;;; turn. The numbers of both have no common factor: so the first forty are told apart, and five even
+;;; turn. The numbers of both have no common factor: so forty are told apart, and five of them even
 ;;; without colours. The colours are at least 20 apart in CIE Lab for those who see all colours and
 ;;; for those who miss one kind of cones; tests/palette.lisp measures it.
 

@@ -25,17 +25,32 @@ length are left out."
                    (list (+ x (* share dx)) (+ y (* share dy))))
         do (decf distance length)))
 
+(defun arrow-along (pieces distance)
+  "Return a list (x y angle): an arrowhead DISTANCE along the way of PIECES."
+  (destructuring-bind ((x y) (to-x to-y))
+      (list (spot-along pieces (- distance (/ +arrow-length+ 2)))
+            (spot-along pieces (+ distance (/ +arrow-length+ 2))))
+    (list (/ (+ x to-x) 2) (/ (+ y to-y) 2) (atan (- to-y y) (- to-x x)))))
+
+(defun free-arrow (pieces distance arrows)
+  "Return an arrowhead about DISTANCE along the way of PIECES that lies on none of ARROWS, as it may
+where a way leads back; or NIL."
+  (loop with room = (* 3/2 +arrow-length+)
+        for aside in (list 0 room (- room) (* 2 room) (* -2 room))
+        for (x y angle) = (arrow-along pieces (max 0 (+ distance aside)))
+        when (loop for (other-x other-y) in arrows
+                   never (overlap-p (box-around x y room) (list other-x other-y other-x other-y)))
+          return (list x y angle)))
+
 (defun arrows-along (points)
   "Return lists (x y angle) of where arrowheads stand on the way through POINTS, x y ... in pixels:
 few, and none on a very short one."
   (let* ((pieces (lengths-along points)) (whole (reduce #'+ pieces :key #'first))
-         (count (if (< whole +least-arrowed+) 0 (max 1 (round whole +arrows-apart+)))))
-    (loop for index below count
-          for middle = (* (+ index 1/2) (/ whole count))
-          collect (destructuring-bind ((x y) (to-x to-y))
-                      (list (spot-along pieces (- middle (/ +arrow-length+ 2)))
-                            (spot-along pieces (+ middle (/ +arrow-length+ 2))))
-                    (list (/ (+ x to-x) 2) (/ (+ y to-y) 2) (atan (- to-y y) (- to-x x)))))))
+         (count (if (< whole +least-arrowed+) 0 (max 1 (round whole +arrows-apart+))))
+         (arrows '()))
+    (dotimes (index count (reverse arrows))
+      (let ((arrow (free-arrow pieces (* (+ index 1/2) (/ whole count)) arrows)))
+        (when arrow (push arrow arrows))))))
 
 (defun draw-way-arrow (canvas x y angle color)
   "Draw an arrowhead with a halo around X, Y in direction ANGLE."
