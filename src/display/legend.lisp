@@ -109,7 +109,7 @@ than the line."
 
 (defun thing-look (image)
   "Return what the thing looks like, for comparison: what has the same can hardly be told apart."
-  (list (thing-image-color image) (thing-shape image) (round (* 2 (sample-half image)))
+  (list (thing-image-color image) (thing-shape image) (round (sample-half image))
         (thing-image-container-p image) (thing-image-obsview-p image)))
 
 (defun thing-kinds (snapshot)

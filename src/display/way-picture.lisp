@@ -59,7 +59,7 @@ few, and none on a very short one."
                        (append (around x y angle reach) (around x y (+ angle 2.4d0) reach)
                                (around x y (- angle 2.4d0) reach))
                        :fill-p t)))
-    (with-gcontext (draw-gcontext* :foreground white*) (head (+ 5/2 (* 1/2 +arrow-length+))))
+    (with-gcontext (draw-gcontext* :foreground white*) (head (+ 3/2 (* 1/2 +arrow-length+))))
     (with-color color (head (* 1/2 +arrow-length+)))))
 
 (defun draw-way-line (canvas points color position)
