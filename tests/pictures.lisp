@@ -244,10 +244,10 @@
                                    `((:size 4) (:color ,color))))
            (texts () (mapcar #'display::entry-text
                              (display::thing-entries (display:snapshot-of robot)))))
-      (dolist (name '(saucer cup cup)) (new name 'green))
+      (dolist (name '(saucer cup cup)) (new name 'violet))
       (new 'cup 'lightblue)
       (is (subsetp '("cup (2), saucer" "cup") (texts) :test #'string=))
-      (dolist (name '(plate bowl dish spoon ladle)) (new name 'green))
+      (dolist (name '(plate bowl dish spoon ladle)) (new name 'violet))
       (is-true (member "bowl, cup (2), dish, ladle and 3 more" (texts) :test #'string=))
       (is-true (mentions-p (display:svg-picture robot)
                            "<title>bowl, cup (2), dish, ladle, plate, saucer, spoon</title>")))))
