@@ -71,6 +71,22 @@ of the lines that lead to names, x y x y each."
          (is (< (* 2 (of-element ring :rx)) (+ 40 (* 2 display::+beyond+))))))
      '(lodger))))
 
+(test robots.alone-reach-beyond-the-edges-of-the-map
+  "What odometers say is cut off there, so that it does not cross numbers in the margins."
+  (let* ((canvas:graphics-scale* 20)
+         (odometer (display::make-odometer-image :x 0.5 :y 0.5 :width 9 :height 9))
+         (snapshot (display::make-snapshot
+                    :map (world::small-map 2 2 (constantly nil))
+                    :robots (list (display::make-robot-image :name :edgar :x 0.5 :y 0.5
+                                                             :odometer odometer))))
+         (text (format nil "~{~A~}" (drawing (canvas)
+                                      (let ((canvas:graphics-scale* 20))
+                                        (display:draw-movers canvas snapshot '(:odometer))))))
+         (clipped (first (drawn-with :svg text))))
+    (is (= 0 (of-element clipped :x)))
+    (is (= 40 (of-element clipped :width)))
+    (is (search "<ellipse" text :start2 (search "</svg>" text)))))
+
 (test things.in-walls-are-seen-without-colours
   "The small line of the manual's figure has a white halo."
   (destructuring-bind (halo line)
