@@ -245,7 +245,11 @@
   (let ((help (joined (type-batch "help picture"))))
     (dolist (layer ars-magna.display:+picture-layers+)
       (is (search (symbol-name layer) help)))
-    (is-true (has-words-p help "from 1 to 256" "from 4 to 40"))))
+    (is-true (has-words-p help "from 1 to 256" "from 4 to 40"))
+    (is (< (search "replacing it." help) (search "file:" help)
+           (search "PICTURE world.svg suits most" help) (search "Shown by default" help)
+           (search "Shown if named" help))
+        "the common call does not come first")))
 
 (test display.says-why-there-is-none
   (let ((display:*display-opener* nil))

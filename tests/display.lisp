@@ -240,7 +240,7 @@
       (is (mentions-p picture "<title>STUDIO-ROBOT</title>"))
       (is (mentions-p picture "<ellipse cx=\"52\" cy=\"52\" rx=\"7\" ry=\"7\" fill=\"none\""))
       (is (mentions-p picture "<polygon points=\"56.5,52 "))
-      (is (mentions-p picture "M59.5,52.5 L63.7,52.5")))))
+      (is (mentions-p picture "M60.5,52.5 L63.7,52.5")))))
 
 (test world-display.layers-can-be-switched
   (in-studio (robot)

@@ -323,6 +323,20 @@
                  (is-true (probe-file (project-file (format nil "worlds/~A" file)))))))
     (is (plusp shown))))
 
+(test figures.that-are-shipped-are-what-is-drawn-now
+  "Those that take seconds. After a change of what pictures look like, run ./worlds/figures."
+  (experiment::call-with-temporary-directory
+   (lambda (directory)
+     (let ((ars-worlds::*figures* (uiop:ensure-directory-pathname directory)))
+       (ars-worlds::save-quick-figures)
+       (let ((files (directory (merge-pathnames "**/*.svg" ars-worlds::*figures*))))
+         (is (= 7 (length files)))
+         (dolist (file files)
+           (let ((name (enough-namestring file (truename ars-worlds::*figures*))))
+             (is (string= (base:file-text (project-file (format nil "worlds/~A" name)))
+                          (base:file-text file))
+                 "~A is older than the drawing" name))))))))
+
 (test charts.say-how-many-trials-broke-off-with-an-error
   (with-report (results '("way") '() '((("a") ("error" :error "boom") ("success" :ticks 3))
                                        (("b") ("success" :ticks 5) ("success" :ticks 4))))

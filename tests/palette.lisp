@@ -38,9 +38,10 @@
                 '(0.95047 1 1.08883))
       (list (- (* 116 y) 16) (* 500 (- x y)) (* 200 (- y z))))))
 
-(defun least-difference (colors)
-  "Return how far apart those two of COLORS are that are told apart worst, by whatever eyes."
-  (loop for (nil . rows) in *visions*
+(defun least-difference (colors &optional (visions *visions*))
+  "Return how far apart those two of COLORS are that are told apart worst, by whatever eyes of
+VISIONS."
+  (loop for (nil . rows) in visions
         for labs = (loop for color in colors
                          collect (lab-of (through rows (canvas:primaries color))))
         minimize (loop for (lab . others) on labs
@@ -79,6 +80,25 @@
       (is (< green red blue)))
     (is (< (canvas:luminance (aref canvas:lightred* 9))
            (canvas:luminance (aref canvas:lightred* 11))))))
+
+;;; What there are several of, in turn.
+
+(defun robot-look (position)
+  "Return how a robot is drawn without colours: the dashes of its ring, and how its head is."
+  (let ((canvas:in-color* nil))
+    (list (display::turn-dashes position) (display::hollow-head-p position))))
+
+(test palette.many-robots-and-ways-are-told-apart-by-all-eyes
+  "The first forty by colour and dashes; ten robots without colours as well, and five ways."
+  (is (<= 20 (least-difference display::+turn-inks+ (remove :grey *visions* :key #'first))))
+  (flet ((distinct-p (count function)
+           (= count (length (remove-duplicates (loop for position below count
+                                                     collect (funcall function position))
+                                               :test #'equal)))))
+    (is (distinct-p 40 (lambda (position)
+                         (list (display:turn-ink position) (display::turn-dashes position)))))
+    (is (distinct-p 10 #'robot-look))
+    (is (distinct-p 5 #'display::turn-dashes))))
 
 ;;; Contrast.
 
@@ -181,7 +201,7 @@
 (defun layer-inks ()
   "Return the colours of the lines of layers, of robots and of their cameras."
   (append (remove-if-not #'integerp display::+layer-inks+)
-          display::+robot-inks+))
+          display::+turn-inks+))
 
 (test contrast.lines-of-layers-and-robots-are-seen-on-everything
   "They have a halo; without it they are seen on the floor and on all marks."
@@ -224,7 +244,7 @@
     (is (apply #'seen-p ink canvas:white* *place-tints*)))
   (is (seen-p display::+grid-ink+ canvas:white*))
   (is (seen-p display::+frame-ink+ canvas:white*))
-  (dolist (ink display::*way-colors*)
+  (dolist (ink display::+turn-inks+)
     (is (apply #'seen-p ink canvas:white* *place-tints*))))
 
 (test contrast.tints-of-walls-leave-them-as-light-as-they-are

@@ -18,9 +18,12 @@
   "Lists (experiment condition trials part): the ways that the page shows, and of which part of the
 map.")
 
+(defparameter *figures* (asdf:system-relative-pathname "ars-magna" "worlds/")
+  "The directory that pictures and page are in; tests draw into another.")
+
 (defun in-worlds (name)
-  "Return the path of the file NAME in worlds/."
-  (asdf:system-relative-pathname "ars-magna" (format nil "worlds/~A" name)))
+  "Return the path of the file NAME in worlds/, whose directory is made if need be."
+  (ensure-directories-exist (merge-pathnames name *figures*)))
 
 (defun pictures-of (experiment)
   "Return the directory of the pictures of EXPERIMENT."
@@ -85,7 +88,7 @@ map.")
         (run-ticks 12))
       (camera-view camera)
       (run-ticks 4))
-    (save-picture dot (ensure-directories-exist (in-worlds "pictures/worlds/tiny-layers.svg"))
+    (save-picture dot (in-worlds "pictures/worlds/tiny-layers.svg")
                   :layers '(:names :places :grid :wedges :rays :trail :designators :coordinates
                             :legend :scale-bar :title))))
 
@@ -97,8 +100,7 @@ map.")
     (leave-trolleys)
     (save-projection-picture (project 'carry-messages :arguments '(:first)
                                                       :trials 25 :horizon 1200)
-                             (ensure-directories-exist
-                              (in-worlds "pictures/looking-ahead/ways.svg"))
+                             (in-worlds "pictures/looking-ahead/ways.svg")
                              :part '(28 2 100 46))))
 
 ;;; One fetch.
@@ -108,7 +110,7 @@ map.")
   (with-simulation (marvin :seed 7 :journal t)
     (let ((*trace-plans* t))
       (run-plan 'fetch-thing '((:color blue) (:substance plastic)) '((109 24)))
-      (save-plan-timeline (ensure-directories-exist (in-worlds "pictures/fetch/timeline.svg"))))
+      (save-plan-timeline (in-worlds "pictures/fetch/timeline.svg")))
     (save-run-picture (in-worlds "pictures/fetch/run.svg")
                       :title "marvin fetches a globe across the office")))
 
@@ -167,14 +169,18 @@ the short way."
 
 ;;; The whole.
 
-(defun save-figures ()
-  "Draw the floor to import, run the shipped experiments, put their tables into worlds/README.md,
-and save their pictures."
+(defun save-quick-figures ()
+  "Save those pictures that take seconds; the tests hold what is shipped against them."
   (save-watson)
   (save-layers)
   (draw-ward (in-worlds "floors/"))
   (save-ways-ahead)
-  (save-fetch)
+  (save-fetch))
+
+(defun save-figures ()
+  "Draw the floor to import, run the shipped experiments, put their tables into worlds/README.md,
+and save their pictures."
+  (save-quick-figures)
   (let* ((page (in-worlds "README.md"))
          (lines (with-table-lines (page-lines page) 'choosing-by-rollouts
                             (choosing-lines (run-experiment 'choosing-by-rollouts)))))

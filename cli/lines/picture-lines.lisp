@@ -33,21 +33,27 @@ for."
                               :layers (union (remove :bare words)
                                              (unless (member :bare words) *picture-layers*))))))
 
-(defun layers-text ()
-  "Return in words what layers there are."
-  (format nil "~:{~A, ~A~:^; ~}. What has a star is shown anyway; with BARE only what you name."
-          (loop for layer in +picture-layers+
-                collect (list (format nil "~A~:[~;*~]" layer (member layer *picture-layers*))
-                              (string-downcase (layer-title layer))))))
+(defun layers-text (layers)
+  "Return LAYERS by name, each with what it shows where that is not the same in other words."
+  (format nil "~:{~A~@[ (~A)~]~:^, ~}"
+          (loop for layer in layers
+                for name = (substitute #\Space #\- (symbol-name layer))
+                for title = (layer-title layer)
+                collect (list (symbol-name layer)
+                              (and (not (string-equal title name)) (string-downcase title))))))
 
 (define-line "PICTURE" (session (file :file "a name that ends in .svg or .png")
                                 (what :rest "pixels to a cell, and names of layers; BARE"
                                       :optional))
-    (:seeing)
-    (format nil "Save a picture of the world as it is now in FILE, replacing it. A number is how ~
-                 many pixels a cell has, from 1 to 256; without one it is what suits the map, ~
-                 from 4 to 40, for a map of 900 x 700 pixels at most, or graphics-scale* if ~
-                 that was set. Words are for what else is shown: ~A"
-            (layers-text))
+    (:seeing
+     "PICTURE world.svg suits most; PICTURE world.png 30 GRID TRAIL has 30 pixels to a cell and
+shows two layers more; PICTURE world.svg BARE NAMES shows that one alone."
+     "Pixels to a cell: from 1 to 256. By default what suits the map, from 4 to 40, for a map of
+900 x 700 pixels at most; or graphics-scale*, if that was set."
+     (format nil "Shown by default, but for BARE: ~A." (layers-text *picture-layers*))
+     (format nil "Shown if named: ~A."
+             (layers-text (remove-if (lambda (layer) (member layer *picture-layers*))
+                                     +picture-layers+))))
+    "Save a picture of the world as it is now in FILE, replacing it."
   (let ((path (apply #'save-picture (session-robot) (path-called file) (picture-options what))))
     (format t "~A~%" (native-name path))))

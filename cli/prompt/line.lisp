@@ -53,12 +53,14 @@ characters up to the next blank: :TOKEN, or what they stand for, such as :FILE (
   (destructuring-bind (variable type text &optional optional) parameter
     `(make-slot ,(string-downcase variable) ',type ,text ,(eq optional :optional))))
 
-(defmacro define-line (name (session &rest parameters) (family) sentence &body body)
+(defmacro define-line (name (session &rest parameters) (family &rest details) sentence &body body)
   "Define the line command NAME, a string. Each of PARAMETERS is (variable type text [:optional]),
 the last ones optional; BODY runs with the variables bound to what was read, NIL if left out, and
-SESSION to the session. FAMILY, a keyword, says where HELP lists it, and SENTENCE what it says."
+SESSION to the session. FAMILY, a keyword, says where HELP lists it, SENTENCE what it says, and
+DETAILS, strings, what it says below the parameters, a paragraph each."
   `(register-line
     (make-line :name ,(string-upcase name) :family ,family :sentence ,sentence
+               :details (list ,@details)
                :parameters (list ,@(mapcar #'slot-form parameters))
                :action (lambda (,session &optional ,@(mapcar #'first parameters))
                          (declare (ignorable ,session))

@@ -25,6 +25,31 @@
 wide, with DASHES."
   `(call-inked (lambda () ,@body) ,color ,width ,dashes))
 
+;;; Where there are several of a sort, such as robots and ways, each has a colour and dashes in its
+;;; turn. The numbers of both have no common factor: so forty are told apart, and five of them even
+;;; without colours. The colours are at least 20 apart in CIE Lab for those who see all colours and
+;;; for those who miss one kind of cones; tests/palette.lisp measures it.
+
+(define-constant +turn-inks+
+    '(#x1100FF #xAA3300 #x226655 #x220022 #x9911CC #x550000 #x665588 #x000066)
+  :test #'cl:equal
+  :documentation "The colours of what there are several of, in turn.")
+
+(define-constant +turn-dashes+ '(nil (9 4) (2 3) (9 3 2 3) (4 2))
+  :test #'cl:equal
+  :documentation "The dashes and gaps of what there are several of, in turn; NIL is a solid line.")
+
+(defun in-turn (position list)
+  (nth (mod position (length list)) list))
+
+(defun turn-ink (position)
+  "Return the colour of what is at POSITION among several of its sort."
+  (in-turn position +turn-inks+))
+
+(defun turn-dashes (position)
+  "Return the dashes of what is at POSITION among several of its sort."
+  (in-turn position +turn-dashes+))
+
 (defun to-pixels (metres)
   "Return how many pixels METRES are."
   (* metres graphics-scale*))

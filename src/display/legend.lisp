@@ -2,36 +2,14 @@
 
 (in-package :ars-magna.display)
 
-;;; An entry is a text with a function of a canvas and a place, X and Y in pixels, that draws the
-;;; sample around there, no more than 16 pixels wide and high.
-
-(defstruct (entry (:constructor make-entry (text sample &optional whole)) (:copier nil))
-  "TEXT stands in the legend; WHOLE is what it is short for, or NIL."
-  (text "" :type string :read-only t)
-  (sample (constantly nil) :type function :read-only t)
-  (whole nil :type (or null string) :read-only t))
-
-(defmacro sample-of ((canvas x y) text &body body)
-  "Return an entry with TEXT, the sample of which BODY draws."
-  `(make-entry ,text (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)))
-
-(defun named-entry (name sample &optional (more ""))
-  "Return an entry for NAME, a string, abridged if it is long, and for MORE, with SAMPLE."
-  (let ((text (short-name name)))
-    (make-entry (concatenate 'string text more) sample (and (string/= text name) name))))
-
-(defmacro sample-of-name ((canvas x y) (name &optional (more "")) &body body)
-  "Return an entry for NAME and MORE, the sample of which BODY draws."
-  `(named-entry ,name (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body) ,more))
-
 ;;; Robots.
 
 (defun robot-entries (snapshot)
   (loop for robot in (snapshot-robots snapshot)
         for position from 0
-        collect (let ((color (robot-color position)))
+        collect (let ((position position))
                   (sample-of-name (canvas x y) ((robot-title robot))
-                    (draw-ring canvas x y 6 0 color)))))
+                    (draw-ring canvas x y 6 0 position)))))
 
 ;;; Walls: the substances, with the range of their parameters.
 
@@ -114,35 +92,14 @@ numbers."
           (values 16 16))))))
 
 ;; Without colours, concave places and beaks have the same mark, as the manual wants it.
-(defun place-types-by-mark (snapshot)
-  "Return lists of the place types that are marked on the map of SNAPSHOT, each of those that look
-the same."
-  (let ((groups '()))
-    (dolist (type (place-types-of snapshot) (mapcar #'reverse (mapcar #'rest (reverse groups))))
-      (let* ((mark (mark-of type))
-             (group (assoc mark groups :test #'string=)))
-        (if group
-            (push type (rest group))
-            (push (list mark type) groups))))))
-
 (defun place-entries (snapshot)
-  (loop for types in (place-types-by-mark snapshot)
+  (loop for types in (grouped (place-types-of snapshot) #'mark-of)
         collect (let ((type (first types)))
-                  (sample-of-name (canvas x y)
-                      ((format nil "~{~A~^, ~}"
-                               (loop for each in types
-                                     collect (drawn-name (place-type-name each)))))
-                    (draw-place-sample canvas type x y)))))
+                  (names-entry (loop for each in types
+                                     collect (list (drawn-name (place-type-name each)) ""))
+                               (lambda (canvas x y) (draw-place-sample canvas type x y))))))
 
-;;; Things, by what they are called and look like.
-
-(defun thing-kinds (snapshot)
-  "Return lists of the images of things that are called the same, by their names."
-  (let ((kinds (make-hash-table :test 'cl:equal)))
-    (loop for image across (snapshot-things snapshot)
-          do (push image (gethash (thing-image-name image) kinds)))
-    (sort (loop for images being the hash-values of kinds collect (reverse images))
-          #'name-before-p :key (lambda (images) (thing-image-name (first images))))))
+;;; Things: each look once, with the names of all that look so.
 
 (defun sample-half (image)
   "Return half the width of the sample of the thing, in pixels: as on the map, if that is not larger
@@ -150,14 +107,30 @@ than the line."
   (let ((graphics-scale* (min graphics-scale* (floor (- +line-height+ 2) +largest-thing+))))
     (half-width image)))
 
+(defun thing-look (image)
+  "Return what the thing looks like, for comparison: what has the same can hardly be told apart."
+  (list (thing-image-color image) (thing-shape image) (round (sample-half image))
+        (thing-image-container-p image) (thing-image-obsview-p image)))
+
+(defun thing-kinds (snapshot)
+  "Return lists of the images of things that look the same, by the names of their first."
+  (grouped (stable-sort (coerce (snapshot-things snapshot) 'list)
+                        #'name-before-p :key #'thing-image-name)
+           #'thing-look))
+
+(defun names-with-counts (images)
+  "Return lists (name more) for what IMAGES are called: MORE says how many are, if several."
+  (loop for (image . others) in (grouped images #'thing-image-name)
+        collect (list (thing-image-name image)
+                      (format nil "~@[ (~D)~]" (and others (1+ (length others)))))))
+
 (defun thing-entries (snapshot)
   (if in-color*
-      (loop for (image . others) in (thing-kinds snapshot)
-            collect (let ((image image))
-                      (sample-of-name (canvas x y)
-                          ((thing-image-name image)
-                           (format nil "~@[ (~D)~]" (and others (1+ (length others)))))
-                        (draw-thing-sample canvas image x y (sample-half image)))))
+      (loop for images in (thing-kinds snapshot)
+            collect (let ((image (first images)))
+                      (names-entry (names-with-counts images)
+                                   (lambda (canvas x y)
+                                     (draw-thing-sample canvas image x y (sample-half image))))))
       (and (plusp (length (snapshot-things snapshot)))
            (list (sample-of (canvas x y) "thing"
                    (let ((graphics-scale* 12)) (draw-upright-line canvas x y)))))))
@@ -205,7 +178,7 @@ than the line."
 (defun line-ink (layer)
   "Return the colour of lines of LAYER in legends."
   (case layer
-    (:trail (robot-color 0))
+    (:trail (turn-ink 0))
     (:rays (first +ray-inks+))
     (t (layer-ink layer))))
 

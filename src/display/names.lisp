@@ -4,8 +4,8 @@
 
 ;;; A name is written near by where its box meets no thing, robot, number of a designator or other
 ;;; name, and rather no wall, no mark of a place and no trail; if there is no such room, not at all.
-;;; Other lines end before a name. Robots come first, whose names may lie on any wall if need be;
-;;; then come large things.
+;;; Other lines end before a name. Robots come first, whose names may lie on any wall if need be, or
+;;; farther off at the end of a line: see leaders.lisp. Then come large things.
 
 (define-constant +name-size+ 10 :documentation "How high the font of names is, in pixels.")
 (define-constant +name-height+ 11 :documentation "How high the box of a name is, in pixels.")
@@ -117,18 +117,31 @@ have small letters of their own."
 (defun thing-image-name (image)
   (drawn-name (thing-name (thing-image-thing image))))
 
+;;; A spot is what has a name on the map. If it is a robot, ROBOT is its image, and ROBOTS are those
+;;; of all.
+
+(defstruct (spot (:constructor make-spot (name x y half &optional robot robots)) (:copier nil))
+  "What has the name NAME at X, Y, and reaches HALF pixels from there."
+  (name "" :type string :read-only t)
+  (x 0 :type real :read-only t) (y 0 :type real :read-only t) (half 0 :type real :read-only t)
+  (robot nil :read-only t) (robots '() :type list :read-only t))
+
+(defun robot-spot (robot robots)
+  "Return the spot of ROBOT, the image of one of ROBOTS."
+  (make-spot (short-name (robot-title robot))
+             (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
+             (+ 1 (spot-radius robot robots)) robot robots))
+
 (defun named-spots (snapshot)
-  "Return lists (name x y half robot-p) of what has a name on the map, in order of importance."
+  "Return the spots of what has a name on the map, in order of importance."
   (append (loop with robots = (snapshot-robots snapshot)
-                for robot in robots
-                collect (list (short-name (robot-title robot))
-                              (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
-                              (* 8/5 (spot-radius robot robots)) t))
+                for robot in robots collect (robot-spot robot robots))
           (loop for image in (stable-sort (coerce (snapshot-things snapshot) 'list) #'>
                                           :key #'thing-image-size)
-                collect (list (short-name (thing-image-name image))
-                              (to-pixels (thing-image-x image)) (to-pixels (thing-image-y image))
-                              (half-width image) nil))))
+                collect (make-spot (short-name (thing-image-name image))
+                                   (to-pixels (thing-image-x image))
+                                   (to-pixels (thing-image-y image))
+                                   (half-width image)))))
 
 (define-constant +apart+ 6
   :documentation "How far names on a line are apart at least, not to be read as one, in pixels.")
@@ -151,8 +164,16 @@ have small letters of their own."
                  (list (box-around (to-pixels (first end)) (to-pixels (second end))
                                    (+ 2 +way-end+)))))))
 
-(defun boxes-of-spots (spots)
-  (loop for (nil x y half nil) in spots collect (widened (box-around x y half) 2)))
+(defun spot-box (spot)
+  (box-around (spot-x spot) (spot-y spot) (spot-half spot)))
+
+(defun boxes-of-robots (robots)
+  "Return boxes around the lines of the cameras of ROBOTS."
+  (loop for robot in robots
+        append (loop for (x y to-x to-y)
+                       in (camera-lines robot (ring-radius robot robots))
+                     collect (widened (list (min x to-x) (min y to-y) (max x to-x) (max y to-y))
+                                      1))))
 
 (defun write-name (canvas name box)
   "Write NAME in BOX, on white: what lines lie there end before it."
@@ -163,17 +184,26 @@ have small letters of their own."
     (draw-words canvas draw-gcontext* (+ 1 (first box)) (- (fourth box) 2) name
                 :size +name-size+)))
 
+(defun near-box (snapshot layers spot width taken marks)
+  "Return the box beside SPOT where its name, WIDTH pixels wide, hides least, or NIL."
+  (best-box snapshot layers
+            (remove-if-not (lambda (box) (own-box-p spot box))
+                           (boxes-beside (spot-x spot) (spot-y spot) (spot-half spot) width marks))
+            taken :anywhere-p (and (spot-robot spot) t)))
+
 (defun draw-names (canvas snapshot layers &optional boxes)
-  "Write the names of robots and things where there is room beside what LAYERS list and BOXES."
-  (let* ((spots (named-spots snapshot))
+  "Write the names of robots and things where there is room beside what LAYERS list and BOXES; those
+of robots where there is none at the end of a line."
+  (let* ((spots (named-spots snapshot)) (robots (snapshot-robots snapshot))
          (per-character (character-width canvas +name-size+))
-         (marks (append boxes (loop for robot in (snapshot-robots snapshot)
-                                    append (marked-spots robot layers))))
-         (taken (append marks (boxes-of-spots spots))))
-    (loop for (name x y half robot-p) in spots
-          for width = (+ 2 (* per-character (length name)))
-          for box = (best-box snapshot layers (boxes-beside x y half width marks) taken
-                              :anywhere-p robot-p)
-          when box
-            do (push (widened box +apart+) taken)
-               (write-name canvas name box))))
+         (marks (append boxes (loop for robot in robots append (marked-spots robot layers))))
+         (taken (append marks (boxes-of-robots robots)
+                        (loop for spot in spots collect (widened (spot-box spot) 1)))))
+    (dolist (spot spots)
+      (let* ((width (+ 2 (* per-character (length (spot-name spot)))))
+             (near (near-box snapshot layers spot width taken marks))
+             (box (or near (and (spot-robot spot) (led-box snapshot layers spot width taken)))))
+        (when box
+          (push (widened box +apart+) taken)
+          (unless near (draw-leader canvas spot box))
+          (write-name canvas (spot-name spot) box))))))

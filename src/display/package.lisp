@@ -30,7 +30,7 @@
   ;; and displays
   (:export #:draw-terrain #:draw-movers #:draw-world #:users-scale #:check-map-options
            #:in-part #:draw-framed #:with-map-svg #:drawn-scale #:sample-of
-           #:robot-color #:robot-radius #:robot-title
+           #:turn-ink #:robot-radius #:robot-title
            #:draw-names
            #:telling-what-breaks #:draw-way-line #:draw-start #:way-entry #:to-pixels
            #:inked #:around #:draw-circle #:half-width

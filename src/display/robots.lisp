@@ -3,10 +3,13 @@
 (in-package :ars-magna.display)
 
 ;;; It is drawn below things and hollow, so that it hides nothing of what it is about to grasp.
+;;; Where there are several, each has a colour and dashes in its turn; without colours, the heads of
+;;; every second five are hollow.
 
 (defun robot-radius ()
-  "Return the radius of the ring that a robot is drawn as, in pixels."
-  (max 6 (* 7/8 graphics-scale*)))
+  "Return the radius of the ring that a robot is drawn as, in pixels: nearly a cell, but half of one
+where cells are large, so that the ring fits into a map of one cell."
+  (max 6 (min (* 7/8 graphics-scale*) (+ 10 (* 1/4 graphics-scale*)))))
 
 (define-constant +between-rings+ 4
   :documentation "How far the rings of robots on one spot are apart, in pixels.")
@@ -30,49 +33,52 @@ them before it that are on the same spot."
   "Return the radius of the widest ring of ROBOTS on the spot of IMAGE, in pixels."
   (+ (robot-radius) (* +between-rings+ (1- (count-on-spot image robots)))))
 
-(define-constant +robot-inks+ '(#x10018C #x0A5018 #x5C0086 #x600C0C)
-  :test #'cl:equal
-  :documentation "The colours of the robots of a world, in turn.")
+(defun draw-arrowhead (canvas x y radius angle fill-p)
+  (let ((tip (around x y angle radius)))
+    (draw-lines canvas draw-gcontext*
+                (append tip
+                        (around x y (+ angle 2.5d0) radius)
+                        (around x y angle (* -0.25d0 radius))
+                        (around x y (- angle 2.5d0) radius)
+                        (and (not fill-p) tip))
+                :fill-p fill-p)))
 
-(defun robot-color (position)
-  "Return the colour of the robot at POSITION among its world's."
-  (nth (mod position (length +robot-inks+)) +robot-inks+))
+(defun hollow-head-p (position)
+  "True if the arrowhead of the robot at POSITION among its world's is drawn hollow."
+  (and (not in-color*) (oddp (floor position (length +turn-dashes+)))))
 
-(defun draw-arrowhead (canvas x y radius angle)
-  (draw-lines canvas draw-gcontext*
-              (append (around x y angle radius)
-                      (around x y (+ angle 2.5d0) radius)
-                      (around x y angle (* -0.25d0 radius))
-                      (around x y (- angle 2.5d0) radius))
-              :fill-p t))
+(defun camera-line (x y radius angle)
+  "Return the ends of the line, x y x y in pixels, of a camera that looks in direction ANGLE."
+  (append (around x y angle (+ radius 1)) (around x y angle (* 8/5 radius))))
 
-(defun draw-camera-line (canvas x y radius angle)
-  (inked ((layer-ink :tracks) :width 2)
-    (draw-segments canvas draw-gcontext*
-                   (append (around x y angle radius) (around x y angle (* 8/5 radius))))))
+(defun camera-lines (image radius)
+  "Return the lines of those cameras that the robot of IMAGE, a ring of RADIUS, has with it."
+  (loop for camera in (robot-image-cameras image)
+        unless (camera-image-location camera)
+          collect (camera-line (to-pixels (robot-image-x image)) (to-pixels (robot-image-y image))
+                               radius (+ (robot-image-angle image) (camera-image-angle camera)))))
 
-(defun draw-ring (canvas x y radius angle color)
-  "Draw the ring and the arrowhead of a robot that looks in direction ANGLE."
-  (inked (color :width 2) (draw-circle canvas x y radius nil))
-  (with-gcontext (draw-gcontext* :foreground white*)
-    (draw-arrowhead canvas x y (- radius 1) angle))
-  (with-color color (draw-arrowhead canvas x y (- radius 5/2) angle)))
+(defun draw-ring (canvas x y radius angle position)
+  "Draw the ring and the arrowhead of the robot at POSITION among its world's, which looks in
+direction ANGLE."
+  (let ((color (turn-ink position)))
+    (inked (color :width 2 :dashes (turn-dashes position)) (draw-circle canvas x y radius nil))
+    (with-gcontext (draw-gcontext* :foreground white*)
+      (draw-arrowhead canvas x y (- radius 1) angle t))
+    (with-color color
+      (draw-arrowhead canvas x y (- radius 5/2) angle (not (hollow-head-p position))))))
 
-(defun draw-robot (canvas image color radius)
-  (let ((x (to-pixels (robot-image-x image)))
-        (y (to-pixels (robot-image-y image)))
-        (angle (robot-image-angle image)))
-    (with-subject (canvas image)
-      (dolist (camera (robot-image-cameras image))
-        (unless (camera-image-location camera)
-          (draw-camera-line canvas x y radius (+ angle (camera-image-angle camera)))))
-      (draw-ring canvas x y radius angle color))))
+(defun draw-robot (canvas image position radius)
+  (with-subject (canvas image)
+    (draw-ring canvas (to-pixels (robot-image-x image)) (to-pixels (robot-image-y image))
+               radius (robot-image-angle image) position)
+    (dolist (line (camera-lines image radius))
+      (inked ((layer-ink :tracks) :width 2) (draw-segments canvas draw-gcontext* line)))))
 
 (defun draw-robots (canvas robots)
   "Draw ROBOTS, the images of all there are; wide rings first, so that they hide none."
-  (loop for (image color radius)
+  (loop for (image position radius)
           in (stable-sort (loop for image in robots for position from 0
-                                collect (list image (robot-color position)
-                                              (ring-radius image robots)))
+                                collect (list image position (ring-radius image robots)))
                           #'> :key #'third)
-        do (draw-robot canvas image color radius)))
+        do (draw-robot canvas image position radius)))

@@ -74,9 +74,14 @@ or :DIAMOND."
       (draw-cross canvas x y (* half (if (eq :square (thing-shape image)) 3/4 1/2))))))
 
 (defun draw-upright-line (canvas x y)
+  "Draw the small vertical line of the manual's figure, with a halo, so that it is seen on walls."
   (let ((width (max 2 (round graphics-scale* 4)))
         (height (max 5 (round (* 3/4 graphics-scale*)))))
-    (draw-rectangle canvas draw-gcontext* (- x (/ width 2)) (- y (/ height 2)) width height t)))
+    (flet ((upright (more)
+             (draw-rectangle canvas draw-gcontext* (- x (/ width 2) more) (- y (/ height 2) more)
+                             (+ width (* 2 more)) (+ height (* 2 more)) t)))
+      (with-gcontext (draw-gcontext* :foreground white*) (upright 3/2))
+      (upright 0))))
 
 (defun draw-thing-on-map (canvas image)
   (let ((x (to-pixels (thing-image-x image)))

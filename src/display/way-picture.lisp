@@ -2,27 +2,76 @@
 
 (in-package :ars-magna.display)
 
-(defparameter *way-colors* '(#x9C1408 #x0C3C9C #x0A5A1C #x6A3C00 #x5C1478)
-  "What ways are drawn in, by turns: dark enough for the marks of all built-in places.")
+(define-constant +arrows-apart+ 90
+  :documentation "How far arrowheads on a way are apart, about, in pixels.")
+(define-constant +least-arrowed+ 24
+  :documentation "How long a way with an arrowhead is at least, in pixels.")
+(define-constant +arrow-length+ 9 :documentation "How long arrowheads on ways are, in pixels.")
 
-(defun way-color (position)
-  (nth (mod position (length *way-colors*)) *way-colors*))
+(defun lengths-along (points)
+  "Return lists (length x y dx dy) of the pieces of the way through POINTS, x y ...; those of no
+length are left out."
+  (loop for (x y next-x next-y) on points by #'cddr
+        for dx = (and next-y (- next-x x)) and dy = (and next-y (- next-y y))
+        for length = (and next-y (sqrt (+ (* dx dx) (* dy dy))))
+        while next-y
+        when (plusp length) collect (list length x y dx dy)))
 
-;;; The first ways are told apart without colours, too.
+(defun spot-along (pieces distance)
+  "Return the point DISTANCE along the way of PIECES (see LENGTHS-ALONG), a list (x y)."
+  (loop for ((length x y dx dy) . more) on pieces
+        when (or (<= distance length) (null more))
+          return (let ((share (min 1 (/ distance length))))
+                   (list (+ x (* share dx)) (+ y (* share dy))))
+        do (decf distance length)))
 
-(define-constant +way-dashes+ '(nil (9 4) (2 3) (9 3 2 3) (4 2))
-  :test #'cl:equal
-  :documentation "The dashes and gaps of ways, by turns, in pixels; NIL is a solid line.")
+(defun arrow-along (pieces distance)
+  "Return a list (x y angle): an arrowhead DISTANCE along the way of PIECES."
+  (destructuring-bind ((x y) (to-x to-y))
+      (list (spot-along pieces (- distance (/ +arrow-length+ 2)))
+            (spot-along pieces (+ distance (/ +arrow-length+ 2))))
+    (list (/ (+ x to-x) 2) (/ (+ y to-y) 2) (atan (- to-y y) (- to-x x)))))
+
+(defun free-arrow (pieces distance arrows)
+  "Return an arrowhead about DISTANCE along the way of PIECES that lies on none of ARROWS, as it may
+where a way leads back; or NIL."
+  (loop with room = (* 3/2 +arrow-length+)
+        for aside in (list 0 room (- room) (* 2 room) (* -2 room))
+        for (x y angle) = (arrow-along pieces (max 0 (+ distance aside)))
+        when (loop for (other-x other-y) in arrows
+                   never (overlap-p (box-around x y room) (list other-x other-y other-x other-y)))
+          return (list x y angle)))
+
+(defun arrows-along (points)
+  "Return lists (x y angle) of where arrowheads stand on the way through POINTS, x y ... in pixels:
+few, and none on a very short one."
+  (let* ((pieces (lengths-along points)) (whole (reduce #'+ pieces :key #'first))
+         (count (if (< whole +least-arrowed+) 0 (max 1 (round whole +arrows-apart+))))
+         (arrows '()))
+    (dotimes (index count (reverse arrows))
+      (let ((arrow (free-arrow pieces (* (+ index 1/2) (/ whole count)) arrows)))
+        (when arrow (push arrow arrows))))))
+
+(defun draw-way-arrow (canvas x y angle color)
+  "Draw an arrowhead with a halo around X, Y in direction ANGLE."
+  (flet ((head (reach)
+           (draw-lines canvas draw-gcontext*
+                       (append (around x y angle reach) (around x y (+ angle 2.4d0) reach)
+                               (around x y (- angle 2.4d0) reach))
+                       :fill-p t)))
+    (with-gcontext (draw-gcontext* :foreground white*) (head (+ 3/2 (* 1/2 +arrow-length+))))
+    (with-color color (head (* 1/2 +arrow-length+)))))
 
 (defun draw-way-line (canvas points color position)
-  "Draw a line of COLOR through POINTS, x y ... in pixels, dashed as that at POSITION of several."
-  (let ((dashes (nth (mod position (length +way-dashes+)) +way-dashes+)))
-    (with-gcontext (draw-gcontext* :foreground white* :line-width 4)
-      (draw-lines canvas draw-gcontext* points))
-    (with-color color
-      (with-gcontext (draw-gcontext* :line-width 2 :line-style (if dashes :dash :solid)
-                                     :dashes (or dashes '(4)))
-        (draw-lines canvas draw-gcontext* points)))))
+  "Draw a line of COLOR through POINTS, x y ... in pixels, dashed as that at POSITION of several,
+with arrowheads on it that say where it leads."
+  (with-gcontext (draw-gcontext* :foreground white* :line-width 4)
+    (draw-lines canvas draw-gcontext* points))
+  (with-color color
+    (with-dashes ((turn-dashes position) :width 2)
+      (draw-lines canvas draw-gcontext* points)))
+  (loop for (x y angle) in (arrows-along points)
+        do (draw-way-arrow canvas x y angle color)))
 
 (defun draw-start (canvas x y color)
   "Draw what marks where a way begins: a small ring."
@@ -48,7 +97,7 @@
 
 (defun draw-way-on-map (canvas way position)
   "Draw WAY, a list of points, the one at POSITION of several."
-  (let ((color (way-color position)))
+  (let ((color (turn-ink position)))
     (draw-way-line canvas (mapcan #'coordinates-of way) color position)
     (destructuring-bind (x y) (coordinates-of (first way)) (draw-start canvas x y color))
     (destructuring-bind (x y) (coordinates-of (first (last way))) (draw-goal canvas x y color))))
@@ -83,7 +132,7 @@
   "Return the entries of the legend for WAYS."
   (append (loop for nil in ways for position from 0
                 collect (way-entry (format nil "way~:[~; ~D~]" (rest ways) (1+ position))
-                                   (way-color position) position))
+                                   (turn-ink position) position))
           (and ways (list (sample-of (canvas x y) "start" (draw-start canvas x y black*))
                           (sample-of (canvas x y) "end" (draw-goal canvas x y black*))))))
 

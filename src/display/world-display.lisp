@@ -32,24 +32,35 @@
         (draw-designator-on-map canvas robot designator))))
   (when (member :names layers) (draw-names canvas snapshot layers)))
 
-(defun call-on-map (function canvas map)
-  "Call FUNCTION; what it draws on CANVAS outside of MAP stays invisible."
-  (with-clipping (canvas 0 0 (to-pixels (map-width map)) (to-pixels (map-height map)))
+(define-constant +beyond+ 8
+  :documentation "How far robots at the edges of the map are seen beyond these, in pixels: no more
+than all margins have.")
+
+(defun call-on-map (function canvas map beyond)
+  "Call FUNCTION; what it draws on CANVAS more than BEYOND pixels outside of MAP stays invisible."
+  (with-clipping (canvas (- beyond) (- beyond)
+                  (+ (to-pixels (map-width map)) (* 2 beyond))
+                  (+ (to-pixels (map-height map)) (* 2 beyond)))
     (funcall function)))
+
+(defmacro on-map ((canvas map &optional (beyond 0)) &body body)
+  "Run BODY; what it draws on CANVAS more than BEYOND pixels outside of MAP stays invisible."
+  `(call-on-map (lambda () ,@body) ,canvas ,map ,beyond))
+
+(defun draw-below-robots (canvas snapshot layers)
+  "Draw what LAYERS lists of SNAPSHOT that robots and things lie on."
+  (loop for robot in (snapshot-robots snapshot) for position from 0
+        do (draw-layers canvas snapshot robot (turn-ink position) layers))
+  (when (member :reach layers) (draw-reach canvas (snapshot-things snapshot))))
 
 (defun draw-movers (canvas snapshot layers)
   "Draw what is not terrain of SNAPSHOT on CANVAS: things, robots, and what LAYERS lists of them."
-  (call-on-map (lambda () (draw-all-movers canvas snapshot layers))
-               canvas (snapshot-map snapshot)))
-
-(defun draw-all-movers (canvas snapshot layers)
-  (let ((robots (snapshot-robots snapshot)))
-    (loop for robot in robots for position from 0
-          do (draw-layers canvas snapshot robot (robot-color position) layers))
-    (when (member :reach layers) (draw-reach canvas (snapshot-things snapshot)))
-    (draw-robots canvas robots)
-    (draw-things canvas (snapshot-things snapshot))
-    (draw-labels canvas snapshot layers)))
+  (let ((map (snapshot-map snapshot)))
+    (on-map (canvas map) (draw-below-robots canvas snapshot layers))
+    (on-map (canvas map +beyond+) (draw-robots canvas (snapshot-robots snapshot)))
+    (on-map (canvas map)
+      (draw-things canvas (snapshot-things snapshot))
+      (draw-labels canvas snapshot layers))))
 
 (defun draw-world (canvas snapshot &key (layers *picture-layers*))
   "Draw the map of SNAPSHOT on CANVAS, GRAPHICS-SCALE* pixels to a metre, with what LAYERS lists

@@ -18,7 +18,7 @@
                 #:robot-image-x #:robot-image-y #:thing-image-x #:thing-image-y
                 #:drawn-scale
                 #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:draw-way-line
-                #:draw-start #:way-entry #:robot-color #:to-pixels #:box-around
+                #:draw-start #:way-entry #:turn-ink #:to-pixels #:box-around
                 #:inked #:around #:draw-circle #:half-width
                 #:overlap-p #:telling-what-breaks #:with-map-svg #:robot-title #:*picture-layers*
                 #:check-map-options #:in-part #:sample-of

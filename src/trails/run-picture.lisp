@@ -68,8 +68,8 @@ of robots that are not there."
         for position from 0
         for (x y . more) = (way-of robot ways)
         when more
-          do (draw-way-line canvas (list* x y more) (robot-color position) position)
-             (draw-start canvas x y (robot-color position))))
+          do (draw-way-line canvas (list* x y more) (turn-ink position) position)
+             (draw-start canvas x y (turn-ink position))))
 
 (defconstant +tile+ 6 "How large the boxes are that hide a line, in pixels.")
 
@@ -105,7 +105,7 @@ of robots that are not there."
                 for position from 0
                 when (moved-p robot ways)
                   collect (way-entry (format nil "way of ~A" (robot-title robot))
-                                     (robot-color position) position))
+                                     (turn-ink position) position))
           (when (some (lambda (robot) (moved-p robot ways)) (snapshot-robots snapshot))
             (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
           (and spots (list (sample-of (canvas x y) "see below"

@@ -1,0 +1,129 @@
+;;;; picture-crowds.lisp -- pictures with many robots, of very small maps, and of ways with arrows.
+
+(in-package :ars-magna.tests)
+
+(in-suite display)
+
+(defun call-with-crowd (function places width height)
+  "Call FUNCTION with a snapshot of robots at PLACES, lists (x y), on a bare map of WIDTH by HEIGHT
+cells, where a cell has 20 pixels."
+  (let ((canvas:graphics-scale* 20))
+    (funcall function
+             (display::make-snapshot
+              :map (world::small-map width height (constantly nil))
+              :robots (loop for (x y) in places for number from 1
+                            collect (display::make-robot-image
+                                     :name (intern (format nil "ROBOT-~D" number) :keyword)
+                                     :x x :y y))))))
+
+(defparameter *crowd* '((5 5) (5.6 5.2) (6.3 5) (5.4 5.9) (6.1 5.9) (5.8 4.4) (9 9) (9.7 9.3) (2 8))
+  "Places of nine robots, of which eight are in each other's way.")
+
+(defun crowd-names (snapshot)
+  "Return lists (x y text) of the names in a picture of SNAPSHOT and, as the second value, the ends
+of the lines that lead to names, x y x y each."
+  (let* ((text (format nil "~{~A~}" (drawing (canvas)
+                                      (let ((canvas:graphics-scale* 20))
+                                        (display::draw-names canvas snapshot '(:names))))))
+         (lines (drawn-with :path text :stroke (web canvas:black*))))
+    (values (loop for name in (drawn-with :text text)
+                  collect (list (of-element name :x) (of-element name :y) (of-element name :text)))
+            (length lines))))
+
+(test names.of-all-robots-of-a-crowd-are-written
+  "Beside their robots, or at the end of a line that leads there."
+  (call-with-crowd (lambda (snapshot)
+                     (multiple-value-bind (names lines) (crowd-names snapshot)
+                       (is (= 9 (length names)))
+                       (is (<= 1 lines 6))))
+                   *crowd* 14 14))
+
+(test names.without-a-line-are-nearer-to-their-robots-than-to-others
+  (call-with-crowd
+   (lambda (snapshot)
+     (let* ((robots (display:snapshot-robots snapshot))
+            (spot (display::robot-spot (first robots) robots)))
+       (destructuring-bind (x y) (display::pixels-of '(5 5))
+         (is-true (display::own-box-p spot (list (- x 60) (- y 5) (- x 20) (+ y 5))))
+         (is (not (display::own-box-p spot (list (+ x 34) (- y 5) (+ x 80) (+ y 5)))))
+         (is (not (display::leader-clear-p spot (list (+ x 70) y (+ x 99) (+ y 11)) '())))
+         (is-true (display::leader-clear-p spot (list (- x 99) y (- x 70) (+ y 11)) '())))))
+   *crowd* 14 14))
+
+(test names.of-robots-stand-close-beside-them
+  (call-with-crowd (lambda (snapshot)
+                     (multiple-value-bind (names lines) (crowd-names snapshot)
+                       (is (zerop lines))
+                       (is (<= (+ 100 (display:robot-radius)) (first (first names))
+                               (+ 100 (display:robot-radius) 6)))))
+                   '((5 5)) 14 14))
+
+(test robots.are-whole-on-a-map-of-one-cell
+  (with-own-definitions
+    (eval '(world:defmap cupboard (1 1)))
+    (eval '(robot:defrobot lodger (cupboard (0.5 0.5) 0)))
+    (run:call-with-simulation
+     (lambda ()
+       (let ((ring (first (drawn-with :ellipse (display:svg-picture (robot:find-robot 'lodger)
+                                                                    :layers '(:title))
+                                      :stroke (web (display:turn-ink 0))))))
+         (is (= 20 (of-element ring :rx)))
+         (is (< (* 2 (of-element ring :rx)) (+ 40 (* 2 display::+beyond+))))))
+     '(lodger))))
+
+(test robots.alone-reach-beyond-the-edges-of-the-map
+  "What odometers say is cut off there, so that it does not cross numbers in the margins."
+  (let* ((canvas:graphics-scale* 20)
+         (odometer (display::make-odometer-image :x 0.5 :y 0.5 :width 9 :height 9))
+         (snapshot (display::make-snapshot
+                    :map (world::small-map 2 2 (constantly nil))
+                    :robots (list (display::make-robot-image :name :edgar :x 0.5 :y 0.5
+                                                             :odometer odometer))))
+         (text (format nil "~{~A~}" (drawing (canvas)
+                                      (let ((canvas:graphics-scale* 20))
+                                        (display:draw-movers canvas snapshot '(:odometer))))))
+         (clipped (first (drawn-with :svg text))))
+    (is (= 0 (of-element clipped :x)))
+    (is (= 40 (of-element clipped :width)))
+    (is (search "<ellipse" text :start2 (search "</svg>" text)))))
+
+(test things.in-walls-are-seen-without-colours
+  "The small line of the manual's figure has a white halo."
+  (destructuring-bind (halo line)
+      (drawing (canvas)
+        (let ((canvas:graphics-scale* 8)) (display::draw-upright-line canvas 20 20)))
+    (is (mentions-p halo (web canvas:white*)))
+    (is (mentions-p line (web canvas:black*)))))
+
+;;; Arrowheads on ways.
+
+(test ways.have-arrowheads-in-their-direction-and-few
+  (flet ((arrows (&rest points) (display::arrows-along points)))
+    (is (equalp '((50 0 0)) (arrows 0 0 100 0)))
+    (is (near pi (third (first (arrows 100 0 0 0))) 1d-6))
+    (is (null (arrows 0 0 10 0)))
+    (is (null (arrows 5 5 5 5)))
+    (is (null (arrows 5 5)))
+    (is (= 10 (length (arrows 0 0 0 0 900 0))))
+    (is (near (/ pi 2) (third (second (arrows 0 0 90 0 90 90))) .01))))
+
+(test ways.that-lead-back-have-arrowheads-beside-each-other
+  (destructuring-bind ((x y angle) (back-x back-y back-angle)) (display::arrows-along
+                                                                '(0 0 100 0 0 0))
+    (is (< 9 (abs (- back-x x))))
+    (is (near 0 y 1d-6))
+    (is (near 0 back-y 1d-6))
+    (is (near 0 angle 1d-6))
+    (is (near pi (abs back-angle) 1d-6))))
+
+(test way-picture.shows-which-way-a-way-leads
+  (uiop:with-temporary-file (:pathname file :type "svg")
+    (dolist (color-p '(t nil))
+      (display:save-way-picture 'ars-worlds:tiny '(((2 2) (8 2)) ((2 8) (8 8))) file
+                                :in-color color-p :layers '())
+      (let ((picture (uiop:read-file-string file)))
+        (dolist (position '(0 1))
+          (is (<= 2 (length (drawn-with :polygon picture
+                                        :fill (web (if color-p
+                                                       (display:turn-ink position)
+                                                       canvas:black*)))))))))))
