@@ -250,6 +250,7 @@
       (is (shows-p '(:wedges) (web (display::layer-ink :wedges))))
       (is (not (shows-p '(:trail) "<polyline points=\"52.5,52.5")))
       (robot:place-robot robot 7.5 6.5 0)
+      (run:run-ticks 1)
       (command:robot-go-forward robot 1)
       (run:run-ticks 2)
       (is (shows-p '(:trail) "60.5,52.5 \""))

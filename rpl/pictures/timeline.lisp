@@ -102,8 +102,8 @@ MOST."
     (write-at canvas 10 y (format nil "~D more rows are left out." (page-unseen page)))))
 
 (defun draw-timeline (canvas bars most &optional title)
-  "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows, below TITLE or, if it is NIL, from
-when to when they are. Return width and height in pixels."
+  "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows, below TITLE or, if it is NIL,
+from when to when they are. Return width and height in pixels."
   (let* ((page (make-page bars most))
          (left (labels-width (page-rows page) 120 +label-width+))
          (scale (make-scale (page-start page) (page-end page) left))

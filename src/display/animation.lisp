@@ -11,8 +11,8 @@
 
 (defun call-with-frames (function journal every until &key part (watch #'identity))
   "Replay JOURNAL up to the tick UNTIL (NIL: its end); call FUNCTION with a snapshot of its
-beginning, of every EVERY ticks and of its end, of PART of its map or, if that is NIL, all, and WATCH with the simulation at the beginning and
-after each tick."
+beginning, of every EVERY ticks and of its end, of PART of its map or, if that is NIL, of all; and
+WATCH with the simulation at the beginning and after each tick."
   (let ((last nil) (queue *message-queue*))
     (labels ((show (simulation)
                (setf last (take-snapshot (simulation-world simulation) last))

@@ -48,6 +48,8 @@ puts the robot, and how uncertain it is."
 
 (setf (documentation 'snapshot-tick 'function) "Return the tick at which the snapshot was taken."
       (documentation 'snapshot-map 'function) "Return the map of the world in the snapshot."
+      (documentation 'snapshot-part 'function)
+      "Return what is to be shown of the map, (left top right bottom) in cells, or NIL for all."
       (documentation 'snapshot-things 'function)
       "Return a vector of the images of the things on the floor, by serial number."
       (documentation 'snapshot-robots 'function) "Return a list of the images of the robots."

@@ -17,7 +17,8 @@
                 #:snapshot-map #:snapshot-robots #:snapshot-things #:robot-image-name
                 #:robot-image-x #:robot-image-y #:thing-image-x #:thing-image-y
                 #:drawn-scale
-                #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:draw-way-line #:draw-pieces #:jump-entry
+                #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:draw-way-line
+                #:draw-pieces #:jump-entry
                 #:draw-start #:way-entry #:robot-color #:to-pixels #:box-around
                 #:inked #:around #:draw-circle #:half-width
                 #:overlap-p #:telling-what-breaks #:with-map-svg

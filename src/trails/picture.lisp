@@ -100,9 +100,9 @@ and things where these end."
 (defun save-bundle (operator what file snapshot ways-of own-title subtitle
                     &key part title (layers (remove :tracks *picture-layers*)) (in-color t) scale)
   "Save in FILE, for OPERATOR, a picture of SNAPSHOT and of the ways that the function WAYS-OF
-returns, each of a WHAT, such as a trial, under TITLE, or if it is NIL OWN-TITLE, and SUBTITLE. PART (left top right bottom), in
-cells, is what is wanted of the map, or NIL for all. Return the file's truename. Signals
-WRONG-ARGUMENT, before WAYS-OF is called, and MISUSE."
+returns, each of a WHAT, such as a trial, under TITLE, or if it is NIL OWN-TITLE, and SUBTITLE. PART
+(left top right bottom), in cells, is what is wanted of the map, or NIL for all. Return the file's
+truename. Signals WRONG-ARGUMENT, before WAYS-OF is called, and MISUSE."
   (let ((kind (picture-kind operator file)))
     (check-map-options operator :title title :layers layers :scale scale)
     (let* ((snapshot (in-part snapshot part operator)) (ways (funcall ways-of)))

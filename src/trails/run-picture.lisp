@@ -33,9 +33,9 @@ those of SIMULATION."
                                (mapcar #'robot-name (simulation-robots simulation)))))))
 
 (defun watch-run (journal until own)
-  "Repeat JOURNAL up to UNTIL. Return a snapshot of its end, lists of the name of each robot and
-the pieces of its way, moments that were seen, and the moments OWN with their places. Signals WRONG-ARGUMENT if these are
-of robots that are not there."
+  "Repeat JOURNAL up to UNTIL. Return a snapshot of its end, lists of the name of each robot and the
+pieces of its way, moments that were seen, and the moments OWN with their places. Signals
+WRONG-ARGUMENT if these are of robots that are not there."
   (let ((trails '()) (placed '()))
     (multiple-value-bind (watch seen) (moments-watcher)
       (flet ((look (simulation)
@@ -149,7 +149,8 @@ where; all if PART is NIL."
 (defun run-picture-text (snapshot ways moments &key limit title layers in-color scale)
   "Return an SVG document of a run that ended as SNAPSHOT shows, with WAYS and MOMENTS."
   (multiple-value-bind (spots notes)
-      (spots-and-notes (moments-in (snapshot-part snapshot) moments) limit (and (rest (snapshot-robots snapshot)) t)
+      (spots-and-notes (moments-in (snapshot-part snapshot) moments) limit
+                       (and (rest (snapshot-robots snapshot)) t)
                        (reach-of-spots (drawn-scale scale snapshot layers)))
     (let ((more (run-entries ways spots)))
       (with-output-to-string (out)
@@ -183,11 +184,12 @@ that they grasped, let go of or stowed something, that a command failed, that a 
 one failed or was ended, that there was an error in your code. KINDS, a list, chooses among :GRASP,
 :RELEASE, :STOW, :FAILURE, :PLAN, :PART, :ERROR and :NOTE, which are your own moments and always
 shown. There are LIMIT lines below the map at most, more only if your own moments need them, or any
-number, with all ticks, if it is NIL: where there is more to tell, what matters least is left out, and counted; that a robot was blocked or lost a track, as
-plans expect, before other failures of commands and of parts of plans, and these before the rest.
-MOMENTS, a list of moments or of lists of a tick, a string and, if you like, the name of a robot of
-the run, are told of besides. PART (left top right bottom), in cells, is what is wanted of the map,
-by default all. TITLE stands above. With ANYWAY also of a run whose definitions are not those at hand, though it may have gone differently.
+number, with all ticks, if it is NIL: where there is more to tell, what matters least is left out,
+and counted; that a robot was blocked or lost a track, as plans expect, before other failures of
+commands and of parts of plans, and these before the rest. MOMENTS, a list of moments or of lists of
+a tick, a string and, if you like, the name of a robot of the run, are told of besides. PART (left
+top right bottom), in cells, is what is wanted of the map, by default all. TITLE stands above. With
+ANYWAY also of a run whose definitions are not those at hand, though it may have gone differently.
 FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename.
 Signals WRONG-ARGUMENT, what REPLAY does, and MISUSE without the program that
 PNG needs, or where no journal is kept."

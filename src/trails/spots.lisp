@@ -157,7 +157,8 @@ large that what lies right there, as what was let go of does, is within it."
                      collect (around x y angle (+ radius distance)))))
 
 (defun free-place-p (place shown taken)
-  "True if the number at PLACE, a point (x y), is in the box SHOWN and meets none of the boxes TAKEN."
+  "True if the number at PLACE, a point (x y), is in the box SHOWN and meets none of the boxes
+TAKEN."
   (destructuring-bind (x y) place
     (let ((box (box-around x y (1+ +number-radius+))))
       (and (every #'<= (subseq shown 0 2) box)
@@ -165,8 +166,8 @@ large that what lies right there, as what was let go of does, is within it."
            (notany (lambda (other) (overlap-p box other)) taken)))))
 
 (defun pulled-into (shown place)
-  "Return PLACE, or what is nearest to it of where a number is wholly in the box SHOWN; the middle of
-one that is less wide or high."
+  "Return PLACE, or what is nearest to it of where a number is wholly in the box SHOWN; the middle
+of one that is less wide or high."
   (let ((reach (1+ +number-radius+)))
     (flet ((within (at low high)
              (if (< (- high low) (* 2 reach))
