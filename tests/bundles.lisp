@@ -6,12 +6,12 @@
 
 (defun way-of-outcome (trial outcome)
   "Return a way through the middle of the studio of TRIAL, which had OUTCOME."
-  (trails::make-way trial outcome (vector '(3 . 5) '(8 . 5) '(8 . 9))))
+  (trails::make-way trial outcome (list (list '(3 . 5) '(8 . 5) '(8 . 9)))))
 
 (defun bundle (robot outcomes &rest options)
   "Return a picture of ways with OUTCOMES in the world of ROBOT."
   (with-scratch-file (file "svg")
-    (apply #'trails:save-bundle 'bundle file (display:snapshot-of robot)
+    (apply #'trails:save-bundle 'bundle "trial" file (display:snapshot-of robot)
            (lambda ()
              (loop for outcome in outcomes for trial from 1
                    collect (way-of-outcome trial outcome)))
@@ -78,7 +78,8 @@
   (is (equal '("broke off with an error: 2 trials")
              (mapcar #'display::entry-text
                      (trails::bundle-entries (append (trails:ways-along '() 1 "error")
-                                                     (trails:ways-along '() 2 "error")))))))
+                                                     (trails:ways-along '() 2 "error"))
+                                             "trial")))))
 
 ;;; Pictures of a run.
 
@@ -110,3 +111,62 @@
     (dolist (kind display::+moment-kinds+)
       (is (search (format nil "~S" kind) text) "~S" kind)
       (is-true (assoc kind trails::*kind-words*)))))
+
+;;; Robots that are put elsewhere.
+
+(defun drive-and-be-put-elsewhere (robot)
+  "Let ROBOT drive a little, be put on the other side of the wall of the studio, and drive on."
+  (dolist (x '(3.5 14.5))
+    (robot:place-robot robot x 6.5 0)
+    (command:robot-go-forward robot 2)
+    (run:run-ticks 4)))
+
+(defun longest-line (svg)
+  "Return how far to the right the longest line of several points in SVG goes, in pixels."
+  (loop for line in (drawn-with :polyline svg)
+        for xs = (loop for (x) on (coordinates-in (of-element line :points)) by #'cddr collect x)
+        maximize (- (reduce #'max xs) (reduce #'min xs))))
+
+(defun coordinates-in (text)
+  (mapcar #'read-from-string
+          (remove "" (uiop:split-string text :separator ", ") :test #'string=)))
+
+(test ways.break-where-a-robot-was-put-elsewhere
+  "It went no way through the wall: the picture of the run, its trail and its film say so."
+  (in-studio (robot)
+    (display:keep-history)
+    (drive-and-be-put-elsewhere robot)
+    (dolist (picture (list (run-picture :scale 10 :layers '(:legend))
+                           (display:svg-picture robot :scale 10 :layers '(:trail :legend))
+                           (with-scratch-file (file "html")
+                             (display:save-animation nil file :scale 10
+                                                              :layers '(:trail :legend))
+                             (uiop:read-file-string file))))
+      (is (mentions-p picture "put elsewhere")))
+    (is (< (longest-line (run-picture :scale 10 :layers '())) 40))
+    (is (< (longest-line (display:svg-picture robot :scale 10 :layers '(:trail))) 40))))
+
+(test ways.of-forks-and-replays-break-where-that-of-the-run-does
+  (in-studio (robot)
+    (drive-and-be-put-elsewhere robot)
+    (flet ((pieces (simulation)
+             (robot:robot-placements (first (run:simulation-robots simulation)))))
+      (let ((count (pieces (time:current-simulation))))
+        (is (= count (pieces (run:fork-simulation))))
+        (run:call-with-replay (lambda () (is (= count (pieces (time:current-simulation)))))
+                              (run:end-of-journal (time:current-simulation)))))))
+
+(test ways.without-jumps-do-not-mention-any
+  (in-studio (robot)
+    (command:robot-go-forward robot 5)
+    (run:run-ticks 6)
+    (is (mentions-p (run-picture) "way of studio-robot"))
+    (is (not (mentions-p (run-picture) "put elsewhere")))))
+
+(test bundle.samples-in-the-legend-are-as-pale-as-the-ways
+  (in-studio (robot)
+    (let ((picture (bundle robot (loop repeat 40 collect "success") :layers '(:legend))))
+      (is (= 41 (loop with group = "<g opacity=\"0.2\">"
+                      for start = (search group picture) then (search group picture
+                                                                      :start2 (1+ start))
+                      while start count t))))))

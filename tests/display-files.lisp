@@ -150,6 +150,87 @@
       (signals base:wrong-argument (display:save-animation journal "run.png"))
       (signals base:wrong-argument (display:save-animation journal "run.svg" :every 0)))))
 
+(test animation.series-says-what-an-older-longer-one-has-left
+  "These files stay: nobody said that they may go."
+  (in-studio (robot)
+    (let ((journal (journal-of-a-drive robot)))
+      (with-scratch-file (file "svg")
+        (flet ((save (until)
+                 (display:save-animation journal file :every 5 :series t :until until)))
+          (let ((older (save 20)) (base:*message-queue* (base:make-message-queue)))
+            (save 5)
+            (let ((said (format nil "~{~A~}" (mapcar #'base:message-text (base:take-messages)))))
+              (is (mentions-p said "-0003.svg to "))
+              (is (mentions-p said "-0005.svg are of an older series")))
+            (is (every #'probe-file older))
+            (save 20)
+            (is (null (base:take-messages)))
+            (mapc #'delete-file older)))))))
+
+;;; What all pictures know.
+
+(test pictures.list-their-keywords-when-given-another
+  (in-studio (robot)
+    (flet ((said (function &rest arguments)
+             (handler-case (apply function arguments)
+               (base:unknown-name (condition) (text-of condition)))))
+      (dolist (words (list (said 'ars:save-picture robot "x.svg" :layer '())
+                           (said 'ars:svg-picture robot :layer '())
+                           (said 'ars:save-run-picture "x.svg" :layer '())
+                           (said 'ars:save-animation nil "x.svg" :layer '())
+                           (said 'ars:save-way-picture 'studio '() "x.svg" :layer '())))
+        (is-true (has-words-p words "keyword of" "layer" "layers" "title")))
+      (is-true (has-words-p (said 'ars-magna.rpl-pictures:save-plan-timeline "x.svg" :scales 2)
+                            "keyword of save-plan-timeline" "scales" "most")))))
+
+(test pictures.of-runs-and-films-have-parts-and-titles
+  (in-studio (robot)
+    (journal-of-a-drive robot)
+    (with-scratch-file (page "html")
+      (with-scratch-file (film "svg")
+        (flet ((texts (&rest options)
+                 (list (run-picture* options)
+                       (apply #'display:svg-picture robot options)
+                       (progn (apply #'ars:save-animation nil page options)
+                              (uiop:read-file-string page))
+                       (progn (apply #'ars:save-animation nil film options)
+                              (uiop:read-file-string film)))))
+          (loop for whole in (texts) for part in (texts :part '(0 0 9 10) :title "Left half")
+                do (is (mentions-p whole "bricks 10"))
+                   (is (mentions-p part "Left half"))
+                   (is (not (mentions-p whole "Left half")))
+                   (is (< (length part) (length whole))))
+          (dolist (part '((0 0 99 99) (1 2 3) 7))
+            (signals base:wrong-argument (run-picture* (list :part part)))
+            (signals base:wrong-argument (display:svg-picture robot :part part))
+            (signals base:wrong-argument (ars:save-animation nil film :part part))))))))
+
+(defun run-picture* (options) (apply #'run-picture options))
+
+(test pictures.of-runs-have-no-numbers-beside-their-part
+  (in-studio (robot)
+    (run:run-ticks 5)
+    (flet ((notes (&rest options)
+             (notes-in (apply #'run-picture :layers '() :moments
+                              (list (display:make-moment 2 :note "here" 3 3)
+                                    (display:make-moment 3 :note "there" 15 3))
+                              options))))
+      (is (= 2 (length (notes))))
+      (is (equal '("tick 2: here") (notes :part '(0 0 9 10)))))))
+
+(test pictures.that-end-too-late-name-themselves
+  (in-studio (robot)
+    (journal-of-a-drive robot)
+    (flet ((said (function &rest arguments)
+             (handler-case (apply function arguments)
+               (base:wrong-argument (condition) (text-of condition)))))
+      (is-true (has-words-p (said 'ars:save-animation nil "x.svg" :until 99)
+                            "save-animation: until is 99"))
+      (is-true (has-words-p (said 'ars:save-run-picture "x.svg" :until 99)
+                            "save-run-picture: until is 99"))
+      (is-true (has-words-p (said 'ars:journal-moments nil :until 99)
+                            "journal-moments: until is 99")))))
+
 ;;; Without a window.
 
 (test display.a-robot-without-a-window-says-so-in-one-line

@@ -251,8 +251,10 @@
       (is (not (shows-p '(:trail) "<polyline points=\"52.5,52.5")))
       (robot:place-robot robot 7.5 6.5 0)
       (run:run-ticks 1)
-      (is (shows-p '(:trail) "<polyline points=\"60.5,52.5 52.5,52.5 \""))
-      (is (not (shows-p '() "<polyline points=\"60.5,52.5 52.5,52.5 \"")))
+      (command:robot-go-forward robot 1)
+      (run:run-ticks 2)
+      (is (shows-p '(:trail) "60.5,52.5 \""))
+      (is (not (shows-p '() "60.5,52.5 \"")))
       (is (shows-p '(:odometer) (web (display::layer-ink :odometer)))))
     (signals base:wrong-argument (display:svg-picture robot :layers '(:aura)))))
 

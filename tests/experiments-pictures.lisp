@@ -190,7 +190,8 @@
         (is (= 100 (first (first steps))))
         (is (close-p 3/4 (second (first steps))))))
     (let ((words (format nil "~{~A ~}" (chart-texts (picture-text results :survival)))))
-      (is (search "limit of 5000 ticks is never done" words)))))
+      (is (search "limit of 5000 ticks is never done" words))
+      (is (search "1 trial broke off with an error" words)))))
 
 ;;; Ways.
 
@@ -230,9 +231,9 @@
                                   1))
     (let ((way (first (experiment::ways-of-trials experiment condition '(3)))))
       (is (= 3 (trails:way-trial way)))
-      (is (< 3 (length (trails:way-points way))))
+      (is (< 3 (length (first (trails:way-pieces way)))))
       (is (equal (remove-duplicates (reverse places) :test #'equal :from-end t)
-                 (coerce (trails:way-points way) 'list)))
+                 (first (trails:way-pieces way))))
       (is (string= (end-of-trial 2 3) (trails:way-outcome way))))))
 
 (test ways.change-nothing-in-the-trial
@@ -275,7 +276,9 @@
       (is (search (format nil "failed: ~D trial" (- 8 succeeded)) text))
       (experiment:save-ways-picture 'wandering 1 file :trials 8)
       (is (string= text (base:file-text file)))
+      (is (search "The ways of the trials 1, 2, 3, 4, 5, 6, 7, 8, with a marker" text))
       (experiment:save-ways-picture 'wandering 1 file :trials '(2) :part '(0 0 12 6))
+      (is (search "The way of each robot in trial 2, with a marker" (base:file-text file)))
       (is (< (length (base:file-text file)) (length text))))))
 
 (test ways.are-asked-for-properly

@@ -283,6 +283,18 @@
                    "Not shown: 15 failures of commands.")
                  notes)))))
 
+(test run-picture.never-leaves-out-a-users-own-moments
+  "However low the limit is; and without one, all ticks are told."
+  (in-studio (robot)
+    (run:run-ticks 20)
+    (let ((own (loop for x from 2 to 6 collect (display:make-moment x :note "look here" x 4))))
+      (is (= 5 (count-if (lambda (note) (mentions-p note "look here"))
+                         (notes-in (run-picture :layers '() :limit 2 :moments own)))))
+      (is (mentions-p (run-picture :layers '() :limit 2 :moments (append own (moments-at 15)))
+                      "Not shown: 1 grasp")))
+    (is (mentions-p (run-picture :layers '() :limit nil :moments (moments-at 5))
+                    "ticks 1, 2, 3, 4, 5: Robot is blocked"))))
+
 (test run-picture.shows-the-kinds-that-are-chosen
   (in-studio (robot)
     (ungrasp-nothing robot)
@@ -337,11 +349,10 @@
 
 (test run-picture.keeps-numbers-on-the-smallest-map
   "Where the map is as large as a number, that is wholly on it; on a smaller one, in its middle."
-  (let ((map (world::small-map 1 1 (constantly nil))))
-    (loop for (scale least) in '((40 9) (20 9) (10 5))
-          do (let ((canvas:graphics-scale* scale) (middle (/ scale 2)))
-               (dolist (at (trails::place-for-number map middle middle 4 '() '()))
-                 (is (<= least at (- scale least))))))))
+  (loop for (scale least) in '((40 9) (20 9) (10 5))
+        do (let ((middle (/ scale 2)))
+             (dolist (at (trails::place-for-number (list 0 0 scale scale) middle middle 4 '() '()))
+               (is (<= least at (- scale least)))))))
 
 (test run-picture.tells-two-robots-apart
   (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 3 :journal t)

@@ -237,8 +237,8 @@ what went wrong after it."
           (time:schedule ('x :when nil :timeout n) 1)
           (display:text-map counter :columns n) (display:text-map counter :radius n)
           (display::svg-picture counter :scale n)
-          (display::check-animation nil nil n :world '() 8)
-          (display::check-animation nil n 10 :world '() 8)
+          (display::check-animation nil nil n :world '() 8 nil)
+          (display::check-animation nil n 10 :world '() 8 nil)
           (ars-magna.canvas::check-pen nil n nil))))
 
 (test numbers.of-plans-are-used-or-refused

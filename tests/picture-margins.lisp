@@ -205,15 +205,15 @@ room."
   (flet ((entries (trail)
            (mapcar #'display::entry-text
                    (display::line-entries (trail-snapshot trail) '(:trail :odometer)))))
-    (is (equal '("trail") (entries '(1 1 50 2 1 49))))
-    (is (null (entries '(1 1 50))))))
+    (is (equal '("trail") (entries '(1 1 50 0 2 1 49 0))))
+    (is (null (entries '(1 1 50 0))))))
 
 (defun trail-snapshot (trail)
-  "Return a snapshot of a robot with TRAIL, a list x y tick ...."
+  "Return a snapshot of a robot with TRAIL, a list x y tick placements ...."
   (display::make-snapshot :robots (list (display::make-robot-image :trail trail))))
 
 (test names.are-rather-not-on-trails
-  (let ((snapshot (trail-snapshot '(1 1 50 2 1 49))) (canvas:graphics-scale* 8))
+  (let ((snapshot (trail-snapshot '(1 1 50 0 2 1 49 0))) (canvas:graphics-scale* 8))
     (is-true (display::on-trail-p snapshot '(14 6 18 10)))
     (is (null (display::on-trail-p snapshot '(6 390 10 394))))
     (is (null (display::on-trail-p snapshot '(398 14 402 18))))))

@@ -109,6 +109,8 @@
           (make-list 5 :initial-element 10d0))
     (run:run-ticks 1)
     (robot:place-robot robot 4.5 4.5 0)
+    (run:run-ticks 1)
+    (command:robot-go-forward robot 1)
     (run:run-ticks 2)
     (display:svg-picture robot :layers layer :in-color nil)))
 

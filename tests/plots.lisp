@@ -87,7 +87,24 @@
   (is (equal '("9996" "9998" "10000") (subseq (axis-marks-of 0 9996 1 10004) 0 3)))
   (is (equal '("0.30" "0.35") (subseq (axis-marks-of 1 0.3d0 2 0.45d0) 0 2)))
   (is (member "0.3" (axis-marks-of 0 1 0.3d0 1) :test #'search))
-  (is (member "5.0" (axis-marks-of 5 5) :test #'string=)))
+  (is (member "5.0" (axis-marks-of 5.1d0 5.1d0) :test #'string=)))
+
+(test axes.of-what-is-counted-have-whole-numbers
+  "Also where all numbers are the same; and never one mark alone."
+  (is (equal '("0" "1" "2" "0" "1" "2") (axis-marks-of 1 1)))
+  (is (equal '("0" "1" "2" "1" "2") (axis-marks-of 1 1 2 2)))
+  (loop for points in '((5 5) (100 7) (3 3 4 4) (1000000 999999) (20 1 30 1) (1 1 2 2 3 3))
+        do (let ((marks (apply #'axis-marks-of points)))
+             (is (notany (lambda (mark) (find #\. mark)) marks) "~S" marks)
+             (is (<= 4 (length marks)) "~S" marks))))
+
+(test words.longer-than-a-line-are-broken-behind-dashes
+  (is (equal '("the-way-" "round-the-" "table")
+             (plots::wrapped "the-way-round-the-table" (canvas:text-width "round-the--" 12))))
+  (is (equal '("a" "word-and-" "another")
+             (plots::wrapped "a word-and-another" (canvas:text-width "word-and-a" 12))))
+  (is (equal '("supercalif" "ragilistic")
+             (plots::wrapped "supercalifragilistic" (canvas:text-width "supercalif" 12)))))
 
 (test axes.of-logarithms-have-marks-at-powers-of-ten
   (let ((texts (chart-texts (plots:line-chart '((nil (0.001 1) (1000 1))) :log-x t))))

@@ -93,6 +93,15 @@
       (is (= 1 (length texts)))
       (is (search "project: a tick is under way" (first texts)) "~S" texts))))
 
+(test picture.counts-rollouts-as-its-subtitle-does
+  (on-court ()
+    (let ((projection (project '(toss 1) :trials 3)))
+      (uiop:with-temporary-file (:pathname file :type "svg")
+        (save-projection-picture projection file :layers '(:legend :title))
+        (let ((text (uiop:read-file-string file)))
+          (is (search "of 3 rollouts" text))
+          (is (null (search " trial" text))))))))
+
 (test picture.needs-a-directory
   (on-court ()
     (let ((projection (project '(toss 1) :trials 1)))

@@ -273,7 +273,7 @@
           (projection (project '(run-on .4 40) :trials 5)))
       (unwind-protect
            (let ((text (uiop:read-file-string (save-projection-picture projection path))))
-             (is (search "5 trials" text))
+             (is (search "5 rollouts" text))
              (is (search "(run-on 0.4 40)" text)))
         (uiop:delete-file-if-exists path)))))
 

@@ -31,6 +31,19 @@
   (with-rover ()
     (is-trouble ("a run that was rewound") (run:counterpart rover))))
 
+(test rewind.keeps-a-trace-that-was-wanted-then
+  "A trace that *TRACE-PLANS*, bound around the start of plans, asked for is kept again."
+  (with-rover (:seed 1 :keep t)
+    (let ((driver:*trace-plans* t))
+      (driver:begin-plan 'count-for-ever (rpl:create-fluent 'count 0)))
+    (run:run-ticks 20)
+    (flet ((events () (length (rpl:trace-of (first (driver:plans))))))
+      (let ((before (events)))
+        (run:rewind 10)
+        (is (< 1 (events) before))
+        (run:run-ticks 10)
+        (is (= before (events)))))))
+
 (test rewind.tasks-can-be-spoken-to
   "SUSPEND, WAKE-UP, EVAPORATE and END-PLAN mean what a task has become."
   (counting-run (count task)

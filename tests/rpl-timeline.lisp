@@ -157,6 +157,31 @@
     (is (equal '("camera-get-a...")
                (mapcar (lambda (text) (of-element text :text)) (drawn-with :text drawn))))))
 
+(test timeline.takes-what-is-no-trouble-for-none
+  "A command that something newer ended, or a look that found nothing, is drawn as others are; where
+one points at it, it says in words what came of it."
+  (flet ((drawn (code)
+           (let ((span (ars-magna.rpl.seeing::make-span :command 0 "(rpl-robot-turn 1)" 9)))
+             (setf (ars-magna.rpl.seeing::span-error span) code)
+             (format nil "~{~A~}"
+                     (drawing (canvas)
+                       (ars-magna.rpl-pictures::draw-command
+                        canvas span nil 0 0 (ars-magna.rpl-pictures::make-scale 0 100 0 100)))))))
+    (flet ((fill-of (code) (of-element (first (drawn-with :rect (drawn code))) :fill)))
+      (is (equal (fill-of nil) (fill-of :interrupt)))
+      (is (equal (fill-of nil) (fill-of :designator-not-found)))
+      (is (not (equal (fill-of nil) (fill-of :robot-blocked)))))
+    (is-true (has-words-p (drawn :interrupt) ": interrupt. Something newer took"))))
+
+(test timeline.has-a-title-and-a-scale
+  (let ((runner (seen-until 30)))
+    (flet ((text (&rest options) (apply #'timeline-text runner options)))
+      (is-true (has-words-p (text :title "A day of work") ">A day of work<"))
+      (is (< (* 3/2 (of-element (first (drawn-with :svg (text))) :width))
+             (of-element (first (drawn-with :svg (text :scale 2))) :width))))
+    (dolist (options '((:title 7) (:scale 0) (:scale 1000)))
+      (signals base:wrong-argument (apply #'timeline-text runner options)))))
+
 (test timeline.has-whole-expressions-in-titles
   (let ((runner (seen-until 9 :plan (rpl:make-plan
                                      '(rpl:par
@@ -184,7 +209,7 @@
   (let ((text (timeline-text (seen-until 30) :in-color nil)))
     (is (subsetp '("000000" "ffffff") (colors-in text) :test #'string=))
     (is (subsetp (colors-in text) '("000000" "ffffff") :test #'string=))
-    (is-true (has-words-p text "runs its parts" "command with an error"))))
+    (is-true (has-words-p text "runs its parts" "command that failed"))))
 
 (test timeline.has-no-two-kinds-that-look-alike-without-colours
   "Neither as wide as in the legend nor as narrow as a tick may be."

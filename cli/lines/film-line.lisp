@@ -3,12 +3,17 @@
 (in-package :ars-magna.cli)
 
 (define-line "FILM" (session (file :file "a name that ends in .html or .svg")
-                             (what :rest "pixels to a cell, and names of layers; BARE" :optional))
+                             (what :rest "pixels to a cell, names of layers; BARE; ANYWAY"
+                                   :optional))
     (:seeing)
     "Save the run so far in FILE, replacing it, as a film: a page for any browser, in which it can
 be played, stopped and gone through, or an animated picture. What robots grasped, let go of and
 stowed, which commands and plans failed, and errors in your code are marked. The words after FILE
-are those of PICTURE."
+are those of PICTURE, and ANYWAY: also if what is defined is not what the run began with."
   (check-run)
-  (format t "~A~%" (native-name (apply #'save-animation nil (path-called file)
-                                       (picture-options what "FILM")))))
+  (let* ((words (words-in (or what "")))
+         (others (remove "ANYWAY" words :test #'string-equal)))
+    (format t "~A~%" (native-name (apply #'save-animation nil (path-called file)
+                                         :anyway (/= (length words) (length others))
+                                         (picture-options (format nil "~{~A~^ ~}" others)
+                                                          "FILM"))))))

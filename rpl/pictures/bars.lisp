@@ -16,7 +16,7 @@
     (:blocked #x564533 :chequers "is blocked") (:cleaning #xDA8C5A :crosses "cleans up")
     (:failure #x15091B :wedge "a failure happened")
     (:command #x19168F :solid "command under way")
-    (:trouble #xC41C1A :frame "command with an error"))
+    (:trouble #xC41C1A :frame "command that failed"))
   "Lists (kind color texture text): what the parts of a bar look like, without colours by texture,
 :SOLID, :FRAME or :WEDGE, and what the legend says. The colours are told apart by all eyes and in
 grey: tests/palette.lisp measures it.")
@@ -167,7 +167,7 @@ cut to two decimals; of a long one its beginning."
 
 (defun ink-in-lane (span)
   "Return the colour of text on SPAN, a command."
-  (if (and (span-error span) (not in-color*)) black* white*))
+  (if (and (trouble-p (span-error span)) (not in-color*)) black* white*))
 
 (defun place-for-name (length x width from to)
   "Return where the name, LENGTH pixels wide, of a command is written whose box begins at X and is
@@ -198,6 +198,12 @@ and TO; or its beginning on it. Return where that ends."
               ((<= 7 fitting) (words (ink-in-lane span) (+ x 2) (cut name fitting))))
         (max (+ x width) (if at (+ at length) 0))))))
 
+(defun command-title (span)
+  "Return what is told of SPAN, a command, where one points at it."
+  (let ((code (span-error span)))
+    (format nil "~A, ticks ~A to ~A~@[: ~(~A~)~]~@[. ~A~]" (span-text span) (span-start span)
+            (span-end span) code (and code (error-code-meaning code)))))
+
 (defun draw-command (canvas span next from y scale)
   "Draw SPAN, a command, in a lane at Y in which NEXT, a command or NIL, comes after it, and which
 is free from FROM on. Return from where on it is free then."
@@ -205,9 +211,8 @@ is free from FROM on. Return from where on it is free then."
         (to (if next
                 (place (span-start next) scale)
                 (+ 40 (place (scale-end scale) scale)))))
-    (with-subject (canvas (format nil "~A, ticks ~A to ~A~@[: ~A~]" (span-text span)
-                                  (span-start span) (span-end span) (span-error span)))
-      (look-box canvas (if (span-error span) :trouble :command) x y width +lane-height+)
+    (with-subject (canvas (command-title span))
+      (look-box canvas (if (trouble-p (span-error span)) :trouble :command) x y width +lane-height+)
       (write-command canvas span x y width from to))))
 
 (defun draw-lane (canvas spans y scale)

@@ -17,6 +17,7 @@ canvas.")
                 #:task-image-folded-p #:tree-image-tick #:tree-image-rows #:tree-image-plans
                 #:tree-image-tasks)
   (:import-from :ars-magna.rpl-robot #:call-with-plans-in-use)
+  (:import-from :ars-magna.command #:trouble-p #:error-code-meaning)
   (:import-from :ars-magna.display #:picture-kind #:save-svg)
   ;; bars, timeline
   (:export #:tick-at #:make-page #:page-end #:page-start #:scale-for #:draw-page)

@@ -17,27 +17,34 @@
     (or (and (symbolp name) (symbol-package name))
         *package*)))
 
-(defun timeline-svg (bars most in-color)
-  "Return the timeline of BARS, in at most MOST rows, as an SVG document."
+(defun timeline-svg (bars most in-color title scale)
+  "Return the timeline of BARS, in at most MOST rows, below TITLE, as an SVG document, magnified by
+SCALE."
   (let ((*package* (plan-package bars)))
     (with-output-to-string (stream)
-      (with-svg (canvas stream :color-p in-color)
+      (with-svg (canvas stream :color-p in-color :zoom scale)
         (with-canvas (canvas)
-          (draw-timeline canvas bars most))))))
+          (draw-timeline canvas bars most title))))))
 
 (addition save-plan-timeline)
-(defun save-plan-timeline (file &key runner (most 1000) (in-color t))
+(define-with-keywords save-plan-timeline
+    (file &key runner (most 1000) (in-color t) title (scale 1))
   "Save a picture of the plans that have run in FILE, replacing it: SVG or, where the program
 rsvg-convert is installed, PNG, as its name ends. Each task is a bar over ticks, below the one that
 it is part of, with what it waited for, the commands that it issued while these were under way, and
 how it ended; turns of a loop share a row. RUNNER is the plan runner, by default the one in use,
 which must have kept a trace: see *TRACE-PLANS*. At most MOST rows are drawn. IN-COLOR is false for
-a picture in black and white. Return the file's truename. Signals WRONG-ARGUMENT and MISUSE."
+a picture in black and white. TITLE, a string, stands above instead of the ticks. SCALE, from 1 to
+10, is how many times as large as usual the whole is. Return the file's truename. Signals
+WRONG-ARGUMENT and MISUSE."
+  (check-argument save-plan-timeline title (typep title '(or null string)) "a string or NIL")
+  (check-argument save-plan-timeline scale (and (finite-p scale) (<= 1 scale 10))
+                  "a number from 1 to 10, how many times as large as usual the picture is")
   (check-argument save-plan-timeline most (whole-p most 1 1000000) "an integer from 1 to 1000000")
   (let ((kind (picture-kind 'save-plan-timeline file))
         (bars (call-with-plans-in-use
                (lambda (in-use) (trace-bars (or runner in-use (runner-to-see)))))))
-    (save-svg (timeline-svg bars most in-color) file kind)))
+    (save-svg (timeline-svg bars most in-color title scale) file kind)))
 
 (defun tree-svg (image)
   "Return the tree of tasks of IMAGE as an SVG document."
@@ -46,7 +53,8 @@ a picture in black and white. Return the file's truename. Signals WRONG-ARGUMENT
       (with-canvas (canvas) (values 640 (draw-task-tree canvas image))))))
 
 (addition save-plan-tree)
-(defun save-plan-tree (file &key runner (most 300))
+(define-with-keywords save-plan-tree
+    (file &key runner (most 300))
   "Save a picture of the tasks of the plans under way in FILE, replacing it: SVG or, where the
 program rsvg-convert is installed, PNG, as its name ends. Each task stands below the one that it is
 part of, with a mark for how it is, what it is at, and what it waits for. RUNNER is the plan runner,

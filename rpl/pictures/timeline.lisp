@@ -101,15 +101,15 @@ MOST."
   (when (plusp (page-unseen page))
     (write-at canvas 10 y (format nil "~D more rows are left out." (page-unseen page)))))
 
-(defun draw-timeline (canvas bars most)
-  "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows. Return width and height in
-pixels."
+(defun draw-timeline (canvas bars most &optional title)
+  "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows, below TITLE or, if it is NIL,
+from when to when they are. Return width and height in pixels."
   (let* ((page (make-page bars most))
          (left (labels-width (page-rows page) 120 +label-width+))
          (scale (make-scale (page-start page) (page-end page) left))
          (bottom (+ +top+ (rows-height (page-rows page)))))
-    (write-at canvas 10 16 (format nil "Plans from tick ~A to ~A" (page-start page)
-                                   (page-end page)))
+    (write-at canvas 10 16 (or title (format nil "Plans from tick ~A to ~A" (page-start page)
+                                             (page-end page))))
     (draw-axis canvas scale +top+ bottom)
     (draw-rows canvas (page-rows page) scale +top+)
     (draw-unseen canvas page (+ bottom 34))

@@ -21,8 +21,8 @@
             (projection-horizon projection) low high)))
 
 (addition save-projection-picture)
-(defun save-projection-picture (projection file
-                                &rest options &key part title layers in-color scale)
+(define-with-keywords save-projection-picture
+    (projection file &rest options &key part title layers in-color scale)
   "Save in FILE, replacing it, a map with the ways that robots went in the rollouts of PROJECTION:
 in colours that say what became of each, with a marker where it ended. PART (left top right bottom),
 in cells, is what is wanted of the map, by default all. TITLE stands above instead of what was
@@ -33,7 +33,7 @@ Signals WRONG-ARGUMENT, and MISUSE without the program that PNG needs."
                   (and (projection-p projection) (projection-rollouts projection) t)
                   "a projection with rollouts, as PROJECT returns")
   (picture-kind 'save-projection-picture file)
-  (apply #'save-bundle 'save-projection-picture file (start-of projection)
+  (apply #'save-bundle 'save-projection-picture "rollout" file (start-of projection)
          (lambda ()
            (mapcan (lambda (rollout) (copy-list (rollout-ways rollout)))
                    (projection-rollouts projection)))

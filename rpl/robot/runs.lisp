@@ -32,7 +32,7 @@ only one, or that of the prompt. Signals MISUSE if that could be several."
   "Start PLAN with the list ARGUMENTS by INTERFACE, and return its task. NOTE, a function, has been
 called with that before anything else can happen."
   (check-not-secluded (interface-simulation interface))
-  (apply #'note-of-plans interface #'begin-plan plan arguments)
+  (apply #'note-of-plans interface #'do-traced *trace-plans* #'begin-plan plan arguments)
   (prog1 (with-plans (interface)
            ;; Live, plans may not have reacted for long.
            (note-tick (interface-runner interface)

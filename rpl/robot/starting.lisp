@@ -40,11 +40,17 @@ simulation inside of a live one has only inherited is left alone."
       (not (interface-valid-p interface))
       (and (live-p simulation) (live-p (interface-simulation interface)))))
 
+;; What is bound to *TRACE-PLANS* around a doing is gone when that is done again.
+(defun do-traced (traced-p function &rest arguments)
+  "Call FUNCTION with ARGUMENTS, as was done where plans were to be traced if TRACED-P."
+  (let ((*trace-plans* (or traced-p *trace-plans*)))
+    (apply function arguments)))
+
 ;; Who repeats a run says which eras these were, so that the tasks of then are known.
 (defun drive-in-eras (robot eras)
   "Do what RPL-INIT-ROBOT does with ROBOT, whose tasks are to be of ERAS. Return it."
   (let ((simulation (robot-simulation robot)))
-    (note-doing simulation #'drive-in-eras robot eras)
+    (note-doing simulation #'do-traced *trace-plans* #'drive-in-eras robot eras)
     (when (and *interface* (ended-by-p *interface* simulation))
       (close-interface *interface*))
     (make-fluents robot)

@@ -51,7 +51,7 @@
              (let ((*print-case* :downcase) (*print-circle* nil)
                    (clause (malformed-definition-clause condition)))
                (format stream "~A~@[ (~A)~]: ~:[nothing, or NIL, is where there should be ~*~;~
-                               cannot use the clause~%  ~S~%Expected ~]~A"
+                               cannot use the clause~%  ~S;~%expected ~]~A"
                        (malformed-definition-definition condition)
                        (malformed-definition-place condition)
                        clause

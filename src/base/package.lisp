@@ -98,7 +98,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:with-debugger-hook #:yield-foreground)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:reading-trouble
-           #:text-of-condition #:one-line-text #:hundredths #:editors-output)
+           #:text-of-condition #:one-line-text #:point-in-text #:hundredths #:editors-output)
   ;; breaking-lines
   (:export #:wrapped-text)
   ;; ordering
@@ -112,6 +112,8 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:begin-tick-dice #:*tick-dice*)
   ;; names
   (:export #:same-name-p #:nearest-name #:resembles-p #:reject-name #:value-equal)
+  ;; keywords
+  (:export #:define-with-keywords)
   ;; variables
   (:export #:variable-name-p #:variable-forms #:variable-name-trouble)
   ;; sources, definitions

@@ -103,6 +103,16 @@ streams that no user knows."
 -0.00 says no more than 0.00."
   (if (< (abs number) 0.005d0) 0 number))
 
+(defun coordinate-text (number)
+  "Return NUMBER, a coordinate in metres, as text: to a tenth of a millimetre, and without the zeros
+that end it, so that what was typed as 23.2 is not 23.200000762939453."
+  (let ((text (string-right-trim "0" (format nil "~,4F" number))))
+    (if (ends-with #\. text) (format nil "~A0" text) text)))
+
+(defun point-in-text (x y)
+  "Return the point at X, Y, in metres, as text."
+  (format nil "(~A ~A)" (coordinate-text x) (coordinate-text y)))
+
 (defun one-line-text (condition)
   "Return what CONDITION says as the part of a sentence."
   (string-right-trim "." (cut (one-line (text-of-condition condition)) 400)))

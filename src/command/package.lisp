@@ -23,7 +23,7 @@
   ;; ownership
   (:export #:under-way #:last-interruption #:under-way-text #:interruption-text)
   ;; error-codes
-  (:export #:error-code-meaning #:error-code-remedy)
+  (:export #:error-code-meaning #:error-code-remedy #:trouble-p)
   ;; failing
   (:export #:command-failure)
   ;; failures

@@ -9,15 +9,16 @@
 (define-constant +frame-limit+ 600
   :documentation "How many frames a run is shown in at most, unless the user asks for more.")
 
-(defun call-with-frames (function journal every until &optional (watch #'identity))
+(defun call-with-frames (function journal every until &key part (watch #'identity))
   "Replay JOURNAL up to the tick UNTIL (NIL: its end); call FUNCTION with a snapshot of its
-beginning, of every EVERY ticks and of its end, and WATCH with the simulation at the beginning and
-after each tick."
+beginning, of every EVERY ticks and of its end, of PART of its map or, if that is NIL, of all; and
+WATCH with the simulation at the beginning and after each tick."
   (let ((last nil) (queue *message-queue*))
     (labels ((show (simulation)
                (setf last (take-snapshot (simulation-world simulation) last))
                ;; What is wrong with drawing is to be told here, not in the run repeated.
-               (let ((*message-queue* queue)) (funcall function last)))
+               (let ((*message-queue* queue))
+                 (funcall function (in-part last part 'save-animation))))
              (look (simulation)
                (keep-history simulation)
                (funcall watch simulation)
@@ -70,13 +71,14 @@ after each tick."
                           (draw-movers canvas snapshot layers)
                           (draw-tick-label canvas (snapshot-tick snapshot))))))
 
-(defun write-animation (stream snapshots rate &key layers in-color scale)
+(defun write-animation (stream snapshots rate &key layers in-color scale title)
   (let ((first (first snapshots)))
     (with-map-svg (canvas stream first :layers layers :in-color in-color :scale scale)
       (draw-framed canvas first layers
                    (lambda ()
                      (draw-terrain canvas (snapshot-map first) :layers layers)
-                     (write-frames-of canvas snapshots rate layers))))))
+                     (write-frames-of canvas snapshots rate layers))
+                   :title title))))
 
 ;;; A page. Its legend stands beside the picture, so that this can be as large as there is room; and
 ;;; has what is to be seen in any of the frames.
@@ -126,7 +128,8 @@ these, and the entries of lines, the latest first."
 (defun cast-entries (cast layers)
   "Return the entries of the legend for all that CAST has."
   (let ((opening (cast-opening cast)))
-    (legend-entries (make-snapshot :map (snapshot-map opening) :robots (snapshot-robots opening)
+    (legend-entries (make-snapshot :map (snapshot-map opening) :part (snapshot-part opening)
+                                   :robots (snapshot-robots opening)
                                    :things (sort (coerce (hash-table-values (cast-things cast))
                                                          'simple-vector)
                                                  #'< :key #'image-serial))
@@ -165,7 +168,7 @@ picture itself, as far as there is room: more than suits the map would only make
 (defun film-moments (journal seen until kinds own)
   (in-order (append (of-kinds kinds (append seen (remarked-moments journal until))) own)))
 
-(defun shoot (journal every until watch layers in-color scale)
+(defun shoot (journal every until watch part layers in-color scale)
   "Replay JOURNAL. Return the reel of it, the ticks of its frames, stills of the first and the last
 frame, and the cast; WATCH is called with the simulation after each tick."
   (let ((reel (make-reel)) (ticks '()) (cast nil) (first nil) (last nil)
@@ -179,17 +182,17 @@ frame, and the cast; WATCH is called with the simulation after each tick."
                               first (or first last))
                         (push (snapshot-tick snapshot) ticks)
                         (add-frame last reel))
-                      journal (frame-step journal every until) until watch)
+                      journal (frame-step journal every until) until :part part :watch watch)
     (flet ((still (movers) (still-text (cast-opening cast) movers shown in-color scale)))
       (values reel (reverse ticks) (still first) (still last) cast))))
 
-(defun film-text (journal moments &key every until rate kinds layers in-color scale)
+(defun film-text (journal moments &key every until rate kinds layers in-color scale title part)
   "Return the page of a film of JOURNAL, with MOMENTS besides those that are seen in it."
   (multiple-value-bind (watch seen) (moments-watcher)
     (multiple-value-bind (reel ticks first last cast)
-        (shoot journal every until watch layers in-color scale)
+        (shoot journal every until watch part layers in-color scale)
       (with-output-to-string (out)
-        (write-film out (film-title journal ticks) first last
+        (write-film out (or title (film-title journal ticks)) first last
                     (if (member :legend layers) (legend-text cast layers in-color) "")
                     reel ticks rate
                     (film-moments journal (funcall seen) until kinds moments)
@@ -220,9 +223,14 @@ says what is for a film, or for a SERIES."
                            (format nil "a name that ends in ~A" +film-endings+)))
         kind)))
 
-(defun shown-end (journal until)
-  "Return the tick at which what is shown of JOURNAL, up to UNTIL, ends."
-  (if (typep until 'unsigned-byte) (min until (journal-end journal)) (journal-end journal)))
+(defun shown-end (operator journal until)
+  "Return the tick at which what is shown of JOURNAL, up to UNTIL, an argument of OPERATOR, ends.
+Signals WRONG-ARGUMENT if UNTIL is no tick of it, nor NIL."
+  (let ((end (journal-end journal)))
+    (unless (typep until `(or null (integer 0 ,end)))
+      (reject-argument operator :until until
+                       (format nil "a tick of the journal, from 0 to ~D, or NIL" end)))
+    (or until end)))
 
 ;;; A series.
 
@@ -232,9 +240,9 @@ says what is for a film, or for a SERIES."
                    (merge-pathnames file)))
 
 (addition save-animation)
-(defun save-animation (journal file &key every until (rate 10) series (display :world) moments
-                                      (kinds t) (layers *picture-layers*) (in-color t) scale
-                                      anyway)
+(define-with-keywords save-animation
+    (journal file &key every until (rate 10) series (display :world) moments (kinds t)
+                       (layers *picture-layers*) (in-color t) scale title part anyway)
   "Replay JOURNAL (a journal, a file that holds one, or NIL for that of the current simulation so
 far) up to the tick UNTIL or its end and save what it looks like every EVERY ticks (by default as
 few that there are no more than 600 frames), RATE frames a second, to FILE. If its name ends in
@@ -251,11 +259,12 @@ SVG-PICTURE. Return the truename, or a list of them. Signals WRONG-ARGUMENT, MIS
 does."
   (let* ((kind (animation-kind file series))
          (journal (journal-meant journal))
-         (moments (checked-moments 'save-animation moments (shown-end journal until)))
-         ;; The tick, which the title has, is told of by frames.
-         (look (list :layers (if series layers (remove :title layers))
-                     :in-color in-color :scale scale)))
-    (check-animation series every rate display layers scale)
+         (moments (checked-moments 'save-animation moments
+                                   (shown-end 'save-animation journal until)))
+         ;; The tick, which a title has that nobody gave, is told of by frames.
+         (look (list :layers (if (or series title) layers (remove :title layers))
+                     :in-color in-color :scale scale :title title :part part)))
+    (check-animation series every rate display layers scale title)
     (check-kinds 'save-animation kinds)
     (telling-what-breaks
       (replaying (anyway)
@@ -269,29 +278,31 @@ does."
                                                             look)
                             file)))))))
 
-(defun animation-text (journal &key every until rate layers in-color scale)
+(defun animation-text (journal &key every until rate layers in-color scale title part)
   "Return the animated SVG document of JOURNAL."
   (let ((snapshots '()))
     (call-with-frames (lambda (snapshot) (push snapshot snapshots))
-                      journal (frame-step journal every until) until)
+                      journal (frame-step journal every until) until :part part)
     (with-output-to-string (stream)
-      (write-animation stream (reverse snapshots) rate
-                       :layers layers :in-color in-color :scale scale))))
+      (write-animation stream (reverse snapshots) rate :layers layers :in-color in-color
+                                                       :scale scale :title title))))
 
 (addition journal-moments)
-(defun journal-moments (journal &key until anyway)
+(define-with-keywords journal-moments
+    (journal &key until anyway)
   "Replay JOURNAL (a journal, a file that holds one, or NIL for that of the current simulation so
 far) up to the tick UNTIL or its end; return a list of what happened there that people look for, in
 order: moments at which a robot grasped, let go of or stowed something, a command failed, a plan or
 a part of one failed or was ended, or an error came up in users' code. With ANYWAY it is replayed
 also if its definitions are not those at hand. Signals what REPLAY does."
   (let ((journal (journal-meant journal)))
+    (shown-end 'journal-moments journal until)
     (multiple-value-bind (watch seen) (moments-watcher)
       (in-order (append (call-with-replay seen journal :until until :anyway anyway
                                                        :observer watch :beginning watch)
                         (remarked-moments journal until))))))
 
-(defun check-animation (series every rate display layers scale)
+(defun check-animation (series every rate display layers scale title)
   (flet ((reject (name value expected)
            (error 'wrong-argument :operator 'save-animation :name name :value value
                                   :expected expected)))
@@ -302,15 +313,32 @@ also if its definitions are not those at hand. Signals what REPLAY does."
       (reject "every" every "a whole number of ticks, from 1 to 1e9"))
     (unless (and (finite-p rate) (<= 1/1000 rate 1000))
       (reject "rate" rate "a number of frames a second, from 0.001 to 1000"))
-    (check-map-options 'save-animation :layers layers :scale scale)))
+    (check-map-options 'save-animation :title title :layers layers :scale scale)))
 
-(defun save-series (journal file &key every until display layers in-color scale)
+(defun older-frames (file count)
+  "Return the files that a longer series called FILE has left behind one of COUNT files."
+  (loop for number from (1+ count)
+        for frame = (numbered-file file number)
+        while (probe-file frame) collect frame))
+
+(defun warn-of-older-frames (file count)
+  "Say so if an older series called FILE, of which COUNT files were written anew, had more. They are
+left alone: nobody said that they may go."
+  (let ((older (older-frames file count)))
+    (when older
+      (warning-set (format nil "~A~@[ to ~A~] are of an older series, which was longer than this ~
+                                one of ~D. Delete them before you make a film of the files."
+                           (shown-name (first older))
+                           (and (rest older) (file-namestring (first (last older)))) count)))))
+
+(defun save-series (journal file &key every until display layers in-color scale title part)
   (let ((robot (first (getf (journal-header journal) :robots))) (files '()))
     (call-with-frames (lambda (snapshot)
                         (push (save-snapshot snapshot (snapshot-robot snapshot robot)
                                              (numbered-file file (1+ (length files)))
                                              :display display :layers layers
-                                             :in-color in-color :scale scale)
+                                             :in-color in-color :scale scale :title title)
                               files))
-                      journal (frame-step journal every until) until)
+                      journal (frame-step journal every until) until :part part)
+    (warn-of-older-frames file (length files))
     (reverse files)))

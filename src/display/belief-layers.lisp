@@ -1,4 +1,4 @@
-;;;; belief-layers.lisp -- layers of what robots believe, of where they have been and will go.
+;;;; belief-layers.lisp -- layers of what robots believe, and of where they are about to go.
 
 (in-package :ars-magna.display)
 
@@ -66,15 +66,6 @@ that the bounds of its heading."
       (draw-lines canvas draw-gcontext* (pixels-of (odometer-box odometer)))
       (dolist (angle (list (- heading half) (+ heading half)))
         (draw-segments canvas draw-gcontext* (pixels-of (list* x y (around x y angle 3))))))))
-
-(defun draw-trail (canvas points color)
-  "Draw a line of COLOR through POINTS, a list x y tick ..., newest first."
-  (when (cdddr points)
-    (inked (color :dashes (layer-dashes :trail))
-      (draw-lines canvas draw-gcontext*
-                  (loop for (x y) on points by #'cdddr
-                        repeat +trail-length+
-                        collect (to-pixels x) collect (to-pixels y))))))
 
 (define-constant +way-end+ 4
   :documentation "The radius of the ring where a planned way ends, in pixels.")

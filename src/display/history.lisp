@@ -7,7 +7,8 @@
 ;;; them as they were, and what is rewound has the part of them that is still so.
 
 (defstruct (trail (:constructor make-trail (points count)) (:copier nil))
-  "Where a robot has been: POINTS is a list x y tick x y tick ... of COUNT of them, newest first."
+  "Where a robot has been: POINTS is a list x y tick placements x y ... of COUNT of them, newest
+first. Where the placements differ from one point to the next, the robot was put elsewhere."
   (points '() :type list :read-only t)
   (count 0 :type fixnum :read-only t))
 
@@ -31,6 +32,13 @@
   "Return the trail of the robot called NAME that is kept of SIMULATION, or NIL."
   (cdr (assoc name (simulation-trails simulation) :test #'eq)))
 
+(defmacro do-trail ((points &rest variables) &body body)
+  "Run BODY, clauses of LOOP, with VARIABLES for x, y, tick and placements of each of POINTS, of a
+trail, that pictures show, newest first."
+  `(loop for (,@variables) on ,points by #'cddddr
+         repeat +trail-length+
+         ,@body))
+
 (defun moved-p (points x y)
   "True unless the first of POINTS is about at X, Y."
   (declare #.*hot* (type double-float x y))
@@ -39,12 +47,16 @@
              (abs (- y (the double-float (second points)))))
           +trail-step+)))
 
-(defun longer-trail (trail x y tick)
-  "Return what TRAIL, one or NIL, is with X, Y at TICK as the newest point."
-  (let ((points (list* x y tick (and trail (trail-points trail))))
+(defun with-place-of (robot tick points)
+  "Return POINTS, of a trail, with where ROBOT is at TICK as the newest."
+  (list* (robot-x robot) (robot-y robot) tick (robot-placements robot) points))
+
+(defun longer-trail (trail robot tick)
+  "Return what TRAIL, one or NIL, is with where ROBOT is at TICK as the newest point."
+  (let ((points (with-place-of robot tick (and trail (trail-points trail))))
         (count (if trail (1+ (trail-count trail)) 1)))
     (if (> count (* 2 +trail-length+))
-        (make-trail (subseq points 0 (* 3 +trail-length+)) +trail-length+)
+        (make-trail (subseq points 0 (* 4 +trail-length+)) +trail-length+)
         (make-trail points count))))
 
 (defun note-position (simulation robot)
@@ -53,24 +65,22 @@
   (let* ((name (robot-name robot)) (trail (trail-called name simulation)))
     (when (moved-p (and trail (trail-points trail)) (robot-x robot) (robot-y robot))
       (setf (simulation-trails simulation)
-            (acons name (longer-trail trail (robot-x robot) (robot-y robot)
-                                      (simulation-tick simulation))
+            (acons name (longer-trail trail robot (simulation-tick simulation))
                    (remove name (simulation-trails simulation) :key #'car :test #'eq))))))
 
 (defun points-of-trail (robot)
-  "Return a list x y tick x y tick ... of where ROBOT has been, newest first, as far as that is
+  "Return a list x y tick placements ... of where ROBOT has been, newest first, as far as that is
 known; NIL if none of it is. Where a fork has gone nobody notes, but it came to where it is."
   (let* ((simulation (robot-simulation robot))
          (trail (trail-called (robot-name robot) simulation)))
     (cond ((null trail) '())
           ((moved-p (trail-points trail) (robot-x robot) (robot-y robot))
-           (list* (robot-x robot) (robot-y robot) (simulation-tick simulation)
-                  (trail-points trail)))
+           (with-place-of robot (simulation-tick simulation) (trail-points trail)))
           (t (trail-points trail)))))
 
 (defun trail-until (tick trail)
   "Return the part of TRAIL up to TICK."
-  (loop for points on (trail-points trail) by #'cdddr
+  (loop for points on (trail-points trail) by #'cddddr
         for count downfrom (trail-count trail)
         while (> (the fixnum (third points)) tick)
         finally (return (make-trail points count))))

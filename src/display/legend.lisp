@@ -170,7 +170,7 @@ than the line."
                     (:tracks (some #'camera-image-track (robot-image-cameras robot)))
                     (:designators (robot-image-designators robot))
                     (:odometer (robot-image-odometer robot))
-                    (:trail (cdddr (robot-image-trail robot)))
+                    (:trail (cddddr (robot-image-trail robot)))
                     (:planned-way (robot-image-planned-way robot))
                     (:rays (look-shown-p robot))
                     (:reach (find-if #'thing-image-moving-p (snapshot-things snapshot))))))
@@ -182,7 +182,20 @@ than the line."
     (:rays (first +ray-inks+))
     (t (layer-ink layer))))
 
+(defun jump-entry (color)
+  "Return the entry for that something was put elsewhere, in COLOR."
+  (sample-of (canvas x y) "put elsewhere"
+    (draw-jump canvas (list (- x 8) y) (list (+ x 7) y) color)))
+
+(defun jump-entries (snapshot layers)
+  (and (member :trail layers)
+       (some (lambda (robot) (jumps-p (robot-image-trail robot))) (snapshot-robots snapshot))
+       (list (jump-entry (line-ink :trail)))))
+
 (defun line-entries (snapshot layers)
+  (append (layer-entries snapshot layers) (jump-entries snapshot layers)))
+
+(defun layer-entries (snapshot layers)
   (loop for (layer . words) in +line-words+
         when (and (member layer layers) (line-shown-p snapshot layer))
           collect (let ((layer layer))

@@ -72,14 +72,10 @@ taken care of, or that somebody ended; :ERROR in users' code; :NOTE of a user's.
         append (loop for thing in (set-difference after before :test #'eq)
                      collect (list :stow (format nil "stowed ~A in bin ~D" thing index)))))
 
-(defparameter *no-trouble* '(nil :interrupt :designator-not-found :no-designators-found)
-  "Codes of what is no failure to look for: plans often look for what is not there, and let a newer
-command take over from an older one.")
-
 (defun failures-since (old new robot)
   (unless (eq (sight-failure new) (sight-failure old))
     (destructuring-bind (&key command error text &allow-other-keys) (last-failure robot)
-      (unless (member error *no-trouble*)
+      (when (trouble-p error)
         (list (list :failure (format nil "~(~A~): ~A" command text) error))))))
 
 (defun moments-between (old new robot tick)

@@ -68,8 +68,7 @@ on it, meets."
 (defun on-trail-p (snapshot box)
   (destructuring-bind (left top right bottom) box
     (loop for robot in (snapshot-robots snapshot)
-          thereis (loop for (x y) on (robot-image-trail robot) by #'cdddr
-                        repeat +trail-length+
+          thereis (do-trail ((robot-image-trail robot) x y)
                         thereis (and (< left (to-pixels x) right) (< top (to-pixels y) bottom))))))
 
 (define-constant +thick-wall+ 4

@@ -6,7 +6,8 @@
         :ars-magna.robot :ars-magna.run :ars-magna.canvas)
   (:shadowing-import-from :cl #:equal)
   (:shadowing-import-from :ars-magna.world #:map)
-  (:import-from :ars-magna.command #:under-way-text #:interruption-text #:last-failure)
+  (:import-from :ars-magna.command #:under-way-text #:interruption-text #:last-failure
+                #:trouble-p)
   ;; text-map
   (:export #:text-map #:+text-layers+)
   ;; history
@@ -30,9 +31,9 @@
   ;; and displays
   (:export #:draw-terrain #:draw-movers #:draw-world #:users-scale #:check-map-options
            #:in-part #:draw-framed #:with-map-svg #:drawn-scale #:sample-of
-           #:turn-ink #:robot-radius #:robot-title
-           #:draw-names
-           #:telling-what-breaks #:draw-way-line #:draw-start #:way-entry #:to-pixels
+           #:turn-ink #:robot-radius #:drawn-name #:draw-names
+           #:telling-what-breaks #:draw-way-line #:draw-pieces #:jump-entry #:draw-start
+           #:way-entry #:to-pixels #:pixels-of #:shown-part #:snapshot-part
            #:inked #:around #:draw-circle #:half-width
            #:box-around #:overlap-p #:draw-view-margins #:view-edges
            #:draw-display #:display-title #:+displays+)

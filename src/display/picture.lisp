@@ -29,7 +29,8 @@ above it, its layers and its scale."
   (check-map-options operator :title title :layers layers :scale scale))
 
 (addition svg-picture)
-(defun svg-picture (robot &key (display :world) (layers *picture-layers*) (in-color t) scale title)
+(define-with-keywords svg-picture
+    (robot &key (display :world) (layers *picture-layers*) (in-color t) scale title part)
   "Return a picture of the world of ROBOT as it is now: an SVG document, as a string. DISPLAY is one
 of :WORLD, :STATE, :DESIGNATORS, :CAMERAS, :HANDS and :BINS, the displays of the manual, or :ALL.
 LAYERS lists what the picture shows besides walls, things and robots: *PICTURE-LAYERS* tells what
@@ -38,12 +39,14 @@ there is; the list () gives the bare map. SCALE is how many pixels there are to 
 suits the map: from 4 to 40, so that the picture without its legend is 900 x 700 pixels at most, if
 4 do for that. Where SCALE is more than that, and more than 20, the picture grows as a whole, text
 and lines, too. IN-COLOR is false for a picture in black and white. TITLE, a string, stands above,
-where the layers have a title, instead of the robots, the map and the tick. Signals WRONG-ARGUMENT,
+where the layers have a title, instead of the robots, the map and the tick. PART (left top right
+bottom), in cells, is what is wanted of the map, by default all. Signals WRONG-ARGUMENT,
 and MISUSE if GRAPHICS-SCALE* is no scale."
   (check-picture 'svg-picture robot display layers scale title)
   (let ((snapshot (snapshot-of robot)))
     (with-output-to-string (stream)
-      (write-picture stream snapshot (snapshot-robot snapshot (robot-name robot))
+      (write-picture stream (in-part snapshot part 'svg-picture)
+                     (snapshot-robot snapshot (robot-name robot))
                      :display display :layers layers :in-color in-color :scale scale
                      :title title))))
 
@@ -108,14 +111,15 @@ picture there; then it says that a name has one of ENDINGS."
             file (picture-kind 'save-snapshot file)))
 
 (addition save-picture)
-(defun save-picture (robot file &key (display :world) (layers *picture-layers*) (in-color t)
-                                  scale title)
+(define-with-keywords save-picture
+    (robot file &key (display :world) (layers *picture-layers*) (in-color t) scale title part)
   "Save a picture of the world of ROBOT as it is now in FILE, replacing it: SVG or, where the
 program rsvg-convert is installed, PNG, as its name ends. The other arguments are those of
 SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE without that program."
   (picture-kind 'save-picture file)
   (check-picture 'save-picture robot display layers scale title)
   (let ((snapshot (snapshot-of robot)))
-    (save-snapshot snapshot (snapshot-robot snapshot (robot-name robot)) file
+    (save-snapshot (in-part snapshot part 'save-picture)
+                   (snapshot-robot snapshot (robot-name robot)) file
                    :display display :layers layers :in-color in-color :scale scale
                    :title title)))

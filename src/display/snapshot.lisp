@@ -48,6 +48,8 @@ puts the robot, and how uncertain it is."
 
 (setf (documentation 'snapshot-tick 'function) "Return the tick at which the snapshot was taken."
       (documentation 'snapshot-map 'function) "Return the map of the world in the snapshot."
+      (documentation 'snapshot-part 'function)
+      "Return what is to be shown of the map, (left top right bottom) in cells, or NIL for all."
       (documentation 'snapshot-things 'function)
       "Return a vector of the images of the things on the floor, by serial number."
       (documentation 'snapshot-robots 'function) "Return a list of the images of the robots."
@@ -245,9 +247,21 @@ snapshot of WORLD, makes it cheaper."
   (destructuring-bind (left top right bottom) (shown-part snapshot)
     (values (- right left) (- bottom top))))
 
-(defun in-part (snapshot part)
+(defun check-part (operator part map)
+  "Signal WRONG-ARGUMENT unless PART, an argument of OPERATOR, is NIL or a part of MAP in cells."
+  (let ((width (map-width map)) (height (map-height map)))
+    (unless (or (null part)
+                (and (proper-list-p part) (= 4 (length part)) (every #'integerp part)
+                     (destructuring-bind (left top right bottom) part
+                       (and (< -1 left right (1+ width)) (< -1 top bottom (1+ height))))))
+      (reject-argument operator 'part part
+                       (format nil "a list (left top right bottom) of integers within ~D x ~D, or ~
+                                    NIL" width height)))))
+
+(defun in-part (snapshot part operator)
   "Return SNAPSHOT with PART (left top right bottom) of its map, in cells, and what is in that. NIL
-means all."
+means all. Signals WRONG-ARGUMENT, of OPERATOR, if PART is no part of that map."
+  (check-part operator part (snapshot-map snapshot))
   (flet ((within-p (x y)
            (destructuring-bind (left top right bottom) part
              (and (<= left x right) (<= top y bottom)))))

@@ -55,8 +55,7 @@ designators denote to be.")
 
 (defun way-layer (view robot)
   (let ((glyph (make-glyph :layer #\+ (format nil "way of ~A" robot) :green)))
-    (loop for (x y) on (points-of-trail robot) by #'cdddr
-          repeat +trail-length+
+    (do-trail ((points-of-trail robot) x y)
           append (glyph-at view x y glyph))))
 
 (defconstant +way-spacing+ 0.2d0

@@ -96,7 +96,8 @@ COLUMNS characters, if that can be."
          (and (< left right) (< top bottom)))))
 
 (addition text-map)
-(defun text-map (robot &key (columns 80) rows radius region layers paint only-legend)
+(define-with-keywords text-map
+    (robot &key (columns 80) rows radius region layers paint only-legend)
   "Return a string that shows the world of ROBOT in lines of at most COLUMNS characters: walls,
 places, things by letters, robots as arrows, and what it all means. With ROWS, it is made to fit
 into so many lines, as far as possible. With REGION, a list (left top right bottom) in metres, it

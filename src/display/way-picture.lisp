@@ -157,7 +157,8 @@ with arrowheads on it that say where it leads."
                      :title title :more more)))))
 
 (addition save-way-picture)
-(defun save-way-picture (map ways file &key title (layers *picture-layers*) (in-color t) scale)
+(define-with-keywords save-way-picture
+    (map ways file &key title (layers *picture-layers*) (in-color t) scale)
   "Save in FILE, replacing it, a picture of MAP, a map or the name of one, and of WAYS in it: a
 list of ways, each a list of PTs or of lists (x y), as FIND-WAY returns it. If the current
 simulation is in MAP, its things and robots are shown as they are now. TITLE, a string, stands

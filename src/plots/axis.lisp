@@ -35,14 +35,20 @@ is a list of (value line...), lines of text, which run upward if UPWARD-P."
 
 ;;; Limits.
 
-(defun limits (values)
-  "Return the least and the greatest of VALUES, further apart if they are the same; 0 and 1 if there
-are none."
+(defun limits (values &optional (least-step 0))
+  "Return the least and the greatest of VALUES, further apart if they are the same, by LEAST-STEP at
+least to each side; 0 and 1 if there are none."
   (let ((low (if values (reduce #'min values) 0))
         (high (if values (reduce #'max values) 1)))
     (cond ((< low high) (values low high))
           ((zerop low) (values 0 1))
-          (t (values (- low (/ (abs low) 10)) (+ high (/ (abs high) 10)))))))
+          (t (let ((more (max least-step (/ (abs low) 10))))
+               (values (- low more) (+ high more)))))))
+
+(defun least-step (values percent)
+  "Return how far apart marks for VALUES are at least: what is counted has no marks between whole
+numbers."
+  (if (and (not percent) (every #'integerp values)) 1 0))
 
 (defun widened (low high from to inset)
   "Return the ends of an axis between the pixels FROM and TO on which LOW and HIGH are INSET from
@@ -72,28 +78,31 @@ these, but no more than a sixth of it."
                    (- (place (first next) axis) (place (first mark) axis)))))
 
 (defun fit-marks (axis candidates least)
-  "Give AXIS the first of CANDIDATES, functions that return marks, whose texts fit."
-  (loop for (candidate . more) on candidates
-        do (setf (axis-marks axis) (funcall candidate))
+  "Give AXIS the first of CANDIDATES, lists of marks, whose texts fit; one mark alone, which says
+nothing of the scale, only if there are never two."
+  (loop for (marks . more) on (or (remove-if-not #'rest candidates) candidates)
+        do (setf (axis-marks axis) marks)
         until (or (null more) (marks-fit-p axis least)))
   axis)
 
 ;;; Axes across.
 
-(defun step-candidates (low high start end percent)
-  "Return functions that return marks between START and END, 10 or fewer between LOW and HIGH."
+(defun step-candidates (low high start end percent &optional (least-step 0))
+  "Return lists of marks between START and END, 10 or fewer between LOW and HIGH, most marks first,
+LEAST-STEP apart at least."
   (loop for most in '(10 8 6 5 4 3 2 1)
-        collect (let ((step (round-step (- high low) most)))
-                  (lambda () (step-marks step start end percent)))))
+        for step = (max least-step (round-step (- high low) most))
+        collect (step-marks step start end percent)))
 
 (defun linear-axis (values from to &key percent (least 0) (inset 16))
   "Return an axis for VALUES from the pixel FROM to TO, with as many marks as fit, at least LEAST
 pixels wide. The least and greatest of VALUES are INSET pixels from the ends."
-  (multiple-value-bind (low high) (limits values)
-    (multiple-value-bind (start end) (widened low high from to inset)
-      (fit-marks (make-axis :low start :high end :from from :to to)
-                 (step-candidates low high low high percent)
-                 least))))
+  (let ((least-step (least-step values percent)))
+    (multiple-value-bind (low high) (limits values least-step)
+      (multiple-value-bind (start end) (widened low high from to inset)
+        (fit-marks (make-axis :low start :high end :from from :to to)
+                   (step-candidates low high low high percent least-step)
+                   least)))))
 
 (defun decade-marks (low high factors every)
   "Return marks at FACTORS times each power of ten that EVERY divides, from LOW to HIGH."
@@ -105,14 +114,13 @@ pixels wide. The least and greatest of VALUES are INSET pixels from the ends."
                          collect (list value (plain-text value 4)))))
 
 (defun logarithmic-candidates (low high percent)
-  "Return functions that return marks for the logarithms from LOW to HIGH, most marks first."
+  "Return lists of marks for the logarithms from LOW to HIGH, most marks first."
   (if (< (- high low) 1)
       (let ((least (antilogarithm low)) (most (antilogarithm high)))
         (step-candidates least most least most percent))
       (loop for (every . factors) in '((1 1 2 3 4 5 6 7 8 9) (1 1 2 5) (1 1 3) (1 1) (2 1) (3 1)
                                        (5 1) (10 1) (50 1) (200 1))
-            collect (let ((factors factors) (every every))
-                      (lambda () (decade-marks low high factors every))))))
+            collect (decade-marks low high factors every))))
 
 (defun logarithmic-axis (values from to &key percent (least 0) (inset 16))
   "Return an axis for the logarithms of VALUES as LINEAR-AXIS does for these."
@@ -133,7 +141,9 @@ pixels wide. The least and greatest of VALUES are INSET pixels from the ends."
   "Return an axis for VALUES and the two numbers of RANGE; where it is on the page is not yet said."
   (multiple-value-bind (low high) (limits (append range values))
     (let* ((low (if (<= 0 low (/ high 2)) 0 low))
-           (step (round-step (- high low) 6))
+           ;; Of 0 and 1 nobody knows whether they are counted, or shares.
+           (least-step (if (<= high 1) 0 (least-step values percent)))
+           (step (max least-step (round-step (- high low) 6)))
            (low (multiple-below step low))
            (high (multiple-above step high)))
       (make-axis :low low :high high :marks (step-marks step low high percent)))))

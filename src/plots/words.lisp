@@ -27,10 +27,18 @@
         while (<= (text-width (subseq word 0 count) size bold-p) width)
         finally (return (max 1 (1- count)))))
 
+(defun place-to-break (word count)
+  "Return where WORD, the first COUNT characters of which fit in a line, is broken: behind the last
+dash, slash or the like among these, but not one it begins with; or where the line is full."
+  (let ((place (position-if (lambda (char) (find char "-/_,;:)"))
+                            word :end count :from-end t)))
+    (if (and place (plusp place)) (1+ place) count)))
+
 (defun broken (word width size bold-p)
   "Return WORD in pieces that fit in WIDTH pixels."
-  (loop for count = (fitting word width size bold-p)
-        while (< count (length word))
+  (loop for fitting = (fitting word width size bold-p)
+        while (< fitting (length word))
+        for count = (place-to-break word fitting)
         collect (subseq word 0 count) into pieces
         do (setf word (subseq word count))
         finally (return (append pieces (list word)))))
@@ -51,7 +59,7 @@
 
 (defun wrapped (text width &key (size +text-size+) bold-p)
   "Return TEXT, a string or NIL, as a list of lines that fit in WIDTH pixels, broken where it is
-broken, else between words, else anywhere."
+broken, else between words; within a word longer than a line behind a dash, else anywhere."
   (check-argument chart text (typep text '(or null string)) "a string, or NIL for none")
   (and text
        (loop for paragraph in (split text (lambda (character) (char= #\Newline character)))

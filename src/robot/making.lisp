@@ -83,9 +83,9 @@ NIL."
 (defun start-trouble (map x y)
   "Return in words why a robot cannot start at (X,Y) in MAP, or NIL."
   (cond ((not (map-index map x y))
-         (format nil "(~F ~F) is outside the map, which is ~D by ~D metres"
-                 x y (map-width map) (map-height map)))
-        ((wall-at-p map x y) (format nil "(~F ~F) is inside a wall" x y))))
+         (format nil "~A is outside the map, which is ~D by ~D metres"
+                 (point-in-text x y) (map-width map) (map-height map)))
+        ((wall-at-p map x y) (format nil "~A is inside a wall" (point-in-text x y)))))
 
 (defun check-start (blueprint map)
   "Signal MISUSE unless a robot made by BLUEPRINT fits into MAP."

@@ -30,6 +30,7 @@ So a robot can drive along the border of two cells, and stay in one of them."
         (robot-start-y robot) (robot-y robot)
         (robot-estimate-x robot) 0d0
         (robot-estimate-y robot) 0d0)
+  (incf (robot-placements robot))
   (set-robot-angle robot angle))
 
 (defun robot-cell-index (robot)

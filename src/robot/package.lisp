@@ -38,7 +38,8 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:robot-odometer #:robot-odometers #:reset-odometer #:reset-odometer-pos
            #:reset-odometer-ang #:get-odometer-pos #:get-odometer-ang)
   ;; motion
-  (:export #:set-robot-pose #:set-robot-angle #:drive-tick #:coast-tick #:turn-tick
+  (:export #:set-robot-pose #:robot-placements
+           #:set-robot-angle #:drive-tick #:coast-tick #:turn-tick
            #:robot-speed-now #:standing-p #:longest-step #:step-now
            #:robot-turn-angle-now #:robot-moved
            #:robot-turned-low #:robot-turned-high #:begin-movement #:robot-last-move

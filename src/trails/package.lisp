@@ -7,20 +7,22 @@
   (:import-from :ars-magna.run
                 #:simulation-robots #:simulation-tick #:call-with-replay #:replaying
                 #:journal-meant
-                #:journal-header #:journal-end #:simulation-world)
+                #:journal-header #:simulation-world)
   (:import-from :ars-magna.robot
-                #:robot-x #:robot-y #:robot-angle #:robot-name #:robot-hands #:robot-last-place
+                #:robot #:robot-x #:robot-y #:robot-angle #:robot-placements #:robot-name
+                #:robot-hands #:robot-last-place
                 #:robot-main-odometer #:odometer-estimate #:find-blueprint #:blueprint-name
                 #:hand-holding)
-  (:import-from :ars-magna.world #:map-width #:map-height)
   (:import-from :ars-magna.display
                 #:snapshot-map #:snapshot-robots #:snapshot-things #:robot-image-name
                 #:robot-image-x #:robot-image-y #:thing-image-x #:thing-image-y
                 #:drawn-scale
                 #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:draw-way-line
+                #:draw-pieces #:jump-entry
                 #:draw-start #:way-entry #:turn-ink #:to-pixels #:box-around
                 #:inked #:around #:draw-circle #:half-width
-                #:overlap-p #:telling-what-breaks #:with-map-svg #:robot-title #:*picture-layers*
+                #:overlap-p #:telling-what-breaks #:with-map-svg
+                #:drawn-name #:shown-part #:snapshot-part #:pixels-of #:*picture-layers*
                 #:check-map-options #:in-part #:sample-of
                 #:take-snapshot #:picture-kind #:save-svg
                 #:make-moment #:moment-tick #:moment-kind #:moment-text #:moment-x #:moment-y
@@ -29,7 +31,7 @@
                 #:shown-end)
   (:import-from :ars-magna.plots #:draw-marker)
   ;; trails
-  (:export #:way-trial #:way-outcome #:way-points #:note-places #:ways-along
+  (:export #:way-trial #:way-outcome #:way-pieces #:note-places #:ways-along
            #:straightened)
   ;; trajectory
   (:export #:save-trajectory)

@@ -33,19 +33,17 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
         (draw-lines canvas draw-gcontext* points)))))
 
 (defun draw-way (canvas way)
-  (let ((points (straightened (way-points way) (/ 1/2 graphics-scale*))))
-    (when (rest points)
-      (draw-line-of-way canvas
-                        (loop for (x . y) in points collect (to-pixels x) collect (to-pixels y))
-                        (look-of way)))))
+  (let ((look (look-of way)))
+    (draw-pieces canvas (pieces-in-pixels (way-pieces way)) (second look)
+                 (lambda (points) (draw-line-of-way canvas points look)))))
 
 (defun draw-marker-of (canvas look x y)
   (draw-marker canvas (first look) x y 4 (if in-color* (second look) black*)))
 
 (defun draw-end (canvas way)
-  (let ((points (way-points way)))
-    (when (plusp (length points))
-      (destructuring-bind (x . y) (svref points (1- (length points)))
+  (let ((piece (first (last (way-pieces way)))))
+    (when piece
+      (destructuring-bind (x . y) (first (last piece))
         (draw-marker-of canvas (look-of way) (to-pixels x) (to-pixels y))))))
 
 (defun draw-ways (canvas ways)
@@ -54,19 +52,29 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
     (with-opacity (canvas (way-opacity (length (ways-of-outcome (way-outcome way) ways))))
       (draw-way canvas way))))
 
-(defun bundle-entry (look text)
-  "Return an entry of the legend with TEXT for ways with LOOK."
-  (sample-of (canvas x y) text
-    (draw-line-of-way canvas (list (- x 8) y (+ x 8) y) look)
-    (draw-marker-of canvas look (+ x 4) y)))
+(defconstant +end-opacity+ 8/10 "How much the marker at the end of a way hides what is below.")
 
-(defun bundle-entries (ways)
-  "Return the entries of the legend for WAYS."
+(defun bundle-entry (look opacity text)
+  "Return an entry of the legend with TEXT for ways with LOOK and OPACITY."
+  (sample-of (canvas x y) text
+    (with-opacity (canvas opacity)
+      (draw-line-of-way canvas (list (- x 8) y (+ x 8) y) look))
+    (with-opacity (canvas +end-opacity+) (draw-marker-of canvas look (+ x 4) y))))
+
+(defun outcome-entries (ways what)
+  "Return the entries of the legend for what became of WAYS, each of a WHAT, such as a trial."
   (loop for (outcome . look) in *outcome-looks*
-        for count = (length (remove-duplicates
-                             (mapcar #'way-trial (ways-of-outcome outcome ways))))
+        for ended = (ways-of-outcome outcome ways)
+        for count = (length (remove-duplicates (mapcar #'way-trial ended)))
         when (plusp count)
-          collect (bundle-entry look (format nil "~A: ~D trial~:P" (first (last look)) count))))
+          collect (bundle-entry look (way-opacity (length ended))
+                                (format nil "~A: ~D ~A~P" (first (last look)) count what count))))
+
+(defun bundle-entries (ways what)
+  "Return the entries of the legend for WAYS, each of a WHAT."
+  (append (outcome-entries ways what)
+          (and (some (lambda (way) (rest (way-pieces way))) ways)
+               (list (jump-entry black*)))))
 
 (defun draw-bundle (canvas snapshot ways layers)
   "Draw the world of SNAPSHOT, its map faintly where there are colours, and WAYS in it; above robots
@@ -77,43 +85,29 @@ and things where these end."
     (draw-ways canvas ways)
     (draw-movers canvas snapshot (remove :names layers))
     (dolist (way ways)
-      (with-opacity (canvas 8/10) (draw-end canvas way)))
+      (with-opacity (canvas +end-opacity+) (draw-end canvas way)))
     (when (member :names layers) (draw-names canvas snapshot layers))))
 
-(defun bundle-text (snapshot ways &key title subtitle layers in-color scale)
-  "Return an SVG document of SNAPSHOT and WAYS in it, under TITLE and SUBTITLE."
-  (let ((more (bundle-entries ways)))
+(defun bundle-text (snapshot ways &key what title subtitle layers in-color scale)
+  "Return an SVG document of SNAPSHOT and WAYS in it, each of a WHAT, under TITLE and SUBTITLE."
+  (let ((more (bundle-entries ways what)))
     (with-output-to-string (out)
       (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
         (draw-framed canvas snapshot layers
                      (lambda () (draw-bundle canvas snapshot ways layers))
                      :title title :subtitle subtitle :more more)))))
 
-;;; What the pictures of bundles have in common.
-
-(defun check-part (operator part map)
-  "Signal WRONG-ARGUMENT unless PART, an argument of OPERATOR, is NIL or a part of MAP in cells."
-  (let ((width (map-width map)) (height (map-height map)))
-    (unless (or (null part)
-                (and (proper-list-p part) (= 4 (length part)) (every #'integerp part)
-                     (destructuring-bind (left top right bottom) part
-                       (and (< -1 left right (1+ width)) (< -1 top bottom (1+ height))))))
-      (reject-argument operator 'part part
-                       (format nil "a list (left top right bottom) of integers within ~D x ~D, or ~
-                                    NIL" width height)))))
-
-(defun save-bundle (operator file snapshot ways-of own-title subtitle
+(defun save-bundle (operator what file snapshot ways-of own-title subtitle
                     &key part title (layers (remove :tracks *picture-layers*)) (in-color t) scale)
   "Save in FILE, for OPERATOR, a picture of SNAPSHOT and of the ways that the function WAYS-OF
-returns, under TITLE, or if it is NIL OWN-TITLE, and SUBTITLE. PART (left top right bottom), in
-cells, is what is wanted of the map, or NIL for all. Return the file's truename. Signals
-WRONG-ARGUMENT, before WAYS-OF is called, and MISUSE."
+returns, each of a WHAT, such as a trial, under TITLE, or if it is NIL OWN-TITLE, and SUBTITLE. PART
+(left top right bottom), in cells, is what is wanted of the map, or NIL for all. Return the file's
+truename. Signals WRONG-ARGUMENT, before WAYS-OF is called, and MISUSE."
   (let ((kind (picture-kind operator file)))
-    (check-part operator part (snapshot-map snapshot))
     (check-map-options operator :title title :layers layers :scale scale)
-    (let ((ways (funcall ways-of)))
+    (let* ((snapshot (in-part snapshot part operator)) (ways (funcall ways-of)))
       (save-svg (telling-what-breaks
-                  (bundle-text (in-part snapshot part) ways
-                               :title (or title own-title) :subtitle subtitle
+                  (bundle-text snapshot ways
+                               :what what :title (or title own-title) :subtitle subtitle
                                :layers layers :in-color in-color :scale scale))
                 file kind))))

@@ -33,9 +33,9 @@ those of SIMULATION."
                                (mapcar #'robot-name (simulation-robots simulation)))))))
 
 (defun watch-run (journal until own)
-  "Repeat JOURNAL up to UNTIL. Return a snapshot of its end, the ways of its robots by their names,
-moments that were seen, and the moments OWN with their places. Signals WRONG-ARGUMENT if these are
-of robots that are not there."
+  "Repeat JOURNAL up to UNTIL. Return a snapshot of its end, lists of the name of each robot and the
+pieces of its way, moments that were seen, and the moments OWN with their places. Signals
+WRONG-ARGUMENT if these are of robots that are not there."
   (let ((trails '()) (placed '()))
     (multiple-value-bind (watch seen) (moments-watcher)
       (flet ((look (simulation)
@@ -48,28 +48,27 @@ of robots that are not there."
          (lambda ()
            (check-robots-of own (current-simulation))
            (values (take-snapshot (simulation-world (current-simulation)))
-                   (loop for (robot . points) in (note-places (current-simulation) trails)
-                         collect (cons (robot-name robot) (reverse points)))
+                   (loop for trail in (reverse (note-places (current-simulation) trails))
+                         collect (cons (robot-name (trail-robot trail)) (pieces-along trail)))
                    (append (funcall seen) (remarked-moments journal until))
                    (reverse placed)))
          journal :until until :observer #'look :beginning #'look)))))
 
 ;;; Ways.
 
-(defun way-of (robot ways)
-  "Return the points of the way of ROBOT, an image, in pixels, or NIL if it never moved."
-  (let ((points (straightened (rest (assoc (robot-image-name robot) ways))
-                              (/ 1/2 graphics-scale*))))
-    (when (rest points)
-      (loop for (x . y) in points collect (to-pixels x) collect (to-pixels y)))))
+(defun moved-p (way)
+  "True if WAY, a list of a robot's name and of pieces, has a length or more than one piece."
+  (and (or (cddr way) (rest (second way))) t))
 
-(defun draw-robot-ways (canvas snapshot ways)
-  (loop for robot in (snapshot-robots snapshot)
+(defun draw-robot-ways (canvas ways)
+  (loop for way in ways
         for position from 0
-        for (x y . more) = (way-of robot ways)
-        when more
-          do (draw-way-line canvas (list* x y more) (turn-ink position) position)
-             (draw-start canvas x y (turn-ink position))))
+        for color = (turn-ink position)
+        when (moved-p way)
+          do (let ((pieces (pieces-in-pixels (rest way))))
+               (draw-pieces canvas pieces color
+                            (lambda (points) (draw-way-line canvas points color position)))
+               (draw-start canvas (first (first pieces)) (second (first pieces)) color))))
 
 (defconstant +tile+ 6 "How large the boxes are that hide a line, in pixels.")
 
@@ -92,22 +91,19 @@ of robots that are not there."
           collect (list (* +tile+ column) (* +tile+ row)
                         (* +tile+ (1+ column)) (* +tile+ (1+ row))))))
 
-(defun boxes-of-ways (snapshot ways)
-  (loop for robot in (snapshot-robots snapshot) append (boxes-along (way-of robot ways))))
+(defun boxes-of-ways (ways)
+  (loop for (nil . pieces) in ways append (mapcan #'boxes-along (pieces-in-pixels pieces))))
 
-(defun moved-p (robot ways)
-  "True if ROBOT, an image, has a way among WAYS that has a length."
-  (and (cddr (assoc (robot-image-name robot) ways)) t))
-
-(defun run-entries (snapshot ways spots)
+(defun run-entries (ways spots)
   "Return the entries of the legend that a picture of a run with WAYS and SPOTS has besides others."
-  (append (loop for robot in (snapshot-robots snapshot)
+  (append (loop for way in ways
                 for position from 0
-                when (moved-p robot ways)
-                  collect (way-entry (format nil "way of ~A" (robot-title robot))
+                when (moved-p way)
+                  collect (way-entry (format nil "way of ~A" (drawn-name (first way)))
                                      (turn-ink position) position))
-          (when (some (lambda (robot) (moved-p robot ways)) (snapshot-robots snapshot))
+          (when (some #'moved-p ways)
             (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
+          (when (some #'cddr ways) (list (jump-entry black*)))
           (and spots (list (sample-of (canvas x y) "see below"
                              (draw-number canvas x y "1"))))))
 
@@ -116,9 +112,9 @@ of robots that are not there."
 (defun draw-run (canvas snapshot ways spots layers)
   "Draw the map, and on it what is to be seen of the run."
   (draw-terrain canvas (snapshot-map snapshot) :layers layers)
-  (draw-robot-ways canvas snapshot ways)
+  (draw-robot-ways canvas ways)
   (draw-movers canvas snapshot (remove :names layers))
-  (let* ((along (boxes-of-ways snapshot ways))
+  (let* ((along (boxes-of-ways ways))
          (boxes (draw-spots canvas snapshot spots along)))
     (when (member :names layers) (draw-names canvas snapshot layers (append boxes along)))))
 
@@ -140,12 +136,23 @@ where the next would be."
 pixels: where the rings around two places would be one."
   (/ (* 2 +ring-radius+) scale))
 
+(defun moments-in (part moments)
+  "Return those of MOMENTS that were in PART (left top right bottom) of the map, or nobody knows
+where; all if PART is NIL."
+  (flet ((elsewhere-p (moment)
+           (destructuring-bind (left top right bottom) part
+             (and (moment-x moment)
+                  (not (and (<= left (moment-x moment) right)
+                            (<= top (moment-y moment) bottom)))))))
+    (if part (remove-if #'elsewhere-p moments) moments)))
+
 (defun run-picture-text (snapshot ways moments &key limit title layers in-color scale)
   "Return an SVG document of a run that ended as SNAPSHOT shows, with WAYS and MOMENTS."
   (multiple-value-bind (spots notes)
-      (spots-and-notes moments limit (and (rest (snapshot-robots snapshot)) t)
+      (spots-and-notes (moments-in (snapshot-part snapshot) moments) limit
+                       (and (rest (snapshot-robots snapshot)) t)
                        (reach-of-spots (drawn-scale scale snapshot layers)))
-    (let ((more (run-entries snapshot ways spots)))
+    (let ((more (run-entries ways spots)))
       (with-output-to-string (out)
         (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
           (multiple-value-bind (width height left)
@@ -164,24 +171,25 @@ pixels: where the rings around two places would be one."
   (check-kinds 'save-run-picture kinds)
   (check-map-options 'save-run-picture :title title :layers layers :scale scale)
   (checked-moments 'save-run-picture moments
-                   (shown-end journal until)))
+                   (shown-end 'save-run-picture journal until)))
 
 (addition save-run-picture)
-(defun save-run-picture (file &key journal until moments (kinds t) (limit 24) title
-                                (layers (remove :tracks *picture-layers*)) (in-color t) scale
-                                anyway)
+(define-with-keywords save-run-picture
+    (file &key journal until moments (kinds t) (limit 24) part title
+               (layers (remove :tracks *picture-layers*)) (in-color t) scale anyway)
   "Save in FILE, replacing it, a picture of the run that JOURNAL holds (a journal, or a file with
 one; by default that of the current simulation) up to the tick UNTIL or its end: its world as it is
 then, the ways that its robots went, and numbers where something happened that is told of below:
 that they grasped, let go of or stowed something, that a command failed, that a plan or a part of
 one failed or was ended, that there was an error in your code. KINDS, a list, chooses among :GRASP,
 :RELEASE, :STOW, :FAILURE, :PLAN, :PART, :ERROR and :NOTE, which are your own moments and always
-shown. There are LIMIT lines below the map at most, or any number if it is NIL: where there is more
-to tell, what matters least is left out, and counted; that a robot was blocked or lost a track, as
-plans expect, before other failures of commands and of parts of plans, and these before the rest.
-MOMENTS, a list of moments or of lists of a tick, a string and, if you like, the name of a robot of
-the run, are told of besides. TITLE stands above. With ANYWAY
-also of a run whose definitions are not those at hand, though it may have gone differently.
+shown. There are LIMIT lines below the map at most, more only if your own moments need them, or any
+number, with all ticks, if it is NIL: where there is more to tell, what matters least is left out,
+and counted; that a robot was blocked or lost a track, as plans expect, before other failures of
+commands and of parts of plans, and these before the rest. MOMENTS, a list of moments or of lists of
+a tick, a string and, if you like, the name of a robot of the run, are told of besides. PART (left
+top right bottom), in cells, is what is wanted of the map, by default all. TITLE stands above. With
+ANYWAY also of a run whose definitions are not those at hand, though it may have gone differently.
 FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename.
 Signals WRONG-ARGUMENT, what REPLAY does, and MISUSE without the program that
 PNG needs, or where no journal is kept."
@@ -191,7 +199,8 @@ PNG needs, or where no journal is kept."
                                                        :layers layers :scale scale)))
     (multiple-value-bind (snapshot ways seen own) (replaying (anyway) (watch-run journal until own))
       (save-svg (telling-what-breaks
-                  (run-picture-text snapshot ways (in-order (append (of-kinds kinds seen) own))
+                  (run-picture-text (in-part snapshot part 'save-run-picture) ways
+                                    (in-order (append (of-kinds kinds seen) own))
                                     :limit limit :title title :layers layers
                                     :in-color in-color :scale scale))
                 file kind))))

@@ -52,6 +52,10 @@ SEVERAL-P: say of which robot each is."
       (> (length (happening-moments one)) (length (happening-moments other)))
       (< (happening-weight one) (happening-weight other))))
 
+(defun own-p (happening)
+  "True if HAPPENING is a user's own."
+  (zerop (happening-weight happening)))
+
 (defun number-spots (happenings)
   "Number the spots of HAPPENINGS, in order. Return them."
   (let ((spots (remove-duplicates (remove nil (mapcar #'happening-spot happenings))
@@ -61,17 +65,18 @@ SEVERAL-P: say of which robot each is."
 
 ;;; As text.
 
-(defun ticks-text (ticks)
-  "Return TICKS, in order, as text: no more than three of them."
-  (let ((more (- (length ticks) 3)))
+(defun ticks-text (ticks most)
+  "Return TICKS, in order, as text: no more than MOST of them, or all if it is NIL."
+  (let ((more (if most (- (length ticks) most) 0)))
     (format nil "tick~P ~{~D~^, ~}~@[ and ~D more~]" (length ticks)
-            (if (plusp more) (subseq ticks 0 3) ticks) (and (plusp more) more))))
+            (if (plusp more) (subseq ticks 0 most) ticks) (and (plusp more) more))))
 
-(defun note-of (happening)
-  "Return a list of the number of the spot of HAPPENING, if it has one, and a text."
+(defun note-of (happening most)
+  "Return a list of the number of the spot of HAPPENING, if it has one, and a text, with no more
+than MOST ticks, or all if it is NIL."
   (list (and (happening-spot happening) (spot-number (happening-spot happening)))
         (format nil "~A: ~A"
-                (ticks-text (sort (mapcar #'moment-tick (happening-moments happening)) #'<))
+                (ticks-text (sort (mapcar #'moment-tick (happening-moments happening)) #'<) most)
                 (happening-words happening))))
 
 (defparameter *kind-words*
@@ -96,13 +101,16 @@ SEVERAL-P: say of which robot each is."
 
 (defun spots-and-notes (moments limit several-p reach)
   "Return the numbered spots of what happened at MOMENTS, and notes that tell of that, lists of a
-number or NIL and a text, LIMIT at most (NIL: of all). See HAPPENINGS-OF."
+number or NIL and a text: of all if LIMIT is NIL, else of LIMIT at most, or of more if so many are a
+user's own. See HAPPENINGS-OF."
   (let* ((all (stable-sort (happenings-of moments several-p reach) #'matters-more-p))
-         (count (if limit (min limit (length all)) (length all)))
+         (own (count-if #'own-p all))
+         (count (if limit (min (max limit own) (length all)) (length all)))
          (told (stable-sort (subseq all 0 count) #'< :key #'first-tick))
          (spots (number-spots told)))
     (values spots
-            (append (mapcar #'note-of told) (left-out-note (nthcdr count all))))))
+            (append (mapcar (lambda (happening) (note-of happening (and limit 3))) told)
+                    (left-out-note (nthcdr count all))))))
 
 ;;; On the map: an open ring where it was, around the thing that lies there, if one does, so that it
 ;;; can be seen; and beside it, where nothing else is, the number.
@@ -148,30 +156,32 @@ large that what lies right there, as what was let go of does, is within it."
                      for angle = (+ (/ pi -4) (* turn (/ pi 6)))
                      collect (around x y angle (+ radius distance)))))
 
-(defun free-place-p (place map taken)
-  "True if the number at PLACE, a point (x y), is on MAP and meets none of the boxes TAKEN."
+(defun free-place-p (place shown taken)
+  "True if the number at PLACE, a point (x y), is in the box SHOWN and meets none of the boxes
+TAKEN."
   (destructuring-bind (x y) place
     (let ((box (box-around x y (1+ +number-radius+))))
-      (and (<= 0 (first box)) (<= 0 (second box))
-           (<= (third box) (to-pixels (map-width map)))
-           (<= (fourth box) (to-pixels (map-height map)))
+      (and (every #'<= (subseq shown 0 2) box)
+           (every #'>= (subseq shown 2) (subseq box 2))
            (notany (lambda (other) (overlap-p box other)) taken)))))
 
-(defun pulled-onto (map place)
-  "Return PLACE, or what is nearest to it of where a number is wholly on MAP; the middle of a map
-that is less wide or high."
+(defun pulled-into (shown place)
+  "Return PLACE, or what is nearest to it of where a number is wholly in the box SHOWN; the middle
+of one that is less wide or high."
   (let ((reach (1+ +number-radius+)))
-    (flet ((within (at size) (if (< size (* 2 reach)) (/ size 2) (clamp at reach (- size reach)))))
-      (list (within (first place) (to-pixels (map-width map)))
-            (within (second place) (to-pixels (map-height map)))))))
+    (flet ((within (at low high)
+             (if (< (- high low) (* 2 reach))
+                 (/ (+ low high) 2)
+                 (clamp at (+ low reach) (- high reach)))))
+      (mapcar #'within place shown (subseq shown 2)))))
 
-(defun place-for-number (map x y radius taken rather-not)
-  "Return the point (x y) for the number of a spot at X, Y with a ring of RADIUS: on MAP, and if
-possible where none of the boxes TAKEN is, nor of RATHER-NOT."
+(defun place-for-number (shown x y radius taken rather-not)
+  "Return the point (x y) for the number of a spot at X, Y with a ring of RADIUS: in the box SHOWN,
+and if possible where none of the boxes TAKEN is, nor of RATHER-NOT."
   (let ((places (places-around x y radius)))
-    (flet ((free (taken) (find-if (lambda (place) (free-place-p place map taken)) places)))
+    (flet ((free (taken) (find-if (lambda (place) (free-place-p place shown taken)) places)))
       (or (free (append taken rather-not)) (free taken) (free '())
-          (pulled-onto map (first places))))))
+          (pulled-into shown (first places))))))
 
 (defun draw-spot (canvas x y radius place text)
   "Draw a ring of RADIUS around X, Y, and TEXT, its number, at PLACE, with a line from there."
@@ -189,7 +199,7 @@ the numbers."
     (dolist (spot spots boxes)
       (let* ((x (to-pixels (spot-x spot))) (y (to-pixels (spot-y spot)))
              (radius (ring-radius snapshot x y))
-             (place (place-for-number (snapshot-map snapshot) x y radius
+             (place (place-for-number (pixels-of (shown-part snapshot)) x y radius
                                       (append boxes spared) ways)))
         (push (box-around (first place) (second place) +number-radius+) boxes)
         (draw-spot canvas x y radius place (princ-to-string (spot-number spot)))))))

@@ -2,34 +2,52 @@
 
 (in-package :ars-magna.trails)
 
-(defstruct (way (:constructor make-way (trial outcome points)) (:copier nil))
-  "Where a robot was in TRIAL, a number, which ended with OUTCOME: POINTS are conses (x . y), in
-metres, one for each tick in which it moved, the first being where it started."
+(defstruct (way (:constructor make-way (trial outcome pieces)) (:copier nil))
+  "Where a robot was in TRIAL, a number, which ended with OUTCOME: PIECES are lists of conses
+(x . y), in metres, one for each tick in which it moved, the first being where it started. A piece
+ends where the robot was put elsewhere; the next begins there."
   (trial 0 :type integer :read-only t)
   (outcome "" :type string :read-only t)
-  (points #() :type simple-vector :read-only t))
+  (pieces '() :type list :read-only t))
+
+(defstruct (trail (:constructor make-trail (robot)) (:copier nil))
+  "Where ROBOT has been so far: PIECES as those of a way, latest first, as are the points of each;
+PLACEMENTS is how often it had been put somewhere when it was seen last."
+  (robot nil :type robot :read-only t)
+  (placements nil :type (or null fixnum))
+  (pieces '() :type list))
+
+(defun note-place (trail)
+  "Let TRAIL know where its robot is."
+  (let* ((robot (trail-robot trail)) (point (cons (robot-x robot) (robot-y robot))))
+    (unless (eql (trail-placements trail) (robot-placements robot))
+      (setf (trail-placements trail) (robot-placements robot))
+      (push '() (trail-pieces trail)))
+    (unless (equal point (first (first (trail-pieces trail))))
+      (push point (first (trail-pieces trail))))))
 
 (defun note-places (simulation trails)
-  "Add to TRAILS, an alist from robots to their points, latest first, where those of SIMULATION are.
-Return it."
+  "Add to TRAILS, a list, latest first, where the robots of SIMULATION are. Return it."
   (dolist (robot (simulation-robots simulation) trails)
-    (let ((trail (or (assoc robot trails)
-                     (first (push (list robot) trails))))
-          (point (cons (robot-x robot) (robot-y robot))))
-      (unless (equal point (second trail))
-        (push point (rest trail))))))
+    (note-place (or (find robot trails :key #'trail-robot)
+                    (first (push (make-trail robot) trails))))))
+
+(defun pieces-along (trail)
+  "Return the pieces of TRAIL in order."
+  (reverse (mapcar #'reverse (trail-pieces trail))))
 
 (defun ways-along (trails trial outcome)
   "Return the ways that TRAILS, as NOTE-PLACES keeps them, say robots went in TRIAL, which ended
 with OUTCOME. A trial that broke off before robots were seen has one way, without points: so it
 counts."
-  (loop for (nil . points) in (or (reverse trails) '((nil)))
-        collect (make-way trial outcome (coerce (reverse points) 'simple-vector))))
+  (if trails
+      (loop for trail in (reverse trails) collect (make-way trial outcome (pieces-along trail)))
+      (list (make-way trial outcome '()))))
 
 (document-functions
   way-trial "Return the number of the trial in which the way was gone."
   way-outcome "Return how that ended: \"success\", \"failure\", \"limit\" or \"error\"."
-  way-points "Return the points of the way, conses (x . y), in order.")
+  way-pieces "Return the pieces of the way, lists of points (x . y), in order.")
 
 ;;; A way has a point for each tick. What is nearly straight needs only its ends.
 
@@ -61,3 +79,9 @@ counts."
           (let ((last (1- (length points))))
             (visit 0 last)
             (append (list (svref points 0)) (nreverse kept) (list (svref points last))))))))
+
+(defun pieces-in-pixels (pieces)
+  "Return PIECES of a way as lists x y ... in pixels, with the points that are worth drawing."
+  (loop for piece in pieces
+        collect (loop for (x . y) in (straightened piece (/ 1/2 graphics-scale*))
+                      collect (to-pixels x) collect (to-pixels y))))

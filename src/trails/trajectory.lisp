@@ -50,9 +50,7 @@
                   "the name of a file, such as \"run.csv\"; before each * ? and [ in it write \\\\")
   (check-argument save-trajectory every (whole-p every 1)
                   "a whole number of ticks, from 1 to 1e9")
-  (check-argument save-trajectory until
-                  (typep until `(or null (integer 0 ,(journal-end journal))))
-                  (format nil "a tick of the journal, from 0 to ~D, or NIL" (journal-end journal)))
+  (shown-end 'save-trajectory journal until)
   (let ((known (mapcar (lambda (robot) (blueprint-name (find-blueprint robot)))
                        (getf (journal-header journal) :robots))))
     (dolist (name robots)
@@ -60,7 +58,8 @@
         (reject-name "robot of that run" name known)))))
 
 (addition save-trajectory)
-(defun save-trajectory (file &key journal (every 1) until robots anyway)
+(define-with-keywords save-trajectory
+    (file &key journal (every 1) until robots anyway)
   "Write to FILE, replacing it, as a table of commas (CSV), where the robots of a run were: of that
 of JOURNAL (a journal, or a file that holds one), or else the current one up to now, which must keep
 one. A row for every EVERY ticks, up to the tick UNTIL, and for each robot, or those that ROBOTS, a

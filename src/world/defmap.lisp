@@ -83,9 +83,9 @@ signals, the user may replace the clause by another, of which COMPILER makes a f
   (dolist (recipe (map-things map))
     (let ((x (recipe-x recipe)) (y (recipe-y recipe)) (name (recipe-name recipe)))
       (when (wall-at-p map x y)
-        (warn-of-definition "defmap ~(~A~)~@[ (~A)~]: ~(~A~) at (~F ~F) is inside a wall, where no ~
+        (warn-of-definition "defmap ~(~A~)~@[ (~A)~]: ~(~A~) at ~A is inside a wall, where no ~
                              robot can see or reach it."
-                            (map-name map) (clause-place name) name x y)))))
+                            (map-name map) (clause-place name) name (point-in-text x y))))))
 
 ;;; Things.
 

@@ -81,7 +81,8 @@ document, below what the experiment asks."
                                        (rate-compared-p measure comparison)))))
 
 (addition save-comparison-picture)
-(defun save-comparison-picture (comparison file &key (measure "success"))
+(define-with-keywords save-comparison-picture
+    (comparison file &key (measure "success"))
   "Save a picture of COMPARISON in FILE, replacing it: SVG or, where the program rsvg-convert is
 installed, PNG, as its name ends. It shows for each pair of conditions the difference in MEASURE,
 first less second, of rates in points of 100, with its 95 % interval and p as it counts among all

@@ -47,8 +47,8 @@
                   (format nil "a list of some of ~{~(~S~)~^, ~}" (mapcar #'first *pictures*))))
 
 (addition save-result-pictures)
-(defun save-result-pictures (results directory &key (kind :svg)
-                                                 (which (mapcar #'first *pictures*)))
+(define-with-keywords save-result-pictures
+    (results directory &key (kind :svg) (which (mapcar #'first *pictures*)))
   "Save pictures of RESULTS in DIRECTORY, made if there is none, as KIND says, :SVG or, where the
 program rsvg-convert is installed, :PNG. WHICH says of what, a list of some of these:
   :SUCCESS      how often trials succeed, against what varies, with 95 % intervals

@@ -163,7 +163,9 @@ estimate for a sample."
           (and band-p (if (results-until results) "the last look's confidence" "95 %"))
           (limit-of results)))
 
-(defun survival-picture (results panel horizon)
+(defun survival-picture (results panel horizon errors)
+  "Return the picture of survival in PANEL of RESULTS, until HORIZON; ERRORS is what there is to say
+of trials that broke off."
   (let ((band-p (<= (length (panel-series panel)) +most-bands+)))
     (make-picture
      "survival" (panel-where panel)
@@ -171,7 +173,9 @@ estimate for a sample."
                            collect (curve-of name sample horizon (confidence-for results sample)
                                              band-p))
                      :title (title-of results)
-                     :subtitle (subtitle panel (survival-words band-p results))
+                     :subtitle (subtitle panel (concatenate 'string
+                                                            (survival-words band-p results)
+                                                            errors))
                      :x-label "ticks" :y-label "trials not yet done"
                      :legend-title (panel-title panel)
                      :risk-label "trials not yet done"))))
@@ -181,7 +185,7 @@ estimate for a sample."
     (when (known-p (mapcar #'summary-ticks summaries))
       (loop with horizon = (horizon samples (limit-of results))
             for panel in (panels samples (free-factors results) (results-factors results))
-            collect (survival-picture results panel horizon)))))
+            collect (survival-picture results panel horizon (errors-words summaries))))))
 
 ;;; Differences.
 

@@ -13,9 +13,18 @@
       trials
       (loop for trial from 1 to trials collect trial)))
 
+(defun trials-in-words (trials)
+  "Return whose ways a picture of TRIALS, a list of numbers, shows."
+  (let ((count (length trials)))
+    (cond ((= 1 count) (format nil "The way of each robot in trial ~D" (first trials)))
+          ((<= count 8) (format nil "The ways of the trials ~{~D~^, ~}" trials))
+          ((loop for trial in trials for number from 1 always (= trial number))
+           (format nil "The ways of the first ~D trials" count))
+          (t (format nil "The ways of ~D trials" count)))))
+
 (addition save-ways-picture)
-(defun save-ways-picture (experiment condition file
-                          &rest options &key (trials 50) part title layers in-color scale)
+(define-with-keywords save-ways-picture
+    (experiment condition file &rest options &key (trials 50) part title layers in-color scale)
   "Save in FILE, replacing it, a map of the world of CONDITION of EXPERIMENT with the ways that its
 robots went in TRIALS, the first so many or a list of their numbers: in colours that say what became
 of each trial, with a marker where it ended. The trials are run again for that. CONDITION is as for
@@ -28,13 +37,13 @@ without the program that PNG needs."
   (let* ((experiment (find-experiment experiment))
          (condition (find-condition experiment condition))
          (trials (trial-numbers trials)))
-    (apply #'save-bundle 'save-ways-picture file
+    (apply #'save-bundle 'save-ways-picture "trial" file
            (start-of-trial experiment condition (first trials))
            (lambda () (ways-of-trials experiment condition trials))
            (or (question-of (experiment-name experiment))
                (string-downcase (experiment-name experiment)))
-           (format nil "~A. The ways of all trials, with a marker at the end of each. Robots and ~
-                        things are where a trial begins."
-                   (condition-name condition))
+           (format nil "~A. ~A, with a marker at the end of each. Robots and things are where ~
+                        ~:[the first of these~;the trial~] begins."
+                   (condition-name condition) (trials-in-words trials) (null (rest trials)))
            (loop for (key value) on options by #'cddr
                  unless (eq :trials key) append (list key value)))))

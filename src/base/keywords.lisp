@@ -1,0 +1,36 @@
+;;;; keywords.lisp -- functions that say which keywords they know when they are given another.
+
+(in-package :ars-magna.base)
+
+(defun check-keywords (operator known options)
+  "Signal UNKNOWN-NAME if the list OPTIONS, given to OPERATOR, has a keyword that is not one of
+KNOWN."
+  (loop for (key) on options by #'cddr
+        unless (or (member key known) (eq key :allow-other-keys))
+          do (reject-name (format nil "keyword of ~(~A~)" operator) key known)))
+
+(defun with-options (lambda-list)
+  "Return LAMBDA-LIST with any keywords allowed, the variable of all that are given, and which are
+known."
+  (destructuring-bind (required optional rest keys allowed aux keys-p)
+      (multiple-value-list (parse-ordinary-lambda-list lambda-list))
+    (declare (ignore optional allowed aux keys-p))
+    (let ((options (or rest (gensym "OPTIONS"))) (place (position '&key lambda-list)))
+      (values (append required (list '&rest options) (subseq lambda-list place)
+                      '(&allow-other-keys))
+              options
+              (mapcar #'caar keys)))))
+
+(defmacro define-with-keywords (name lambda-list documentation &body body)
+  "Define the function NAME as DEFUN does, with LAMBDA-LIST, which has keywords and nothing optional
+besides. Called with a keyword that is not among these it signals UNKNOWN-NAME, which lists them."
+  (multiple-value-bind (all options known) (with-options lambda-list)
+    (multiple-value-bind (forms declarations) (parse-body body)
+      `(progn
+         (defun ,name ,all
+           ,documentation
+           ,@declarations
+           (check-keywords ',name ',known ,options)
+           ,@forms)
+         (show-lambda-list ',name ',lambda-list #',name)
+         ',name))))
