@@ -4,27 +4,15 @@
 
 (def-suite* cli-debugger :in ars-magna)
 
-(defun written-by (lines call)
-  "Call CALL with a function that types LINES as somebody who sits at a terminal would, in the run
-of a butler. Return what is written, a list of lines."
+(defun type-at-terminal (&rest lines)
+  "Type LINES as somebody who sits at a terminal would. Return what is written, a list of lines."
   (let* ((output (make-string-output-stream))
          (input (make-instance 'cli::typed-text :by-hand-p t
                                :octets (make-string-input-stream (joined lines))))
          (session (cli:make-session :input input :output output)))
-    (run:call-with-simulation (lambda () (funcall call (lambda () (cli:run-session session))))
-                              '(ars-user::butler) :clean t)
+    (run:call-with-simulation (lambda () (cli:run-session session)) '(ars-user::butler)
+                              :clean t)
     (lines-of (get-output-stream-string output))))
-
-(defun type-at-terminal (&rest lines)
-  "Type LINES in a headless run. Return what is written, a list of lines."
-  (written-by lines #'funcall))
-
-(defun type-at-live-terminal (&rest lines)
-  "Type LINES in a live run that is paused. Return what is written, a list of lines."
-  (written-by lines (lambda (type)
-                      (let ((simulation (time:current-simulation)))
-                        (run:start-clock simulation :rate :free :paused-p t)
-                        (unwind-protect (funcall type) (run:stop-clock simulation))))))
 
 (defun without-prompts (line)
   (if (or (eql 0 (search "Robot> " line)) (eql 0 (search "Break> " line)))
@@ -93,25 +81,6 @@ of a butler. Return what is written, a list of lines."
 (test break.shows-where-it-is
   (is-true (find-if (lambda (line) (has-words-p line "  (break \"oh\")"))
                     (type-at-terminal "(break \"oh\")" "backtrace" "0"))))
-
-(defparameter *turn-that-breaks*
-  "(robot-turn butler 1 (lambda (&rest results) (break \"turned ~A\" (first results))))"
-  "A line that has the robot turn and then breaks, in the simulator's thread if that is live.")
-
-(test break.that-stops-the-clock-ends-the-line-that-waits-for-ticks
-  (let ((written (type-at-live-terminal *turn-that-breaks* "step 500" "stop-simulator" "(+ 2 3)")))
-    (is-true (find-if (lambda (line) (has-words-p line "stopped; RESUME goes on")) written))
-    (is-true (written-p "5" written))))
-
-(test break.is-answered-in-the-users-package
-  "Also what is evaluated in the simulator's thread; a slip there leaves the break as it is."
-  (let ((written (type-at-live-terminal *turn-that-breaks* "step 500"
-                                        "(format nil \"in ~A\" (package-name *package*))"
-                                        "(no-such-function)" "(break \"again\")" "continue"
-                                        "(+ 2 3)")))
-    (is-true (written-p "\"in ARS-USER\"" written))
-    (is-true (find-if (lambda (line) (search "NO-SUCH-FUNCTION" line)) written))
-    (is-true (written-p "5" written))))
 
 (test break.tells-after-an-interrupt-how-to-go-on
   (let ((session (cli:make-session)))
