@@ -162,27 +162,6 @@
         (end-talk talk)
         (run:stop-clock simulation)))))
 
-;; The simulator's thread asks, while the line STEP waits for ticks.
-(defun told-when-stepping (&rest answers)
-  "Return what a talk is told in which a line steps until the simulator breaks and ANSWERS follow."
-  (in-studio (robot)
-    (let ((talk (begin-talk robot)) (simulation (time:current-simulation))
-          (gate (base:make-semaphore "gate")))
-      (setf (base:global-value '*gate*) gate)
-      (unwind-protect
-           (progn
-             (run:start-clock simulation :rate :free :paused-p t)
-             (command:robot-turn robot 1 (lambda (&rest results)
-                                           (declare (ignore results))
-                                           (break "stuck")))
-             (enter talk "step 500")
-             (await-break talk)
-             (apply #'enter talk answers)
-             (enter talk "(ars-magna.base:signal-semaphore ars-magna.tests::*gate*)")
-             (and (base:wait-on-semaphore gate 20) (told-to talk)))
-        (end-talk talk)
-        (run:stop-clock simulation)))))
-
 (test sessions.waiting-for-ticks-ends-when-the-clock-stops
   "As when a break is answered so while the line STEP waits."
   (in-studio (robot)
@@ -193,12 +172,6 @@
                                      (9 (error "It waits for ever."))))))
       (run:start-clock simulation :paused-p t)
       (is (null (cli::await-live (constantly nil) simulation))))))
-
-(test sessions.what-is-typed-at-a-break-is-done-in-the-users-package
-  "Also by the simulator's thread; a slip leaves the break as it is."
-  (let ((told (told-when-stepping "(format nil \"in ~A\" (package-name *package*))"
-                                  "(no-such-function)" "(break \"again\")" "continue")))
-    (is (has-words-p told "in ARS-USER" "NO-SUCH-FUNCTION" "Tick 500"))))
 
 (defun await-debugging (talk)
   "Wait until the user of TALK is asked how a line goes on: before that, to end the session ends the
