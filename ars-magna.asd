@@ -288,14 +288,16 @@
                  (:file "arrangement") (:file "magnification") (:file "canvas")
                  (:file "guarding") (:file "buffering")
                  (:file "panes") (:file "scrolling") (:file "selection")
-                 (:file "view") (:file "world-pane") (:file "transcript") (:file "transcript-pane")
+                 (:file "view") (:file "world-pane") (:file "transcript")
+                 (:file "clipboard") (:file "transcript-pane")
                  (:file "prompt") (:file "plan-pane") (:file "layout-pane") (:file "titles")
                  (:file "splitters") (:file "bar") (:file "strip")
                  (:file "popup") (:file "pointing") (:file "interactor") (:file "offers")
                  (:file "plan-mouse") (:file "world-mouse") (:file "keys") (:file "keyboard")
                  (:file "help")
                  (:file "robots") (:file "window") (:file "line-menus") (:file "commands")
-                 (:file "menus") (:file "habits") (:file "opening") (:file "x-server") (:file "replies")
+                 (:file "menus") (:file "menu-keys") (:file "habits") (:file "opening")
+                 (:file "x-server") (:file "replies")
                  (:file "following")))))
 
 (defsystem "ars-magna/fiveam"
@@ -330,7 +332,8 @@
                              (:file "clim-progress") (:file "clim-plans")
                              (:file "clim-talking") (:file "clim-going-on")
                              (:file "clim-awaiting")
-                             (:file "clim-x-server") (:file "clim-magnification") (:file "clim-keyboard")))))
+                             (:file "clim-x-server") (:file "clim-magnification")
+                             (:file "clim-clipboard") (:file "clim-keyboard")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."

@@ -82,7 +82,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   ;; listening, going-on
   (:export #:listen-instead #:go-to-run #:run-after #:tell-of-run #:away-p #:way-in)
   ;; breakage
-  (:export #:awaited-answers)
+  (:export #:awaited-answers #:ways-awaited #:simulator-broken-p #:answers-break-p)
   ;; sessions
   (:export #:run-session-apart #:interrupt-session #:end-session #:enter-line #:at-work-on
            #:abandon-session #:asked-of-others-p #:take-waiting)

@@ -82,6 +82,15 @@
   (is-true (find-if (lambda (line) (has-words-p line "  (break \"oh\")"))
                     (type-at-terminal "(break \"oh\")" "backtrace" "0"))))
 
+(test break.tells-after-an-interrupt-how-to-go-on
+  (let ((session (cli:make-session)))
+    (with-simple-restart (continue "Go on.")
+      (setf (cli::session-breaks session)
+            (list (cli::make-breakage (make-condition 'simple-condition :format-control "oh")
+                                      (list (find-restart 'continue))
+                                      (base:current-thread) (list session))))
+      (is (equal " What has broken waits for one of 0 continue." (cli::what-goes-on session))))))
+
 (test break.can-be-left-with-the-prompt
   (is-false (written-p "5" (type-at-terminal "(break)" "quit" "(+ 2 3)")))
   (is-true (written-p "*BREAK* -> break" (type-at-terminal "(break)"))))

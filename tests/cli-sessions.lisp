@@ -162,6 +162,17 @@
         (end-talk talk)
         (run:stop-clock simulation)))))
 
+(test sessions.waiting-for-ticks-ends-when-the-clock-stops
+  "As when a break is answered so while the line STEP waits."
+  (in-studio (robot)
+    (let* ((simulation (time:current-simulation)) (calls 0)
+           (base:*while-waiting* (lambda ()
+                                   (case (incf calls)
+                                     (1 (run:stop-clock simulation))
+                                     (9 (error "It waits for ever."))))))
+      (run:start-clock simulation :paused-p t)
+      (is (null (cli::await-live (constantly nil) simulation))))))
+
 (defun await-debugging (talk)
   "Wait until the user of TALK is asked how a line goes on: before that, to end the session ends the
 line."

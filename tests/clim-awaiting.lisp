@@ -104,3 +104,17 @@
                              (format nil "~D" (ars-magna.rpl:task-serial task))))))
         (is (mentions-p said "ends"))
         (is (null (ars-magna.rpl.seeing::courses-of (ars-magna.rpl:task-runner task))))))))
+
+(test awaiting.lines-of-menus-and-buttons-come-after-the-answer
+  "They would be taken for wrong answers; forms are evaluated where it has broken."
+  (in-window (window robot)
+    (let ((conversation (window::window-conversation window)))
+      (setf (cli::session-breaks (window::window-session window))
+            (list (broken "oh" (base:current-thread))))
+      (window::give-line conversation "rewind 10")
+      (window::begin-line-with conversation "turn ")
+      (is (has-words-p (said-in window)
+                       "REWIND 10: first say how what has broken goes on" "TURN: first"))
+      (is (equal "" (keys-given window)))
+      (window::give-line conversation "(describe 1)")
+      (is (mentions-p (keys-given window) "(describe 1)")))))

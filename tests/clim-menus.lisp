@@ -34,6 +34,19 @@
         (multiple-value-call #'inside-p (list left top width height)
           (window::pane-size (clim:sheet-parent popup)))))))
 
+(test window.what-was-said-comes-back-for-each-robot-that-it-has-shown
+  "ROBOT may have led the window to another one."
+  (in-window (window robot)
+    (let ((window::*habits* '()) (window::*said* '()))
+      (window::say (window::window-transcript window) (format nil "That was said.~%"))
+      (window::show-robot-called window 'other (time:current-simulation))
+      (window::keep-habits window)
+      (call-with-window
+       (lambda (next)
+         (window::take-habits next)
+         (is (mentions-p (said-in next) "That was said.")))
+       robot))))
+
 (test window.a-new-one-is-as-the-user-left-the-last
   "Layers, displays folded away, sizes, and what was said."
   (in-window (window robot)
@@ -122,3 +135,27 @@
         (is (member "Mouse" (rows-of-popup window) :test #'equal))
         (press "Help")
         (is (null (rows-of-popup window)))))))
+
+(test menus.can-be-used-without-a-mouse
+  "F10 opens the first; arrows lead through rows and menus, return chooses."
+  (in-window (window robot)
+    (lay-out window 640 480)
+    (press-in window :f10 nil)
+    (is (equal "Pause" (first (rows-of-popup window))))
+    (press-in window :down nil)
+    (press-in window :up nil)
+    (press-in window :up nil)
+    (is (equal "Interrupt" (window::row-text (window::pane-pointed
+                                              (window::window-popup window)))))
+    (press-in window :right nil)
+    (press-in window :right nil)
+    (is (equal "Zoom in" (first (rows-of-popup window))))
+    (press-in window :left nil)
+    (press-in window :right nil)
+    (press-in window :down nil)
+    (press-in window :down nil)
+    (let ((scale (window::pane-scale (pane window 'window::world))))
+      (press-in window :return #\Return)
+      (is (> scale (window::pane-scale (pane window 'window::world)))))
+    (is (null (rows-of-popup window)))
+    (is (equal "" (keys-given window)))))

@@ -281,6 +281,28 @@ server blackens what is resized, and has it painted by what it sends to the wind
                         "~A" said)))
         (run:stop-clock simulation)))))
 
+;;; Threads of a window that the user ends.
+
+(defun threads-called (name)
+  (remove-if-not (lambda (thread) (search name (base:thread-name thread)))
+                 (bordeaux-threads:all-threads)))
+
+(defun end-threads-called (name)
+  (let ((threads (threads-called name)))
+    (mapc #'bordeaux-threads:destroy-thread threads)
+    (mapc #'base:join-thread threads)
+    threads))
+
+(test threads.the-pacer-and-the-reader-of-events-come-back
+  "They are any user's to end, who may not know what they are for."
+  (in-x-window (window robot)
+    (dolist (names '(("pacer of STUDIO-ROBOT" "pacer of STUDIO-ROBOT")
+                     ("event process" "events of windows")))
+      (is-true (end-threads-called (first names)))
+      (loop until (threads-called (second names)) do (base:wait-on-semaphore *never-comes* 0.01)))
+    (resize-from-outside window 700 500)
+    (is (equal '(700 500) (inside (window) (window-size window))))))
+
 ;;; Two threads wait for the X server on one connection; see replies.lisp.
 
 (test replies.who-may-read-does-not-wait-for-what-has-come-meanwhile

@@ -32,6 +32,10 @@
              ("help cam-v" "help cam-view")
              ("repeat 3 cam-v" "repeat 3 cam-view") ("repeat 3 cam-turn 1" "repeat 3 cam-turn 1")))
 
+(test completing.knows-the-robots-of-this-world
+  "Those of others are for WORLD, which leads there."
+  (completes ("robot " "robot butler")))
+
 (test completing.knows-aliases
   (in-parlour
     (let ((cli::*aliases* '(("LOOK" "cam-view"))))

@@ -168,6 +168,12 @@ name in *KEY-CODES*."
            :paste (format nil "rn 1~%Robot> go 1~%on") :pasted :enter)
   (types-p ("turn 1" "33") :paste (format nil "turn 1~%33") :pasted :enter))
 
+(test editing.keeps-all-lines-of-a-form-that-is-pasted-with-prompts
+  "Pages show a form of several lines below one prompt."
+  (types-p ("(list 1" "  (+ 1" "     1))" "go 1")
+           :paste (format nil "Robot> (list 1~%  (+ 1~%     1))~%(1 2)~%Robot> go 1~%Robot> ")
+           :pasted :enter))
+
 (test editing.takes-many-lines-and-long-ones
   (let ((lines (loop for i below 500 collect (format nil "turn ~D" i)))
         (long (make-string 100000 :initial-element #\x)))

@@ -48,13 +48,33 @@ on from another."
         ((after-label line) (let ((text (without-label line)))
                              (and (string/= "" text) text)))))
 
+(defun goes-on-p (text)
+  "True if TEXT, as typed, is Lisp that is not complete."
+  (and (not (comment-p text))
+       (lisp-p text)
+       (handler-case (let ((*read-suppress* t)) (read-from-string text) nil)
+         (end-of-file () t)
+         (error () nil))))
+
+(defun typed-by-label (lines)
+  "Return what was typed of LINES, as pasted, the first of which has a prompt. What stands below a
+form that is not complete is the rest of it."
+  (loop with form = ""
+        for line in lines
+        for label-p = (after-label line)
+        for typed = (or (typed-line-of line)
+                        (and (not label-p) (goes-on-p form) line))
+        when typed
+          collect typed
+          and do (setf form (if label-p typed (format nil "~A~%~A" form typed)))))
+
 (defun typed-lines (lines)
   "Return what was typed of LINES, as pasted: all up to the first with a prompt, which may be the
-rest of one, and those with prompts, but for messages; or LINES if none has any."
+rest of one, those with prompts, but for messages, and the rests of their forms; or LINES if none
+has any."
   (let ((start (position-if #'after-label lines)))
     (if start
-        (append (subseq lines 0 start)
-                (remove nil (mapcar #'typed-line-of (nthcdr start lines))))
+        (append (subseq lines 0 start) (typed-by-label (nthcdr start lines)))
         lines)))
 
 (defun lines-in (text)

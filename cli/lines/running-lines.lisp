@@ -54,21 +54,22 @@ sits."
       (resume-visit (session-visit session))
       (resume-here session)))
 
-(defun step-here (count)
-  "Let COUNT ticks pass, and say so."
+(defun step-here (session count)
+  "Let COUNT ticks pass, and say so, and whether the clock has stopped before."
   (check-run)
   (let* ((simulation (current-simulation))
          (goal (+ (simulation-tick simulation) count)))
     (step-ticks count simulation)
-    (await (lambda () (>= (simulation-tick simulation) goal)))
-    (format t "Tick ~D.~%" (simulation-tick simulation))))
+    (if (await (lambda () (>= (simulation-tick simulation) goal)))
+        (format t "Tick ~D.~%" (simulation-tick simulation))
+        (format t "~A~%" (time-text session simulation)))))
 
 (define-line "STEP" (session (n steps "how many; 1 if left out" :optional))
     (:running)
     "Let N ticks pass; a live simulator is paused after them."
   (if (session-visit session)
       (step-visit (session-visit session) (or n 1))
-      (step-here (or n 1))))
+      (step-here session (or n 1))))
 
 (defun parse-rate (text)
   "Return the rate that TEXT says: a number or :FREE. Signals BAD-LINE."

@@ -56,9 +56,6 @@ goes on here is over."
       (reject-line "There is no robot ~A.~@[ Did you mean ~A?~]" (string-upcase name)
                    (nearest-name name (robot-names)))))
 
-(defun robots-here ()
-  (and *simulation* (mapcar #'robot-name (simulation-robots *simulation*))))
-
 (defun list-robots ()
   (dolist (robot (and *simulation* (simulation-robots *simulation*)))
     (multiple-value-bind (x y) (robot-position robot)
@@ -70,7 +67,7 @@ goes on here is over."
                 tick 0; what goes on here is over then."
                name (map-name (world-of name))))
 
-(define-line "ROBOT" (session (name :robot-name "the robot to command" :optional))
+(define-line "ROBOT" (session (name :robot-here "the robot to command" :optional))
     (:seeing)
     "List the robots of this world, or command the robot NAME of it from now on. WORLD leads to
 those of others."

@@ -122,3 +122,22 @@ may be expected to. Only the thread that has the prompt can ask him for a value.
   "Return a list of what waits for the user of SESSION to say how it goes on, in words, what is
 asked about now first. Any thread may ask."
   (mapcar (lambda (breakage) (break-line session breakage)) (breaks-awaiting session)))
+
+(defun ways-awaited (session)
+  "Return in words the ways to go on that the user of SESSION can choose from now, or NIL if he is
+not asked. Any thread may ask."
+  (let ((breakage (first (breaks-awaiting session))))
+    (and breakage
+         (format nil "~{~A~^, ~}"
+                 (loop for restart in (breakage-restarts breakage)
+                       for number from 0
+                       collect (format nil "~D ~A" number (plain-name (restart-name restart))))))))
+
+(defun simulator-broken-p (session)
+  "True if the user of SESSION is asked how the simulator's thread goes on. Any thread may ask."
+  (some (lambda (breakage) (simulator-p session (breakage-thread breakage)))
+        (breaks-awaiting session)))
+
+(defun answers-break-p (text)
+  "True if TEXT, a line, can be typed where a break is answered, whatever has broken."
+  (or (comment-p text) (lisp-p text)))

@@ -66,6 +66,10 @@ cannot be told. May signal BAD-LINE, as when there is no robot.")
   (declare (ignore session typed))
   (robot-names))
 
+(defmethod choices ((type (eql :robot-here)) session typed)
+  (declare (ignore session typed))
+  (robots-here))
+
 ;;; Files.
 
 (defun entries-of (directory)

@@ -23,8 +23,11 @@
       (call-complaining session function))))
 
 (defun hand-order (session breakage function)
-  "Let the thread of BREAKAGE, which is another, call FUNCTION, as soon as it can."
-  (setf (breakage-order breakage) (lambda () (call-ordered session function)))
+  "Let the thread of BREAKAGE, which is another, call FUNCTION, as soon as it can, with the package
+and syntax that are used here."
+  (setf (breakage-order breakage)
+        (spread-specials (lambda () (call-ordered session function))
+                         '*package* '*readtable* '*read-default-float-format*))
   (signal-semaphore (breakage-ordered breakage)))
 
 (defun order (session breakage function)

@@ -47,6 +47,8 @@ and says itself how it has ended."
         (add-observer #'look simulation)
         (look simulation))
       (unwind-protect (loop until (or (wait-a-while true 0.2)
+                                      ;; The answer to a break may have stopped its clock.
+                                      (not (live-p simulation))
                                       (simulation-over simulation)))
         (asking (simulation) (remove-observer #'look simulation)))))
   (funcall test))

@@ -45,10 +45,13 @@ NIL if it carries out none."
 
 (defun what-goes-on (session)
   "Return sentences that say what goes on in the simulator, though the line of SESSION does not,
-and how it can be ended; if nothing does, how the prompt is left. In a trial, nothing goes on."
+and how it can be ended; if nothing does, how the prompt is left. In a trial, nothing goes on.
+Where a break is answered, return how."
   (multiple-value-bind (robot command) (command-going-on session)
     (let ((plans-p (notevery #'plan-ending-p (plans))))
-      (cond ((session-visit session) "")
+      (cond ((ways-awaited session)
+             (format nil " What has broken waits for one of ~A." (ways-awaited session)))
+            ((session-visit session) "")
             ((or robot plans-p)
              (format nil "~@[ ~A goes on with ~]~@[~A; STOP ends that.~]~
                           ~:[~; Plans go on; STOP-PLAN ends them.~]"

@@ -26,6 +26,8 @@ the prompts again. One whose user is not there any more leaves them to others."
 (defun hear (session simulation)
   "Show the messages of SIMULATION, of which one is new."
   (cond ((not (simulation-ticking-p simulation)) (show-messages session))
+        ;; Its tick ends when somebody says how it goes on, who may need to know this.
+        ((users-code-broken-p simulation) (show-messages session))
         ((in-simulation-p simulation) (show-after-changes session simulation))
         (t (setf (session-news-p session) t)
            ;; The tick may have ended just now, without seeing the news.

@@ -43,6 +43,10 @@ BAD-LINE if there are none."
   "Return the names of all robots."
   (mapcar #'blueprint-name (all-blueprints)))
 
+(defun robots-here ()
+  "Return the names of the robots of the current run."
+  (and *simulation* (mapcar #'robot-name (simulation-robots *simulation*))))
+
 (defun world-of (robot-name)
   "Return the map that the robot ROBOT-NAME is defined in."
   (find-map (blueprint-map (find-blueprint robot-name))))

@@ -41,8 +41,10 @@
     (give-line (window-conversation window) (format nil "rewind ~D" (min +back+ passed)))))
 
 (define-window-command (com-step "Step") (window)
-    "Pass one tick and pause."
-  (steer window (lambda (simulation) (step-ticks 1 simulation)) "step 1"))
+    "Pass one tick and pause; none while the tick that is under way has broken."
+  (if (ars-magna.cli:simulator-broken-p (window-session window))
+      (tell-to-answer (window-conversation window) "Step")
+      (steer window (lambda (simulation) (step-ticks 1 simulation)) "step 1")))
 
 (defun change-rate (window factor)
   (let* ((simulation (window-simulation window)) (rate (simulation-rate simulation)))

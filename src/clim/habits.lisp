@@ -8,21 +8,24 @@
 (defvar *habits-lock* (make-lock "habits"))
 (defvar *habits* '()
   "Layers, whether in colour, and wishes of the window that closed last, in a list; or NIL.")
-(defvar *said* '() "Lists (robot lines): what the last window of each robot said, newest first.")
+(defvar *said* '()
+  "An alist from the names of robots to what the last window that has shown each said: its lines,
+newest first.")
 
 (defun keep-habits (window)
   "Keep what the user has chosen in WINDOW, which closes, and what it says."
   (let ((habits (list (window-layers window) (window-color-p window) (window-wishes window)))
-        (said (list (shown-robot window) (transcript-lines (window-transcript window)))))
+        (lines (transcript-lines (window-transcript window))))
     (with-lock (*habits-lock*)
-      (setf *habits* habits
-            *said* (cons said (remove (first said) *said* :key #'first))))))
+      (setf *habits* habits)
+      (dolist (name (window-robots-shown window))
+        (setf *said* (acons name lines (remove name *said* :key #'first)))))))
 
 (defun take-habits (window)
   "Let WINDOW, which is new, be as the user has chosen before, and go on from what was said."
   (destructuring-bind (habits said)
       (with-lock (*habits-lock*)
-        (list *habits* (second (assoc (shown-robot window) *said*))))
+        (list *habits* (rest (assoc (shown-robot window) *said*))))
     (when habits
       (destructuring-bind (layers color-p wishes) habits
         (setf (window-layers window) layers

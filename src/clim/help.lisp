@@ -19,7 +19,8 @@
                 collect (format nil "  ~7A ~A" (key-text (button-key button))
                                 (button-help button)))
           (list "  arrows  move the view" "  return  back to the line that is typed"
-                "  escape  close such a panel, or as return")))
+                "  escape  close such a panel, or as return"
+                "  F10     the menus: arrows and return choose")))
 
 (defun help-rows ()
   (mapcar #'make-row (append (key-help) (list "") *mouse-help*)))

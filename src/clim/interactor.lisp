@@ -142,12 +142,12 @@
 (defun copy-text (window)
   "Let other programs have what is selected in the transcript of WINDOW, or else all of it."
   (let ((pane (pane-named window 'transcript)))
-    (publish-text pane (selected-text pane) :clipboard :primary)))
+    (hold-text (clim:port pane) (selected-text pane) '(:clipboard :primary))))
 
 (defun paste-text (window selection)
   "Let what SELECTION, :PRIMARY or :CLIPBOARD, holds be typed in WINDOW."
-  (let ((text (clime:request-selection (pane-named window 'interactor) selection 'string)))
-    (when (and (stringp text) (string/= "" text))
+  (let ((text (fetch-text (clim:port (pane-named window 'interactor)) selection)))
+    (unless (member text '(nil "") :test #'equal)
       (give-key (window-conversation window) (list :paste text)))))
 
 (defun own-action (event)
@@ -162,6 +162,7 @@
             ((or (and control-p shift-p (is-p #\v)) (and shift-p (eq name :insert)))
              (lambda (window) (paste-text window :clipboard)))
             ((eq name :escape) #'close-popup)
+            ((eq name :f10) #'open-first-menu)
             ((eq name :prior) (lambda (window) (scroll-page (pane-named window 'transcript) -1)))
             ((eq name :next) (lambda (window) (scroll-page (pane-named window 'transcript) 1)))))))
 
@@ -174,7 +175,8 @@
 (defun press-in-window (window event)
   "Do what the key of EVENT does where one types. True if it does anything."
   (let ((action (own-action event)) (key (key-of event)))
-    (cond (action (funcall action window) t)
+    (cond ((press-in-popup window (clim:keyboard-event-key-name event)) t)
+          (action (funcall action window) t)
           (key (take-key window key) t))))
 
 (defmethod clim:handle-event ((pane interactor-pane) (event clim:key-press-event))

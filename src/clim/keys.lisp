@@ -53,7 +53,9 @@
   "Do what the key called KEY-NAME, which types CHARACTER or NIL, does in WINDOW. True if anything."
   (let ((button (and character (find character *buttons* :key #'button-key))))
     (multiple-value-bind (dx dy) (arrow key-name)
-      (cond ((and (or (window-typing-p window) (half-typed-p window))
+      (cond ((press-in-popup window key-name) t)
+            ((eq key-name :f10) (open-first-menu window) t)
+            ((and (or (window-typing-p window) (half-typed-p window))
                   character
                   (graphic-char-p character))
              (type-at-prompt window character)

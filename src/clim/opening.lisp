@@ -88,6 +88,7 @@ wait, a break. Return that in words, as they follow a sentence."
 (defun show-robot-called (window name simulation)
   "Let WINDOW show the robot called NAME of SIMULATION from now on."
   (setf (watcher-robot (window-watcher window)) name)
+  (pushnew name (window-robots-shown window))
   ;; Not all of CLIM's ports can do that.
   (ignore-errors (setf (clim:frame-pretty-name window) (window-title name)))
   (unless (eq simulation (window-simulation window))

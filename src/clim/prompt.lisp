@@ -111,10 +111,28 @@ returns. PLACE is called before each line; OVER when its user leaves it."
                       It begins anew.~%"))
     (start-conversation conversation simulation robot-name)))
 
+(defun say-in (conversation text)
+  (say (console-transcript (conversation-console conversation)) text))
+
+(defun tell-to-answer (conversation what)
+  "Say that WHAT, a text, has to come after the answer that the prompt waits for."
+  (say-in conversation
+          (format nil "~A: first say how what has broken goes on, by one of ~A.~%"
+                  what (ars-magna.cli:ways-awaited (conversation-session conversation)))))
+
+;; Where a break is answered, what is no answer would be taken for a wrong one.
+(defun answered-first-p (conversation line)
+  "True if the prompt waits for an answer that LINE is not; then that is said."
+  (when (and (ars-magna.cli:ways-awaited (conversation-session conversation))
+             (not (ars-magna.cli:answers-break-p line)))
+    (tell-to-answer conversation (string-upcase (string-right-trim " " line)))
+    t))
+
 (defun give-line (conversation line)
   "Let the prompt do what LINE, a string, says, as if it had been typed; what is being typed stays."
-  (ars-magna.cli:enter-line (conversation-session conversation) line)
-  (tell-news (conversation-console conversation)))
+  (unless (answered-first-p conversation line)
+    (ars-magna.cli:enter-line (conversation-session conversation) line)
+    (tell-news (conversation-console conversation))))
 
 (defun give-key (conversation key)
   "Let the prompt have KEY, as in cli/editing/keys.lisp."
@@ -124,8 +142,9 @@ returns. PLACE is called before each line; OVER when its user leaves it."
 
 (defun begin-line-with (conversation text)
   "Let TEXT stand where the user types, who is to add what it lacks."
-  (mapc (lambda (key) (give-key conversation key))
-        (list :control-e :control-u text)))
+  (unless (answered-first-p conversation text)
+    (mapc (lambda (key) (give-key conversation key))
+          (list :control-e :control-u text))))
 
 (defun interrupt-conversation (conversation)
   "End the line that is under way, or clear the one that is being typed."

@@ -219,11 +219,6 @@ that is the newest: no line that is no longer kept, and a whole page of them."
                   (mapcar #'ars-magna.cli:unpainted-text
                           (latest-lines transcript (transcript-count transcript))))))))
 
-(defun publish-text (pane text &rest selections)
-  "Let other programs have TEXT, from PANE, by each of SELECTIONS, :PRIMARY or :CLIPBOARD."
-  (dolist (selection selections)
-    (clime:publish-selection pane selection text 'string)))
-
 (defmethod click ((pane transcript-pane) button x y)
   (when (eq button :left)
     (setf (pane-drag pane) :text
@@ -237,7 +232,7 @@ that is the newest: no line that is no longer kept, and a whole page of them."
 
 (defmethod drop ((pane transcript-pane) x y)
   (declare (ignore x y))
-  (when (selection pane) (publish-text pane (selected-text pane) :primary)))
+  (when (selection pane) (hold-text (clim:port pane) (selected-text pane) '(:primary))))
 
 (defmethod hover ((pane transcript-pane) x y)
   (declare (ignore x y)))

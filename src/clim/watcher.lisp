@@ -36,6 +36,8 @@ is watched has been over for a while."
   (over (make-semaphore "over") :read-only t)
   (over-p nil)
   (pacer nil)
+  ;; Something else than its own end has ended the pacer.
+  (unpaced-p nil :type boolean)
   ;; How time goes, and how it was found to go so far.
   (progress (make-progress) :type progress)
   (pulse (make-pulse) :type pulse)
@@ -167,12 +169,27 @@ itself: it will come with the next tick."
         (publish watcher simulation))))
   watcher)
 
+(defun pace-pictures (watcher)
+  "Be the pacer of WATCHER until its work is over; tell if something else ends this thread."
+  (unwind-protect (run-pacer watcher)
+    (unless (watcher-over-p watcher)
+      (setf (watcher-unpaced-p watcher) t)
+      (funcall (watcher-news watcher)))))
+
+(defun start-pacer (watcher)
+  (setf (watcher-pacer watcher)
+        (start-thread (lambda () (pace-pictures watcher))
+                      (format nil "pacer of ~A" (watcher-robot watcher)))))
+
+;; As for the thread of a prompt, it is not the one that ends which starts another.
+(defun restart-pacer-if-lost (watcher)
+  "If the pacer of WATCHER was ended, as the user may do to any thread, start another."
+  (when (shiftf (watcher-unpaced-p watcher) nil) (start-pacer watcher)))
+
 (defun start-watching (watcher simulation)
   "Let WATCHER begin its work, on SIMULATION. Return WATCHER."
   (watch-simulation watcher simulation)
-  (setf (watcher-pacer watcher)
-        (start-thread (lambda () (run-pacer watcher))
-                      (format nil "pacer of ~A" (watcher-robot watcher))))
+  (start-pacer watcher)
   watcher)
 
 (defun stop-watching (watcher)

@@ -31,6 +31,8 @@
    (wishes :initform (make-wishes) :accessor window-wishes)
    (transcript :initform nil :accessor window-transcript)
    (conversation :initform nil :accessor window-conversation)
+   ;; The names of the robots that it has shown.
+   (robots-shown :initform '() :accessor window-robots-shown)
    ;; The run that is over, of which that has been said.
    (known-over :initform nil :accessor window-known-over)
    ;; For how many columns and rows its transcript has room.
@@ -98,6 +100,7 @@
                               (lambda () (values-list (window-text-size window)))
                               (lambda () (agree-on-robot window))
                               (lambda () (close-window window))))
+    (push (watcher-robot watcher) (window-robots-shown window))
     (say (window-transcript window) (format nil "~A~%" *help-line*))
     window))
 
@@ -155,6 +158,8 @@ each snapshot."
   "Paint those panes of WINDOW that would look different now, all at once."
   (let ((snapshot (window-snapshot window)))
     (restart-if-lost (window-conversation window) (window-simulation window) (shown-robot window))
+    (restart-pacer-if-lost (window-watcher window))
+    (read-events-again (clim:port window))
     (if (shiftf (window-torn-p window) nil)
         (repaint-all window)
         (mapc #'repaint-if-changed (display-panes window)))

@@ -82,13 +82,43 @@ for, or NIL.")
 
 ;; McCLIM warns of what the server could not do at once, such as to give keys to a window that is
 ;; just being hidden. That is nobody's fault, and nothing for the terminal.
-(defmethod clim:process-next-event :around ((port clim:basic-port) &key &allow-other-keys)
+(defun call-dropping-trouble (port function)
+  "Call FUNCTION, which reads an event of PORT; if that makes trouble, drop it, or lose PORT."
   (handler-bind ((warning #'muffle-warning)
                  (error (lambda (condition)
                           (cond ((of-one-event-p condition)
                                  (drop-event port)
                                  ;; It may have been the word that something is to be painted.
                                  (mapc #'request-repaint (windows-on port))
-                                 (return-from clim:process-next-event t))
+                                 (return-from call-dropping-trouble t))
                                 (t (lose-port port))))))
-    (call-next-method)))
+    (funcall function)))
+
+;;; The user may end that thread, as any of Lisp's. Then windows would hear of nothing any more; one
+;;; of them starts another. (That is not for the thread that ends: Lisp may be ending all.)
+
+(defvar *unread-ports* '()
+  "The ports whose events nobody reads any more, though windows are there.")
+
+(defun note-unread (port)
+  "Note that the thread which reads the events of PORT ends, and wake the windows there, if any."
+  (with-lock (*windows-lock*)
+    (when (member port *ports*) (pushnew port *unread-ports*)))
+  (mapc #'request-refresh (windows-on port)))
+
+(defun read-events (port)
+  (loop (clim:process-next-event port)))
+
+(defun read-events-again (port)
+  "See to it that the events of PORT are read, if that has ended."
+  (when (with-lock (*windows-lock*)
+          (when (member port *unread-ports*)
+            (setf *unread-ports* (remove port *unread-ports*))
+            t))
+    (start-thread (lambda () (read-events port)) "events of windows")))
+
+(defmethod clim:process-next-event :around ((port clim:basic-port) &key &allow-other-keys)
+  (let ((ended-p t))
+    (unwind-protect (multiple-value-prog1 (call-dropping-trouble port #'call-next-method)
+                      (setf ended-p nil))
+      (when ended-p (note-unread port)))))

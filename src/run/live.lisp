@@ -28,7 +28,9 @@ positive number nor :FREE."
                   (lambda () (tick simulation))
                   (lambda () (idle-p simulation))
                   rate
-                  (lambda (function) (call-as-owner simulation function))
+                  ;; What users' code reads and prints there, also in a debugger, is as here.
+                  (spread-specials (lambda (function) (call-as-owner simulation function))
+                                   '*package*)
                   :paused-p paused-p))
   simulation)
 

@@ -1,0 +1,198 @@
+;;;; clipboard.lisp -- texts that programs on an X server copy from each other, however long.
+
+(in-package :ars-magna.clim)
+
+;;; McCLIM gives up on what does not fit into one message of X. So both ways go by connections of
+;;; their own, on which nothing else happens: one for each text that is fetched, and one, with a
+;;; thread, for each that is held for others until another program copies something. What is long
+;;; goes in pieces: he who fetches says that he has one by deleting it. X calls that INCR.
+
+(define-constant +piece+ 60000 :documentation "How many octets are handed over in one piece.")
+(define-constant +longest-paste+ 1000000
+  :documentation "How many octets a text that is pasted may have.")
+(define-constant +patience-with-others+ 2
+  :documentation "How long to wait for what another program hands over next, in seconds.")
+
+(defun connect (port)
+  "Return a new connection to the X server of PORT."
+  (destructuring-bind (&key host display-id protocol &allow-other-keys)
+      (rest (clim:port-server-path port))
+    (xlib:open-display host :display display-id :protocol protocol)))
+
+(defun make-mailbox (display)
+  "Return an X window that is never seen, for what is handed over on DISPLAY."
+  (xlib:create-window :parent (xlib:screen-root (xlib:display-default-screen display))
+                      :x 0 :y 0 :width 1 :height 1 :event-mask '(:property-change)))
+
+;;; Fetching.
+
+(defun reject-paste (reason)
+  (reject-use "~A. Save it in a file, and type (load \"FILE\")." reason))
+
+(defun octets-in (mailbox)
+  "Return, as a string of octets, what lies in MAILBOX."
+  (with-output-to-string (out)
+    ;; The X server hands it over in parts; it counts in fours.
+    (loop for start from 0 by (floor +piece+ 4)
+          do (multiple-value-bind (octets type format left)
+                 (xlib:get-property mailbox :mcclim :start start :end (+ start (floor +piece+ 4))
+                                                    :result-type 'list)
+               (declare (ignore type format))
+               (dolist (octet octets) (write-char (code-char octet) out))
+               (when (zerop left) (return))))))
+
+(defun take-piece (mailbox)
+  "Return, as a string of octets, what lies in MAILBOX, which is empty then; and its type, or NIL if
+there is nothing, and :INCR if pieces of it will come."
+  (let ((type (nth-value 1 (xlib:get-property mailbox :mcclim :end 0))))
+    (multiple-value-prog1
+        (values (if (member type '(nil :incr)) "" (octets-in mailbox))
+                type)
+      (when type (xlib:delete-property mailbox :mcclim)))))
+
+(defun await-answer (display)
+  "Wait until the program that was asked on DISPLAY says whether it has handed something over. True
+if it has; :NONE if it cannot; NIL if it says nothing."
+  (xlib:event-case (display :timeout +patience-with-others+ :discard-p t :force-output-p t)
+    (:selection-notify (property) (if property t :none))))
+
+(defun await-piece (display)
+  "Wait until the next piece has come on DISPLAY; true if it has."
+  (xlib:event-case (display :timeout +patience-with-others+ :discard-p t :force-output-p t)
+    (:property-notify (state) (eq state :new-value))))
+
+(defun fetch-pieces (display mailbox)
+  "Return all that comes in pieces on DISPLAY, up to an empty one."
+  (with-output-to-string (out)
+    (loop with count = 0
+          do (unless (await-piece display)
+               (reject-paste "What was to be pasted has come in part only"))
+             (multiple-value-bind (piece type) (take-piece mailbox)
+               (when (and type (string= piece "")) (return))
+               (when (< +longest-paste+ (incf count (length piece)))
+                 (reject-paste "That is too long to be pasted"))
+               (write-string piece out)))))
+
+(defun fetch-as (type selection display mailbox)
+  "Return what SELECTION holds as text of TYPE, a string of octets, or NIL if there is none."
+  (xlib:convert-selection selection type mailbox :mcclim nil)
+  (ecase (await-answer display)
+    ((nil) (reject-paste "The program that holds what is to be pasted does not answer"))
+    (:none nil)
+    ((t) (multiple-value-bind (octets type) (take-piece mailbox)
+           (cond ((eq type :incr) (fetch-pieces display mailbox))
+                 ((< +longest-paste+ (length octets))
+                  (reject-paste "That is too long to be pasted"))
+                 (t octets))))))
+
+(defun fetch-on (display selection)
+  (let* ((mailbox (make-mailbox display))
+         (octets (fetch-as :utf8_string selection display mailbox)))
+    (if octets
+        (decoded octets)
+        (fetch-as :string selection display mailbox))))
+
+(defgeneric fetch-text (port selection)
+  (:documentation "Return the text that SELECTION, :PRIMARY or :CLIPBOARD, holds on the X server of
+PORT, or NIL if there is none. Signals MISUSE if it does not come.")
+  (:method (port selection) (declare (ignore port selection)) nil)
+  (:method ((port clim-clx:clx-port) selection)
+    (let ((display (connect port)))
+      (unwind-protect (fetch-on display selection)
+        (xlib:close-display display :abort t)))))
+
+;;; Holding.
+
+(defstruct (holding (:constructor make-holding (octets)) (:copier nil))
+  "A text that is held for others, as a string of OCTETS. TRANSFERS are lists (window property
+start): what is handed over in pieces, and from where on the next is."
+  (octets "" :type string :read-only t)
+  (selections '() :type list)
+  (transfers '() :type list))
+
+(defun put-octets (window property octets)
+  (xlib:change-property window property octets :utf8_string 8 :transform #'char-code))
+
+(defun begin-pieces (holding window property)
+  "Begin to hand over what HOLDING has in PROPERTY of WINDOW, in pieces."
+  (setf (xlib:window-event-mask window) '(:property-change))
+  (push (list window property 0) (holding-transfers holding))
+  (xlib:change-property window property (list (length (holding-octets holding))) :incr 32))
+
+(defun hand-next-piece (holding window property)
+  "Hand over the next piece in PROPERTY of WINDOW, if one is awaited there; an empty one at the
+end."
+  (let ((transfer (find-if (lambda (transfer)
+                             (and (xlib:window-equal window (first transfer))
+                                  (eq property (second transfer))))
+                           (holding-transfers holding))))
+    (when transfer
+      (let* ((octets (holding-octets holding))
+             (start (third transfer))
+             (end (min (length octets) (+ start +piece+))))
+        (put-octets window property (subseq octets start end))
+        (setf (third transfer) end)
+        (when (= start end) (removef (holding-transfers holding) transfer))))))
+
+(defun hand-over (holding window target property)
+  "Put what HOLDING has into PROPERTY of WINDOW as TARGET. True if it can be had so."
+  (case target
+    (:targets (xlib:change-property window property '(:targets :utf8_string :string) :atom 32
+                                    :transform (lambda (name)
+                                                 (xlib:intern-atom (xlib:window-display window)
+                                                                   name)))
+     t)
+    ((:utf8_string :string :text)
+     (if (< +piece+ (length (holding-octets holding)))
+         (begin-pieces holding window property)
+         (put-octets window property (holding-octets holding)))
+     t)))
+
+(defun answer-request (holding window selection target property time)
+  (let ((property (or property target)))
+    (xlib:send-event window :selection-notify nil
+                     :window window :event-window window :selection selection :target target
+                     :property (and (hand-over holding window target property) property)
+                     :time time)))
+
+(defun serve (holding display)
+  "Answer programs that ask on DISPLAY for what HOLDING has, until others hold what it has held, and
+those that still fetch it are content, or have given up."
+  (loop while (or (holding-selections holding) (holding-transfers holding))
+        always
+           (xlib:event-case (display :timeout (if (holding-selections holding)
+                                                  nil
+                                                  +patience-with-others+)
+                                     :discard-p t :force-output-p t)
+             (:selection-request (requestor selection target property time)
+               (answer-request holding requestor selection target property time)
+               t)
+             (:property-notify (window atom state)
+               (when (eq state :deleted) (hand-next-piece holding window atom))
+               t)
+             (:selection-clear (selection)
+               (removef (holding-selections holding) selection)
+               t))))
+
+(defun serve-until-over (holding display)
+  ;; The X server may go; who asks may vanish before he is answered.
+  (setf (xlib:display-error-handler display) (constantly nil))
+  (unwind-protect (ignore-errors (serve holding display))
+    (ignore-errors (xlib:close-display display :abort t))))
+
+(defun hold (holding display selections)
+  "Let HOLDING be what SELECTIONS hold."
+  (let ((mailbox (make-mailbox display)))
+    (dolist (selection selections)
+      (xlib:set-selection-owner display selection mailbox nil)
+      (when (xlib:window-equal mailbox (xlib:selection-owner display selection))
+        (push selection (holding-selections holding))))))
+
+(defgeneric hold-text (port text selections)
+  (:documentation "Let other programs on the X server of PORT have TEXT, by each of SELECTIONS,
+:PRIMARY or :CLIPBOARD, until one of them copies something.")
+  (:method (port text selections) (declare (ignore port text selections)))
+  (:method ((port clim-clx:clx-port) text selections)
+    (let ((display (connect port)) (holding (make-holding (encoded text))))
+      (hold holding display selections)
+      (start-thread (lambda () (serve-until-over holding display)) "what was copied"))))
