@@ -252,7 +252,7 @@
       (robot:place-robot robot 7.5 6.5 0)
       (run:run-ticks 1)
       (command:robot-go-forward robot 1)
-      (run:run-ticks 2)
+      (run:run-ticks 10)
       (is (shows-p '(:trail) "60.5,52.5 \""))
       (is (not (shows-p '() "60.5,52.5 \"")))
       (is (shows-p '(:odometer) (web (display::layer-ink :odometer)))))

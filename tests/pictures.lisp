@@ -111,7 +111,7 @@
     (robot:place-robot robot 4.5 4.5 0)
     (run:run-ticks 1)
     (command:robot-go-forward robot 1)
-    (run:run-ticks 2)
+    (run:run-ticks 10)
     (display:svg-picture robot :layers layer :in-color nil)))
 
 (test layers.have-lines-of-their-own-without-colours
