@@ -169,6 +169,14 @@
 
 ;;; What all pictures know.
 
+(test files.unknown-keywords-are-warned-of-while-compiling
+  (flet ((warned (form)
+           (handler-case (progn (compile nil `(lambda (robot) ,form)) nil)
+             (warning (condition) (princ-to-string condition)))))
+    (is (search "save-picture has no keyword :colour; it knows"
+                (or (warned '(ars:save-picture robot "x.svg" :colour t)) "")))
+    (is (null (warned '(ars:save-picture robot "x.svg" :title "Yard"))))))
+
 (test pictures.list-their-keywords-when-given-another
   (in-studio (robot)
     (flet ((said (function &rest arguments)

@@ -116,7 +116,7 @@
                ("X); give the name of a substance" :unknown (ars:glass x))
                ("1 2); give the name of a substance" :unknown (ars:glass 1 2))
                ("limit is 0; give an integer" :limit 0)
-               ("Expected a clause: wall, rect, circle or obj" :clauses ((wal (0 0)))))
+               ("expected a clause: wall, rect, circle or obj" :clauses ((wal (0 0)))))
         do (check-complaint words (apply #'complaint-of-image (pgm-text *corner*) options)))
   (with-floor (yaml (pgm-text *corner*))
     (signals base:wrong-argument (ars:import-map yaml :name :key))

@@ -9,7 +9,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
                 #:with-gensyms #:symbolicate #:make-keyword #:hash-table-values
                 #:read-file-into-string #:starts-with-subseq #:ends-with
                 #:ends-with-subseq #:define-constant #:proper-list-p
-                #:parse-ordinary-lambda-list)
+                #:parse-ordinary-lambda-list #:simple-style-warning)
   ;; For debuggers.lisp alone.
   (:import-from :sb-thread #:get-foreground #:interactive-threads)
   ;; For closures.lisp alone.
