@@ -89,7 +89,7 @@ VISIONS."
     (list (display::turn-dashes position) (display::hollow-head-p position))))
 
 (test palette.many-robots-and-ways-are-told-apart-by-all-eyes
-  "The first forty by colour and dashes; ten robots without colours as well, and five ways."
+  "The first forty by colour and dashes; ten robots and ways without colours as well."
   (is (<= 20 (least-difference display::+turn-inks+ (remove :grey *visions* :key #'first))))
   (flet ((distinct-p (count function)
            (= count (length (remove-duplicates (loop for position below count

@@ -42,12 +42,14 @@ of the lines that lead to names, x y x y each."
   (call-with-crowd
    (lambda (snapshot)
      (let* ((robots (display:snapshot-robots snapshot))
-            (spot (display::robot-spot (first robots) robots)))
+            (spots (loop for robot in robots collect (display::robot-spot robot robots)))
+            (spot (first spots))
+            (rivals (display::rivals spot spots 200)))
        (destructuring-bind (x y) (display::pixels-of '(5 5))
-         (is-true (display::own-box-p spot (list (- x 60) (- y 5) (- x 20) (+ y 5))))
-         (is (not (display::own-box-p spot (list (+ x 34) (- y 5) (+ x 80) (+ y 5)))))
-         (is (not (display::leader-clear-p spot (list (+ x 70) y (+ x 99) (+ y 11)) '())))
-         (is-true (display::leader-clear-p spot (list (- x 99) y (- x 70) (+ y 11)) '())))))
+         (is-true (display::own-box-p spot (list (- x 60) (- y 5) (- x 20) (+ y 5)) rivals))
+         (is (not (display::own-box-p spot (list (+ x 34) (- y 5) (+ x 80) (+ y 5)) rivals)))
+         (is (not (display::leader-clear-p spot (list (+ x 70) y (+ x 99) (+ y 11)) '() rivals)))
+         (is-true (display::leader-clear-p spot (list (- x 99) y (- x 70) (+ y 11)) '() rivals)))))
    *crowd* 14 14))
 
 (test names.of-robots-stand-close-beside-them
