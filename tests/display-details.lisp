@@ -131,7 +131,7 @@
     (let ((other (words-in-picture robot :display :hands)))
       (is (member "empty" other :test #'string=)))))
 
-(test details.where-no-view-was-taken-it-says-so
+(test details.where-no-view-was-asked-for-it-says-what-is-in-view
   (in-studio (robot)
     (is (mentions-p (format nil "~{~A~^ ~}" (words-in-picture robot :display :cameras))
-                    "View: none asked for yet"))))
+                    "View now: 10.0 50.0"))))
