@@ -2,6 +2,18 @@
 
 (in-package :ars-magna.cli)
 
+(defun call-telling-frames (session function)
+  "Call FUNCTION, which draws frames of the current run, and say at the terminal of SESSION how far
+that has come."
+  (let ((end (simulation-tick (current-simulation))))
+    (call-with-progress
+     (lambda (progress)
+       (let ((*frame-hook* (lambda (tick)
+                             (note-progress progress "Tick ~D of ~D. Control-C stops it." tick
+                                            end))))
+         (funcall function)))
+     (session-console session) (terminal-p session))))
+
 (define-line "FILM" (session (file :file "a name that ends in .html or .svg")
                              (what :rest "pixels to a cell, and names of layers; BARE" :optional))
     (:seeing)
@@ -10,5 +22,8 @@ be played, stopped and gone through, or an animated picture. What robots grasped
 stowed, which commands and plans failed, and errors in your code are marked. The words after FILE
 are those of PICTURE."
   (check-run)
-  (format t "~A~%" (native-name (apply #'save-animation nil (path-called file)
-                                       (picture-options what "FILM")))))
+  (let ((options (picture-options what "FILM")))
+    (format t "~A~%" (native-name (call-telling-frames
+                                   session
+                                   (lambda ()
+                                     (apply #'save-animation nil (path-called file) options)))))))

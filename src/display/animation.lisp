@@ -9,6 +9,10 @@
 (define-constant +frame-limit+ 600
   :documentation "How many frames a run is shown in at most, unless the user asks for more.")
 
+(defvar *frame-hook* (constantly nil)
+  "A function that is called with the tick of each frame of a run that is drawn, for those who say
+how far that has come.")
+
 (defun call-with-frames (function journal every until &optional (watch #'identity))
   "Replay JOURNAL up to the tick UNTIL (NIL: its end); call FUNCTION with a snapshot of its
 beginning, of every EVERY ticks and of its end, and WATCH with the simulation at the beginning and
@@ -17,7 +21,8 @@ after each tick."
     (labels ((show (simulation)
                (setf last (take-snapshot (simulation-world simulation) last))
                ;; What is wrong with drawing is to be told here, not in the run repeated.
-               (let ((*message-queue* queue)) (funcall function last)))
+               (let ((*message-queue* queue)) (funcall function last))
+               (funcall *frame-hook* (snapshot-tick last)))
              (look (simulation)
                (keep-history simulation)
                (funcall watch simulation)

@@ -45,6 +45,6 @@
   ;; picture, animation
   (:export #:picture-scale)
   (:export #:picture-kind #:save-svg #:save-picture #:save-snapshot #:svg-picture #:save-animation
-           #:shown-end #:save-way-picture)
+           #:*frame-hook* #:shown-end #:save-way-picture)
   ;; opening
   (:export #:open-display #:*display-opener* #:*displays-waiter* #:announce-display))
