@@ -391,13 +391,3 @@
            (display:*frame-hook* (lambda (tick) (push tick ticks))))
       (film-of robot (lambda (robot) (declare (ignore robot)) (run:run-ticks 5)))
       (is (equal '(0 1 2 3 4 5) (reverse ticks))))))
-
-(test names.stand-where-they-did-though-not-all-places-are-tried
-  "The first place that hides nothing is the best one."
-  (in-studio (robot)
-    (let* ((snapshot (display:take-snapshot (robot:robot-world robot)))
-           (boxes (loop for x from 20 to 60 by 10 collect (list x 20 (+ x 8) 28))))
-      (canvas:with-canvas ((make-instance 'display::blank-canvas) :scale 8)
-        (is (equal (first boxes) (display::best-box snapshot '() boxes '())))
-        (is (equal (third boxes)
-                   (display::best-box snapshot '() boxes (list '(0 0 39 100)))))))))
