@@ -293,7 +293,8 @@
                  (:file "prompt") (:file "plan-pane") (:file "layout-pane") (:file "titles")
                  (:file "splitters") (:file "bar") (:file "strip")
                  (:file "popup") (:file "pointing") (:file "interactor") (:file "offers")
-                 (:file "plan-mouse") (:file "world-mouse") (:file "keys") (:file "keyboard")
+                 (:file "plan-mouse") (:file "detail-mouse") (:file "world-mouse") (:file "keys")
+                 (:file "keyboard")
                  (:file "help")
                  (:file "robots") (:file "window") (:file "line-menus") (:file "commands")
                  (:file "menus") (:file "menu-keys") (:file "habits") (:file "opening")
@@ -328,8 +329,10 @@
   :serial t
   :components ((:module "tests" :serial t
                 :components ((:file "clim-client") (:file "clim-window") (:file "clim-layout")
-                             (:file "clim-view") (:file "clim-pointing") (:file "clim-menus")
-                             (:file "clim-progress") (:file "clim-plans")
+                             (:file "clim-view") (:file "clim-pointing")
+                             (:file "clim-holding")
+                             (:file "clim-menus")
+                             (:file "clim-progress") (:file "clim-plans") (:file "clim-truths")
                              (:file "clim-talking") (:file "clim-going-on")
                              (:file "clim-awaiting")
                              (:file "clim-x-server") (:file "clim-magnification")

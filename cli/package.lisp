@@ -78,9 +78,9 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:export #:read-argument #:argument-words)
   ;; session, prompt
   (:export #:session #:make-session #:session-robot #:session-errors #:session-input
-           #:run-session #:prompt #:*prompt-robot* #:*whereabouts-hooks*)
+           #:run-session #:prompt #:*prompt-robot* #:*whereabouts-hooks* #:*break-hooks*)
   ;; listening, going-on
-  (:export #:listen-instead #:go-to-run #:run-after #:tell-of-run #:away-p #:way-in)
+  (:export #:listen-instead #:go-to-run #:run-after #:tell-of-run #:away-p #:way-in #:pace-of)
   ;; breakage
   (:export #:awaited-answers #:ways-awaited #:simulator-broken-p #:answers-break-p)
   ;; sessions

@@ -104,8 +104,10 @@
 
 (test fork.goes-back-too
   (let ((lines (type-batch "go 2.4" "fork" "step 9" "rewind 4" "fork off")))
-    (is (equal '("Tick 12, headless." "Back from the fork. Tick 7, headless.")
-               (remove-if-not (lambda (line) (search "headless" line)) lines)))))
+    (is (equal '("Tick 12, in a fork: STEP lets time pass." "Back from the fork. Tick 7, headless.")
+               (remove-if-not (lambda (line)
+                                (or (search "headless" line) (search "in a fork:" line)))
+                              lines)))))
 
 (test fork.goes-into-another-and-as-chance-will-have-it
   (flet ((states (&rest forks)

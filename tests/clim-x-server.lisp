@@ -95,7 +95,7 @@
 (test screen.what-went-leaves-nothing-behind
   "Designators that have gone are not to be seen any more."
   (in-x-window (window robot)
-    (inside (window) (lay-out window 640 480))
+    (inside (window) (lay-out window 1180 820))
     (flet ((look ()
              (time:asking (robot)
                (window::publish (window:window-watcher window) (time:current-simulation)))

@@ -163,5 +163,6 @@
              ("trial choosing-by-" "trial choosing-by-rollouts")))
 
 (test completing.knows-the-words-of-maps
-  (completes ("map " "map belief" "map cones" "map legend" "map plan" "map way")
+  (completes ("map " "map belief" "map cones" "map designators" "map legend" "map plan"
+                     "map planned-way" "map trail" "map way" "map wedges")
              ("map 5 co" "map 5 cones") ("watch 5 way b" "watch 5 way belief")))

@@ -131,7 +131,17 @@
     (let ((other (words-in-picture robot :display :hands)))
       (is (member "empty" other :test #'string=)))))
 
-(test details.where-no-view-was-taken-it-says-so
+(test details.where-no-view-was-asked-for-it-says-what-is-in-view
   (in-studio (robot)
     (is (mentions-p (format nil "~{~A~^ ~}" (words-in-picture robot :display :cameras))
-                    "View: none asked for yet"))))
+                    "View now: 10.0 50.0"))))
+
+(test names.stand-where-they-did-though-not-all-places-are-tried
+  "The first place that hides nothing is the best one."
+  (in-studio (robot)
+    (let* ((snapshot (display:take-snapshot (robot:robot-world robot)))
+           (boxes (loop for x from 20 to 60 by 10 collect (list x 20 (+ x 8) 28))))
+      (canvas:with-canvas ((make-instance 'display::blank-canvas) :scale 8)
+        (is (equal (first boxes) (display::best-box snapshot '() boxes '())))
+        (is (equal (third boxes)
+                   (display::best-box snapshot '() boxes (list '(0 0 39 100)))))))))

@@ -394,3 +394,11 @@
       (is (mentions-p (handler-case (display:save-way-picture 'studio '(nil) file)
                         (base:wrong-argument (condition) (text-of condition)))
                       "FIND-WAY")))))
+
+(test film.tells-of-each-frame-that-is-drawn
+  "So that a prompt can say how far a film has come."
+  (in-studio (robot)
+    (let* ((ticks '())
+           (display:*frame-hook* (lambda (tick) (push tick ticks))))
+      (film-of robot (lambda (robot) (declare (ignore robot)) (run:run-ticks 5)))
+      (is (equal '(0 1 2 3 4 5) (reverse ticks))))))

@@ -16,18 +16,21 @@ lines; NIL if there is none."
 
 ;;; What of it.
 
-(defparameter *map-words* '("CONES" "WAY" "PLAN" "BELIEF" "LEGEND")
-  "The words that MAP understands.")
+(defparameter *map-words*
+  (append '("CONES" "WAY" "PLAN" "BELIEF" "LEGEND")
+          (mapcar #'symbol-name (mapcar #'first +other-names+)))
+  "The words that MAP understands: its own, and what PICTURE calls the same.")
 
 (defun map-word (text)
-  "Return the keyword of *MAP-WORDS* that begins with TEXT. Signals BAD-LINE if there is none."
+  "Return the keyword of one of *MAP-WORDS*, the one that begins with TEXT, as TEXT-MAP calls it.
+Signals BAD-LINE if there is none."
   (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word))
                        *map-words*)))
     (unless word
       (reject-line "MAP does not know ~A.~@[ Did you mean ~A?~] It takes a radius, or LEFT TOP ~
                     RIGHT BOTTOM, and ~{~A~#[~; or ~:;, ~]~}."
                    text (nearest-name text *map-words*) *map-words*))
-    (make-keyword word)))
+    (text-layer-named (make-keyword word))))
 
 (defun words-in (text)
   (remove "" (uiop:split-string text :separator '(#\Space #\Tab)) :test #'string=))
@@ -89,5 +92,6 @@ LINES-BELOW lines."
     "Show the world as characters: all of it, what is within a radius of the robot, or a region.
 CONES shows what the robot's cameras have in view, WAY where it went, PLAN which way it is about to
 go, BELIEF where it believes itself and what its designators denote to be, LEGEND only what the
-characters mean."
+characters mean. What PICTURE calls WEDGES, TRAIL, PLANNED-WAY and DESIGNATORS, those words mean
+here, too."
   (write-string (map-text session (map-options what))))

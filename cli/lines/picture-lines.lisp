@@ -6,8 +6,9 @@
 
 (defun picture-words ()
   "Return the words that PICTURE understands: names of layers, and BARE for none of those shown by
-default."
-  (append (mapcar #'symbol-name +picture-layers+) (list "BARE")))
+default; and what MAP calls the same."
+  (append (mapcar #'symbol-name +picture-layers+) (list "BARE")
+          (mapcar #'symbol-name (mapcar #'second +other-names+))))
 
 (defun picture-word (text line)
   "Return the keyword of PICTURE-WORDS that begins with TEXT, which was typed after LINE, a command.
@@ -18,7 +19,7 @@ Signals BAD-LINE if there is none."
       (reject-line "~A does not know ~A.~@[ Did you mean ~A?~] It takes a file, a scale, and ~
                     words: ~{~A~^, ~}."
                    line text (nearest-name text (picture-words)) (picture-words)))
-    (make-keyword word)))
+    (layer-named (make-keyword word))))
 
 (defun picture-options (text &optional (line "PICTURE"))
   "Return as options of SAVE-PICTURE what TEXT, as typed after LINE and the name of the file, asks
@@ -39,7 +40,7 @@ for."
           (loop for layer in layers
                 for name = (substitute #\Space #\- (symbol-name layer))
                 for title = (layer-title layer)
-                collect (list (symbol-name layer)
+                collect (list (layer-words layer)
                               (and (not (string-equal title name)) (string-downcase title))))))
 
 (define-line "PICTURE" (session (file :file "a name that ends in .svg or .png")

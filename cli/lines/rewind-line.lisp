@@ -33,12 +33,12 @@
 
 (defun rewind-and-tell (session ticks)
   "Let SESSION go on TICKS ticks back, and say where that is."
-  (rewind-here session ticks)
-  (tell-others session *simulation*
-               (format nil "Another prompt has let the run go back to tick ~D.~%"
-                       (simulation-tick *simulation*)))
-  (format t "~A~@[ Plans under way: ~{~A~^, ~}.~]~%"
-          (time-text session *simulation*) (mapcar #'task-label (plans))))
+  (let ((tick (- (simulation-tick *simulation*) ticks)))
+    (rewind-here session ticks)
+    (tell-others session *simulation*
+                 (format nil "Another prompt has let the run go back to tick ~D.~%" tick))
+    (format t "~A~@[ Plans under way: ~{~A~^, ~}.~]~%"
+            (time-text session *simulation* tick) (mapcar #'task-label (plans)))))
 
 (define-line "REWIND" (session (n tick-span "how far"))
     (:running)

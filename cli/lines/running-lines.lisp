@@ -10,10 +10,12 @@
       (reject-line "Here time passes only as commands need it. STEP lets more of it pass."))
     simulation))
 
-(defun time-text (session simulation)
-  (format nil "Tick ~D, ~A." (simulation-tick simulation)
+(defun time-text (session simulation &optional (tick (simulation-tick simulation)))
+  "Return in words that it is TICK in SIMULATION, in which SESSION is, and how time passes there."
+  (format nil "Tick ~D, ~A." tick
           (cond ((session-visit session) (visit-text (session-visit session)))
                 ((simulation-over simulation) (simulation-over simulation))
+                ((plusp (session-forks session)) "in a fork: STEP lets time pass")
                 ((headless-p simulation) "headless")
                 ((not (live-p simulation)) "stopped; RESUME goes on")
                 ((paused-p simulation) "paused")
@@ -80,6 +82,13 @@ sits."
             rate
             (reject-line "The rate cannot be ~A. Give ~A." text (argument-type-text 'rate))))))
 
+(defun later-rate-text (session simulation)
+  "Return in words at what rate ticks will pass in SIMULATION, in which SESSION is, if that is
+paused."
+  (let ((visit (session-visit session)))
+    (cond ((and visit (not (visit-running-p visit))) (rate-text (visit-rate visit)))
+          ((and (null visit) (paused-p simulation)) (rate-text (simulation-rate simulation))))))
+
 (define-line "RATE" (session (x :rate "a number of ticks per second, or free" :optional))
     (:running)
     "Set the pace of a live simulator; show what it is, and how many ticks have passed. While it is
@@ -89,7 +98,8 @@ idle, none pass: nothing moves by itself in its world, and nobody has asked for 
       (if (session-visit session)
           (set-visit-rate (session-visit session) (parse-rate x))
           (set-rate (parse-rate x) (live-simulation))))
-    (format t "~A~%" (time-text session simulation))))
+    (format t "~A~@[ Later: ~A.~]~%" (time-text session simulation)
+            (and x (later-rate-text session simulation)))))
 
 (define-line "SEED" (session (n integer "the seed"))
     (:running)

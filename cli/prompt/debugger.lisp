@@ -211,8 +211,13 @@ threads, until that goes on."
                                (restarts-within condition))
                       'abort)))
 
+(defvar *break-hooks* '()
+  "Functions, or their names, of no arguments, that are called in a thread that has broken, before
+it asks how it goes on: for those who show what stands still then.")
+
 (defun debug-breakage (sessions breakage)
   "Let the users of SESSIONS say how BREAKAGE, of this thread, is to go on."
+  (mapc #'funcall *break-hooks*)
   (if (eq (session-thread (first sessions)) (current-thread))
       (debug-here (first sessions) breakage)
       (debug-elsewhere sessions breakage)))

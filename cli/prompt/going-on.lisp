@@ -37,11 +37,16 @@ SIMULATION, which is over, and the name of the robot that it commands there; NIL
   "True if SESSION is in a trial or a fork."
   (or (session-visit session) (plusp (session-forks session))))
 
+(defun visitor-of (simulation)
+  "Return the session that has come into SIMULATION by TRIAL or FORK and is there, or NIL."
+  (find-if (lambda (session)
+             (and (eq simulation (session-whereabouts session)) (away-p session)))
+           (sessions-at-work)))
+
 (defun way-in (simulation)
   "Return in words how a prompt has come into SIMULATION, if by TRIAL or FORK, or NIL."
-  (loop for session in (sessions-hearing simulation)
-        thereis (cond ((session-visit session) "a trial")
-                      ((plusp (session-forks session)) "a fork"))))
+  (let ((session (visitor-of simulation)))
+    (and session (if (session-visit session) "a trial" "a fork"))))
 
 (defun say-in (session text)
   "Show TEXT, a line, in SESSION, and the prompt again. Any thread may ask."

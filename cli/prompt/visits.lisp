@@ -70,6 +70,22 @@
         ((visit-running-p visit) (rate-text (visit-rate visit)))
         (t "paused")))
 
+(defun pace-of-visit (visit)
+  "Return how time passes in VISIT: :RUNNING, :PAUSED or :ENDED; and at what rate, or NIL where it
+has none."
+  (cond ((visit-result visit) :ended)
+        ((plusp (visit-steps visit)) :running)
+        ((visit-running-p visit) (values :running (visit-rate visit)))
+        (t (values :paused (visit-rate visit)))))
+
+(defun pace-of (simulation)
+  "Return how time passes in SIMULATION, if a prompt is there by TRIAL or FORK: :RUNNING, :PAUSED,
+:ENDED or :FORKED, and at what rate, or NIL. Else return NIL."
+  (let ((session (visitor-of simulation)))
+    (cond ((null session) nil)
+          ((session-visit session) (pace-of-visit (session-visit session)))
+          (t :forked))))
+
 (defun leave-visit (session &optional (next #'values))
   "Leave the trial that SESSION is in; then call NEXT, a function. Nobody hears what the trial has
 to say of that."

@@ -10,16 +10,16 @@ KNOWN."
           do (reject-name (format nil "keyword of ~(~A~)" operator) key known)))
 
 (defun warn-of-keywords (operator known options)
-  "Warn, while a call of OPERATOR is compiled, of a keyword among the forms OPTIONS that is not one of
-KNOWN."
+  "Warn, while a call of OPERATOR is compiled, of a keyword among the forms OPTIONS that is not one
+of KNOWN."
   (loop for (key) on options by #'cddr
         when (and (keywordp key) (not (member key known)) (not (eq key :allow-other-keys)))
           do (simple-style-warning "~(~A~) has no keyword ~(~S~); it knows ~{~(~S~)~^, ~}."
                                    operator key known)))
 
 (defun with-options (lambda-list)
-  "Return LAMBDA-LIST with any keywords allowed, the variable of all that are given, which are known,
-and how many arguments come before them."
+  "Return LAMBDA-LIST with any keywords allowed, the variable of all that are given, which are
+known, and how many arguments come before them."
   (destructuring-bind (required optional rest keys allowed aux keys-p)
       (multiple-value-list (parse-ordinary-lambda-list lambda-list))
     (declare (ignore optional allowed aux keys-p))
@@ -32,8 +32,8 @@ and how many arguments come before them."
 
 (defmacro define-with-keywords (name lambda-list documentation &body body)
   "Define the function NAME as DEFUN does, with LAMBDA-LIST, which has keywords and nothing optional
-besides. Called with a keyword that is not among these it signals UNKNOWN-NAME, which lists them; the
-compiler warns of such a call."
+besides. Called with a keyword that is not among these it signals UNKNOWN-NAME, which lists them;
+the compiler warns of such a call."
   (multiple-value-bind (all options known count) (with-options lambda-list)
     (multiple-value-bind (forms declarations) (parse-body body)
       `(progn

@@ -13,7 +13,9 @@
 (define-constant +menus-height+ 20 :documentation "How high the bar of menus is, in pixels.")
 (define-constant +bar-height+ 26 :documentation "How high the tool bar is, in pixels.")
 (define-constant +strip-height+ 36 :documentation "How high the status strip is, in pixels.")
-(define-constant +prompt-height+ 36 :documentation "How high the place to type in is, in pixels.")
+(define-constant +prompt-rows+ 2 :documentation "How many rows the place to type in has at least.")
+(define-constant +prompt-height+ 36
+  :documentation "How high the place to type in is with these, in pixels.")
 (define-constant +splitter+ 6 :documentation "How thick splitters are, in pixels.")
 (define-constant +wide+ 1500
   :documentation "From what width of a window on plans have a column of their own, in pixels.")
@@ -191,13 +193,23 @@ column of sections, DOWN pixels."
     (cons (list 'low-splitter 0 top width +splitter+)
           (place-section 'transcript 0 low width (- bottom low +title-height+)))))
 
-(defun arrange (wishes needs width height)
+(defun prompt-height (rows transcript)
+  "Return how high the place to type in is for ROWS, if with the transcript, TRANSCRIPT pixels high,
+it has so much room: a little of that stays."
+  (clamp (+ +prompt-height+ (* +line-height+ (- rows +prompt-rows+)))
+         +prompt-height+
+         (max +prompt-height+ (+ +prompt-height+ (- transcript +title-height+ 40)))))
+
+(defun arrange (wishes needs width height &optional (rows +prompt-rows+))
   "Return the places of all parts of a window of WIDTH times HEIGHT pixels, as WISHES want it. NEEDS
-is a function from a section to how many pixels high it would like to be."
+is a function from a section to how many pixels high it would like to be. What is typed has ROWS,
+and takes the room of those beyond the usual from the transcript."
   (let* ((top (+ +menus-height+ +bar-height+))
          (strip (- height +strip-height+))
-         (prompt (- strip +prompt-height+))
-         (splitter (- prompt (transcript-height wishes height) +splitter+))
+         (transcript (transcript-height wishes height))
+         (typed (prompt-height rows transcript))
+         (prompt (- strip typed))
+         (splitter (- strip +prompt-height+ transcript +splitter+))
          (down-p (< height +low+))
          (column (+ (details-width wishes width) +splitter+)))
     (append (list (list 'menus 0 0 width +menus-height+)
@@ -205,5 +217,5 @@ is a function from a section to how many pixels high it would like to be."
             (place-displays wishes needs width top (- splitter top)
                             (- (if down-p prompt splitter) top))
             (place-low (if down-p (- width column) width) splitter prompt)
-            (list (list 'interactor 0 prompt width +prompt-height+)
+            (list (list 'interactor 0 prompt width typed)
                   (list 'strip 0 strip width +strip-height+)))))

@@ -24,18 +24,18 @@ whether the button is on."
   (format nil "~A (key: ~A)" (button-help button) (key-text (button-key button))))
 
 (defun pause-label (window)
-  (if (paused-p (window-simulation window)) "Resume" "Pause"))
+  (if (paused-here-p (window-simulation window)) "Resume" "Pause"))
 
 (defun following-p (window) (pane-following-p (pane-named window 'world)))
 
 (defparameter *buttons*
   (list (make-button 'pause-label #\Space 'com-pause-or-resume
                      "Let time stand still, or go on"
-                     (lambda (window) (paused-p (window-simulation window))))
+                     (lambda (window) (paused-here-p (window-simulation window))))
         (make-button "Step" #\. 'com-step "Let one tick pass, and pause")
         (make-button "Slower" #\- 'com-slower "Halve the rate of ticks")
         (make-button "Faster" #\+ 'com-faster "Double the rate of ticks")
-        (make-button "Back" #\B 'com-back "Go back a few ticks, as REWIND does")
+        (make-button "Back" #\B 'com-back "Go back ten ticks, and pause")
         (make-button "Fit" #\F 'com-fit "Show the whole map")
         (make-button "Follow" #\R 'com-follow "Keep the robot in view" 'following-p)
         (make-button "Layers" #\L 'com-layers "Choose what the world shows")

@@ -31,14 +31,18 @@
 
 (define-window-command (com-pause-or-resume "Pause or go on") (window)
     "Let time stand still, or go on."
-  (if (paused-p (window-simulation window)) (com-resume) (com-pause)))
+  (if (paused-here-p (window-simulation window)) (com-resume) (com-pause)))
 
 (define-constant +back+ 10 :documentation "How many ticks a step back is.")
 
+;; Ticks that pass would undo it at once, so they do not, as after a step.
 (define-window-command (com-back "Go back") (window)
-    "Go back some ticks, as the prompt's REWIND does, or to tick 0."
-  (let ((passed (simulation-tick (window-simulation window))))
-    (give-line (window-conversation window) (format nil "rewind ~D" (min +back+ passed)))))
+    "Pause, and go back some ticks, as the prompt's REWIND does, or to the first that there is to go
+back to."
+  (let ((simulation (window-simulation window)))
+    (when (live-p simulation) (pause simulation))
+    (let ((passed (- (simulation-tick simulation) (or (earliest-tick simulation) 0))))
+      (give-line (window-conversation window) (format nil "rewind ~D" (min +back+ passed))))))
 
 (define-window-command (com-step "Step") (window)
     "Pass one tick and pause; none while the tick that is under way has broken."
@@ -46,16 +50,27 @@
       (tell-to-answer (window-conversation window) "Step")
       (steer window (lambda (simulation) (step-ticks 1 simulation)) "step 1")))
 
+(defun say-in-window (window &rest arguments)
+  (say (window-transcript window) (apply #'format nil arguments)))
+
+(defun let-rate-be (window rate)
+  "Let ticks pass at RATE in what WINDOW shows, if they pass by themselves there."
+  (let ((simulation (window-simulation window)))
+    (cond ((live-p simulation)
+           (set-rate rate simulation)
+           (say-in-window window "~:[Ticks pass as fast as they can~;~:*~A ticks a second~].~%"
+                          (and (realp rate) (number-text (simulation-rate simulation)))))
+          ((rate-set simulation)
+           (give-line (window-conversation window)
+                      (format nil "rate ~:[free~;~:*~A~]" (and (realp rate) (number-text rate)))))
+          (t (say-in-window window "Here time passes only as commands need it: there is no ~
+                                    rate.~%")))))
+
 (defun change-rate (window factor)
-  (let* ((simulation (window-simulation window)) (rate (simulation-rate simulation)))
-    (flet ((tell (&rest arguments)
-             (say (window-transcript window) (apply #'format nil arguments))))
-      (cond ((not (live-p simulation))
-             (tell "Here time passes only as commands need it: there is no rate.~%"))
-            ((realp rate)
-             (set-rate (clamp (* rate factor) 1/8 100000) simulation)
-             (tell "~A ticks a second.~%" (number-text (simulation-rate simulation))))
-            (t (tell "Ticks pass as fast as they can; RATE sets how many a second.~%"))))))
+  (let ((rate (rate-set (window-simulation window))))
+    (if (eq rate :free)
+        (say-in-window window "Ticks pass as fast as they can; RATE sets how many a second.~%")
+        (let-rate-be window (clamp (* (or rate 1) factor) 1/8 100000)))))
 
 (define-window-command (com-faster "Twice as fast") (window)
     "Double the rate of ticks."
@@ -67,11 +82,11 @@
 
 (define-window-command (com-default-rate "Default rate") (window)
     "Set the rate of ticks to the default."
-  (set-rate *default-rate* (window-simulation window)))
+  (let-rate-be window *default-rate*))
 
 (define-window-command (com-free "As fast as possible") (window)
     "Let ticks pass as fast as they can."
-  (set-rate :free (window-simulation window)))
+  (let-rate-be window :free))
 
 (define-window-command (com-interrupt "Interrupt") (window)
     "End the line that is under way, as control-C does."
@@ -117,7 +132,7 @@
   (let ((pane (pane-named window 'world)))
     (setf (pane-following-p pane) (not (pane-following-p pane)))
     (when (and (pane-following-p pane) (pane-fitting-p pane))
-      (hint window "The whole map is in view; the wheel zooms in."))
+      (hint window *all-in-view*))
     (refresh window)))
 
 (define-window-command (com-larger "All larger") (window)
@@ -132,8 +147,15 @@
     "Switch between colours and black and white."
   (switch-color window))
 
+(defun button-left (window command)
+  "Return where the button that does COMMAND begins in the bar of WINDOW; near its left edge if none
+does."
+  (loop for (subject left) in (pane-subjects (pane-named window 'bar))
+        when (and (button-p subject) (eq command (button-command subject))) return (floor left)
+        finally (return 8)))
+
 (defun open-below-bar (window rows opener)
-  (open-popup window rows 8 (+ +menus-height+ +bar-height+ 2) opener))
+  (open-popup window rows (button-left window opener) (+ +menus-height+ +bar-height+ 2) opener))
 
 (define-window-command (com-layers "Layers") (window)
     "Choose what the display of the world shows."

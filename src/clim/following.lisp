@@ -40,3 +40,16 @@
                (take-along window new)))))))
 
 (pushnew 'follow-prompt ars-magna.cli:*whereabouts-hooks*)
+
+;;; A program that has broken asks how it goes on: what it stands in is shown as it stands.
+
+(defun show-as-it-stands ()
+  "Let the windows on the run in whose tick this thread is show how that stands."
+  (dolist (window (open-windows))
+    (let* ((watcher (window-watcher window)) (simulation (watcher-simulation watcher)))
+      (when (and simulation (eq simulation *simulation*)
+                 (mine-p (timeline-custody (simulation-timeline simulation))))
+        (look-as-it-stands (watcher-plans watcher))
+        (publish watcher simulation)))))
+
+(pushnew 'show-as-it-stands ars-magna.cli:*break-hooks*)

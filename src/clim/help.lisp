@@ -37,8 +37,13 @@
           (if (member layer layers) (remove layer layers) (cons layer layers)))
     (repaint-if-changed (pane-named window 'world))))
 
+(defun layer-text (layer)
+  "Return what the panel calls LAYER, with the words for it in lines of the prompt."
+  (let ((title (layer-title layer)) (words (layer-words layer)))
+    (format nil "~A~:[   ~(~A~)~;~]" title (string-equal title words) words)))
+
 (defun layer-row (window layer)
-  (make-row (layer-title layer)
+  (make-row (layer-text layer)
             :tick-p t :stays-p t
             :tick (lambda () (member layer (window-layers window)))
             :action (lambda () (switch-layer window layer))))

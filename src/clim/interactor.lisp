@@ -46,7 +46,8 @@
   "Return what is said above TEXT, which is being typed, or NIL."
   (let ((count (1+ (count #\Newline text))))
     (when (< 1 count)
-      (format nil "~D lines: return enters them one by one, control-C drops them." count))))
+      (format nil "~D lines: return enters all, one after the other; control-C drops them."
+              count))))
 
 (defun asked-text (answers)
   "Return what is said above the line that is typed while ANSWERS, texts, are awaited; or NIL."
@@ -69,6 +70,14 @@
          (busy (busy-with conversation)))
     (cond (shown (append shown (row-above conversation (second shown))))
           (busy (append (shown-ahead conversation) (list (busy-text busy) :red))))))
+
+(defun rows-wanted (pane)
+  "Return how many rows PANE needs for all that is typed in it, and what is said above that."
+  (destructuring-bind (&optional label (text "") (point 0) note &rest ink) (what-is-shown pane)
+    (declare (ignore ink))
+    (+ (if note 1 0)
+       (length (ars-magna.cli:rows-to-show (ars-magna.cli:unpainted-text (or label "")) text point
+                                           (columns-and-rows pane) 1000)))))
 
 (defmethod pane-content ((pane interactor-pane))
   (list (what-is-shown pane) (focused-p pane)))

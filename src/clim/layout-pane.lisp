@@ -77,7 +77,15 @@ now, as (section pixels)."
 
 (defun arranged (layout needs)
   "Return where all parts of LAYOUT belong if its sections need NEEDS."
-  (multiple-value-call #'arrange (pane-wishes layout) (need-in needs) (pane-size layout)))
+  (multiple-value-call #'arrange (pane-wishes layout) (need-in needs) (pane-size layout)
+    (rows-typed layout)))
+
+(defun rows-typed (layout)
+  "Return how many rows the window of LAYOUT needs for what is typed in it."
+  (let ((interactor (pane-named (clim:pane-frame layout) 'interactor)))
+    (if (and interactor (window-conversation (clim:pane-frame layout)))
+        (rows-wanted interactor)
+        +prompt-rows+)))
 
 (defun enough-p (places needs)
   "True if each section has the height in PLACES that it has in NEEDS."

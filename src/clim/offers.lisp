@@ -35,7 +35,7 @@ connected, if there is one."
 
 (defun looking-into (form)
   "Return the offers to look into the value of FORM, a string."
-  (cons (list "Describe" (format nil "(describe ~A)" form)) (inspector-line form)))
+  (cons (list "All that Lisp has of it" (format nil "(describe ~A)" form)) (inspector-line form)))
 
 ;;; Things.
 
@@ -57,13 +57,6 @@ connected, if there is one."
   (camera-offers window "Look for such a thing with camera ~D"
                  (format nil "obj-desig ~~D non-local ~A" (looks-of image))))
 
-(defun denoted-offers (numbers window)
-  "Return what can be done with what the designators with NUMBERS denote."
-  (loop for number in numbers
-        append (camera-offers window
-                              (format nil "Track designator ~D with camera ~~D" number)
-                              (format nil "cam-track ~~D ~D" number))))
-
 (defun cameras-tracking (numbers window)
   "Return the indices of the cameras that track one of the designators with NUMBERS."
   (loop for camera in (robot-image-cameras (window-robot window))
@@ -71,17 +64,79 @@ connected, if there is one."
         when (and track (member (designator-image-number track) numbers))
           collect (camera-image-index camera)))
 
-(defun tracked-offers (numbers window)
-  "Return what can be done with what a camera tracks by a designator with one of NUMBERS."
+(defun denoted-offers (numbers window)
+  "Return what can be done with what the designators with NUMBERS denote: which cameras could track
+it that do not yet."
+  (loop for number in numbers
+        append (loop for camera in (robot-image-cameras (window-robot window))
+                     for index = (camera-image-index camera)
+                     unless (member index (cameras-tracking (list number) window))
+                       collect (list (format nil "Track designator ~D with camera ~D" number index)
+                                     (format nil "cam-track ~D ~D" index number)))))
+
+(defun reaching-offers (camera window)
+  "Return how to come to what CAMERA, a number, tracks, and to grasp it."
+  (cons (list (format nil "Approach it by camera ~D" camera) (format nil "goto-desig ~D" camera))
+        (loop for hand in (robot-image-hands (window-robot window))
+              for index = (hand-image-index hand)
+              unless (hand-image-contents hand)
+                collect (list (format nil "Grasp it with hand ~D" index)
+                              (format nil "hand-grasp ~D ~D" index camera)))))
+
+(defun tracked-offers (numbers window &key held-p)
+  "Return what can be done with what a camera tracks by a designator with one of NUMBERS. Of what is
+HELD-P by the robot itself that is less."
   (loop for camera in (cameras-tracking numbers window)
-        collect (list (format nil "Approach it by camera ~D" camera)
-                      (format nil "goto-desig ~D" camera))
-        append (loop for hand in (robot-image-hands (window-robot window))
-                     for index = (hand-image-index hand)
-                     collect (list (format nil "Grasp it with hand ~D" index)
-                                   (format nil "hand-grasp ~D ~D" index camera)))
+        unless held-p append (reaching-offers camera window)
         collect (list (format nil "Let camera ~D no longer track it" camera)
                       (format nil "cam-untrack ~D" camera))))
+
+;;; What is held.
+
+(defun hand-with (image window)
+  "Return the image of the hand of the robot of WINDOW that holds the thing of IMAGE, or NIL."
+  (find-if (lambda (hand)
+             (and (hand-image-contents hand)
+                  (same-subject-p image (hand-image-contents hand))))
+           (robot-image-hands (window-robot window))))
+
+(defun bin-with (image window)
+  "Return the image of the bin of the robot of WINDOW that the thing of IMAGE is in, or NIL."
+  (find-if (lambda (bin) (member image (bin-image-contents bin) :test #'same-subject-p))
+           (robot-image-bins (window-robot window))))
+
+(defun insert-offers (hands bins title)
+  "Return an offer, which TITLE describes, to put each of HANDS into each of BINS that is open."
+  (loop for hand in hands
+        append (loop for bin in bins
+                     unless (or (bin-image-closed-p bin) (hand-image-location hand))
+                       collect (list (format nil title (hand-image-index hand)
+                                             (bin-image-index bin))
+                                     (format nil "hand-insert-bin ~D ~D" (hand-image-index hand)
+                                             (bin-image-index bin))))))
+
+(defun letting-go-offers (hand window)
+  "Return what can be done with what HAND, an image, holds."
+  (let ((index (hand-image-index hand)))
+    (append (list (list (format nil "Let go of it with hand ~D" index)
+                        (format nil "hand-ungrasp ~D" index)))
+            (when (hand-image-location hand)
+              (list (list (format nil "Take hand ~D out with it" index)
+                          (format nil "hand-remove ~D" index))))
+            (insert-offers (list hand) (robot-image-bins (window-robot window))
+                           "Put hand ~D with it into storage bin ~D"))))
+
+(defun empty-hands (window)
+  (remove-if #'hand-image-contents (robot-image-hands (window-robot window))))
+
+(defun held-offers (image window)
+  "Return what can be done with the thing of IMAGE if the robot of WINDOW holds it, or has it in a
+bin."
+  (let ((hand (hand-with image window)) (bin (bin-with image window)))
+    (cond (hand (letting-go-offers hand window))
+          (bin (append (offers bin window)
+                       (insert-offers (empty-hands window) (list bin)
+                                      "Put hand ~D into storage bin ~D"))))))
 
 (defun on-floor-p (image window)
   "True if the thing of IMAGE lies on the floor, and not in a hand, bin or other thing."
@@ -92,16 +147,21 @@ connected, if there is one."
   (let ((numbers (designators-of image window)))
     (append (when (on-floor-p image window)
               (list (go-there (thing-image-x image) (thing-image-y image))))
+            (held-offers image window)
             (search-offers image window)
             (denoted-offers numbers window)
-            (tracked-offers numbers window)
+            (tracked-offers numbers window :held-p (hand-with image window))
             (looking-into (thing-form image)))))
 
 ;;; Designators and parts.
 
 (defmethod offers ((image designator-image) window)
-  (let ((numbers (list (designator-image-number image))))
-    (append (denoted-offers numbers window) (tracked-offers numbers window))))
+  (let ((numbers (list (designator-image-number image)))
+        (thing (designator-image-denotation image)))
+    (append (denoted-offers numbers window)
+            (tracked-offers numbers window
+                            :held-p (and (typep thing 'thing-image)
+                                          (hand-with thing window))))))
 
 (defmethod offers ((image camera-image) window)
   (declare (ignore window))

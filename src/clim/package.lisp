@@ -9,7 +9,8 @@ McCLIM's symbols are written with their packages. Manual B.")
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.rpl-robot
                 #:*trace-plans* #:plans
-                #:interface-p #:interface-runner #:interface-robot #:interface-simulation)
+                #:holding-p #:interface-p #:interface-runner #:interface-robot
+                #:interface-simulation)
   (:import-from :ars-magna.rpl
                 #:bar #:bar-serial #:bars #:image-of-tasks #:runner-mark #:runner-trace
                 #:runner-client

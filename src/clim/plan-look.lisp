@@ -62,44 +62,47 @@ words how the last plan ended."
       (let ((bars (bars (funcall entries) now)))
         (and bars (make-page bars +most-rows+)))))
 
-(defun see-timeline (look interface)
+(defun see-timeline (look interface at-rest)
   "Let LOOK have the timeline of the plans of INTERFACE. NIL if they are at work just now."
   (let* ((runner (interface-runner interface)) (trace (runner-trace runner)))
     (if (null trace)
         (setf (plan-look-page look) :untraced)
-        (let ((seen (participant-at-rest
-                     interface (lambda () (multiple-value-list (trace-so-far trace))))))
+        (let ((seen (funcall at-rest interface
+                             (lambda () (multiple-value-list (trace-so-far trace))))))
           (unless (eq seen :busy)
             (setf (plan-look-page look)
                   (timeline-page (first seen) (second seen) (plan-runner-tick runner)))
             t)))))
 
-(defun see-tree (look interface)
+(defun see-tree (look interface at-rest)
   "Let LOOK have the tree of the tasks of INTERFACE. NIL if they are at work just now."
-  (let ((seen (participant-at-rest
-               interface (lambda ()
-                           (image-of-tasks (interface-runner interface)
-                                           :folded (plan-look-folded look)
-                                           :most +most-rows+)))))
+  (let ((seen (funcall at-rest interface
+                       (lambda ()
+                         (image-of-tasks (interface-runner interface)
+                                         :folded (plan-look-folded look)
+                                         :most +most-rows+)))))
     (unless (eq seen :busy)
       (setf (plan-look-tree look) seen)
       t)))
 
-(defun see-plans (look interface)
-  "Let LOOK have what it is to see of the plans of INTERFACE, if any. NIL if they are at work."
+(defun see-plans (look interface &optional (at-rest #'participant-at-rest))
+  "Let LOOK have what it is to see of the plans of INTERFACE, if any. NIL if they are at work.
+AT-REST is a function of INTERFACE and of one that it calls while the plans are at rest, and whose
+value it returns; or :BUSY."
   (setf (plan-look-robot look) (and interface (interface-robot interface)
                                     (robot-name (interface-robot interface)))
         (plan-look-traced-p look) (traced-p interface))
   (cond ((null interface)
          (setf (plan-look-tree look) nil (plan-look-page look) nil)
          t)
-        ((eq :timeline (plan-look-view look)) (see-timeline look interface))
-        (t (see-tree look interface))))
+        ((eq :timeline (plan-look-view look)) (see-timeline look interface at-rest))
+        (t (see-tree look interface at-rest))))
 
-(defun look-now (look interface mark)
-  "Look at the plans of INTERFACE, of which MARK is what changes. True if they were seen."
+(defun look-now (look interface mark &optional (at-rest #'participant-at-rest))
+  "Look at the plans of INTERFACE, of which MARK is what changes. True if they were seen. AT-REST is
+as for SEE-PLANS."
   (let ((began (seconds-now)))
-    (when (see-plans look interface)
+    (when (see-plans look interface at-rest)
       (setf (plan-look-mark look) mark
             (plan-look-due look) (+ (seconds-now) (* +idleness+ (- (seconds-now) began))))
       t)))
@@ -115,6 +118,19 @@ words how the last plan ended."
         ;; A plan that does not return keeps its run's plans, and says so elsewhere.
         (handler-case (look-now look interface mark)
           (misuse () nil))))))
+
+;; A plan that has broken, or stops as it is stepped, is at work and stands still: only its own
+;; thread can look at it.
+(defun look-as-it-stands (look)
+  "Look at the plans as they stand, if this thread is letting them react. True if they were seen."
+  (let* ((simulation (plan-look-simulation look)) (interface (interface-of simulation)))
+    (and interface
+         (holding-p interface)
+         (funcall (plan-look-shown-p look))
+         (look-now look interface (plans-mark look interface)
+                   (lambda (interface function)
+                     (declare (ignore interface))
+                     (funcall function))))))
 
 ;;; Which looks there are, and how plans end.
 

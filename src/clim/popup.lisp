@@ -21,7 +21,9 @@ away then unless STAYS-P. TICK, a function, says whether a row that is TICK-P is
    ;; The row under the mouse, or NIL.
    (pointed :initform nil :accessor pane-pointed)
    ;; The command or menu that has opened it, or T.
-   (opener :initform t :accessor pane-opener))
+   (opener :initform t :accessor pane-opener)
+   ;; When the click came that has put these rows in the place of others, in milliseconds, or NIL.
+   (turned :initform nil :accessor pane-turned))
   (:default-initargs :background clim:+gray97+)
   (:documentation "A list of rows on top of the window."))
 
@@ -136,3 +138,20 @@ so, a symbol, or the menu, or T."
   (declare (ignore x))
   (setf (pane-pointed pane) (row-at pane y))
   (repaint-if-changed pane))
+
+;;; A click on a row may put other rows in the place of these. Who clicks twice, as elsewhere, has
+;;; not seen those yet.
+
+(define-constant +double-click+ 500
+  :documentation "Within how many milliseconds two clicks are one deed.")
+
+(defun second-click-p (pane time)
+  "True if a click on PANE at TIME, in milliseconds, is the second of two by which its rows came."
+  (and (pane-turned pane) time (<= 0 (- time (pane-turned pane)) +double-click+)))
+
+(defmethod clim:handle-event :around ((pane popup-pane) (event clim:pointer-button-press-event))
+  (let ((rows (pane-rows pane)) (time (clim:event-timestamp event)))
+    (unless (second-click-p pane time)
+      (setf (pane-turned pane) nil)
+      (call-next-method)
+      (unless (eq rows (pane-rows pane)) (setf (pane-turned pane) time)))))

@@ -29,12 +29,14 @@ had been; the tick and second from which on the rate is being measured, and that
     (:running "running")
     (:paused "paused")
     (:still "not live: ticks pass when a program asks for them")
+    (:forked "in a fork: ticks pass when lines ask for them")
+    (:ended "the trial is over: TRIAL OFF leads out")
     (:stopped "stopped: the line RESUME goes on")
     (:over "over")
     (:idle "idle: time stands still until there is something to do")
     (:waiting "waiting for a plan")
     (:busy "busy in")
-    (:broken "stopped: a program has broken, and the prompt asks how to go on")))
+    (:broken "stopped: a program has broken")))
 
 (defun rate-text (rate)
   (cond ((eq rate :free) "as fast as possible")
@@ -60,11 +62,32 @@ had been; the tick and second from which on the rate is being measured, and that
 (defun plans-of (simulation)
   (let ((*simulation* simulation)) (plans)))
 
+;; In a trial or fork, which is not live, the prompt lets ticks pass.
+(defun state-at-prompt (simulation)
+  "Return the state of SIMULATION, which is not live."
+  (cond ((values (ars-magna.cli:pace-of simulation)))
+        ((headless-p simulation) :still)
+        (t :stopped)))
+
+(defun rate-set (simulation)
+  "Return at what rate ticks pass in SIMULATION, as set; NIL if there is none."
+  (if (live-p simulation)
+      (simulation-rate simulation)
+      (nth-value 1 (ars-magna.cli:pace-of simulation))))
+
+(defun paused-here-p (simulation)
+  "True if time stands still in SIMULATION until RESUME: it is paused, or a trial that is."
+  (if (live-p simulation)
+      (paused-p simulation)
+      (eq :paused (ars-magna.cli:pace-of simulation))))
+
 (defun state-of (simulation pulse)
   "Return the state of SIMULATION, and NIL or a text that goes on from what that is called."
   (let ((busy (busy-p simulation pulse)))
-    (cond ((simulation-over simulation) :over)
-          ((not (live-p simulation)) (if (headless-p simulation) :still :stopped))
+    (cond ((and (simulation-over simulation)
+                (not (eq :ended (ars-magna.cli:pace-of simulation))))
+           :over)
+          ((not (live-p simulation)) (state-at-prompt simulation))
           ((users-code-broken-p simulation) :broken)
           (busy (values :busy busy))
           ((paused-p simulation) :paused)
@@ -99,5 +122,5 @@ had been; the tick and second from which on the rate is being measured, and that
         (setf (pulse-reached pulse) nil)
         (begin-measuring pulse tick seconds))
       (make-progress :state state :more more
-                     :rate (and (live-p simulation) (simulation-rate simulation))
+                     :rate (rate-set simulation)
                      :reached (and (eq state :running) (measure pulse tick seconds))))))

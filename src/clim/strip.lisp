@@ -16,13 +16,9 @@
 
 (defun answers-text (window)
   "Return in words how many programs wait for an answer at the prompt of WINDOW, or NIL."
-  (let ((count (length (answers-awaited (window-conversation window))))
-        (state (progress-state (watcher-progress (window-watcher window)))))
-    ;; Of one for which the simulator stands still the state tells.
-    (when (> count (if (eq state :broken) 1 0))
-      (format nil "~[~;the prompt asks how a program goes on~:;the prompt asks how ~:*~R programs ~
-                   go on~]"
-              count))))
+  (let ((count (length (answers-awaited (window-conversation window)))))
+    (when (plusp count)
+      (format nil "the prompt asks how ~:[~R programs go~;a program goes~] on" (= count 1) count))))
 
 (defun time-text (window)
   "Return the upper line of the status strip of WINDOW."

@@ -53,9 +53,19 @@
         (setf (pane-left pane) (within left (map-width map) from-x to-x)
               (pane-top pane) (within top (map-height map) from-y to-y))))))
 
+(defparameter *all-in-view* "The whole map is in view; the wheel zooms in."
+  "What the strip says when there is nothing to follow.")
+
+(defun fit-no-longer (pane)
+  "Let the view of PANE be what the user makes of it; the strip says no longer that it fits."
+  (setf (pane-fitting-p pane) nil)
+  (when (equal *all-in-view* (window-hint (window-of pane)))
+    (setf (window-hint (window-of pane)) "")
+    (repaint-if-changed (pane-named (window-of pane) 'strip))))
+
 (defun move-view (pane dx dy)
   "Move the view of PANE by DX, DY pixels, but not off the map."
-  (setf (pane-fitting-p pane) nil)
+  (fit-no-longer pane)
   (place-view pane (+ (pane-left pane) dx) (+ (pane-top pane) dy))
   (repaint-if-changed pane))
 
@@ -117,7 +127,7 @@
 
 (defun show-robot (pane)
   "Move the view of PANE so that the window's robot is in its middle."
-  (setf (pane-fitting-p pane) nil)
+  (fit-no-longer pane)
   (centre-robot pane)
   (repaint-if-changed pane))
 

@@ -9,6 +9,10 @@
 (define-constant +frame-limit+ 600
   :documentation "How many frames a run is shown in at most, unless the user asks for more.")
 
+(defvar *frame-hook* (constantly nil)
+  "A function that is called with the tick of each frame of a run that is drawn, for those who say
+how far that has come.")
+
 (defun call-with-frames (function journal every until &key part (watch #'identity))
   "Replay JOURNAL up to the tick UNTIL (NIL: its end); call FUNCTION with a snapshot of its
 beginning, of every EVERY ticks and of its end, of PART of its map or, if that is NIL, of all; and
@@ -18,7 +22,8 @@ WATCH with the simulation at the beginning and after each tick."
                (setf last (take-snapshot (simulation-world simulation) last))
                ;; What is wrong with drawing is to be told here, not in the run repeated.
                (let ((*message-queue* queue))
-                 (funcall function (in-part last part 'save-animation))))
+                 (funcall function (in-part last part 'save-animation)))
+               (funcall *frame-hook* (snapshot-tick last)))
              (look (simulation)
                (keep-history simulation)
                (funcall watch simulation)

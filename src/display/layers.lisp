@@ -49,6 +49,24 @@
       (reject-argument 'layer-title "layer" name
                        (format nil "one of ~{~(~S~)~^, ~}" +picture-layers+))))
 
+(define-constant +other-names+
+    '((:wedges :cones) (:trail :way) (:planned-way :plan) (:designators :belief))
+  :test #'cl:equal
+  :documentation "Lists (layer name): what the text map calls that which pictures call LAYER. Lines
+of the prompt take both.")
+
+(defun layer-named (name)
+  "Return the layer of pictures that NAME, a keyword, means: its own name or the other."
+  (or (first (rassoc (list name) +other-names+ :test #'cl:equal)) name))
+
+(defun text-layer-named (name)
+  "Return the layer of the text map that NAME, a keyword, means, either of its names."
+  (or (second (assoc name +other-names+)) name))
+
+(defun layer-words (layer)
+  "Return what lines of the prompt call LAYER, one of those of pictures: one name or two."
+  (format nil "~A~@[ or ~A~]" layer (second (assoc layer +other-names+))))
+
 (defun layer-title (name)
   "Return what menus call the layer NAME, a keyword."
   (fourth (layer-entry name)))

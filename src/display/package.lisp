@@ -17,15 +17,17 @@
            #:snapshot-things #:snapshot-robots #:snapshot-robot #:thing-image #:robot-image
            #:robot-image-name #:robot-image-x #:robot-image-y #:robot-image-designators)
   (:export #:thing-image-thing #:thing-image-x #:thing-image-y #:thing-image-attributes
-           #:robot-image-angle #:robot-image-cameras #:robot-image-hands
+           #:thing-image-location
+           #:robot-image-angle #:robot-image-cameras #:robot-image-hands #:robot-image-bins
            #:camera-image #:camera-image-index #:camera-image-track
-           #:hand-image #:hand-image-index #:hand-image-contents
-           #:bin-image #:bin-image-index #:bin-image-closed-p
+           #:hand-image #:hand-image-index #:hand-image-contents #:hand-image-location
+           #:bin-image #:bin-image-index #:bin-image-closed-p #:bin-image-contents
            #:designator-image #:designator-image-number #:designator-image-denotation)
   ;; subjects, contents
   (:export #:describe-subject #:snapshot-content #:display-content)
   ;; layers
   (:export #:*picture-layers* #:+picture-layers+ #:layer-title #:layer-documentation
+           #:+other-names+ #:layer-named #:text-layer-named #:layer-words
            #:layers-of-kind)
   ;; inks, user-drawing, terrain, names, world-display, legend, scales, margins, way-picture
   ;; and displays
@@ -45,6 +47,6 @@
   ;; picture, animation
   (:export #:picture-scale)
   (:export #:picture-kind #:save-svg #:save-picture #:save-snapshot #:svg-picture #:save-animation
-           #:shown-end #:save-way-picture)
+           #:*frame-hook* #:shown-end #:save-way-picture)
   ;; opening
   (:export #:open-display #:*display-opener* #:*displays-waiter* #:announce-display))

@@ -16,8 +16,8 @@
 map, a list (left top right bottom) in cells, or NIL for all."
   (tick 0) (map nil) (things #()) (robots '()) (part nil))
 
-(define-image thing-image "What a snapshot knows of a thing; COLOR is that of the display. It is
-MOVING-P if it has kickers."
+(define-image thing-image "What a snapshot knows of a thing; COLOR is that of the display.
+LOCATION says in words what it is in, or is NIL. It is MOVING-P if it has kickers."
   (thing nil) (x 0d0) (y 0d0) (location nil) (attributes '()) (color 0) (size 0d0)
   (obsmove-p nil) (obsview-p nil) (container-p nil) (moving-p nil) (draw-function nil))
 
@@ -28,9 +28,10 @@ world: that decides what it looks like."
   (cameras '()) (hands '()) (bins '())
   (designators '()) (odometer nil) (trail '()) (planned-way '()))
 
-(define-image camera-image "What a snapshot knows of a camera; ANGLE is relative to the robot. Its
-last VIEW was taken VIEW-AGE ticks ago."
-  (index 0) (angle 0d0) (field-of-view 1d0) (view '()) (view-age 0) (track nil)
+(define-image camera-image "What a snapshot knows of a camera; ANGLE is relative to the robot. The
+last VIEW that was asked for was taken VIEW-AGE ticks ago; if none was, that is NIL, and VIEW is
+what it has in view now."
+  (index 0) (angle 0d0) (field-of-view 1d0) (view '()) (view-age nil) (track nil)
   (location nil) (look nil))
 
 (define-image hand-image "What a snapshot knows of a hand."
@@ -66,6 +67,8 @@ puts the robot, and how uncertain it is."
       "Return the thing's x coordinate, in metres."
       (documentation 'thing-image-y 'function)
       "Return the thing's y coordinate, in metres."
+      (documentation 'thing-image-location 'function)
+      "Return in words what the thing is in, as `in hand 0 of ROBBIE', or NIL."
       (documentation 'thing-image-attributes 'function)
       "Return a list (name value) for each attribute of the thing."
       (documentation 'robot-image-angle 'function)
@@ -74,6 +77,8 @@ puts the robot, and how uncertain it is."
       "Return a list of the images of the robot's cameras."
       (documentation 'robot-image-hands 'function)
       "Return a list of the images of the robot's hands."
+      (documentation 'robot-image-bins 'function)
+      "Return a list of the images of the robot's storage bins."
       (documentation 'camera-image-index 'function)
       "Return the number of the camera."
       (documentation 'camera-image-track 'function)
@@ -82,6 +87,10 @@ puts the robot, and how uncertain it is."
       "Return the number of the hand."
       (documentation 'hand-image-contents 'function)
       "Return the image of the thing that the hand holds, or NIL."
+      (documentation 'hand-image-location 'function)
+      "Return what the hand is inside of: the image of a thing, a string, or NIL."
+      (documentation 'bin-image-contents 'function)
+      "Return a list of the images of the things in the storage bin."
       (documentation 'bin-image-index 'function)
       "Return the number of the storage bin."
       (documentation 'bin-image-closed-p 'function)
@@ -106,6 +115,7 @@ puts the robot, and how uncertain it is."
         old
         (make-thing-image
          :thing thing :x (thing-x thing) :y (thing-y thing) :attributes attributes
+         :location (thing-holders-text thing)
          :color (shade (get-attribute thing :color)) :size (thing-size thing)
          :obsmove-p (thing-obsmove-p thing) :obsview-p (thing-obsview-p thing)
          :container-p (plusp (thing-capacity thing)) :moving-p (moving-p thing)
@@ -150,7 +160,7 @@ what it holds of each."
 
 (defun place-of-denotation (denotation)
   "Return, as a list, where what DENOTATION is lies; NIL if it is false."
-  (cond ((thing-p denotation) (list (thing-x denotation) (thing-y denotation)))
+  (cond ((thing-p denotation) (multiple-value-list (thing-position denotation)))
         ((place-p denotation)
          (let ((cell (place-cell denotation)))
            (list (+ 1/2 (cell-x cell)) (+ 1/2 (cell-y cell)))))))
@@ -164,11 +174,12 @@ what it holds of each."
    :denotation (image-of-denotation (designator-denotation designator))))
 
 (defun image-of-camera (camera history)
-  (let ((designator (camera-tracks camera)))
+  (let ((designator (camera-tracks camera)) (view (camera-last-view camera)))
     (make-camera-image
      :index (camera-index camera) :angle (camera-angle camera)
-     :field-of-view (camera-field-of-view camera) :view (camera-last-view camera)
-     :view-age (- (world-tick (robot-world (camera-robot camera))) (camera-last-view-tick camera))
+     :field-of-view (camera-field-of-view camera) :view (or view (glance camera))
+     :view-age (and view (- (world-tick (robot-world (camera-robot camera)))
+                            (camera-last-view-tick camera)))
      :track (and designator (image-of-designator designator))
      :location (image-of-location (camera-location camera))
      :look (and history (cdr (assoc camera (history-looks history) :test #'eq))))))

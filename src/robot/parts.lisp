@@ -272,3 +272,5 @@ among those, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 (defmethod location-full-p ((hand hand)) (hand-contents hand))
 (defmethod location-closed-p ((bin storage-bin)) (storage-bin-closed-p bin))
 (defmethod location-name ((part part)) (princ-to-string part))
+(defmethod location-words ((part part))
+  (format nil "~(~A~) of ~A" part (part-robot part)))

@@ -29,7 +29,7 @@ takes part in it. Manual 2.3 and appendix A.")
   (:export #:set-thinking)
   ;; past, keeping, rewinding
   (:export #:simulation-past #:note-doing #:let-fork-be-kept #:keep-forks #:*forks-to-keep*
-           #:rewind #:*rewind-hooks* #:*rewound-end-hooks*)
+           #:rewind #:earliest-tick #:*rewind-hooks* #:*rewound-end-hooks*)
   ;; journal
   (:export #:journal #:make-journal #:journal-p #:journal-header #:journal-entries
            #:journal-end #:journal-length #:journal-remarks #:remark #:unremark #:*journal-limit*
@@ -57,4 +57,4 @@ takes part in it. Manual 2.3 and appendix A.")
            #:call-with-loaded-simulation #:damaged-simulation #:unsavable #:unsavable-parts
            #:save-without #:load-anyway)
   ;; status
-  (:export #:status #:designator-status #:robot-meant))
+  (:export #:status #:glance #:designator-status #:robot-meant))

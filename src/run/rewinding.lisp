@@ -39,9 +39,14 @@
                    or from now on by (keep-forks)."
                   (simulation-name simulation)))))
 
+(defun earliest-tick (simulation)
+  "Return the tick that SIMULATION can go back to, or NIL if it keeps no forks."
+  (let ((past (simulation-past simulation)))
+    (and past (past-forks past) (kept-tick (first (last (past-forks past)))))))
+
 (defun check-how-far (ticks simulation)
   "Signal WRONG-ARGUMENT unless SIMULATION can go back TICKS."
-  (let* ((first (kept-tick (first (last (past-forks (simulation-past simulation))))))
+  (let* ((first (earliest-tick simulation))
          (most (- (simulation-tick simulation) first)))
     (unless (<= ticks most)
       (error 'wrong-argument

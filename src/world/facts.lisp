@@ -45,7 +45,7 @@
             (cond ((null location) "nowhere")
                   ((eq location :floor)
                    (format nil "(~,2F,~,2F)" (thing-x thing) (thing-y thing)))
-                  (t (format nil "in ~A" (location-name location)))))
+                  (t (thing-holders-text thing))))
   "Attributes" (thing-attributes thing)
   "Contents" (listed (thing-contents thing))
   "Kickers" (listed (mapcar #'attachment-name (thing-kickers thing))))

@@ -32,6 +32,10 @@ can, whatever their size.")
 (defgeneric location-name (location)
   (:documentation "Return the symbol or string that LOCATION is called, for messages."))
 
+(defgeneric location-words (location)
+  (:documentation "Return what LOCATION is called in the middle of a sentence, and whose it is.")
+  (:method (location) (location-name location)))
+
 (addition remaining-capacity)
 (defgeneric remaining-capacity (location)
   (:documentation "Return, in units of size, how much can still be put into LOCATION: its capacity

@@ -52,11 +52,12 @@
   (:export #:change-world #:changing #:writing #:writing-p #:world-writer)
   ;; location
   (:export #:location-contents #:location-position #:location-world #:location-closed-p
-           #:location-full-p #:location-name #:remaining-capacity)
+           #:location-full-p #:location-name #:location-words #:remaining-capacity)
   ;; thing
   (:export #:thing #:thing-p #:thing-name #:thing-serial #:thing-world #:thing-location
            #:thing-x #:thing-y #:thing-attributes #:thing-contents #:thing-kickers
-           #:thing-alive-p #:thing-position #:thing-outermost #:thing-total-weight
+           #:thing-alive-p #:thing-position #:thing-outermost #:thing-holders-text
+           #:thing-total-weight
            #:thing-obsmove-p #:thing-obsview-p #:thing-closed-p #:thing-size #:thing-weight
            #:thing-capacity #:thing-substance-p #:thing-substance-parameter
            #:get-attribute #:set-attribute #:change-attribute)

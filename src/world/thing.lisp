@@ -14,8 +14,10 @@
    (world nil t "the world that the thing is in, or NIL for a prototype" :near))
   (:state
    (location nil t "where the thing is: :FLOOR, what holds it, or NIL if it is nowhere" :near)
-   (x 0d0 double-float "the x coordinate of a thing on the floor, in metres" :near)
-   (y 0d0 double-float "the y coordinate of a thing on the floor, in metres" :near)
+   (x 0d0 double-float "the x coordinate in metres, now or when the thing was last on the floor"
+      :near)
+   (y 0d0 double-float "the y coordinate in metres, now or when the thing was last on the floor"
+      :near)
    (attributes '() list "the thing's attributes as an object descriptor; do not alter it"
                :shared)
    (contents '() list "the list of things directly inside the thing, in order of arrival")
@@ -139,6 +141,14 @@ which is SET-ATTRIBUTE (manual 5.3). A list is the thing's own: do not alter it,
   (loop for location = (thing-location thing)
         while (thing-p location) do (setf thing location)
         finally (return thing)))
+
+(defun thing-holders-text (thing)
+  "Return in words what THING is in, and what that is in, or NIL if it is in nothing."
+  (let ((holders (loop for location = (thing-location thing) then (thing-location location)
+                       while (and location (not (eq location :floor)))
+                       collect (location-words location)
+                       while (thing-p location))))
+    (and holders (format nil "~{in ~A~^, ~}" holders))))
 
 (addition thing-position)
 (defun thing-position (thing)

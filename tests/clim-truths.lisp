@@ -1,0 +1,194 @@
+;;;; clim-truths.lisp -- what the window says is so: of time in trials and forks, of the view.
+
+(in-package :ars-magna.tests)
+
+(in-suite clim)
+
+;;; Time in a trial.
+
+(defun call-in-visit (function window)
+  "Call FUNCTION with a visit in which the session of WINDOW is, as if its run were a trial."
+  (let ((session (window::window-session window))
+        (visit (cli::make-visit nil nil 1 nil)))
+    (setf (cli::session-visit session) visit
+          (cli::session-whereabouts session) (time:current-simulation))
+    (cli::call-among-sessions session (lambda () (funcall function visit)))))
+
+(defun time-said (window)
+  (window::look-at-progress (window:window-watcher window))
+  (window::time-text window))
+
+(test trials.strip-and-button-say-how-time-passes
+  (in-window (window robot)
+    (call-in-visit
+     (lambda (visit)
+       (is (mentions-p (time-said window) "20/s  paused"))
+       (is (equal "Resume" (window::pause-label window)))
+       (window::do-key window nil #\Space)
+       (is (equal '("resume") (lines-given window)))
+       (cli::resume-visit visit)
+       (is (mentions-p (time-said window) "20/s  running"))
+       (is (equal "Pause" (window::pause-label window)))
+       (setf (cli::visit-result visit) t)
+       (is (mentions-p (time-said window) "the trial is over")))
+     window)))
+
+(test trials.the-buttons-for-the-rate-are-lines
+  (in-window (window robot)
+    (call-in-visit (lambda (visit)
+                     (declare (ignore visit))
+                     (window::do-key window nil #\+)
+                     (is (equal '("rate 40") (lines-given window))))
+                   window)))
+
+(test trials.the-title-says-so-from-the-first-line-on
+  "Before anything listens to the run."
+  (in-window (window robot)
+    (call-in-visit (lambda (visit)
+                     (declare (ignore visit))
+                     (is (mentions-p (window::world-title window) ", a trial")))
+                   window)))
+
+(test forks.the-strip-says-how-time-passes
+  (in-window (window robot)
+    (let ((session (window::window-session window)))
+      (setf (cli::session-forks session) 1
+            (cli::session-whereabouts session) (time:current-simulation))
+      (cli::call-among-sessions
+       session
+       (lambda ()
+         (is (mentions-p (time-said window) "in a fork")))))))
+
+(test forks.back-goes-to-the-beginning-of-the-fork-at-most
+  (in-window (window robot)
+    (run:keep-forks)
+    (run:run-ticks 8)
+    (let ((fork (run:fork-simulation)))
+      (run:keep-forks t fork)
+      (run:run-ticks 2 fork)
+      (window::watch-simulation (window:window-watcher window) fork)
+      (window::do-key window nil #\B)
+      (is (equal '("rewind 2") (lines-given window))))))
+
+(test buttons.back-pauses-a-run-that-goes-on
+  (in-window (window robot)
+    (let ((simulation (time:current-simulation)))
+      (run:keep-forks)
+      (run:start-clock simulation :rate 50)
+      (unwind-protect
+           (progn (window::do-key window nil #\B)
+                  (is (time:paused-p simulation)))
+        (run:stop-clock simulation)))))
+
+;;; The view.
+
+(test strip.says-that-all-is-in-view-while-it-is
+  (in-window (window robot)
+    (window::fit (pane window 'window::world))
+    (window::do-key window nil #\R)
+    (is (mentions-p (window::window-hint window) "whole map is in view"))
+    (window::do-key window :left nil)
+    (is (equal "" (window::window-hint window)))))
+
+;;; What is typed.
+
+(test typing.what-is-pasted-is-all-to-be-seen
+  (in-window (window robot)
+    (lay-out window 1180 820)
+    (let* ((interactor (pane window 'window::interactor))
+           (before (nth-value 1 (window::pane-size interactor)))
+           (console (window::conversation-console (window::window-conversation window))))
+      (cli::show-prompt console "Robot> ")
+      (is (= 1 (window::rows-wanted interactor)))
+      (setf (cli:drawn-line-shown (cli:console-line console))
+            (list "Robot> " (format nil "turn 1~%turn 2~%turn 3~%turn 4") 0))
+      (is (= 5 (window::rows-wanted interactor)))
+      (window:refresh window)
+      (is (= (+ before (* 3 canvas::+line-height+))
+             (nth-value 1 (window::pane-size interactor)))))))
+
+(test typing.however-much-is-pasted-the-transcript-stays
+  (loop for rows from 1 to 100
+        for places = (window::arrange (window::make-wishes) (constantly 100) 640 480 rows)
+        do (is (<= 20 (fifth (assoc 'window::transcript places))))
+           (is (= 444 (loop for (name nil top nil height) in places
+                            when (eq name 'window::interactor) return (+ top height))))))
+
+;;; Menus.
+
+(defun press-popup (window y time)
+  "Press the left button at Y of the menu that is open in WINDOW, at TIME, in milliseconds."
+  (let ((popup (window::window-popup window)))
+    (clim:handle-event popup (make-instance 'clim:pointer-button-press-event
+                                            :sheet popup :x 20 :y y :modifier-state 0
+                                            :button clim:+pointer-left-button+
+                                            :timestamp time))))
+
+(test menus.the-second-of-two-clicks-chooses-nothing
+  (in-window (window robot)
+    (lay-out window 1180 820)
+    (open-menu-called window "Robot")
+    (press-popup window 8 1000)
+    (let ((rows (rows-of-popup window)))
+      (is (equal "< Robot" (first rows)))
+      (press-popup window 26 1200)
+      (is (equal rows (rows-of-popup window)))
+      (is (null (lines-given window)))
+      (press-popup window 8 2000)
+      (is (equal "Moving >" (first (rows-of-popup window)))))))
+
+;;; Cameras.
+
+(test cameras.what-is-in-view-is-said-before-a-view-is-asked-for
+  "As STATUS says it."
+  (in-window (window robot)
+    (let* ((camera (first (display:robot-image-cameras (window::window-robot window))))
+           (text (display::view-text camera)))
+      (is (mentions-p text "View now: "))
+      (is (mentions-p text (format nil "~{~,1F~^ ~}"
+                                   (getf (first (getf (run:status robot) :cameras)) :view)))))))
+
+;;; Layers.
+
+(test layers.have-one-table-of-words
+  (is (mentions-p (window::layer-text :wedges) "wedges or cones"))
+  (is (equal "Grid" (window::layer-text :grid)))
+  (is (equal (list :layers '(:cones :belief) :only-legend nil)
+             (cli::map-options "wedges designators")))
+  (is (subsetp '(:trail :planned-way) (getf (cli::picture-options "way plan") :layers))))
+
+;;; A plan that is stepped.
+
+(rpl:def-interp-proc ars-user::window-stepped ()
+  (rpl:seq (rpl:wait-time 2)
+           (rpl:wait-time 3)
+           (rpl:wait-time 4)))
+
+(defun stops-seen (window task ticks)
+  "Let TICKS pass while TASK is stepped; return lists of what the display of plans in WINDOW says at
+each stop that the task is at, and of what tick that is, and of the tick."
+  (let ((stops '()) (look (window::watcher-plans (window:window-watcher window))))
+    (ars-magna.rpl.seeing:step-task task)
+    (flet ((answer (condition hook)
+             (declare (ignore condition hook))
+             (mapc #'funcall cli:*break-hooks*)
+             (let ((tree (window::plan-look-tree look)))
+               (push (list (rpl:task-image-form (first (rpl:tree-image-rows tree)))
+                           (ars-magna.rpl:tree-image-tick tree)
+                           (run:simulation-tick (time:current-simulation)))
+                     stops))
+             (invoke-restart 'ars-magna.rpl.seeing::step)))
+      (base:with-debugger-hook (#'answer) (run:run-ticks ticks)))
+    (reverse stops)))
+
+(test plan-pane.shows-a-stepped-task-as-it-stands-at-each-stop
+  (in-studio (robot)
+    (call-with-open-window
+     (lambda (window)
+       (let ((task (ars-magna.rpl-robot:begin-plan 'ars-user::window-stepped)))
+         (run:run-ticks 1)
+         (seen-plans window)
+         (let ((stops (stops-seen window task 20)))
+           (is (equal '("(wait-time 3)" "(wait-time 4)") (mapcar #'first stops)))
+           (loop for (nil shown tick) in stops do (is (= shown tick))))))
+     robot)))
