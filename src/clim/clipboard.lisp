@@ -103,7 +103,7 @@ PORT, or NIL if there is none. Signals MISUSE if it does not come.")
 
 ;;; Holding.
 
-(defstruct (holding (:constructor make-holding (octets)) (:copier nil))
+(defstruct (held (:constructor make-held (octets)) (:copier nil))
   "A text that is held for others, as a string of OCTETS. TRANSFERS are lists (window property
 start): what is handed over in pieces, and from where on the next is."
   (octets "" :type string :read-only t)
@@ -113,29 +113,29 @@ start): what is handed over in pieces, and from where on the next is."
 (defun put-octets (window property octets)
   (xlib:change-property window property octets :utf8_string 8 :transform #'char-code))
 
-(defun begin-pieces (holding window property)
-  "Begin to hand over what HOLDING has in PROPERTY of WINDOW, in pieces."
+(defun begin-pieces (held window property)
+  "Begin to hand over what HELD has in PROPERTY of WINDOW, in pieces."
   (setf (xlib:window-event-mask window) '(:property-change))
-  (push (list window property 0) (holding-transfers holding))
-  (xlib:change-property window property (list (length (holding-octets holding))) :incr 32))
+  (push (list window property 0) (held-transfers held))
+  (xlib:change-property window property (list (length (held-octets held))) :incr 32))
 
-(defun hand-next-piece (holding window property)
+(defun hand-next-piece (held window property)
   "Hand over the next piece in PROPERTY of WINDOW, if one is awaited there; an empty one at the
 end."
   (let ((transfer (find-if (lambda (transfer)
                              (and (xlib:window-equal window (first transfer))
                                   (eq property (second transfer))))
-                           (holding-transfers holding))))
+                           (held-transfers held))))
     (when transfer
-      (let* ((octets (holding-octets holding))
+      (let* ((octets (held-octets held))
              (start (third transfer))
              (end (min (length octets) (+ start +piece+))))
         (put-octets window property (subseq octets start end))
         (setf (third transfer) end)
-        (when (= start end) (removef (holding-transfers holding) transfer))))))
+        (when (= start end) (removef (held-transfers held) transfer))))))
 
-(defun hand-over (holding window target property)
-  "Put what HOLDING has into PROPERTY of WINDOW as TARGET. True if it can be had so."
+(defun hand-over (held window target property)
+  "Put what HELD has into PROPERTY of WINDOW as TARGET. True if it can be had so."
   (case target
     (:targets (xlib:change-property window property '(:targets :utf8_string :string) :atom 32
                                     :transform (lambda (name)
@@ -143,56 +143,56 @@ end."
                                                                    name)))
      t)
     ((:utf8_string :string :text)
-     (if (< +piece+ (length (holding-octets holding)))
-         (begin-pieces holding window property)
-         (put-octets window property (holding-octets holding)))
+     (if (< +piece+ (length (held-octets held)))
+         (begin-pieces held window property)
+         (put-octets window property (held-octets held)))
      t)))
 
-(defun answer-request (holding window selection target property time)
+(defun answer-request (held window selection target property time)
   (let ((property (or property target)))
     (xlib:send-event window :selection-notify nil
                      :window window :event-window window :selection selection :target target
-                     :property (and (hand-over holding window target property) property)
+                     :property (and (hand-over held window target property) property)
                      :time time)))
 
-(defun serve (holding display)
-  "Answer programs that ask on DISPLAY for what HOLDING has, until others hold what it has held, and
+(defun serve (held display)
+  "Answer programs that ask on DISPLAY for what HELD has, until others hold what it has held, and
 those that still fetch it are content, or have given up."
-  (loop while (or (holding-selections holding) (holding-transfers holding))
+  (loop while (or (held-selections held) (held-transfers held))
         always
-           (xlib:event-case (display :timeout (if (holding-selections holding)
+           (xlib:event-case (display :timeout (if (held-selections held)
                                                   nil
                                                   +patience-with-others+)
                                      :discard-p t :force-output-p t)
              (:selection-request (requestor selection target property time)
-               (answer-request holding requestor selection target property time)
+               (answer-request held requestor selection target property time)
                t)
              (:property-notify (window atom state)
-               (when (eq state :deleted) (hand-next-piece holding window atom))
+               (when (eq state :deleted) (hand-next-piece held window atom))
                t)
              (:selection-clear (selection)
-               (removef (holding-selections holding) selection)
+               (removef (held-selections held) selection)
                t))))
 
-(defun serve-until-over (holding display)
+(defun serve-until-over (held display)
   ;; The X server may go; who asks may vanish before he is answered.
   (setf (xlib:display-error-handler display) (constantly nil))
-  (unwind-protect (ignore-errors (serve holding display))
+  (unwind-protect (ignore-errors (serve held display))
     (ignore-errors (xlib:close-display display :abort t))))
 
-(defun hold (holding display selections)
-  "Let HOLDING be what SELECTIONS hold."
+(defun hold (held display selections)
+  "Let HELD be what SELECTIONS hold."
   (let ((mailbox (make-mailbox display)))
     (dolist (selection selections)
       (xlib:set-selection-owner display selection mailbox nil)
       (when (xlib:window-equal mailbox (xlib:selection-owner display selection))
-        (push selection (holding-selections holding))))))
+        (push selection (held-selections held))))))
 
 (defgeneric hold-text (port text selections)
   (:documentation "Let other programs on the X server of PORT have TEXT, by each of SELECTIONS,
 :PRIMARY or :CLIPBOARD, until one of them copies something.")
   (:method (port text selections) (declare (ignore port text selections)))
   (:method ((port clim-clx:clx-port) text selections)
-    (let ((display (connect port)) (holding (make-holding (encoded text))))
-      (hold holding display selections)
-      (start-thread (lambda () (serve-until-over holding display)) "what was copied"))))
+    (let ((display (connect port)) (held (make-held (encoded text))))
+      (hold held display selections)
+      (start-thread (lambda () (serve-until-over held display)) "what was copied"))))
