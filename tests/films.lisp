@@ -110,14 +110,6 @@
         (is (mentions-p (first (frames-shown film)) "cx=\"35\" cy=\"65\""))
         (is (not (mentions-p (third (frames-shown film)) "cx=\"35\" cy=\"65\"")))))))
 
-(test film.title-has-robots-as-far-as-there-is-room-and-the-map
-  (let ((names '("ada" "ben" "cleo" "dora" "emil" "fay" "gus" "hal" "ida")))
-    (is (string= "ada, ben, cleo, dora, emil, fay and 3 more in study"
-                 (display::title-of names 'study)))
-    (is (string= "ada in study" (display::title-of '("ada") 'study))))
-  (in-studio (robot)
-    (is (mentions-p (film-of robot #'ungrasp-nothing) "<title>studio-robot in studio, tick"))))
-
 (test film.is-no-less-legible-at-a-great-scale
   "The page magnifies its picture as far as there is room, so that is no larger than suits the map."
   (in-studio (robot)
@@ -361,23 +353,6 @@
         do (let ((middle (/ scale 2)))
              (dolist (at (trails::place-for-number (list 0 0 scale scale) middle middle 4 '() '()))
                (is (<= least at (- scale least)))))))
-
-(test run-picture.tells-two-robots-apart
-  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 3 :journal t)
-    (command:robot-go-forward ars-worlds:marvin 99)
-    (command:robot-go-forward ars-worlds:gofer 99)
-    (run:run-ticks 60)
-    (let* ((picture (run-picture))
-           (ways (loop for line in (drawn-with :polyline picture)
-                       unless (equal "#ffffff" (of-element line :stroke))
-                         collect (list (of-element line :stroke)
-                                       (of-element line :stroke-dasharray)))))
-      (is (= 2 (length (remove-duplicates (mapcar #'first ways) :test #'equal))))
-      (is (= 2 (length (remove-duplicates (mapcar #'second ways) :test #'equal))))
-      (dolist (words '("marvin and its way" "gofer and its way"
-                       "marvin: robot-go-forward: Robot is blocked"
-                       "gofer: robot-go-forward: Robot is blocked"))
-        (is (mentions-p picture words))))))
 
 (test run-picture.has-what-save-picture-has
   (in-studio (robot)
