@@ -304,3 +304,15 @@ be signalled is not caught."
   (with-rover ()
     (handler-case (progn (run:save-journal "/no-such-directory/x") (fail "There was one."))
       (base:misuse (trouble) (is-true (says-p ":journal t" trouble))))))
+
+(test journals.that-are-none-are-refused-by-who-was-called
+  "Not by a function that nobody called."
+  (loop for (name call) in `((replay ,(lambda () (run:replay 7)))
+                             (with-replay ,(lambda () (run:with-replay (7) t)))
+                             (load-journal ,(lambda () (run:load-journal 7)))
+                             (journal-moments ,(lambda () (display:journal-moments 7)))
+                             (save-animation
+                              ,(lambda () (display:save-animation 7 "/tmp/none.html"))))
+        do (handler-case (progn (funcall call) (fail "~A" name))
+             (base:wrong-argument (trouble)
+               (is-true (search (string-downcase name) (text-of trouble)) "~A" name)))))

@@ -269,7 +269,7 @@ definitions are not those at hand. The other arguments are those of
 SVG-PICTURE. Return the truename, or a list of them. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY
 does."
   (let* ((kind (animation-kind file series))
-         (journal (journal-meant journal))
+         (journal (journal-meant journal 'save-animation))
          (moments (checked-moments 'save-animation moments
                                    (shown-end 'save-animation journal until)))
          ;; The tick, which a title has that nobody gave, is told of by frames.
@@ -306,7 +306,7 @@ far) up to the tick UNTIL or its end; return a list of what happened there that 
 order: moments at which a robot grasped, let go of or stowed something, a command failed, a plan or
 a part of one failed or was ended, or an error came up in users' code. With ANYWAY it is replayed
 also if its definitions are not those at hand. Signals what REPLAY does."
-  (let ((journal (journal-meant journal)))
+  (let ((journal (journal-meant journal 'journal-moments)))
     (shown-end 'journal-moments journal until)
     (multiple-value-bind (watch seen) (moments-watcher)
       (in-order (append (call-with-replay seen journal :until until :anyway anyway

@@ -214,9 +214,9 @@ is wrong, and in which entry."
   "Return the journal in FILE. Signals an error if it is none."
   (call-with-saved-text (lambda (in) (journal-from (read-data in))) file))
 
-(defun read-journal (file)
-  "Return the journal in FILE. Signals DAMAGED-JOURNAL if it is none, or incomplete, and says which
-entry is to blame; WRONG-ARGUMENT unless FILE is a name."
-  (check-argument read-journal file (typep file '(or string pathname))
-                  "a journal, or the name of a file that holds one")
+(defun read-journal (file &optional (operator 'read-journal))
+  "Return the journal in FILE, an argument of OPERATOR. Signals DAMAGED-JOURNAL if it is none, or
+incomplete, and says which entry is to blame; WRONG-ARGUMENT unless FILE is a name."
+  (unless (typep file '(or string pathname))
+    (reject-argument operator 'journal file "a journal, or the name of a file that holds one"))
   (reading-file (file 'damaged-journal) (read-journal-file file)))

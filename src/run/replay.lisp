@@ -107,12 +107,16 @@ does with ARGUMENTS, which are externalized."
                                                     (find-parameter (first setting))))
                     (list (parameter-name parameter) (parameter-default parameter)))))
 
+(defun journal-given (journal operator)
+  "Return the journal that JOURNAL, an argument of OPERATOR, is, or that is in the file so called."
+  (if (journal-p journal) journal (read-journal journal operator)))
+
 (defun call-with-replay (function journal &key until anyway keep observer
                                             (beginning #'identity))
   "Call FUNCTION where JOURNAL has been repeated; see WITH-REPLAY. OBSERVER, if given, is called
 after each tick of that, with the simulation; BEGINNING before the first one, when what was done by
 then has been done again."
-  (let* ((journal (if (journal-p journal) journal (read-journal journal)))
+  (let* ((journal (journal-given journal 'with-replay))
          (journal (if (and until (not (eql until (journal-end journal))))
                       (truncated-journal journal until)
                       journal))
@@ -156,19 +160,18 @@ recorded with, unless ANYWAY is true."
 what the run was recorded with."
   `(call-replaying (lambda () ,@body) ,anyway))
 
-(defun journal-meant (journal)
-  "Return the journal that JOURNAL is: one, the name of a file with one, or, if it is NIL, that of
-the current simulation up to now."
-  (cond ((null journal)
-         (let ((simulation (current-simulation)))
-           (asking (simulation) (end-of-journal simulation))))
-        ((journal-p journal) journal)
-        (t (read-journal journal))))
+(defun journal-meant (journal operator)
+  "Return the journal that JOURNAL, an argument of OPERATOR, is: one, the name of a file with one,
+or, if it is NIL, that of the current simulation up to now."
+  (if journal
+      (journal-given journal operator)
+      (let ((simulation (current-simulation)))
+        (asking (simulation) (end-of-journal simulation)))))
 
 (addition replay)
 (defun replay (journal &key until anyway)
   "Repeat JOURNAL as WITH-REPLAY does. Return the simulation, and its STATE-DIGEST."
-  (with-replay (journal :until until :anyway anyway)
+  (with-replay ((journal-given journal 'replay) :until until :anyway anyway)
     (values (current-simulation) (state-digest))))
 
 (addition save-journal)
@@ -181,4 +184,4 @@ WRONG-ARGUMENT unless FILE is a name."
 (addition load-journal)
 (defun load-journal (file)
   "Return the journal in FILE. Signals DAMAGED-JOURNAL."
-  (read-journal file))
+  (read-journal file 'load-journal))

@@ -207,7 +207,7 @@ FILE and the other arguments are those of SAVE-PICTURE. Return the file's truena
 Signals WRONG-ARGUMENT, what REPLAY does, and MISUSE without the program that
 PNG needs, or where no journal is kept."
   (let* ((kind (picture-kind 'save-run-picture file))
-         (journal (journal-meant journal))
+         (journal (journal-meant journal 'save-run-picture))
          (own (check-run-picture journal moments until :kinds kinds :limit limit :title title
                                                        :layers layers :scale scale)))
     (multiple-value-bind (snapshot ways seen own) (replaying (anyway) (watch-run journal until own))

@@ -68,7 +68,7 @@ the same as its main odometer has it, put on the map; what its hands hold; the p
 sensed last. The run is repeated for that, with ANYWAY even if its definitions are not
 those at hand. Return the file's truename. Signals WRONG-ARGUMENT, UNKNOWN-NAME, MISUSE if there is
 no journal or FILE cannot be written, when what was there is as before, and what REPLAY does."
-  (let ((journal (journal-meant journal)) (robots (ensure-list robots)))
+  (let ((journal (journal-meant journal 'save-trajectory)) (robots (ensure-list robots)))
     (check-trajectory file every until robots journal)
     (let ((text (with-output-to-string (out)
                   (replaying (anyway)
