@@ -193,8 +193,8 @@ each stop that the task is at, and of what tick that is, and of the tick."
            (loop for (nil shown tick) in stops do (is (= shown tick))))))
      robot)))
 
-(test plan-pane.shows-it-where-plans-have-a-thread-of-their-own
-  "As those of a live run do, whose ticks pass on."
+(test plan-pane.shows-it-where-no-tick-is-under-way
+  "Plans of a live run have a thread of their own, and its ticks pass on."
   (in-studio (robot)
     (call-with-open-window
      (lambda (window)
@@ -205,12 +205,8 @@ each stop that the task is at, and of what tick that is, and of the tick."
        (let* ((simulation (time:current-simulation))
               (interface (window::interface-of simulation))
               (look (window::watcher-plans (window:window-watcher window))))
-         (base:join-thread
-          (base:start-thread
-           (lambda ()
-             (ars-magna.rpl-robot::call-holding
-              (lambda () (mapc #'funcall cli:*break-hooks*)) interface))
-           "plans"))
+         (ars-magna.rpl-robot::call-holding
+          (lambda () (mapc #'funcall cli:*break-hooks*)) interface)
          (is (equal "(wait-time 3)"
                     (rpl:task-image-form
                      (first (rpl:tree-image-rows (window::plan-look-tree look))))))))
