@@ -86,10 +86,10 @@
 (test run-picture.names-no-ways-of-robots-that-never-moved
   (in-studio (robot)
     (run:run-ticks 3)
-    (is (not (or (mentions-p (run-picture) "way of") (mentions-p (run-picture) "start of a way")))))
+    (is (not (or (mentions-p (run-picture) "its way") (mentions-p (run-picture) "start of a way")))))
   (in-studio (robot)
     (journal-of-a-drive robot)
-    (is (mentions-p (run-picture) "way of studio-robot"))
+    (is (mentions-p (run-picture) "studio-robot and its way"))
     (is (mentions-p (run-picture) "start of a way"))))
 
 (test run-picture.has-rings-around-what-lies-where-something-happened
@@ -160,7 +160,7 @@
   (in-studio (robot)
     (command:robot-go-forward robot 5)
     (run:run-ticks 6)
-    (is (mentions-p (run-picture) "way of studio-robot"))
+    (is (mentions-p (run-picture) "studio-robot and its way"))
     (is (not (mentions-p (run-picture) "put elsewhere")))))
 
 (test bundle.samples-in-the-legend-are-as-pale-as-the-ways
@@ -170,3 +170,28 @@
                       for start = (search group picture) then (search group picture
                                                                       :start2 (1+ start))
                       while start count t))))))
+
+(test ways.go-on-from-where-a-robot-was-put
+  "Not from where it had come to a tick later: in the picture of the run and in its trail."
+  (in-studio (robot)
+    (display:keep-history)
+    (drive-and-be-put-elsewhere robot)
+    (flet ((from-there-p (svg)
+             (loop for line in (drawn-with :polyline svg)
+                   thereis (find 145 (coordinates-in (of-element line :points)) :test #'=))))
+      (is-true (from-there-p (run-picture :scale 10 :layers '())))
+      (is-true (from-there-p (display:svg-picture robot :scale 10 :layers '(:trail)))))))
+
+(test run-picture.has-one-entry-for-a-robot-and-its-way
+  (in-studio (robot)
+    (command:robot-go-forward robot 5)
+    (run:run-ticks 6)
+    (is (= 1 (count-if (lambda (text) (search "studio-robot" (of-element text :text)))
+                       (drawn-with :text (run-picture :layers '(:legend))))))))
+
+(test bundle.swatches-in-the-legend-are-as-pale-as-the-map
+  (in-studio (robot)
+    (flet ((pale (layers)
+             (times-written "<g opacity=\"0.5\">" (bundle robot '("success") :layers layers))))
+      (is (= 1 (pale '())))
+      (is (= 3 (pale '(:legend))) "bricks and wood"))))

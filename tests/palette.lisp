@@ -88,8 +88,14 @@ VISIONS."
   (let ((canvas:in-color* nil))
     (list (display::turn-dashes position) (display::hollow-head-p position))))
 
+(defun way-look (position)
+  "Return what is drawn of a way without colours, but for where its dashes are."
+  (drawing (canvas)
+    (let ((canvas:in-color* nil))
+      (display:draw-way-line canvas '(0 0 100 0) (display:turn-ink position) position))))
+
 (test palette.many-robots-and-ways-are-told-apart-by-all-eyes
-  "The first forty by colour and dashes; ten robots without colours as well, and five ways."
+  "The first forty by colour and dashes; ten robots and ways without colours as well."
   (is (<= 20 (least-difference display::+turn-inks+ (remove :grey *visions* :key #'first))))
   (flet ((distinct-p (count function)
            (= count (length (remove-duplicates (loop for position below count
@@ -98,7 +104,7 @@ VISIONS."
     (is (distinct-p 40 (lambda (position)
                          (list (display:turn-ink position) (display::turn-dashes position)))))
     (is (distinct-p 10 #'robot-look))
-    (is (distinct-p 5 #'display::turn-dashes))))
+    (is (distinct-p 10 #'way-look))))
 
 ;;; Contrast.
 

@@ -42,12 +42,14 @@ of the lines that lead to names, x y x y each."
   (call-with-crowd
    (lambda (snapshot)
      (let* ((robots (display:snapshot-robots snapshot))
-            (spot (display::robot-spot (first robots) robots)))
+            (spots (loop for robot in robots collect (display::robot-spot robot robots)))
+            (spot (first spots))
+            (rivals (display::rivals spot spots 200)))
        (destructuring-bind (x y) (display::pixels-of '(5 5))
-         (is-true (display::own-box-p spot (list (- x 60) (- y 5) (- x 20) (+ y 5))))
-         (is (not (display::own-box-p spot (list (+ x 34) (- y 5) (+ x 80) (+ y 5)))))
-         (is (not (display::leader-clear-p spot (list (+ x 70) y (+ x 99) (+ y 11)) '())))
-         (is-true (display::leader-clear-p spot (list (- x 99) y (- x 70) (+ y 11)) '())))))
+         (is-true (display::own-box-p spot (list (- x 60) (- y 5) (- x 20) (+ y 5)) rivals))
+         (is (not (display::own-box-p spot (list (+ x 34) (- y 5) (+ x 80) (+ y 5)) rivals)))
+         (is (not (display::leader-clear-p spot (list (+ x 70) y (+ x 99) (+ y 11)) '() rivals)))
+         (is-true (display::leader-clear-p spot (list (- x 99) y (- x 70) (+ y 11)) '() rivals)))))
    *crowd* 14 14))
 
 (test names.of-robots-stand-close-beside-them
@@ -57,6 +59,41 @@ of the lines that lead to names, x y x y each."
                        (is (<= (+ 100 (display:robot-radius)) (first (first names))
                                (+ 100 (display:robot-radius) 6)))))
                    '((5 5)) 14 14))
+
+(defun name-drawn (text robot scale)
+  "Return the element that TEXT is in a picture of the world of ROBOT, or NIL."
+  (find text (drawn-with :text (plain-picture robot :scale scale :layers '(:names)))
+        :key (lambda (element) (of-element element :text)) :test #'equal))
+
+(test names.of-robots-are-not-taken-for-those-of-things
+  "Not on the far side of a thing that stands beside the robot."
+  (in-studio (robot)
+    (robot:place-robot robot 5.5 6.5 0)
+    (let* ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 20)
+           (spot (first (display::named-spots snapshot)))
+           (thing (display::make-spot "pen" 135 130 8)))
+      (flet ((own-p (box) (display::own-box-p spot box (list thing))))
+        (is-true (own-p '(50 125 90 136)))
+        (is (not (own-p '(146 125 190 136))))))))
+
+(test names.of-things-beside-a-robot-are-written
+  "At the end of a line, if there is no room right beside them."
+  (in-studio (robot)
+    (robot:place-robot robot 6.5 6.5 0)
+    (dolist (scale '(8 12 20 28))
+      (loop for (x y) in '((5.8 7.2) (6.5 7.1) (7.2 5.9))
+            do (world:move-thing (world:find-thing 'pen) x y)
+               (is-true (name-drawn "pen" robot scale) "~A, ~A at ~A" x y scale)
+               (is-true (name-drawn "studio-robot" robot scale))))))
+
+(test robots.have-their-colours-in-parts-of-a-map-too
+  "The second robot is drawn alike where the first is not to be seen."
+  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 3)
+    (let ((gofer (second (run:simulation-robots))))
+      (dolist (robot (run:simulation-robots)) (robot:place-robot robot 20.5 20.5 0))
+      (robot:place-robot gofer 60.5 38.5 0)
+      (is-true (drawn-with :ellipse (plain-picture gofer :part '(50 30 70 45))
+                           :stroke (web (display:turn-ink 1)))))))
 
 (test robots.are-whole-on-a-map-of-one-cell
   (with-own-definitions

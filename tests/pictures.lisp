@@ -171,7 +171,7 @@
 
 (test names.stand-where-nothing-else-is
   (in-studio (robot)
-    (loop for x from 1.5 below 10
+    (loop for x from 1.5 below 10 by 3
           do (loop for y from 1.5 below 9 by 2
                    do (world:make-new-thing 'a-thing (list (robot:robot-world robot) x y)
                                             '((:size 1)))))

@@ -108,16 +108,19 @@ the lines of SVG MOVERS."
 ")))))))
 
 (defun film-title (journal ticks)
-  (format nil "~{~A~^ and ~}, tick~P ~D~@[ to ~D~]"
-          (mapcar (lambda (robot) (drawn-name (blueprint-name (find-blueprint robot))))
-                  (getf (journal-header journal) :robots))
-          (length ticks) (first ticks)
-          (and (rest ticks) (first (last ticks)))))
+  (let ((header (journal-header journal)))
+    (format nil "~A, tick~P ~D~@[ to ~D~]"
+            (title-of (mapcar (lambda (robot) (drawn-name (blueprint-name (find-blueprint robot))))
+                              (getf header :robots))
+                      (map-name (find-map (getf header :map))))
+            (length ticks) (first ticks)
+            (and (rest ticks) (first (last ticks))))))
 
 (defstruct (cast (:constructor make-cast (opening)) (:copier nil))
   "What is to be seen in a film that begins as the snapshot OPENING shows: the images of things, by
-these, and the entries of lines, the latest first."
+these, the images of robots, and the entries of lines, of both the latest first."
   (opening nil :type snapshot :read-only t)
+  (robots '() :type list)
   (things (make-hash-table :test #'eq) :type hash-table :read-only t)
   (lines '() :type list))
 
@@ -127,6 +130,8 @@ these, and the entries of lines, the latest first."
     (loop for image across (snapshot-things snapshot)
           do (unless (gethash (thing-image-thing image) things)
                (setf (gethash (thing-image-thing image) things) image)))
+    (dolist (image (snapshot-robots snapshot))
+      (pushnew image (cast-robots cast) :key #'robot-image-position))
     (dolist (entry (append (line-entries snapshot layers) (ray-entries snapshot layers)))
       (pushnew entry (cast-lines cast) :key #'entry-text :test #'string=))))
 
@@ -134,11 +139,12 @@ these, and the entries of lines, the latest first."
   "Return the entries of the legend for all that CAST has."
   (let ((opening (cast-opening cast)))
     (legend-entries (make-snapshot :map (snapshot-map opening) :part (snapshot-part opening)
-                                   :robots (snapshot-robots opening)
+                                   :robots (sort (copy-list (cast-robots cast)) #'<
+                                                 :key #'robot-image-position)
                                    :things (sort (coerce (hash-table-values (cast-things cast))
                                                          'simple-vector)
                                                  #'< :key #'image-serial))
-                    layers (reverse (cast-lines cast)))))
+                    layers :lines (reverse (cast-lines cast)))))
 
 (defun write-whole-name (entry out)
   "Write, as an attribute in HTML, what ENTRY is short for, if it is."

@@ -95,9 +95,14 @@ LAYERS is drawn, and how much that is then to be magnified as a whole."
   (loop while entries
         collect (loop repeat rows while entries collect (pop entries))))
 
+(defun samples-width (column)
+  "Return how wide the samples of COLUMN, a list of entries, are, in pixels."
+  (reduce #'max column :key #'entry-width))
+
 (defun column-width (column)
   "Return how wide COLUMN, a list of entries, is, in pixels."
-  (+ 36 (loop for entry in column maximize (words-width (entry-text entry)))))
+  (+ 18 (samples-width column)
+     (loop for entry in column maximize (words-width (entry-text entry)))))
 
 (defun columns-width (columns)
   (reduce #'+ (mapcar #'column-width columns)))

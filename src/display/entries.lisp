@@ -3,10 +3,15 @@
 (in-package :ars-magna.display)
 
 ;;; An entry is a text with a function of a canvas and a place, X and Y in pixels, that draws the
-;;; sample around there, no more than 16 pixels wide and high.
+;;; sample around there, no more than 16 pixels high and as wide as the entry says.
 
-(defstruct (entry (:constructor make-entry (text sample &optional whole)) (:copier nil))
-  "TEXT stands in the legend; WHOLE is what it is short for, or NIL."
+(define-constant +sample-width+ 18 :documentation "How wide most samples are, in pixels.")
+
+(defstruct (entry (:constructor make-entry (text sample &key whole (width +sample-width+)))
+                  (:copier nil))
+  "TEXT stands in the legend beside a sample WIDTH pixels wide; WHOLE is what it is short for, or
+NIL."
+  (width +sample-width+ :type real :read-only t)
   (text "" :type string :read-only t)
   (sample (constantly nil) :type function :read-only t)
   (whole nil :type (or null string) :read-only t))
@@ -15,14 +20,18 @@
   "Return an entry with TEXT, the sample of which BODY draws."
   `(make-entry ,text (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)))
 
-(defun named-entry (name sample &optional (more ""))
-  "Return an entry for NAME, a string, abridged if it is long, and for MORE, with SAMPLE."
+(defun named-entry (name sample &optional (more "") (width +sample-width+))
+  "Return an entry for NAME, a string, abridged if it is long, and for MORE, with SAMPLE, WIDTH
+pixels wide."
   (let ((text (short-name name)))
-    (make-entry (concatenate 'string text more) sample (and (string/= text name) name))))
+    (make-entry (concatenate 'string text more) sample
+                :whole (and (string/= text name) name) :width width)))
 
-(defmacro sample-of-name ((canvas x y) (name &optional (more "")) &body body)
-  "Return an entry for NAME and MORE, the sample of which BODY draws."
-  `(named-entry ,name (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body) ,more))
+(defmacro sample-of-name ((canvas x y) (name &rest more-and-width) &body body)
+  "Return an entry for NAME, the sample of which BODY draws. MORE-AND-WIDTH: a text to stand behind
+the name, and how wide the sample is, in pixels."
+  `(named-entry ,name (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)
+                ,@more-and-width))
 
 (defun grouped (objects key)
   "Return OBJECTS, a list, as lists of those for which KEY returns what is equal, in their order."
@@ -52,4 +61,4 @@ that they are the names of."
            (loop for (name more) in names
                  collect (concatenate 'string (funcall function name) more))))
     (let ((text (joined (texts #'short-name))) (whole (format nil "~{~A~^, ~}" (texts #'identity))))
-      (make-entry text sample (and (string/= text whole) whole)))))
+      (make-entry text sample :whole (and (string/= text whole) whole)))))

@@ -47,14 +47,29 @@ trail, that pictures show, newest first."
              (abs (- y (the double-float (second points)))))
           +trail-step+)))
 
+(defun with-placement-of (robot tick points)
+  "Return POINTS, of a trail; if ROBOT has been put elsewhere since, with where that was, as it may
+have driven on by TICK."
+  (if (and points
+           (/= (the fixnum (robot-placements robot)) (the fixnum (fourth points)))
+           (moved-p (list (robot-x robot) (robot-y robot)) (robot-put-x robot) (robot-put-y robot)))
+      (list* (robot-put-x robot) (robot-put-y robot) tick (robot-placements robot) points)
+      points))
+
 (defun with-place-of (robot tick points)
   "Return POINTS, of a trail, with where ROBOT is at TICK as the newest."
-  (list* (robot-x robot) (robot-y robot) tick (robot-placements robot) points))
+  (list* (robot-x robot) (robot-y robot) tick (robot-placements robot)
+         (with-placement-of robot tick points)))
+
+(defun new-points (points before)
+  "Return how many POINTS, of a trail, there are to BEFORE, the tail of them that was there."
+  (loop for rest on points by #'cddddr until (eq rest before) count t))
 
 (defun longer-trail (trail robot tick)
   "Return what TRAIL, one or NIL, is with where ROBOT is at TICK as the newest point."
-  (let ((points (with-place-of robot tick (and trail (trail-points trail))))
-        (count (if trail (1+ (trail-count trail)) 1)))
+  (let* ((before (and trail (trail-points trail)))
+         (points (with-place-of robot tick before))
+         (count (+ (if trail (trail-count trail) 0) (new-points points before))))
     (if (> count (* 2 +trail-length+))
         (make-trail (subseq points 0 (* 4 +trail-length+)) +trail-length+)
         (make-trail points count))))

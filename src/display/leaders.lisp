@@ -1,16 +1,27 @@
-;;;; leaders.lisp -- whose name it is: lines from robots to names that have no room beside them.
+;;;; leaders.lisp -- whose name it is: lines to names that have no room beside what they are of.
 
 (in-package :ars-magna.display)
 
-;;; A name without a line belongs to what is nearest to it. Where robots crowd, there is no room for
-;;; such: the name stands farther off, and a thin line leads to it, which meets no other robot
-;;; unless there is no other way.
+;;; A name without a line belongs to what is nearest to it. Where robots crowd, and for things right
+;;; beside one, there may be no room for such: the name stands farther off, and a thin line leads to
+;;; it, which meets no other robot unless there is no other way.
 
-(defun rivals (spot)
-  "Return the images of the robots for whose names that of SPOT could be taken: all others but those
-on the same spot, the rings of which are around each other."
-  (and (spot-robot spot)
-       (remove-if (lambda (other) (one-spot-p (spot-robot spot) other)) (spot-robots spot))))
+(defun rival-p (spot other)
+  "True if the name of SPOT could be taken for that of OTHER. The rings of robots on the same spot
+are around each other, and what has a place in common has its names there, too."
+  (not (or (eq spot other)
+           (and (spot-robot spot) (spot-robot other)
+                (one-spot-p (spot-robot spot) (spot-robot other)))
+           (and (= (spot-x spot) (spot-x other)) (= (spot-y spot) (spot-y other))))))
+
+(defun rivals (spot spots reach)
+  "Return those of SPOTS within REACH pixels from SPOT for whose names that of SPOT could be taken."
+  (flet ((near-p (from to) (< (abs (- from to)) reach)))
+    (remove-if-not (lambda (other)
+                     (and (near-p (spot-x spot) (spot-x other))
+                          (near-p (spot-y spot) (spot-y other))
+                          (rival-p spot other)))
+                   spots)))
 
 (defun nearest-in (box x y)
   "Return the point of BOX that is nearest to X, Y, as two values."
@@ -26,17 +37,31 @@ on the same spot, the rings of which are around each other."
      (robot-radius)))
 
 (define-constant +own+ 6
-  :documentation "How much farther from other robots than from its own a name is, in pixels.")
+  :documentation "How much farther from other robots than from its own robot a name is, in pixels.")
+(define-constant +own-thing+ 3
+  :documentation "How much farther from others than from its own a name is, if one is a thing.")
 
-(defun own-box-p (spot box)
-  "True if who reads a name in BOX takes it for that of SPOT."
-  (flet ((off (x y)
-           (multiple-value-bind (to-x to-y) (nearest-in box x y) (apart x y to-x to-y))))
-    (loop with own = (- (off (spot-x spot) (spot-y spot)) (spot-half spot))
-          for rival in (rivals spot)
-          never (< (- (off (to-pixels (robot-image-x rival)) (to-pixels (robot-image-y rival)))
-                      (robot-radius))
-                   (+ own +own+)))))
+(defun gap (spot box)
+  "Return how far BOX is from SPOT, a ring or a square, in pixels; 0 or less if they meet."
+  (let ((x (spot-x spot)) (y (spot-y spot)) (half (spot-half spot)))
+    (flet ((off (x y)
+             (multiple-value-bind (to-x to-y) (nearest-in box x y) (apart x y to-x to-y))))
+      (if (spot-robot spot)
+          (- (off x y) half)
+          (destructuring-bind (left top right bottom) box
+            (off (clamp (clamp x left right) (- x half) (+ x half))
+                 (clamp (clamp y top bottom) (- y half) (+ y half))))))))
+
+(defun own-box-p (spot box rivals)
+  "True if who reads a name in BOX takes it for that of SPOT rather than for those of RIVALS."
+  (loop with own = (gap spot box)
+        for rival in rivals
+        never (< (gap rival box)
+                 (+ own (if (and (spot-robot spot) (spot-robot rival)) +own+ +own-thing+)))))
+
+(defun beside-robot-p (spot rivals)
+  "True if one of RIVALS is a robot so near to SPOT that their names are in each other's way."
+  (some (lambda (rival) (and (spot-robot rival) (< (gap rival (spot-box spot)) +own+))) rivals))
 
 (define-constant +leader-lengths+ '(10 18 28 40 56 76)
   :test #'cl:equal
@@ -66,24 +91,26 @@ ANGLE."
     (multiple-value-bind (to-x to-y) (nearest-in box x y)
       (append (around x y (atan (- to-y y) (- to-x x)) (spot-half spot)) (list to-x to-y)))))
 
-(defun leader-clear-p (spot box taken)
-  "True if the line from SPOT to BOX meets no ring of another robot and none of the boxes TAKEN but
-that of SPOT."
+(defun leader-clear-p (spot box taken rivals)
+  "True if the line from SPOT to BOX meets no ring of a robot among RIVALS and none of the boxes
+TAKEN but that of SPOT."
   (destructuring-bind (x y to-x to-y) (leader-ends spot box)
     (loop for step from 0 to 8
           for at-x = (+ x (* step 1/8 (- to-x x))) and at-y = (+ y (* step 1/8 (- to-y y)))
-          always (and (every (lambda (rival) (< 2 (off-ring rival at-x at-y))) (rivals spot))
+          always (and (loop for rival in rivals
+                            never (and (spot-robot rival)
+                                       (<= (off-ring (spot-robot rival) at-x at-y) 2)))
                       (or (overlap-p (box-around at-x at-y 1) (spot-box spot))
                           (notany (lambda (other) (overlap-p (box-around at-x at-y 1) other))
                                   taken))))))
 
-(defun led-box (snapshot layers spot width taken)
+(defun led-box (snapshot layers spot width taken rivals)
   "Return the box farther off where the name of SPOT, WIDTH pixels wide, hides least, or NIL: if it
-can be, one to which a clear line leads."
+can be, one to which a clear line leads; that of a thing must be clear."
   (let ((boxes (led-boxes spot width)))
     (flet ((best (boxes) (best-box snapshot layers boxes taken :anywhere-p t)))
-      (or (best (remove-if-not (lambda (box) (leader-clear-p spot box taken)) boxes))
-          (best boxes)))))
+      (or (best (remove-if-not (lambda (box) (leader-clear-p spot box taken rivals)) boxes))
+          (and (spot-robot spot) (best boxes))))))
 
 (defun draw-leader (canvas spot box)
   "Draw the line from SPOT to its name in BOX."

@@ -4,12 +4,13 @@
 
 ;;; Robots.
 
+(defun robot-entry (name position)
+  "Return an entry for the robot called NAME, a string, at POSITION among those of its world."
+  (sample-of-name (canvas x y) (name) (draw-ring canvas x y 6 0 position)))
+
 (defun robot-entries (snapshot)
   (loop for robot in (snapshot-robots snapshot)
-        for position from 0
-        collect (let ((position position))
-                  (sample-of-name (canvas x y) ((robot-title robot))
-                    (draw-ring canvas x y 6 0 position)))))
+        collect (robot-entry (robot-title robot) (robot-image-position robot))))
 
 ;;; Walls: the substances, with the range of their parameters.
 
@@ -216,12 +217,28 @@ than the line."
 
 (define-constant +entry-limit+ 80 :documentation "How many entries a legend has at most.")
 
+(defun paled (entries opacity)
+  "Return ENTRIES with samples that hide as much of what is below as OPACITY says."
+  (loop for entry in entries
+        collect (let ((sample (entry-sample entry)))
+                  (make-entry (entry-text entry)
+                              (lambda (canvas x y)
+                                (with-opacity (canvas opacity) (funcall sample canvas x y)))
+                              :whole (entry-whole entry) :width (entry-width entry)))))
+
+(defun terrain-entries (snapshot layers)
+  (append (wall-entries snapshot) (and (member :places layers) (place-entries snapshot))))
+
 (defun legend-entries (snapshot layers
-                       &optional (lines (append (line-entries snapshot layers)
-                                                (ray-entries snapshot layers))))
-  "Return the entries of the legend of a picture of SNAPSHOT with LAYERS; LINES are those of lines."
-  (let* ((entries (append (robot-entries snapshot) (wall-entries snapshot)
-                          (and (member :places layers) (place-entries snapshot))
+                       &key (lines (append (line-entries snapshot layers)
+                                           (ray-entries snapshot layers)))
+                            (robots (robot-entries snapshot))
+                            (opacity 1))
+  "Return the entries of the legend of a picture of SNAPSHOT with LAYERS, the map in which has
+OPACITY; LINES are those of lines, and ROBOTS those of robots."
+  (let* ((terrain (terrain-entries snapshot layers))
+         (entries (append robots
+                          (if (= 1 opacity) terrain (paled terrain opacity))
                           lines
                           (shape-entries snapshot) (thing-entries snapshot)))
          (more (- (length entries) +entry-limit+)))

@@ -4,11 +4,16 @@
 
 ;;; The parts. The origin is that of the map.
 
+(defun title-of (robots map)
+  "Return what a title says of ROBOTS, a list of names as they are drawn, in MAP, a name."
+  (format nil "~@[~A in ~]~A" (joined robots) (drawn-name map)))
+
 (defun map-title (snapshot)
   "Return what stands above a picture of SNAPSHOT unless somebody says what."
-  (format nil "~{~A~^, ~} in ~A, tick ~D"
-          (mapcar #'robot-title (snapshot-robots snapshot))
-          (drawn-name (map-name (snapshot-map snapshot))) (snapshot-tick snapshot)))
+  (format nil "~A, tick ~D"
+          (title-of (mapcar #'robot-title (snapshot-robots snapshot))
+                    (map-name (snapshot-map snapshot)))
+          (snapshot-tick snapshot)))
 
 (defun draw-title (canvas arrangement)
   (let ((y (- 16 (arrangement-top arrangement))))
@@ -45,11 +50,11 @@
       (draw-segments canvas draw-gcontext* (list 0 y x y 0 (- y 4) 0 (+ y 4) x (- y 4) x (+ y 4))))
     (draw-text canvas (+ x 8) (+ y 4) (metres-text metres))))
 
-(defun draw-entry (canvas entry x y)
-  "Draw ENTRY, its upper left corner at X, Y."
+(defun draw-entry (canvas entry x y width)
+  "Draw ENTRY, its upper left corner at X, Y, in a column of samples WIDTH pixels wide."
   (let ((middle (+ y (/ +line-height+ 2))))
-    (flet ((words () (draw-text canvas (+ x 22) (+ middle 4) (entry-text entry))))
-      (funcall (entry-sample entry) canvas (+ x 8) middle)
+    (flet ((words () (draw-text canvas (+ x width 4) (+ middle 4) (entry-text entry))))
+      (funcall (entry-sample entry) canvas (+ x -1 (/ width 2)) middle)
       (if (entry-whole entry)
           (with-subject (canvas (entry-whole entry)) (words))
           (words)))))
@@ -58,7 +63,7 @@
   "Draw the legend of ARRANGEMENT, its upper left corner at X, Y."
   (dolist (column (arrangement-columns arrangement))
     (loop for entry in column for row from 0
-          do (draw-entry canvas entry x (+ y (* row +line-height+))))
+          do (draw-entry canvas entry x (+ y (* row +line-height+)) (samples-width column)))
     (incf x (column-width column))))
 
 (defun draw-margins (canvas snapshot layers arrangement)
@@ -76,12 +81,13 @@
               (draw-legend canvas arrangement 0 (+ height (if (shown-p :scale-bar) 32 8)))
               (draw-legend canvas arrangement (arrangement-legend-left arrangement) 0)))))))
 
-(defun arrangement-for (canvas snapshot layers title subtitle more)
+(defun arrangement-for (canvas snapshot layers title subtitle more legend)
   "Return the arrangement for a picture of SNAPSHOT with LAYERS on CANVAS, with TITLE and SUBTITLE,
-and with MORE entries of the legend."
+and with MORE entries of the legend, of which LEGEND has the options."
   (let ((arrangement (arrange snapshot layers
                               (and (member :legend layers)
-                                   (append more (legend-entries snapshot layers))))))
+                                   (append more
+                                           (apply #'legend-entries snapshot layers legend))))))
     (if (member :title layers)
         (with-title arrangement (or title (map-title snapshot)) subtitle
           (character-width canvas 1))
@@ -96,12 +102,12 @@ beside what is to be shown of that stays invisible."
           (with-origin (canvas (- left) (- top)) (funcall function))))
       (funcall function)))
 
-(defun draw-framed (canvas snapshot layers draw &key title subtitle more)
+(defun draw-framed (canvas snapshot layers draw &key title subtitle more legend)
   "Draw around the map of SNAPSHOT what LAYERS lists, and call DRAW, which draws the map and what is
 on it; return width and height of all that, and how far from the left the map begins. TITLE stands
 above, or if it is NIL, robots, map and tick; then SUBTITLE, if any. MORE are entries of the legend
-that come first."
-  (let* ((arrangement (arrangement-for canvas snapshot layers title subtitle more))
+that come first; LEGEND are options of LEGEND-ENTRIES for the others."
+  (let* ((arrangement (arrangement-for canvas snapshot layers title subtitle more legend))
          (left (arrangement-left arrangement)))
     (with-origin (canvas left (arrangement-top arrangement))
       (draw-margins canvas snapshot layers arrangement)

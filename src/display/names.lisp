@@ -83,14 +83,16 @@ nothing; NIL if it may not stand there, on a wall that is not thick, unless ANYW
               (if (and (member :trail layers) (on-trail-p snapshot box)) 1 0)))
           ((or anywhere-p (<= +thick-wall+ graphics-scale*)) 4))))
 
-(defun best-box (snapshot layers boxes taken &key anywhere-p)
+(defun best-box (snapshot layers boxes taken &key anywhere-p (own-p (constantly t)))
   "Return the first of those of BOXES that hide least, are in the part of the map that SNAPSHOT
-shows, and meet none of TAKEN; or NIL. Rather than nothing a name hides a trail, then the mark of a
-place, and at last a part of a wall that is thick, or of any if ANYWHERE-P."
+shows, meet none of TAKEN, and for which OWN-P is true; or NIL. Rather than nothing a name hides a
+trail, then the mark of a place, and at last a part of a wall that is thick, or of any if
+ANYWHERE-P."
   (loop with best = nil and least = nil
         for box in boxes
         for cost = (and (within-shown-p snapshot box)
                         (notany (lambda (other) (overlap-p box other)) taken)
+                        (funcall own-p box)
                         (box-cost snapshot layers box anywhere-p))
         when (and cost (or (null least) (< cost least)))
           do (setf best box least cost)
@@ -118,20 +120,18 @@ have small letters of their own."
 (defun thing-image-name (image)
   (drawn-name (thing-name (thing-image-thing image))))
 
-;;; A spot is what has a name on the map. If it is a robot, ROBOT is its image, and ROBOTS are those
-;;; of all.
-
-(defstruct (spot (:constructor make-spot (name x y half &optional robot robots)) (:copier nil))
-  "What has the name NAME at X, Y, and reaches HALF pixels from there."
+(defstruct (spot (:constructor make-spot (name x y half &optional robot)) (:copier nil))
+  "What has the name NAME at X, Y, and reaches HALF pixels from there; if it is a robot, ROBOT is
+its image."
   (name "" :type string :read-only t)
   (x 0 :type real :read-only t) (y 0 :type real :read-only t) (half 0 :type real :read-only t)
-  (robot nil :read-only t) (robots '() :type list :read-only t))
+  (robot nil :read-only t))
 
 (defun robot-spot (robot robots)
   "Return the spot of ROBOT, the image of one of ROBOTS."
   (make-spot (short-name (robot-title robot))
              (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
-             (+ 1 (spot-radius robot robots)) robot robots))
+             (+ 1 (spot-radius robot robots)) robot))
 
 (defun named-spots (snapshot)
   "Return the spots of what has a name on the map, in order of importance."
@@ -185,16 +185,33 @@ have small letters of their own."
     (draw-words canvas draw-gcontext* (+ 1 (first box)) (- (fourth box) 2) name
                 :size +name-size+)))
 
-(defun near-box (snapshot layers spot width taken marks)
-  "Return the box beside SPOT where its name, WIDTH pixels wide, hides least, or NIL."
+(defun near-box (snapshot layers spot width taken marks rivals)
+  "Return the box beside SPOT where its name, WIDTH pixels wide, hides least and is not taken for
+that of one of RIVALS, or NIL."
   (best-box snapshot layers
-            (remove-if-not (lambda (box) (own-box-p spot box))
-                           (boxes-beside (spot-x spot) (spot-y spot) (spot-half spot) width marks))
-            taken :anywhere-p (and (spot-robot spot) t)))
+            (boxes-beside (spot-x spot) (spot-y spot) (spot-half spot) width marks)
+            taken :anywhere-p (and (spot-robot spot) t)
+                  :own-p (lambda (box) (own-box-p spot box rivals))))
+
+(define-constant +reach-of-names+ 100
+  :documentation "How far around a name what is near to it is looked for, in pixels.")
+
+(defun boxes-near (spot reach boxes)
+  "Return those of BOXES that come within REACH pixels of SPOT: a film looks at them in each frame."
+  (let ((area (box-around (spot-x spot) (spot-y spot) reach)))
+    (remove-if-not (lambda (box) (overlap-p area box)) boxes)))
+
+(defun name-box (snapshot layers spot width taken marks rivals)
+  "Return the box for the name of SPOT, WIDTH pixels wide, or NIL, and as a second value whether a
+line has to lead there."
+  (let ((near (near-box snapshot layers spot width taken marks rivals)))
+    (cond (near (values near nil))
+          ((or (spot-robot spot) (beside-robot-p spot rivals))
+           (values (led-box snapshot layers spot width taken rivals) t)))))
 
 (defun draw-names (canvas snapshot layers &optional boxes)
   "Write the names of robots and things where there is room beside what LAYERS list and BOXES; those
-of robots where there is none at the end of a line."
+of robots, and of things right beside one, where there is none at the end of a line."
   (let* ((spots (named-spots snapshot)) (robots (snapshot-robots snapshot))
          (per-character (character-width canvas +name-size+))
          (marks (append boxes (loop for robot in robots append (marked-spots robot layers))))
@@ -202,9 +219,11 @@ of robots where there is none at the end of a line."
                         (loop for spot in spots collect (widened (spot-box spot) 1)))))
     (dolist (spot spots)
       (let* ((width (+ 2 (* per-character (length (spot-name spot)))))
-             (near (near-box snapshot layers spot width taken marks))
-             (box (or near (and (spot-robot spot) (led-box snapshot layers spot width taken)))))
-        (when box
-          (push (widened box +apart+) taken)
-          (unless near (draw-leader canvas spot box))
-          (write-name canvas (spot-name spot) box))))))
+             (reach (+ width (spot-half spot) +reach-of-names+)))
+        (multiple-value-bind (box led-p)
+            (name-box snapshot layers spot width (boxes-near spot reach taken) marks
+                      (rivals spot spots reach))
+          (when box
+            (push (widened box +apart+) taken)
+            (when led-p (draw-leader canvas spot box))
+            (write-name canvas (spot-name spot) box)))))))

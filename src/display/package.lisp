@@ -33,7 +33,8 @@
   ;; and displays
   (:export #:draw-terrain #:draw-movers #:draw-world #:users-scale #:check-map-options
            #:in-part #:draw-framed #:with-map-svg #:drawn-scale #:sample-of
-           #:turn-ink #:robot-radius #:drawn-name #:draw-names
+           #:turn-ink #:draw-ring #:robot-entry #:sample-of-name
+           #:robot-radius #:drawn-name #:draw-names
            #:telling-what-breaks #:draw-way-line #:draw-pieces #:jump-entry #:draw-start
            #:way-entry #:to-pixels #:pixels-of #:shown-part #:snapshot-part
            #:inked #:around #:draw-circle #:half-width

@@ -68,17 +68,17 @@ direction ANGLE."
     (with-color color
       (draw-arrowhead canvas x y (- radius 5/2) angle (not (hollow-head-p position))))))
 
-(defun draw-robot (canvas image position radius)
+(defun draw-robot (canvas image radius)
   (with-subject (canvas image)
     (draw-ring canvas (to-pixels (robot-image-x image)) (to-pixels (robot-image-y image))
-               radius (robot-image-angle image) position)
+               radius (robot-image-angle image) (robot-image-position image))
     (dolist (line (camera-lines image radius))
       (inked ((layer-ink :tracks) :width 2) (draw-segments canvas draw-gcontext* line)))))
 
 (defun draw-robots (canvas robots)
   "Draw ROBOTS, the images of all there are; wide rings first, so that they hide none."
-  (loop for (image position radius)
-          in (stable-sort (loop for image in robots for position from 0
-                                collect (list image position (ring-radius image robots)))
-                          #'> :key #'third)
-        do (draw-robot canvas image position radius)))
+  (loop for (image radius)
+          in (stable-sort (loop for image in robots
+                                collect (list image (ring-radius image robots)))
+                          #'> :key #'second)
+        do (draw-robot canvas image radius)))

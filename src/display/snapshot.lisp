@@ -21,8 +21,9 @@ LOCATION says in words what it is in, or is NIL. It is MOVING-P if it has kicker
   (thing nil) (x 0d0) (y 0d0) (location nil) (attributes '()) (color 0) (size 0d0)
   (obsmove-p nil) (obsview-p nil) (container-p nil) (moving-p nil) (draw-function nil))
 
-(define-image robot-image "What a snapshot knows of a robot."
-  (name nil) (x 0d0) (y 0d0) (angle 0d0) (speed 0d0) (place nil)
+(define-image robot-image "What a snapshot knows of a robot, which is at POSITION among those of its
+world: that decides what it looks like."
+  (name nil) (position 0) (x 0d0) (y 0d0) (angle 0d0) (speed 0d0) (place nil)
   (under-way nil) (interruption nil)
   (cameras '()) (hands '()) (bins '())
   (designators '()) (odometer nil) (trail '()) (planned-way '()))
@@ -207,10 +208,11 @@ what it holds of each."
          :axis (odometer-origin-angle odometer)
          :spread (width angle))))))
 
-(defun image-of-robot (robot history)
+(defun image-of-robot (robot position history)
   (flet ((images (function parts) (cl:map 'list function parts)))
     (make-robot-image
-     :name (robot-name robot) :x (robot-x robot) :y (robot-y robot) :angle (robot-angle robot)
+     :name (robot-name robot) :position position
+     :x (robot-x robot) :y (robot-y robot) :angle (robot-angle robot)
      :speed (robot-speed robot) :place (robot-last-place robot)
      :under-way (under-way-text robot) :interruption (interruption-text robot)
      :cameras (images (lambda (camera) (image-of-camera camera history))
@@ -235,7 +237,8 @@ snapshot of WORLD, makes it cheaper."
                    ;; Some of what an image has is text.
                    :robots (printing-plainly ()
                              (loop for robot in (world-robots world)
-                                   collect (image-of-robot robot history))))))
+                                   for position from 0
+                                   collect (image-of-robot robot position history))))))
 
 (defun snapshot-of (robot)
   "Return a snapshot of the world of ROBOT, from whatever thread."

@@ -52,26 +52,30 @@ few, and none on a very short one."
       (let ((arrow (free-arrow pieces (* (+ index 1/2) (/ whole count)) arrows)))
         (when arrow (push arrow arrows))))))
 
-(defun draw-way-arrow (canvas x y angle color)
+(defun draw-way-arrow (canvas x y angle color hollow-p)
   "Draw an arrowhead with a halo around X, Y in direction ANGLE."
-  (flet ((head (reach)
-           (draw-lines canvas draw-gcontext*
-                       (append (around x y angle reach) (around x y (+ angle 2.4d0) reach)
-                               (around x y (- angle 2.4d0) reach))
-                       :fill-p t)))
-    (with-gcontext (draw-gcontext* :foreground white*) (head (+ 3/2 (* 1/2 +arrow-length+))))
-    (with-color color (head (* 1/2 +arrow-length+)))))
+  (flet ((head (color more)
+           (let ((reach (+ more (* 1/2 +arrow-length+))))
+             (with-gcontext (draw-gcontext* :foreground color)
+               (draw-lines canvas draw-gcontext*
+                           (append (around x y angle reach) (around x y (+ angle 2.4d0) reach)
+                                   (around x y (- angle 2.4d0) reach))
+                           :fill-p t)))))
+    (let ((ink (if in-color* color black*)) (larger (if hollow-p 2 0)))
+      (head white* (+ larger 3/2))
+      (head ink larger)
+      (when hollow-p (head white* -1)))))
 
 (defun draw-way-line (canvas points color position)
   "Draw a line of COLOR through POINTS, x y ... in pixels, dashed as that at POSITION of several,
-with arrowheads on it that say where it leads."
+with arrowheads on it that say where it leads; they are hollow where heads of robots are."
   (with-gcontext (draw-gcontext* :foreground white* :line-width 4)
     (draw-lines canvas draw-gcontext* points))
   (with-color color
     (with-dashes ((turn-dashes position) :width 2)
       (draw-lines canvas draw-gcontext* points)))
   (loop for (x y angle) in (arrows-along points)
-        do (draw-way-arrow canvas x y angle color)))
+        do (draw-way-arrow canvas x y angle color (hollow-head-p position))))
 
 (defun draw-start (canvas x y color)
   "Draw what marks where a way begins: a small ring."
@@ -85,8 +89,8 @@ with arrowheads on it that say where it leads."
 
 (defun way-entry (text color position)
   "Return an entry of a legend for a way."
-  (sample-of-name (canvas x y) (text)
-    (draw-way-line canvas (list (- x 8) y (+ x 8) y) color position)))
+  (sample-of-name (canvas x y) (text "" 38)
+    (draw-way-line canvas (list (- x 18) y (+ x 18) y) color position)))
 
 ;;; Ways as points.
 

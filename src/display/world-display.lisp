@@ -49,8 +49,8 @@ than all margins have.")
 
 (defun draw-below-robots (canvas snapshot layers)
   "Draw what LAYERS lists of SNAPSHOT that robots and things lie on."
-  (loop for robot in (snapshot-robots snapshot) for position from 0
-        do (draw-layers canvas snapshot robot (turn-ink position) layers))
+  (dolist (robot (snapshot-robots snapshot))
+    (draw-layers canvas snapshot robot (turn-ink (robot-image-position robot)) layers))
   (when (member :reach layers) (draw-reach canvas (snapshot-things snapshot))))
 
 (defun draw-movers (canvas snapshot layers)

@@ -29,7 +29,9 @@ So a robot can drive along the border of two cells, and stay in one of them."
         (robot-start-x robot) (robot-x robot)
         (robot-start-y robot) (robot-y robot)
         (robot-estimate-x robot) 0d0
-        (robot-estimate-y robot) 0d0)
+        (robot-estimate-y robot) 0d0
+        (robot-put-x robot) (robot-x robot)
+        (robot-put-y robot) (robot-y robot))
   (incf (robot-placements robot))
   (set-robot-angle robot angle))
 

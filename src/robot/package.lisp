@@ -38,7 +38,7 @@ and tracks. Manual 2.2, 3.2.2, 3.4 and 5.2.")
            #:robot-odometer #:robot-odometers #:reset-odometer #:reset-odometer-pos
            #:reset-odometer-ang #:get-odometer-pos #:get-odometer-ang)
   ;; motion
-  (:export #:set-robot-pose #:robot-placements
+  (:export #:set-robot-pose #:robot-placements #:robot-put-x #:robot-put-y
            #:set-robot-angle #:drive-tick #:coast-tick #:turn-tick
            #:robot-speed-now #:standing-p #:longest-step #:step-now
            #:robot-turn-angle-now #:robot-moved

@@ -50,6 +50,8 @@
    (estimate-x 0d0 double-float "how far the robot believes it has moved since, in x, in metres")
    (estimate-y 0d0 double-float "how far the robot believes it has moved since, in y, in metres")
    (placements 0 fixnum "how many times the robot has been put somewhere, other than by driving")
+   (put-x 0d0 double-float "where the robot was last put, the x coordinate in metres")
+   (put-y 0d0 double-float "where the robot was last put, the y coordinate in metres")
    (failure nil t "what is known of the command that failed last on the robot or a part, or NIL")
    (published-way nil t "the way that the robot's program said last it would take, or NIL"
                   :shared))

@@ -9,7 +9,8 @@
                 #:journal-meant
                 #:journal-header #:simulation-world)
   (:import-from :ars-magna.robot
-                #:robot #:robot-x #:robot-y #:robot-angle #:robot-placements #:robot-name
+                #:robot #:robot-x #:robot-y #:robot-angle #:robot-placements #:robot-put-x
+                #:robot-put-y #:robot-name
                 #:robot-hands #:robot-last-place
                 #:robot-main-odometer #:odometer-estimate #:find-blueprint #:blueprint-name
                 #:hand-holding)
@@ -19,7 +20,8 @@
                 #:drawn-scale
                 #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:draw-way-line
                 #:draw-pieces #:jump-entry
-                #:draw-start #:way-entry #:turn-ink #:to-pixels #:box-around
+                #:draw-start #:draw-ring #:robot-entry #:sample-of-name #:turn-ink
+                #:to-pixels #:box-around
                 #:inked #:around #:draw-circle #:half-width
                 #:overlap-p #:telling-what-breaks #:with-map-svg
                 #:drawn-name #:shown-part #:snapshot-part #:pixels-of #:*picture-layers*

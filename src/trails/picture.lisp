@@ -76,11 +76,15 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
           (and (some (lambda (way) (rest (way-pieces way))) ways)
                (list (jump-entry black*)))))
 
+(defun map-opacity (color-p)
+  "Return how much the map of a bundle hides what is below, in colours if COLOR-P."
+  (if color-p 1/2 1))
+
 (defun draw-bundle (canvas snapshot ways layers)
   "Draw the world of SNAPSHOT, its map faintly where there are colours, and WAYS in it; above robots
 and things where these end."
   (let ((ways (ways-in-order ways)))
-    (with-opacity (canvas (if in-color* 1/2 1))
+    (with-opacity (canvas (map-opacity in-color*))
       (draw-terrain canvas (snapshot-map snapshot) :layers layers))
     (draw-ways canvas ways)
     (draw-movers canvas snapshot (remove :names layers))
@@ -95,7 +99,8 @@ and things where these end."
       (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
         (draw-framed canvas snapshot layers
                      (lambda () (draw-bundle canvas snapshot ways layers))
-                     :title title :subtitle subtitle :more more)))))
+                     :title title :subtitle subtitle :more more
+                     :legend (list :opacity (map-opacity in-color)))))))
 
 (defun save-bundle (operator what file snapshot ways-of own-title subtitle
                     &key part title (layers (remove :tracks *picture-layers*)) (in-color t) scale)

@@ -94,13 +94,26 @@ WRONG-ARGUMENT if these are of robots that are not there."
 (defun boxes-of-ways (ways)
   (loop for (nil . pieces) in ways append (mapcan #'boxes-along (pieces-in-pixels pieces))))
 
-(defun run-entries (ways spots)
-  "Return the entries of the legend that a picture of a run with WAYS and SPOTS has besides others."
-  (append (loop for way in ways
-                for position from 0
-                when (moved-p way)
-                  collect (way-entry (format nil "way of ~A" (drawn-name (first way)))
-                                     (turn-ink position) position))
+(defun moved-robot-entry (name position)
+  "Return an entry for the robot called NAME at POSITION among those of its world, and for its way."
+  (sample-of-name (canvas x y) (name " and its way" 54)
+    (draw-ring canvas (- x 18) y 6 0 position)
+    (draw-way-line canvas (list (- x 10) y (+ x 26) y) (turn-ink position) position)))
+
+(defun robot-entries-with-ways (snapshot ways)
+  "Return the entries of the legend for the robots that have WAYS or are to be seen in SNAPSHOT."
+  (loop for way in ways
+        for position from 0
+        for name = (first way)
+        if (moved-p way)
+          collect (moved-robot-entry (drawn-name name) position)
+        else if (find name (snapshot-robots snapshot) :key #'robot-image-name)
+               collect (robot-entry (drawn-name name) position)))
+
+(defun run-entries (snapshot ways spots)
+  "Return the entries of the legend that a picture of a run that ended as SNAPSHOT shows, with WAYS
+and SPOTS, has besides that of a map and things."
+  (append (robot-entries-with-ways snapshot ways)
           (when (some #'moved-p ways)
             (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
           (when (some #'cddr ways) (list (jump-entry black*)))
@@ -152,13 +165,13 @@ where; all if PART is NIL."
       (spots-and-notes (moments-in (snapshot-part snapshot) moments) limit
                        (and (rest (snapshot-robots snapshot)) t)
                        (reach-of-spots (drawn-scale scale snapshot layers)))
-    (let ((more (run-entries ways spots)))
+    (let ((more (run-entries snapshot ways spots)))
       (with-output-to-string (out)
         (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
           (multiple-value-bind (width height left)
               (draw-framed canvas snapshot layers
                            (lambda () (draw-run canvas snapshot ways spots layers))
-                           :title title :more more)
+                           :title title :more more :legend '(:robots ()))
             (let ((width (max width 480)))
               (values width
                       (draw-notes canvas notes (max 8 left) (+ height 16)

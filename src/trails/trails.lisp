@@ -17,14 +17,23 @@ PLACEMENTS is how often it had been put somewhere when it was seen last."
   (placements nil :type (or null fixnum))
   (pieces '() :type list))
 
+(defun note-point (trail x y)
+  "Let the last piece of TRAIL go on to X, Y."
+  (unless (equal (cons x y) (first (first (trail-pieces trail))))
+    (push (cons x y) (first (trail-pieces trail)))))
+
+(defun note-placement (trail)
+  "Let a piece of TRAIL begin where its robot has been put: it may have driven on since."
+  (let ((robot (trail-robot trail)) (begun-p (trail-placements trail)))
+    (setf (trail-placements trail) (robot-placements robot))
+    (push '() (trail-pieces trail))
+    (when begun-p (note-point trail (robot-put-x robot) (robot-put-y robot)))))
+
 (defun note-place (trail)
   "Let TRAIL know where its robot is."
-  (let* ((robot (trail-robot trail)) (point (cons (robot-x robot) (robot-y robot))))
-    (unless (eql (trail-placements trail) (robot-placements robot))
-      (setf (trail-placements trail) (robot-placements robot))
-      (push '() (trail-pieces trail)))
-    (unless (equal point (first (first (trail-pieces trail))))
-      (push point (first (trail-pieces trail))))))
+  (let ((robot (trail-robot trail)))
+    (unless (eql (trail-placements trail) (robot-placements robot)) (note-placement trail))
+    (note-point trail (robot-x robot) (robot-y robot))))
 
 (defun note-places (simulation trails)
   "Add to TRAILS, a list, latest first, where the robots of SIMULATION are. Return it."
