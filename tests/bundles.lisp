@@ -86,7 +86,8 @@
 (test run-picture.names-no-ways-of-robots-that-never-moved
   (in-studio (robot)
     (run:run-ticks 3)
-    (is (not (or (mentions-p (run-picture) "its way") (mentions-p (run-picture) "start of a way")))))
+    (is (not (or (mentions-p (run-picture) "its way")
+                 (mentions-p (run-picture) "start of a way")))))
   (in-studio (robot)
     (journal-of-a-drive robot)
     (is (mentions-p (run-picture) "studio-robot and its way"))
