@@ -110,14 +110,6 @@
         (is (mentions-p (first (frames-shown film)) "cx=\"35\" cy=\"65\""))
         (is (not (mentions-p (third (frames-shown film)) "cx=\"35\" cy=\"65\"")))))))
 
-(test film.title-has-robots-as-far-as-there-is-room-and-the-map
-  (let ((names '("ada" "ben" "cleo" "dora" "emil" "fay" "gus" "hal" "ida")))
-    (is (string= "ada, ben, cleo, dora, emil, fay and 3 more in study"
-                 (display::title-of names 'study)))
-    (is (string= "ada in study" (display::title-of '("ada") 'study))))
-  (in-studio (robot)
-    (is (mentions-p (film-of robot #'ungrasp-nothing) "<title>studio-robot in studio, tick"))))
-
 (test film.is-no-less-legible-at-a-great-scale
   "The page magnifies its picture as far as there is room, so that is no larger than suits the map."
   (in-studio (robot)

@@ -164,3 +164,13 @@ of the lines that lead to names, x y x y each."
                                         :fill (web (if color-p
                                                        (display:turn-ink position)
                                                        canvas:black*)))))))))))
+
+;;; Titles.
+
+(test film.title-has-robots-as-far-as-there-is-room-and-the-map
+  (let ((names '("ada" "ben" "cleo" "dora" "emil" "fay" "gus" "hal" "ida")))
+    (is (string= "ada, ben, cleo, dora, emil, fay and 3 more in study"
+                 (display::title-of names 'study)))
+    (is (string= "ada in study" (display::title-of '("ada") 'study))))
+  (in-studio (robot)
+    (is (mentions-p (film-of robot #'ungrasp-nothing) "<title>studio-robot in studio, tick"))))

@@ -91,18 +91,27 @@ ANGLE."
     (multiple-value-bind (to-x to-y) (nearest-in box x y)
       (append (around x y (atan (- to-y y) (- to-x x)) (spot-half spot)) (list to-x to-y)))))
 
+(defun off-leaders (spot taken rivals)
+  "Return those boxes of TAKEN, and of RIVALS the images of those robots, which a line from SPOT is
+to leave alone: from a thing within a ring a line leads out of that."
+  (let ((own (spot-box spot)) (robots (remove nil rivals :key #'spot-robot)))
+    (if (spot-robot spot)
+        (values taken (mapcar #'spot-robot robots))
+        (values (remove-if (lambda (box) (overlap-p box own)) taken)
+                (loop for rival in robots
+                      unless (< (gap rival own) 2) collect (spot-robot rival))))))
+
 (defun leader-clear-p (spot box taken rivals)
   "True if the line from SPOT to BOX meets no ring of a robot among RIVALS and none of the boxes
 TAKEN but that of SPOT."
-  (destructuring-bind (x y to-x to-y) (leader-ends spot box)
-    (loop for step from 0 to 8
-          for at-x = (+ x (* step 1/8 (- to-x x))) and at-y = (+ y (* step 1/8 (- to-y y)))
-          always (and (loop for rival in rivals
-                            never (and (spot-robot rival)
-                                       (<= (off-ring (spot-robot rival) at-x at-y) 2)))
-                      (or (overlap-p (box-around at-x at-y 1) (spot-box spot))
-                          (notany (lambda (other) (overlap-p (box-around at-x at-y 1) other))
-                                  taken))))))
+  (multiple-value-bind (taken robots) (off-leaders spot taken rivals)
+    (destructuring-bind (x y to-x to-y) (leader-ends spot box)
+      (loop for step from 0 to 8
+            for at-x = (+ x (* step 1/8 (- to-x x))) and at-y = (+ y (* step 1/8 (- to-y y)))
+            for at = (box-around at-x at-y 1)
+            always (and (every (lambda (robot) (< 2 (off-ring robot at-x at-y))) robots)
+                        (or (overlap-p at (spot-box spot))
+                            (notany (lambda (other) (overlap-p at other)) taken)))))))
 
 (defun led-box (snapshot layers spot width taken rivals)
   "Return the box farther off where the name of SPOT, WIDTH pixels wide, hides least, or NIL: if it
