@@ -58,6 +58,16 @@
       (is (notany (lambda (line) (> (length line) 100)) lines) "~A has long lines" path)
       (is (notany (lambda (line) (find #\Tab line)) lines) "~A has tabs" path))))
 
+(test tests.have-names-of-their-own
+  "A test of the same name would take the place of another without a word."
+  (let ((seen (make-hash-table :test 'equal)))
+    (dolist (path (lisp-files "tests/"))
+      (dolist (line (file-lines path))
+        (when (begins-with-p "(test " line)
+          (let ((name (subseq line 6 (position #\Space line :start 6))))
+            (is (null (gethash name seen)) "~A is in ~A and in ~A" name (gethash name seen) path)
+            (setf (gethash name seen) path)))))))
+
 (test files.are-all-in-a-system
   (let ((systems (base:read-file-into-string (project-file "ars-magna.asd"))))
     (dolist (path (set-difference (lisp-files "src/" "rpl/" "cli/" "worlds/" "tests/")

@@ -81,55 +81,6 @@
                                                      (trails:ways-along '() 2 "error"))
                                              "trial")))))
 
-;;; Pictures of a run.
-
-(test run-picture.names-no-ways-of-robots-that-never-moved
-  (in-studio (robot)
-    (run:run-ticks 3)
-    (is (not (or (mentions-p (run-picture) "its way")
-                 (mentions-p (run-picture) "start of a way")))))
-  (in-studio (robot)
-    (journal-of-a-drive robot)
-    (is (mentions-p (run-picture) "studio-robot and its way"))
-    (is (mentions-p (run-picture) "start of a way"))))
-
-(test run-picture.has-rings-around-what-lies-where-something-happened
-  "So what was grasped and let go of is seen: the ring is larger than it."
-  (in-studio (robot)
-    (let* ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 20)
-           (image (aref (display:snapshot-things snapshot) 0))
-           (x (* 20 (display:thing-image-x image))) (y (* 20 (display:thing-image-y image))))
-      (is (< (display:half-width image) (trails::ring-radius snapshot (+ x 2) y)))
-      (is (= trails::+ring-radius+ (trails::ring-radius snapshot (+ x 200) y)))
-      (is (null (drawn-with :ellipse
-                            (format nil "~{~A~}"
-                                    (drawing (canvas)
-                                      (trails::draw-spot canvas 50 50 9 '(80 80) "1")))
-                            :cx 50 :fill "#000000"))))))
-
-(test run-picture.documentation-lists-all-kinds-of-moments
-  (let ((text (documentation 'ars:save-run-picture 'function)))
-    (dolist (kind display::+moment-kinds+)
-      (is (search (format nil "~S" kind) text) "~S" kind)
-      (is-true (assoc kind trails::*kind-words*)))))
-
-(test run-picture.tells-two-robots-apart
-  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 3 :journal t)
-    (command:robot-go-forward ars-worlds:marvin 99)
-    (command:robot-go-forward ars-worlds:gofer 99)
-    (run:run-ticks 60)
-    (let* ((picture (run-picture))
-           (ways (loop for line in (drawn-with :polyline picture)
-                       unless (equal "#ffffff" (of-element line :stroke))
-                         collect (list (of-element line :stroke)
-                                       (of-element line :stroke-dasharray)))))
-      (is (= 2 (length (remove-duplicates (mapcar #'first ways) :test #'equal))))
-      (is (= 2 (length (remove-duplicates (mapcar #'second ways) :test #'equal))))
-      (dolist (words '("marvin and its way" "gofer and its way"
-                       "marvin: robot-go-forward: Robot is blocked"
-                       "gofer: robot-go-forward: Robot is blocked"))
-        (is (mentions-p picture words))))))
-
 ;;; Robots that are put elsewhere.
 
 (defun drive-and-be-put-elsewhere (robot)

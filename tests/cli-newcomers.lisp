@@ -154,7 +154,7 @@
       (is-true (has-words-p (second lines) "(defrobot NAME (ward (" "WORLD ward"))))
   (is-true (has-words-p (complaint "import nowhere.yaml") "nowhere.yaml" "no such file")))
 
-(test export.writes-what-import-reads
+(test lines.export-what-import-reads
   (call-where-files-go
    (lambda ()
      (base:with-own-definitions ()

@@ -192,3 +192,22 @@ each stop that the task is at, and of what tick that is, and of the tick."
            (is (equal '("(wait-time 3)" "(wait-time 4)") (mapcar #'first stops)))
            (loop for (nil shown tick) in stops do (is (= shown tick))))))
      robot)))
+
+(test plan-pane.shows-it-where-no-tick-is-under-way
+  "Plans of a live run have a thread of their own, and its ticks pass on."
+  (in-studio (robot)
+    (call-with-open-window
+     (lambda (window)
+       (ars-magna.rpl-robot:begin-plan 'ars-user::window-stepped)
+       (run:run-ticks 1)
+       (seen-plans window)
+       (run:run-ticks 3)
+       (let* ((simulation (time:current-simulation))
+              (interface (window::interface-of simulation))
+              (look (window::watcher-plans (window:window-watcher window))))
+         (ars-magna.rpl-robot::call-holding
+          (lambda () (mapc #'funcall cli:*break-hooks*)) interface)
+         (is (equal "(wait-time 3)"
+                    (rpl:task-image-form
+                     (first (rpl:tree-image-rows (window::plan-look-tree look))))))))
+     robot)))

@@ -44,8 +44,8 @@ and syntax that are used here."
         (find-if (lambda (restart)
                    (starts-with-subseq (string-upcase word) (string (restart-name restart))))
                  restarts)
-        (reject-line "~A is no way to go on. Give the number of one of ~{~A~^, ~}; or BACKTRACE, ~
-                      QUIT, or a form in parentheses."
+        (reject-line "~A is no way to go on. Give a number or name that is listed (~{~A~^, ~}), ~
+                      BACKTRACE, QUIT, or a form in parentheses."
                      word (mapcar (lambda (restart) (plain-name (restart-name restart)))
                                   restarts)))))
 

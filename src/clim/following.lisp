@@ -43,13 +43,16 @@
 
 ;;; A program that has broken asks how it goes on: what it stands in is shown as it stands.
 
+;;; A plan of a live run breaks in a thread of its own, while ticks pass.
+
 (defun show-as-it-stands ()
-  "Let the windows on the run in whose tick this thread is show how that stands."
+  "Let the windows on a run whose plans or ticks this thread is at work on show how that stands."
   (dolist (window (open-windows))
     (let* ((watcher (window-watcher window)) (simulation (watcher-simulation watcher)))
-      (when (and simulation (eq simulation *simulation*)
-                 (mine-p (timeline-custody (simulation-timeline simulation))))
-        (look-as-it-stands (watcher-plans watcher))
-        (publish watcher simulation)))))
+      (when simulation
+        (when (look-as-it-stands (watcher-plans watcher))
+          (funcall (watcher-news watcher)))
+        (when (mine-p (timeline-custody (simulation-timeline simulation)))
+          (publish watcher simulation))))))
 
 (pushnew 'show-as-it-stands ars-magna.cli:*break-hooks*)

@@ -151,7 +151,9 @@
 (defun copy-text (window)
   "Let other programs have what is selected in the transcript of WINDOW, or else all of it."
   (let ((pane (pane-named window 'transcript)))
-    (hold-text (clim:port pane) (selected-text pane) '(:clipboard :primary))))
+    (hold-text (clim:port pane) (selected-text pane) '(:clipboard :primary))
+    (unless (selection pane)
+      (hint window "Nothing is selected: all that stands among the commands was copied."))))
 
 (defun paste-text (window selection)
   "Let what SELECTION, :PRIMARY or :CLIPBOARD, holds be typed in WINDOW."

@@ -32,7 +32,7 @@
 (defmethod describe-subject ((mark fold-mark) stream) (format stream "~A~%" (subject-title mark)))
 
 (defmethod describe-subject ((moment plan-moment) stream)
-  (format stream "Tick ~D: click to go back to it~@[; ~A~]~%" (plan-moment-tick moment)
+  (format stream "Tick ~D: click to go back to it~@[; drawn here: ~A~]~%" (plan-moment-tick moment)
           (and (plan-moment-bar moment) (subject-title (plan-moment-bar moment)))))
 
 ;;; What can be done.
