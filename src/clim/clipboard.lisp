@@ -103,7 +103,8 @@ PORT, or NIL if there is none. Signals MISUSE if it does not come.")
 
 ;;; Holding.
 
-(defstruct (holding (:constructor make-holding (octets)) (:copier nil))
+(defstruct (holding (:constructor make-holding (octets)) (:copier nil)
+                    (:predicate nil))
   "A text that is held for others, as a string of OCTETS. TRANSFERS are lists (window property
 start): what is handed over in pieces, and from where on the next is."
   (octets "" :type string :read-only t)
