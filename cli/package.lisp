@@ -41,7 +41,8 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:experiment-conditions #:experiment-trials #:experiment-limit #:experiment-file
                 #:find-condition #:condition-name #:trial-seed
                 #:number-in #:ensure-store-directory
-                #:run-again #:call-until-error #:call-aside #:await-time
+                #:run-again #:trial-words #:*trial-replayed* #:call-until-error
+                #:call-aside #:await-time
                 #:prepare-condition #:row-of-trial #:row-differences
                 #:result-outcome #:result-reason #:result-ticks #:result-error #:measured
                 #:print-failures
@@ -78,11 +79,14 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   (:export #:read-argument #:argument-words)
   ;; session, prompt
   (:export #:session #:make-session #:session-robot #:session-errors #:session-input
+           #:session-quiet-p
            #:run-session #:prompt #:*prompt-robot* #:*whereabouts-hooks* #:*break-hooks*)
   ;; listening, going-on
-  (:export #:listen-instead #:go-to-run #:run-after #:tell-of-run #:away-p #:way-in #:pace-of)
+  (:export #:listen-instead #:go-to-run #:run-after #:tell-of-run #:run-of-robot #:words-for-run
+           #:away-p #:way-in #:pace-of)
   ;; breakage
-  (:export #:awaited-answers #:ways-awaited #:simulator-broken-p #:answers-break-p)
+  (:export #:awaited-answers #:ways-awaited #:simulator-broken-p #:asker-of-break
+           #:answers-break-p #:package-of-caller)
   ;; sessions
   (:export #:run-session-apart #:interrupt-session #:end-session #:enter-line #:at-work-on
            #:abandon-session #:asked-of-others-p #:take-waiting)

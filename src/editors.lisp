@@ -100,3 +100,25 @@ so. Return nothing. Signals MISUSE where no editor is."
                  (if (known-object-p object)
                      (inspect-briefly inspect object)
                      (funcall inspect object))))
+
+;;; An editor may go while its debugger asks how something of ours goes on.
+
+(defun own-connection-p (connection)
+  "True if what this thread does is for CONNECTION, of an editor."
+  (loop for server in '("SWANK" "SLYNK")
+        for own = (and (find-package server) (find-symbol "*EMACS-CONNECTION*" server))
+        thereis (and own (boundp own) (eq connection (symbol-value own)))))
+
+(defun note-editor-gone (connection)
+  "Let those threads go on otherwise that wait for an answer by CONNECTION, which is closed."
+  (end-inquiries (lambda () (own-connection-p connection))))
+
+(defun watch-editors (&rest ignored)
+  "See to it that we are told when a connection of an editor is closed."
+  (declare (ignore ignored))
+  (dolist (server '("SWANK" "SLYNK"))
+    (let ((hooks (and (find-package server) (find-symbol "*CONNECTION-CLOSED-HOOK*" server))))
+      (when (and hooks (boundp hooks))
+        (setf (global-value hooks) (adjoin 'note-editor-gone (global-value hooks)))))))
+
+(pushnew 'watch-editors *inquiry-hooks*)

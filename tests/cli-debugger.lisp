@@ -144,18 +144,17 @@
 
 (test break.offers-first-what-is-expected
   (flet ((names (condition)
-           (mapcar #'restart-name (cli::restarts-to-offer condition (cli:make-session)))))
+           (mapcar #'restart-name (cli::restarts-to-offer condition))))
     (restart-case
         (with-simple-restart (retry "Again.")
           (with-simple-restart (abort "Report it.")
             (with-simple-restart (continue "Go on.")
               (restart-case
                   (progn
-                    (is (equal '(abort retry continue)
-                               (subseq (names (make-condition 'error)) 0 3)))
+                    (is (equal '(abort retry)
+                               (subseq (names (make-condition 'error)) 0 2)))
                     (is (eq 'continue (first (names (make-condition 'simple-condition)))))
-                    (is (not (member 'use-value (names (make-condition 'error))))
-                        "there is nobody in this thread to ask"))
+                    (is-true (member 'use-value (names (make-condition 'error)))))
                 (use-value (value) value)))))
       (end-line ()))))
 
@@ -186,6 +185,31 @@
     (is-true (find-if (lambda (line) (has-words-p line "*BREAK* -> there" "another thread"))
                       written))
     (is-true (written-p "5" written))))
+
+(defun want-value-elsewhere ()
+  "Let another thread break, where one can give it a value, and wait until it asks how to go on."
+  (setf *went-on* '()
+        *breaking* (base:start-thread
+                    (lambda ()
+                      (push (restart-case (break "there")
+                              (use-value (value)
+                                :interactive (lambda () (list (eval (read *query-io*))))
+                                value))
+                            *went-on*))
+                    "breaking"))
+  (loop until (cli::session-breaks cli::*session*) do (base:yield-thread)))
+
+(test break.of-another-thread-takes-a-value
+  "It is typed after the choice, or in the next line."
+  (flet ((goes-on-with (&rest answer)
+           (let ((written (apply #'type-at-terminal "(ars-magna.tests::want-value-elsewhere)"
+                                 (append answer '("(+ 2 3)")))))
+             (base:join-thread *breaking*)
+             (is-true (find-if (lambda (line) (search "5" line)) written))
+             *went-on*)))
+    (is (equal '(42) (goes-on-with "use-value (* 6 7)")))
+    (is (equal '(43) (goes-on-with "use-value" "43")))
+    (is (equal '(44) (goes-on-with "(invoke-restart 'use-value 44)")))))
 
 (defun menus-and-waits (written)
   "Return, of the lines WRITTEN, those that tell of a break, in few words."
@@ -300,3 +324,48 @@
     (is (null (base:wait-on-semaphore semaphore 0)))
     (base:signal-semaphore semaphore)
     (is-true (base:wait-on-semaphore semaphore 0))))
+
+;;; Lisp's own debugger, or an editor's.
+
+(test debuggers.keep-slips-that-are-typed-there
+  "They come up in the debugger, as in any Lisp, not in the handlers around what has broken."
+  (let ((base:*break-on-user-error* t) (seen '()))
+    (labels ((ask (condition hook)
+               (declare (ignore hook))
+               (push (princ-to-string condition) seen)
+               (when (cddr seen) (throw 'slipped nil))
+               (base:with-debugger-hook (#'ask) (error "Typed wrongly."))))
+      (catch 'slipped
+        (handler-case (base:with-debugger-hook (#'ask)
+                        (base:call-user-code (lambda () (error "Slipped.")) "a test"))
+          (error () (fail "The slip has left the debugger.")))))
+    (is (equal '("Typed wrongly." "Typed wrongly." "Slipped.") seen))))
+
+(test debuggers.that-go-unanswered-let-programs-go-on
+  "An editor's connection is closed while its debugger asks: a warning says what was chosen."
+  (let* ((asked (base:make-semaphore "asked")) (queue (base:make-message-queue))
+         (thread (base:start-thread
+                  (lambda ()
+                    (let ((base:*break-on-user-error* t) (base:*message-queue* queue))
+                      (base:with-debugger-hook ((lambda (condition hook)
+                                                  (declare (ignore condition hook))
+                                                  (base:signal-semaphore asked)
+                                                  (base:wait-on-semaphore
+                                                   (base:make-semaphore "never"))))
+                        (base:call-user-code (lambda () (error "Slipped.")) "a test"))))
+                  "breaking")))
+    (is-true (base:wait-on-semaphore asked 60))
+    (is (equal "the editor's debugger" (base:debugger-asking thread)))
+    (base:end-inquiries (constantly t))
+    (base:join-thread thread)
+    (is (null (base:debugger-asking thread)))
+    (let ((texts (mapcar #'base:message-text (base:take-messages queue))))
+      (is-true (find-if (lambda (text) (mentions-p text "has gone; abort was chosen")) texts)
+               "~A" texts)
+      (is-true (find-if (lambda (text) (mentions-p text "Error in a test: Slipped")) texts)))))
+
+(test prompts.begin-in-the-package-of-who-opens-them
+  (let ((*package* (find-package :ars-user)))
+    (is (eq *package* (cli:package-of-caller))))
+  (let ((*package* (find-package :keyword)))
+    (is (eq (find-package :ars-user) (cli:package-of-caller)))))

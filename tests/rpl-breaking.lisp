@@ -195,6 +195,36 @@ atom."
   (dolist (form '((rpl:seq (rpl:wait-time 1) (car 'x)) (rpl:seq (car 'x)) (+ 1 (car 'x))))
     (let ((texts (restarts-of-plan form)))
       (is (= 1 (count-if (lambda (text) (eql 0 (search "Do (" text))) texts)) "~A" texts)
-      (is-false (find-if (lambda (text) (search "participant" text)) texts))))
-  (is (member "Try the plans of DOT again." (restarts-of-plan '(rpl:seq (rpl:wait-time 1) (car 'x)))
-              :test #'string=)))
+      (is-false (find-if (lambda (text) (search "participant" text)) texts)))))
+
+(defun restart-called (name condition)
+  "Return the innermost restart for CONDITION of that NAME, or NIL."
+  (find name (compute-restarts condition) :key #'restart-name :test #'string=))
+
+(test restarts.offer-nothing-again-that-would-end-the-plan
+  "To try the plans' whole reaction again would leave the step under way, which ends its plan."
+  (is-false (find-if (lambda (text) (search "Try the plans" text))
+                     (restarts-of-plan '(rpl:seq (rpl:wait-time 1) (car 'x)))))
+  (run:with-simulation (ars-user::butler :clean t)
+    (let ((offered :none))
+      (base:with-debugger-hook ((lambda (break hook)
+                                  (declare (ignore hook))
+                                  (setf offered (restart-called "RETRY" break))
+                                  (invoke-restart (find-restart 'continue break))))
+        (is (eq :succeeded
+                (nth-value 1 (driver:step-plan 'ars-user::stroll 1/2)))))
+      (is (null offered)))))
+
+(test restarts.of-code-that-a-plan-has-called-are-its-own
+  (let ((calls 0) (base:*break-on-user-error* t))
+    (run:with-simulation (ars-worlds:dot)
+      (base:with-debugger-hook ((lambda (condition hook)
+                                  (declare (ignore hook))
+                                  (invoke-restart (restart-called "RETRY" condition))))
+        (is (eql 2 (driver:run-plan
+                    (rpl:make-plan `(funcall ,(lambda ()
+                                                (base:call-user-code
+                                                 (lambda ()
+                                                   (when (< (incf calls) 2) (error "Once."))
+                                                   calls)
+                                                 "a test")))))))))))

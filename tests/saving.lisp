@@ -343,3 +343,19 @@
         (run:run-ticks 30 twin)
         (is (null (base:take-messages)))
         (is (< 4 (robot:robot-x (first (run:simulation-robots twin)))))))))
+
+(test unsavable.of-a-live-run-can-be-left-out-where-it-is-saved
+  "The thread that has the run is another than the one in which the restart is chosen."
+  (rpl:def-interp-proc wait-long () (rpl:wait-time 1000))
+  (with-temporary-file (file)
+    (with-rover ()
+      (run:start-clock (time:current-simulation) :rate :free)
+      (unwind-protect
+           (progn
+             (ars-magna.rpl-robot:begin-plan 'wait-long)
+             (handler-bind ((run:unsavable (lambda (trouble)
+                                             (is-true (find-restart 'run:save-without trouble))
+                                             (invoke-restart 'run:save-without))))
+               (is-true (run:save-simulation file))))
+        (run:stop-clock (time:current-simulation))))
+    (is (typep (run:load-simulation file) 'run:simulation))))

@@ -37,19 +37,16 @@ on. ORDER is what it is to do next, a function."
 (defparameter *asking-restarts*
   '("USE-VALUE" "STORE-VALUE" "RETURN-VALUE" "CALL-FORM" "REPLACE-FUNCTION" "SPECIFY-PACKAGE"
     "USE-PACKAGE" "RENAME")
-  "The names of restarts, Lisp's own, that ask for what they need.")
+  "The names of restarts that ask for what they need.")
 
 (defun asks-p (restart)
   (member (restart-name restart) *asking-restarts* :test #'string=))
 
-(defun restarts-to-offer (condition session)
-  "Return the ways to go on after CONDITION that the user of SESSION can choose, those first that he
-may be expected to. Only the thread that has the prompt can ask him for a value."
-  (let ((restarts (restarts-within condition)))
-    (stable-sort (if (eq (session-thread session) (current-thread))
-                     restarts
-                     (remove-if #'asks-p restarts))
-                 #'< :key (lambda (restart) (rank restart condition)))))
+(defun restarts-to-offer (condition)
+  "Return the ways to go on after CONDITION that a user can choose, those first that he may be
+expected to."
+  (stable-sort (restarts-within condition)
+               #'< :key (lambda (restart) (rank restart condition))))
 
 (defun here-p (breakage)
   (eq (breakage-thread breakage) (current-thread)))
@@ -57,11 +54,14 @@ may be expected to. Only the thread that has the prompt can ask him for a value.
 ;;; What the user sees.
 
 (defun whereabouts (session breakage)
-  "Return in words where BREAKAGE is, if not in this thread."
-  (let ((thread (breakage-thread breakage)))
-    (cond ((eq thread (session-thread session)) nil)
-          ((simulator-p session thread) "the simulator's thread")
-          (t (format nil "another thread, ~A" (thread-name thread))))))
+  "Return in words where BREAKAGE is, if not in the thread of SESSION."
+  (words-for-thread session (breakage-thread breakage)))
+
+(defun words-for-thread (session thread)
+  "Return in words what THREAD is, if not that of SESSION."
+  (cond ((eq thread (session-thread session)) nil)
+        ((simulator-p session thread) "the simulator's thread")
+        (t (format nil "another thread, ~A" (thread-name thread)))))
 
 (defun simulator-p (session thread)
   "True if THREAD passes the ticks of the run that SESSION listens to."
@@ -137,6 +137,14 @@ not asked. Any thread may ask."
   "True if the user of SESSION is asked how the simulator's thread goes on. Any thread may ask."
   (some (lambda (breakage) (simulator-p session (breakage-thread breakage)))
         (breaks-awaiting session)))
+
+(defun asker-of-break (simulation)
+  "Return in words, to follow others, that another debugger than that of the prompts asks how the
+thread of SIMULATION, which has broken, goes on; or NIL."
+  (let ((debugger (debugger-asking (simulation-thread simulation))))
+    (and debugger
+         (notany #'simulator-broken-p (sessions-hearing simulation))
+         (format nil "and ~A waits for the answer" debugger))))
 
 (defun answers-break-p (text)
   "True if TEXT, a line, can be typed where a break is answered, whatever has broken."

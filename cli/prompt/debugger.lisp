@@ -75,9 +75,29 @@ user's."
                                      (lambda () (evaluate session form)))))))
           ((says-p "quit") (setf (session-over-p session) t))
           ((says-p "backtrace") (order session breakage #'write-backtrace))
-          (t (let ((restart (restart-called (split-line text) breakage)))
-               (order session breakage
-                      (lambda () (invoke-restart-interactively restart))))))))
+          (t (multiple-value-bind (word rest) (split-line text)
+               (choose session breakage (restart-called word breakage) rest))))))
+
+(defun choose (session breakage restart rest)
+  "Let BREAKAGE go on by RESTART. What that asks for, if it does, is REST, the text after its name,
+or else what the user types next."
+  (let* ((asks-p (and (asks-p restart) (not (here-p breakage))))
+         (answer (cond ((not asks-p) nil)
+                       ((every #'blank-p rest) (read-input session "Value> "))
+                       (t rest))))
+    (unless (and asks-p (null answer))
+      (order session breakage
+             (lambda () (call-answering-restart answer
+                                                (lambda ()
+                                                  (invoke-restart-interactively restart))))))))
+
+(defun call-answering-restart (answer function)
+  "Call FUNCTION. What it asks the user is answered by the text ANSWER, if that is not NIL."
+  (if answer
+      (with-input-from-string (in answer)
+        (let ((*query-io* (make-two-way-stream in (make-broadcast-stream))))
+          (funcall function)))
+      (funcall function)))
 
 (defun read-debug-line (session breakage)
   (let ((text (read-input session "Break> ")))
@@ -173,7 +193,7 @@ those that listen to its run, or else all; NIL if its user has left it."
 go on, if there are any."
   (let ((heirs (heirs-of session)) (condition (breakage-condition breakage)))
     (when heirs
-      (debug-elsewhere heirs (make-breakage condition (restarts-to-offer condition (first heirs))
+      (debug-elsewhere heirs (make-breakage condition (restarts-to-offer condition)
                                             (current-thread) heirs)))))
 
 (defun debug-here (session breakage)
@@ -247,7 +267,7 @@ does other things too, and no prompt runs in it."
            (with-debugger-hook ('debugger-disabled-hook)
              (debug-breakage sessions
                              (make-breakage condition
-                                            (restarts-to-offer condition (first sessions))
+                                            (restarts-to-offer condition)
                                             (current-thread)
                                             sessions))))
           ;; Without any, as when it has just ended, Lisp's own debugger comes up.
@@ -273,6 +293,26 @@ instead of Lisp's debugger where nobody sits, or a break is being answered."
         (*own-process-p* (end-unheard condition)))
   (unless (typep condition 'serious-condition) (continue condition))
   (give-up condition))
+
+;;; Somebody else's debugger, such as an editor's, may ask instead.
+
+(defun ask-instead (condition)
+  "Let the users of prompts say how to go on after CONDITION, if there are any, as who had been
+asked has gone."
+  (when (sessions-to-ask) (enter-debugger condition nil)))
+
+(setf *heir* 'ask-instead)
+
+(defun tell-of-inquiry (condition asker)
+  "Say, where prompts listen to the simulation, that ASKER asks how to go on after CONDITION."
+  (unless (eq 'enter-debugger (common-debugger-hook))
+    (dolist (session (remove-if-not #'terminal-p (sessions-hearing *simulation*)))
+      (say-in session (format nil "*BREAK* -> ~A~@[ (in ~A)~]. ~A waits for the answer.~%"
+                              (break-words condition)
+                              (words-for-thread session (current-thread))
+                              (whole-sentence asker))))))
+
+(pushnew 'tell-of-inquiry *inquiry-hooks*)
 
 ;;; From when to when.
 

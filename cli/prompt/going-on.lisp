@@ -33,6 +33,16 @@ SIMULATION, which is over, and the name of the robot that it commands there; NIL
 
 ;;; Others are told.
 
+(defun words-for-run (simulation)
+  "Return in words where those are who are in SIMULATION: in a fork, a trial, or a map."
+  (let* ((visitor (visitor-of simulation)) (visit (and visitor (session-visit visitor))))
+    (cond ((timeline-fork-p (timeline-of simulation))
+           (format nil "a fork of ~A at tick ~D" (simulation-name simulation)
+                   (simulation-tick simulation)))
+          (visit (words-for-visit visit))
+          ((and *trial-replayed* (headless-p simulation)) *trial-replayed*)
+          (t (simulation-name simulation)))))
+
 (defun away-p (session)
   "True if SESSION is in a trial or a fork."
   (or (session-visit session) (plusp (session-forks session))))
@@ -66,7 +76,7 @@ SIMULATION, which is over, and the name of the robot that it commands there; NIL
 to that. If it listens there already, it knows. Any thread may ask."
   (unless (eq simulation (session-simulation session))
     (say-in session (format nil "From here on: ~A in ~A.~%" robot-name
-                            (simulation-name simulation)))
+                            (words-for-run simulation)))
     (listen-instead session simulation)))
 
 (defun tell-others-of-run (session old)

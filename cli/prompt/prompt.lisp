@@ -104,7 +104,8 @@ tell somebody who sits there."
 (defun run-session (session)
   "Read lines and do what they say until QUIT or the end of input. Return SESSION."
   (flet ((run ()
-           (unwind-protect (call-with-syntax 'double-float (lambda () (run-lines session)))
+           (unwind-protect (call-with-syntax 'double-float (lambda () (run-lines session))
+                                             (or (session-package session) (user-package)))
              (stop-listening session))))
     (call-with-debugger session
                         (lambda ()

@@ -76,6 +76,8 @@
   (forks 0 :type fixnum)
   ;; The robot to go on with, in batch mode, when this one's lines are over.
   (next-robot nil)
+  ;; In which package lines are read at first; NIL for the users' own.
+  (package nil :type (or null package) :read-only t)
   ;; A function that is called before each line is read, outside of trials and forks: it sees to it
   ;; that the right robot is commanded, as a window does for its own; or NIL.
   (place nil :type (or null function) :read-only t))
@@ -86,23 +88,25 @@
 (setf (documentation 'session-errors 'function)
       "Return how many errors there were so far: lines that made no sense, plans that failed, and
 error messages, but not those of a plan that goes on."
+      (documentation 'session-quiet-p 'function)
+      "True if what comes of the commands that plans and programs give is not shown. Can be set."
       (documentation 'session-input 'function) "Return the stream that lines are read from.")
 
 (defun make-session (&key (input *standard-input*) (output *standard-output*) batch
                        (patient batch) echo files lines account stop (color :auto)
-                       place)
+                       place package)
   "Return a session that loads FILES, does the list LINES, then reads others from INPUT, and writes
 to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes
 before the next is read; with ECHO, it shows what it reads. ACCOUNT, if any, is an account of its
 lines. With STOP, it is over when one of them is an error. PLACE, if any, is called before each.
-COLOR, which is :AUTO, :ALWAYS or :NEVER, says whether it writes in colours: by default on a
-terminal, unless the environment has NO_COLOR."
+They are read in PACKAGE, by default ARS-USER. COLOR, which is :AUTO, :ALWAYS or :NEVER, says
+whether it writes in colours: by default on a terminal, unless the environment has NO_COLOR."
   (let ((console (make-console output)))
     (setf (console-colored-p console) (color-wanted-p color (console-stream console)))
     (%make-session :input input :console console :batch-p (and batch t)
                    :patient-p (and patient t) :echo-p (and echo t)
                    :files files :lines lines :account account :stop-p (and stop t)
-                   :place place)))
+                   :place place :package package)))
 
 (defun check-run ()
   "Signal BAD-LINE if the run that the prompt is in is over."

@@ -5,10 +5,17 @@
 ;;; The shipped worlds, in the directory worlds/, are there from the start and called as their maps
 ;;; are. Others come from files: Lisp files that define a map and at least one robot in it.
 
-(defun call-with-syntax (float-format function)
-  "Call FUNCTION with the package and syntax in which users write; numbers with a point are floats
+(defun package-of-caller ()
+  "Return the package in which a prompt begins that is opened from here: the current one, unless
+that does not know the simulator."
+  (if (eq 'simulator (find-symbol (string 'simulator) *package*))
+      *package*
+      (user-package)))
+
+(defun call-with-syntax (float-format function &optional (package (user-package)))
+  "Call FUNCTION with PACKAGE and the syntax in which users write; numbers with a point are floats
 of FLOAT-FORMAT."
-  (let ((*package* (user-package))
+  (let ((*package* package)
         (*readtable* *readtable*)
         (*read-default-float-format* float-format))
     (nisp:in-readtable :nisp)

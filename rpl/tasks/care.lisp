@@ -71,9 +71,9 @@ after any failure."
 
 (defun call-offering-ends (runner function fail end leave)
   "Call FUNCTION with RUNNER and the restarts FAIL-TASK, LEAVE-PLAN and ABORT, which call FAIL,
-LEAVE and END."
+LEAVE and END. A step that is left by another ends its plan, and so cannot be tried again."
   (declare (type function function fail end leave))
-  (labels ((in-step-p (condition)
+  (labels ((in-step-p (&optional condition)
              (declare (ignore condition))
              (running-task runner))
            (current () (runner-current runner))
@@ -90,7 +90,8 @@ LEAVE and END."
                                      :test-function #'in-step-p)
                    (abort end :report-function #'offer-ending
                               :test-function #'in-step-p))
-      (funcall function runner))))
+      (let ((*spoilt-by-leaving-p* #'in-step-p))
+        (funcall function runner)))))
 
 (defun call-with-care (runner function)
   "Call FUNCTION with RUNNER and return its value; NIL if the step of a task met trouble, which that

@@ -30,30 +30,6 @@ an editor, that has set HOOK or *DEBUGGER-HOOK*."
         (hook (not (disabled-p hook)))
         (t (and (interactive-stream-p *standard-input*) (interactive-stream-p *debug-io*)))))
 
-(defun call-answering-debugger (function answer)
-  "Call FUNCTION and return its values. If it enters a debugger, call ANSWER with the condition, and
-whether somebody is there to talk to the debugger. If nobody is, it is not to return."
-  (declare (type function function answer))
-  (let ((hook sb-ext:*invoke-debugger-hook*)
-        (foreign (foreign-hook)))
-    (flet ((decide (condition this-hook)
-             (declare (ignore this-hook))
-             (funcall answer condition (debugger-p foreign))
-             (when (and hook (not (disabled-p hook)))
-               (funcall hook condition hook))))
-      (declare (dynamic-extent #'decide))
-      (let* ((answerer (cons #'decide foreign))
-             (*answerer* answerer)
-             (sb-ext:*invoke-debugger-hook* #'decide))
-        (declare (dynamic-extent answerer))
-        (funcall function)))))
-
-(defmacro answering-debugger ((answer) &body body)
-  "Run BODY as CALL-ANSWERING-DEBUGGER would a function."
-  `(flet ((body () ,@body))
-     (declare (dynamic-extent #'body))
-     (call-answering-debugger #'body ,answer)))
-
 (defun yield-foreground ()
   "If another thread wants to enter Lisp's own debugger, for which this one, which waits, would have
 to leave it the terminal, do so, until it has left the debugger."

@@ -96,6 +96,9 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:regain-room #:debugger-p #:answering-debugger #:calls-under-way
            #:debugger-hook #:common-debugger-hook #:disabled-p
            #:with-debugger-hook #:yield-foreground)
+  ;; inquiries
+  (:export #:debugger-asking #:end-inquiries #:*inquiry-hooks* #:*heir*
+           #:*debugger-refused-p*)
   ;; telling
   (:export #:format-briefly #:blank-p #:one-line #:cut #:safe-text #:own-text #:reading-trouble
            #:text-of-condition #:one-line-text #:point-in-text #:hundredths #:editors-output)
@@ -160,7 +163,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:note-waiting #:report-break #:continue-inside
            #:user-calls #:make-user-calls #:user-calls-origin #:user-calls-count #:*user-calls*
            #:user-calls-waiting-p
-           #:as-users-code #:abort-user-code #:brief-text #:text-of-origin
+           #:as-users-code #:abort-user-code #:*spoilt-by-leaving-p* #:brief-text #:text-of-origin
            #:recurring-code #:recurring-remedy
            #:report-user-error)
   ;; parameters

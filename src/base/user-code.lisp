@@ -145,11 +145,20 @@ happened."
   (declare (ignore condition))
   (and *user-calls* (user-calls-stop *user-calls*) t))
 
-(defun call-offering (function origin go-on again)
+(defvar *spoilt-by-leaving-p* (constantly nil)
+  "A function that is true where what is under way, such as a plan, would end if it were left: so
+who has called it cannot try it again.")
+
+(defun call-offering (function origin go-on again &aux (around *spoilt-by-leaving-p*))
   "Call FUNCTION, whose code ORIGIN says, with restarts: ABORT, which calls GO-ON; RETRY, which
-calls AGAIN; and if this thread can be stopped STOP-SIMULATOR."
+calls AGAIN, unless that would spoil what is under way in it; and if this thread can be stopped
+STOP-SIMULATOR."
   (declare (type function function go-on again))
-  (flet ((stop ()
+  (flet ((retriable-p (condition)
+           (declare (ignore condition))
+           (let ((inside *spoilt-by-leaving-p*))
+             (or (eq inside around) (not (funcall (the function inside))))))
+         (stop ()
            (funcall (the function (user-calls-stop *user-calls*)))
            (funcall go-on))
          (offer-abort (stream)
@@ -158,9 +167,9 @@ calls AGAIN; and if this thread can be stopped STOP-SIMULATOR."
            (format stream "Try ~A again." (text-of-origin origin)))
          (offer-stop (stream)
            (write-string "Report it and stop the simulator." stream)))
-    (declare (dynamic-extent #'stop #'offer-abort #'offer-retry))
+    (declare (dynamic-extent #'retriable-p #'stop #'offer-abort #'offer-retry))
     (restart-bind ((abort go-on :report-function #'offer-abort)
-                   (retry again :report-function #'offer-retry)
+                   (retry again :report-function #'offer-retry :test-function #'retriable-p)
                    (stop-simulator #'stop :report-function #'offer-stop
                                           :test-function #'stoppable-p))
       (funcall function))))

@@ -25,6 +25,7 @@
 (defun take-along (window new)
   "Let WINDOW show NEW from now on."
   (watch-simulation (window-watcher window) new)
+  (retitle window)
   (request-refresh window))
 
 (defun follow-prompt (session old new)

@@ -14,7 +14,7 @@
 
 (defmacro without-debugger (&body body)
   "Run BODY, in which what calls for a debugger is an error."
-  `(let ((*break-on-user-error* nil))
+  `(let ((*break-on-user-error* nil) (*debugger-refused-p* t))
      (with-debugger-hook (#'refuse-debugger) ,@body)))
 
 (defun call-guarded-command (window title function)

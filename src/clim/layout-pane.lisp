@@ -88,9 +88,10 @@ now, as (section pixels)."
         +prompt-rows+)))
 
 (defun enough-p (places needs)
-  "True if each section has the height in PLACES that it has in NEEDS."
+  "True if each section has the height in PLACES that it has in NEEDS. Plans never have enough."
   (loop for (section pixels) in needs
-        always (<= pixels (fifth (assoc section places)))))
+        always (or (eq section 'plan)
+                   (<= pixels (fifth (assoc section places))))))
 
 (defun settled-needs (layout)
   "Return the heights for which the sections of LAYOUT get room: the most that they have needed, but
@@ -149,6 +150,11 @@ WIDTH pixels wide.")
   (:method (pane section width)
     (declare (ignore width))
     (max (pane-extent pane) (first-need section)))
+  ;; Tasks come and go while a plan runs. Were the room for them to change with that, other displays
+  ;; would move from under the mouse. So plans get what the others leave, half of it at least.
+  (:method ((pane plan-pane) section width)
+    (declare (ignore section width))
+    10000)
   (:method ((pane detail-pane) section width)
     (if (window-robot (window-of pane))
         (max (detail-height pane (max 1 (- width +scroll-bar+)))

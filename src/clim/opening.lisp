@@ -63,19 +63,33 @@
 wait, a break. Return that in words, as they follow a sentence."
   (let* ((session (window-session window))
          (line (busy-with (window-conversation window)))
+         (place (and (ars-magna.cli:away-p session)
+                     (ars-magna.cli:words-for-run (window-simulation window))))
          (lines (ars-magna.cli:take-waiting (ars-magna.cli:session-input session))))
     (ars-magna.cli:abandon-session session)
-    (format nil "~@[. The line under way there was ended: ~A~]~
+    (format nil "~@[. Its prompt was in ~A, which has been left~]~
+                 ~@[. The line under way there was ended: ~A~]~
                  ~@[. These waited there and were not done: ~{~A~^; ~}~]~
                  ~:[~;. What has broken there waits for an answer at another prompt~]"
+            place
             (and line (cut (one-line line) 200))
             (loop for line in lines repeat 10 collect (cut (one-line line) 200))
             (ars-magna.cli:asked-of-others-p session))))
 
+(defun run-to-tell (window)
+  "Return the run among whose messages it is told that WINDOW has closed: the one that it shows; or,
+as nobody hears of a trial or fork any more, the one that goes on without."
+  (let ((simulation (window-simulation window)))
+    (if (ars-magna.cli:away-p (window-session window))
+        (or (ars-magna.cli:run-of-robot (shown-robot window))
+            (global-value '*simulation*)
+            simulation)
+        simulation)))
+
 (defun warn-of-closing (window condition)
   "Say, once, that CONDITION has closed WINDOW, and what that leaves undone."
   (when (forget-window window)
-    (let* ((simulation (window-simulation window))
+    (let* ((simulation (run-to-tell window))
            (*message-queue* (if simulation (simulation-messages simulation) *message-queue*)))
       (warning-set (format nil "The display of ~A has closed: ~A~A"
                            (watcher-robot (window-watcher window))
@@ -89,11 +103,10 @@ wait, a break. Return that in words, as they follow a sentence."
   "Let WINDOW show the robot called NAME of SIMULATION from now on."
   (setf (watcher-robot (window-watcher window)) name)
   (pushnew name (window-robots-shown window))
-  ;; Not all of CLIM's ports can do that.
-  (ignore-errors (setf (clim:frame-pretty-name window) (window-title name)))
   (unless (eq simulation (window-simulation window))
     (watch-simulation (window-watcher window) simulation)
     (setf (pane-fitting-p (pane-named window 'world)) t))
+  (retitle window)
   (request-refresh window))
 
 (defun shows-p (window name simulation)
@@ -179,8 +192,9 @@ else, if its user has chosen another one of the same run, that that is shown."
   (dolist (window (windows-on port)) (ars-magna.cli:abandon-session (window-session window)))
   (dolist (window (windows-on port))
     (warn-of-closing window (format nil "the X server has gone. The run goes on; the line ~
-                                         WINDOW, or (open-display ~(~S~)), opens it anew"
-                                    (shown-robot window)))
+                                         WINDOW, or (open-display ~A), opens it anew"
+                                    (let ((*print-case* :downcase))
+                                      (prin1-to-string (shown-robot window)))))
     (close-window window)))
 
 (defun x-server-gone-p (condition)

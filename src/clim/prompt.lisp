@@ -77,11 +77,13 @@ there is room."
 
 (defun begin-conversation (transcript size place over)
   "Return a prompt that writes to TRANSCRIPT, which has room for as many columns and rows as SIZE
-returns. PLACE is called before each line; OVER when its user leaves it."
+returns. PLACE is called before each line; OVER when its user leaves it. It begins in the package of
+this thread."
   (let ((console (make-window-console transcript size)))
     (make-conversation (ars-magna.cli:make-session
                         :input (ars-magna.cli:make-handed-text console) :output console
-                        :color :always :place place)
+                        :color :always :place place
+                        :package (ars-magna.cli:package-of-caller))
                        console over)))
 
 (defun converse (conversation simulation robot-name)
@@ -110,6 +112,14 @@ returns. PLACE is called before each line; OVER when its user leaves it."
          (format nil "The thread of this prompt was ended, and with it the line under way. ~
                       It begins anew.~%"))
     (start-conversation conversation simulation robot-name)))
+
+(defun being-typed (conversation)
+  "Return what has been typed at the prompt of CONVERSATION, and not entered; NIL if nothing has."
+  (let ((line (ars-magna.cli:console-line (conversation-console conversation))))
+    (and line
+         (not (busy-with conversation))
+         (string/= "" (ars-magna.cli:drawn-line-text line))
+         (ars-magna.cli:drawn-line-text line))))
 
 (defun say-in (conversation text)
   (say (console-transcript (conversation-console conversation)) text))

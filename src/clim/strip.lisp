@@ -11,8 +11,12 @@
   (:documentation "The status strip."))
 
 (defun tick-text (window)
-  (let ((snapshot (window-snapshot window)))
-    (format nil "tick ~:[?~;~:*~D~]" (and snapshot (snapshot-tick snapshot)))))
+  "Return in words at which tick WINDOW shows its run; of one that is over, when that ended."
+  (let ((snapshot (window-snapshot window)) (simulation (window-simulation window)))
+    (format nil "tick ~:[?~;~:*~D~]"
+            (if (and simulation (simulation-over simulation))
+                (simulation-tick simulation)
+                (and snapshot (snapshot-tick snapshot))))))
 
 (defun answers-text (window)
   "Return in words how many programs wait for an answer at the prompt of WINDOW, or NIL."

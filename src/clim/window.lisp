@@ -85,8 +85,20 @@
       (documentation 'window-watcher 'function)
       "Return the watcher that supplies the window's snapshots.")
 
-(defun window-title (robot-name)
-  (format nil "ARS MAGNA: ~A" robot-name))
+(defun window-title (robot-name &optional place)
+  "Return the title of a window that shows the robot ROBOT-NAME, in PLACE if that is given."
+  (format nil "ARS MAGNA: ~A~@[, ~A~]" robot-name place))
+
+(defun retitle (window)
+  "Let the title of WINDOW say which robot it shows, and in which trial or fork."
+  (let ((simulation (window-simulation window)))
+    ;; Not all of CLIM's ports can do that.
+    (ignore-errors
+     (setf (clim:frame-pretty-name window)
+           (window-title (watcher-robot (window-watcher window))
+                         (and (not (live-p simulation))
+                              (not (simulation-over simulation))
+                              (ars-magna.cli:words-for-run simulation)))))))
 
 (defun make-robot-window (watcher &rest options)
   "Return a window, not shown yet, for the robot of WATCHER. OPTIONS are CLIM's for frames, and

@@ -10,7 +10,9 @@
 
 (addition open-display)
 (defun open-display (robot)
-  "Show ROBOT and its world in a window that follows what happens there (manual B). Return ROBOT.
+  "Show ROBOT and its world in a window that follows what happens there (manual B). A robot has one
+window: if it is open, it comes to the front, and shows ROBOT where this is, be it in a fork or
+trial. Return ROBOT.
 Signals MISUSE where no window is to be had: see ars-magna/clim."
   (check-argument open-display robot (robot-p robot) "a robot")
   (unless *display-opener*

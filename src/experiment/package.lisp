@@ -50,6 +50,8 @@ on with, on as many cores and machines as there are. Names lparallel.")
   ;; lines, progress, running, merging, workers
   (:export #:damaged-table #:ensure-store-directory #:run-experiment #:merge-results #:processors
            #:trial-under-way)
+  ;; replaying
+  (:export #:trial-words #:*trial-replayed*)
   ;; fingerprint, shards
   (:export #:settle-fingerprints #:shard-directory #:directories-with-rows #:count-rows
            #:trials-in-shard-p #:missing-shards #:check-same-code)

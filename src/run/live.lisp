@@ -44,7 +44,8 @@ way stay as they are; START-CLOCK goes on with them. Return SIMULATION."
 (defun await-idle (&optional (simulation (current-simulation)) (seconds 60))
   "Wait until nothing is left to do in the live SIMULATION, at most SECONDS. True if so. Where
 things have kickers, something is always left to do. Of one that is not live, return at once whether
-nothing is left. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9."
+nothing is left. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9, and MISUSE if the
+simulator has failed and is paused for that: it would wait in vain."
   (check-argument await-idle seconds (and (within-reason-p seconds) (<= 0 seconds))
                   "a number of seconds, from 0 to 1e9")
   (let ((simulation (simulation-meant simulation 'await-idle)))
@@ -61,8 +62,24 @@ nothing is left. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9
       (asking (simulation)
         (add-observer #'look simulation)
         (look simulation))
-      (unwind-protect (and (wait-patiently idle seconds) t)
+      (unwind-protect (await-signal idle seconds simulation)
         (asking (simulation) (remove-observer #'look simulation))))))
+
+(defun await-signal (idle seconds simulation)
+  "Wait on the semaphore IDLE, at most SECONDS; true if that succeeded. Signals MISUSE if SIMULATION
+has failed."
+  (loop for left = seconds then (- left 0.2)
+        do (check-not-failed simulation)
+        thereis (wait-patiently idle (min left 0.2))
+        while (< 0.2 left)))
+
+(defun check-not-failed (simulation)
+  "Signal MISUSE if the live SIMULATION has failed and is paused for that."
+  (let ((trouble (clock-trouble simulation)))
+    (when trouble
+      (reject-use "await-idle: the simulator has failed and is paused, so nothing goes on: ~A. ~
+                   (resume) lets it go on."
+                  (string-right-trim "." trouble)))))
 
 ;;; Which robot is meant.
 

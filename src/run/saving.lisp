@@ -70,18 +70,16 @@ hold."
   "Return the journal of SIMULATION, reaching to now, or NIL."
   (and (simulation-journal simulation) (end-of-journal simulation)))
 
-(defun call-with-savable (function simulation)
-  "Call FUNCTION with SIMULATION and its journal or, where these have what no file can hold and the
-restart SAVE-WITHOUT is chosen, a copy of SIMULATION without that. Signals UNSAVABLE."
+(defun call-with-savable (function simulation without-p)
+  "Call FUNCTION with SIMULATION and its journal or, where these have what no file can hold, if
+WITHOUT-P with a copy of SIMULATION without that. Signals UNSAVABLE otherwise."
   (let* ((journal (journal-to-save simulation))
          (texts (unsavable-texts simulation journal)))
-    (if texts
-        (restart-case (error 'unsavable :name (simulation-name simulation) :parts texts)
-          (save-without ()
-            :report "Save the run without them."
-            (funcall function (stripped-copy simulation)
-                     (and journal (notany #'unprintable-in (journal-entries journal)) journal))))
-        (funcall function simulation journal))))
+    (cond ((null texts) (funcall function simulation journal))
+          (without-p
+           (funcall function (stripped-copy simulation)
+                    (and journal (notany #'unprintable-in (journal-entries journal)) journal)))
+          (t (error 'unsavable :name (simulation-name simulation) :parts texts)))))
 
 ;;; Writing.
 
@@ -170,8 +168,9 @@ be told."
   (and (ignore-errors (probe-file file))
        (not (ignore-errors (and (plain-file-p file) (begins-as-saved-p file))))))
 
-(defun write-simulation (simulation file)
-  "Do what SAVE-SIMULATION says, where SIMULATION stands still."
+(defun write-simulation (simulation file without-p)
+  "Write SIMULATION, which stands still, to FILE; if WITHOUT-P, without what no file can hold.
+Return the truename of FILE."
   (when (simulation-ticking-p simulation)
     (reject-use "save-simulation: a tick is under way. Save the run between ticks."))
   (check-not-over simulation 'save-simulation)
@@ -181,7 +180,20 @@ be told."
      (lambda (simulation journal)
        (write-file-anew (lambda (out) (write-saved simulation journal programs out)) file
                         "the run"))
-     simulation)))
+     simulation without-p)))
+
+;; The restart is here, where whoever saves the run can see it: another thread may have the run in
+;; its hands.
+(defun save-deciding (simulation file)
+  "Do what SAVE-SIMULATION says."
+  (flet ((save (without-p)
+           (asking (simulation) (write-simulation simulation file without-p))))
+    (handler-case (save nil)
+      (unsavable (condition)
+        (restart-case (error condition)
+          (save-without ()
+            :report "Save the run without them."
+            (save t)))))))
 
 (addition save-simulation)
 (defun save-simulation (file &optional (simulation (current-simulation)))
@@ -200,4 +212,4 @@ is as it was."
   (check-argument save-simulation simulation (simulation-p simulation) "a simulation")
   (when (foreign-file-p file)
     (reject-use "~A is no saved run, and is left as it is. Give another name." (shown-name file)))
-  (asking (simulation) (write-simulation simulation file)))
+  (save-deciding simulation file))

@@ -58,7 +58,8 @@
 (defun pause-for (pacing trouble)
   "Pause the clock of PACING, as TROUBLE has come up that no user code answers for."
   (error-set "The simulator failed and is paused; RESUME goes on: " (brief-text trouble))
-  (setf (pacing-paused-p pacing) t))
+  (setf (pacing-paused-p pacing) t
+        (pacing-trouble pacing) (brief-text trouble)))
 
 (defun pass-tick (pacing)
   "Pass a tick. Trouble that no user code answers for is reported and pauses the clock."

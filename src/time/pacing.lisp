@@ -31,6 +31,8 @@ what users' code the thread is in."
   (ended (make-semaphore "ended") :read-only t)
   (paused-p nil)
   (stopping-p nil)
+  ;; What it has failed by and is paused for, in words, or NIL.
+  (trouble nil :type (or null string))
   ;; The number of the call of users' code that was named last for keeping the thread waiting.
   (hog nil)
   ;; How many ticks to pass although it is paused.
@@ -68,6 +70,11 @@ what users' code the thread is in."
   (let ((pacing (timeline-pacing (timeline-of simulation))))
     (and pacing (pacing-paused-p pacing))))
 
+(defun clock-trouble (simulation)
+  "Return in words what the live SIMULATION has failed by, if it is paused for that; else NIL."
+  (let ((pacing (timeline-pacing (timeline-of simulation))))
+    (and pacing (pacing-trouble pacing))))
+
 (defun pace (simulation)
   "Return the pace of SIMULATION: ticks per second, or :FREE; NIL if it never ran live."
   (let ((pacing (timeline-pacing (timeline-of simulation))))
@@ -88,7 +95,9 @@ what users' code the thread is in."
   (let ((pacing (timeline-pacing (timeline-of simulation))))
     (when pacing
       (when steps (setf (pacing-steps pacing) steps))
-      (when paused-p-p (setf (pacing-paused-p pacing) paused-p))
+      (when paused-p-p
+        (setf (pacing-paused-p pacing) paused-p
+              (pacing-trouble pacing) nil))
       (when rate-p (setf (pacing-rate pacing) rate))
       (wake pacing))
     (values)))

@@ -38,7 +38,8 @@ they wait in; the pace of a live one. Knows nothing of worlds, robots and journa
            #:ask #:asking)
   ;; pacing, stopping, clock
   (:export #:answer-meanwhile)
-  (:export #:timeline-thread #:pacer-p #:check-rate #:live-p #:paused-p #:pause #:resume
+  (:export #:timeline-thread #:pacer-p #:check-rate #:live-p #:paused-p #:clock-trouble #:pause
+           #:resume
            #:let-pass #:pace #:set-rate #:*default-rate* #:*hog-seconds*
            #:hog-seconds
            #:seconds-now #:users-code-under-way #:users-code-broken-p #:abort-hog #:stop-pacing

@@ -114,7 +114,19 @@ there is none."
     (unless (shiftf (replaying-stopped-p replaying) t) (look-around replaying))
     (throw 'stopped result)))
 
-(defun run-replaying (replaying until rate step)
+(defvar *trial-replayed* nil
+  "The trial that REPLAY-TRIAL runs in this thread, in words, or NIL.")
+
+(defun trial-words (experiment condition trial)
+  "Return in words, as one types it at the prompt, TRIAL of CONDITION of EXPERIMENT."
+  (format nil "trial ~(~A~) ~D ~D" (experiment-name experiment)
+          (1+ (position condition (experiment-conditions experiment)))
+          trial))
+
+(defun run-replaying (replaying until rate step
+                      &aux (*trial-replayed* (trial-words (replaying-experiment replaying)
+                                                          (replaying-condition replaying)
+                                                          (replaying-trial replaying))))
   "Run the trial of REPLAYING. Return its result."
   (catch 'stopped
     (run-again (replaying-experiment replaying) (replaying-condition replaying)
