@@ -137,17 +137,6 @@
       (press-popup window 8 2000)
       (is (equal "Moving >" (first (rows-of-popup window)))))))
 
-;;; Cameras.
-
-(test cameras.what-is-in-view-is-said-before-a-view-is-asked-for
-  "As STATUS says it."
-  (in-window (window robot)
-    (let* ((camera (first (display:robot-image-cameras (window::window-robot window))))
-           (text (display::view-text camera)))
-      (is (mentions-p text "View now: "))
-      (is (mentions-p text (format nil "~{~,1F~^ ~}"
-                                   (getf (first (getf (run:status robot) :cameras)) :view)))))))
-
 ;;; Layers.
 
 (test layers.have-one-table-of-words

@@ -131,10 +131,10 @@
     (let ((other (words-in-picture robot :display :hands)))
       (is (member "empty" other :test #'string=)))))
 
-(test details.where-no-view-was-asked-for-it-says-what-is-in-view
+(test details.where-no-view-was-asked-for-it-says-so
   (in-studio (robot)
     (is (mentions-p (format nil "~{~A~^ ~}" (words-in-picture robot :display :cameras))
-                    "View now: "))))
+                    "View: none asked for yet"))))
 
 (test names.stand-where-they-did-though-not-all-places-are-tried
   "The first place that hides nothing is the best one."

@@ -98,7 +98,7 @@ idle, none pass: nothing moves by itself in its world, and nobody has asked for 
       (if (session-visit session)
           (set-visit-rate (session-visit session) (parse-rate x))
           (set-rate (parse-rate x) (live-simulation))))
-    (format t "~A~@[ Later: ~A.~]~%" (time-text session simulation)
+    (format t "~A~@[ RESUME goes on at ~A.~]~%" (time-text session simulation)
             (and x (later-rate-text session simulation)))))
 
 (define-line "SEED" (session (n integer "the seed"))

@@ -189,11 +189,12 @@ view, with a tick in the direction in which it believes what it tracks to be."
       (draw-tick canvas x y (+ (robot-image-angle robot) (designator-image-angle track))))))
 
 (defun view-text (camera)
-  "Return what CAMERA saw when a view was asked for last, and how long ago that was; or what it has
-in view now, as STATUS does, if none was asked for."
-  (format nil "View~:[ now~;~:*, asked for ~[now~:;~:*~D tick~:P ago~]~]: ~
-               ~{~,1F~^ ~}"
-          (camera-image-view-age camera) (camera-image-view camera)))
+  "Return what CAMERA saw when a view was asked for last, and how long ago that was. STATUS looks
+anew; a display does not, lest it show what the robot cannot know."
+  (if (camera-image-view camera)
+      (format nil "View, asked for ~[now~:;~:*~D tick~:P ago~]: ~{~,1F~^ ~}"
+              (camera-image-view-age camera) (camera-image-view camera))
+      "View: none asked for yet"))
 
 (defun draw-track-line (canvas track x y width)
   "Write what TRACK, the image of a designator, is, and draw what it denotes."

@@ -28,10 +28,9 @@ world: that decides what it looks like."
   (cameras '()) (hands '()) (bins '())
   (designators '()) (odometer nil) (trail '()) (planned-way '()))
 
-(define-image camera-image "What a snapshot knows of a camera; ANGLE is relative to the robot. The
-last VIEW that was asked for was taken VIEW-AGE ticks ago; if none was, that is NIL, and VIEW is
-what it has in view now."
-  (index 0) (angle 0d0) (field-of-view 1d0) (view '()) (view-age nil) (track nil)
+(define-image camera-image "What a snapshot knows of a camera; ANGLE is relative to the robot. Its
+last VIEW was taken VIEW-AGE ticks ago."
+  (index 0) (angle 0d0) (field-of-view 1d0) (view '()) (view-age 0) (track nil)
   (location nil) (look nil))
 
 (define-image hand-image "What a snapshot knows of a hand."
@@ -174,12 +173,11 @@ what it holds of each."
    :denotation (image-of-denotation (designator-denotation designator))))
 
 (defun image-of-camera (camera history)
-  (let ((designator (camera-tracks camera)) (view (camera-last-view camera)))
+  (let ((designator (camera-tracks camera)))
     (make-camera-image
      :index (camera-index camera) :angle (camera-angle camera)
-     :field-of-view (camera-field-of-view camera) :view (or view (glance camera))
-     :view-age (and view (- (world-tick (robot-world (camera-robot camera)))
-                            (camera-last-view-tick camera)))
+     :field-of-view (camera-field-of-view camera) :view (camera-last-view camera)
+     :view-age (- (world-tick (robot-world (camera-robot camera))) (camera-last-view-tick camera))
      :track (and designator (image-of-designator designator))
      :location (image-of-location (camera-location camera))
      :look (and history (cdr (assoc camera (history-looks history) :test #'eq))))))

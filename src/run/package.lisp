@@ -57,4 +57,4 @@ takes part in it. Manual 2.3 and appendix A.")
            #:call-with-loaded-simulation #:damaged-simulation #:unsavable #:unsavable-parts
            #:save-without #:load-anyway)
   ;; status
-  (:export #:status #:glance #:designator-status #:robot-meant))
+  (:export #:status #:designator-status #:robot-meant))
