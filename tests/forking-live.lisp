@@ -51,6 +51,44 @@
         (is (= (+ tick 30) (run:simulation-tick))))
       (is (= tick (run:simulation-tick))))))
 
+(defvar *numbers-drawn* '() "What a plan has drawn by CL:RANDOM, the newest first.")
+
+(rpl:def-interp-proc draw-numbers ()
+  "Draw a number with each turn, for ever."
+  (loop (push (random 1000000) *numbers-drawn*)
+        (driver:rpl-robot-turn 1/10)
+        (rpl:wait-for driver:robot-stopped*)))
+
+(defun numbers-drawn-in (ticks)
+  "Let TICKS pass in the current run, which stands still; return what its plan draws meanwhile."
+  (setf *numbers-drawn* '())
+  (run:run-ticks ticks)
+  (reverse *numbers-drawn*))
+
+(test live.forks-draw-what-their-run-would
+  "Plans draw by CL:RANDOM. All forks of a moment draw the same, those of another moment go on."
+  (with-messages
+    (unwind-protect
+         (progn
+           (run:simulator 'rover :rate :free :display nil :thinking :free)
+           (time:pause)
+           (setf *numbers-drawn* '())
+           (driver:begin-plan 'draw-numbers)
+           (time:step-ticks 30)
+           (is-true (await (lambda () (<= 30 (run:simulation-tick)))))
+           (let* ((drawn (length *numbers-drawn*))
+                  (fork (run:with-fork () (numbers-drawn-in 30))))
+             (is (< 2 drawn))
+             (is (< 2 (length fork)))
+             (is (equal fork (run:with-fork () (numbers-drawn-in 30))))
+             (is (not (equal fork (run:with-fork (:seed 5) (numbers-drawn-in 30)))))
+             (setf *numbers-drawn* '())
+             (time:step-ticks 30)
+             (is-true (await (lambda () (<= 60 (run:simulation-tick)))))
+             (is (equal fork (reverse *numbers-drawn*)))))
+      (run:stop-simulator (robot:find-robot 'rover))
+      (setf driver::*interface* nil time:*simulation* nil))))
+
 (defvar *semaphores* #() "What a plan says when it has begun a long step, and what ends that.")
 
 (test live.a-fork-waits-for-a-plans-long-step

@@ -18,6 +18,22 @@
                  (thinking-charged-p timeline)
                  (thinking-budget timeline))))
 
+(defun place-of-robot (interface)
+  "Return how many robots of the run come before that of INTERFACE."
+  (or (position (interface-robot interface)
+                (simulation-robots (interface-simulation interface)))
+      0))
+
+(defun plans-dice (interface)
+  "Return what plans of INTERFACE roll by CL:RANDOM: of a run that is or was live dice of their own,
+which its forks take along."
+  (let ((simulation (interface-simulation interface)) (runner (interface-runner interface)))
+    (cond ((not (simulation-plans-dice-p simulation)) *random-state*)
+          ((runner-lisps-dice runner))
+          (t (setf (runner-lisps-dice runner)
+                   (seeded-lisps-dice (+ (simulation-seed simulation)
+                                         (place-of-robot interface))))))))
+
 (defun react-fully (interface)
   "Let the plans of INTERFACE react to time and to all that was posted, until all of them wait or
 have used their steps. Return :IDLE or :BUDGET. The caller holds the plans; inside of a reaction
@@ -25,6 +41,7 @@ nothing happens."
   (if (eq interface *reacting*)
       :idle
       (let ((runner (interface-runner interface))
+            (*random-state* (plans-dice interface))
             (*reacting* interface)
             ;; By then another run may be the current one.
             (*realm* (entity-realm (interface-valve interface)))

@@ -243,7 +243,8 @@ left."
 
 (defun reseed-runner (runner seed)
   "Let the choices of plans in RUNNER come from the integer SEED from now on."
-  (setf (runner-dice runner) (make-dice seed :plans)))
+  (setf (runner-dice runner) (make-dice seed :plans)
+        (runner-lisps-dice runner) nil))
 
 (defun digest-task (task digest)
   "Add to DIGEST what TASK and its children are about."

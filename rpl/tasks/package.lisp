@@ -36,7 +36,7 @@ plans nor a simulator.")
   (:export #:*runaway-limit* #:alone-p #:blocked-p #:current-task #:make-ready
            #:note-event #:plan-runner #:plan-runner-steps #:counted-steps
            #:plan-runner-tasks #:plan-runner-tick #:plan-time #:plan-trace #:runner-blocks
-           #:runner-dice #:runner-tick
+           #:runner-dice #:runner-lisps-dice #:runner-tick
            #:runner-ticks-per-second #:runner-timers #:runner-current #:runner-stepper
            #:runner-note #:runner-serial #:runner-alive #:client-forked-p #:hear-of-trouble
            #:runner-trace #:runner-client #:*plan-task-limit*)

@@ -66,6 +66,8 @@ as it needs. CLIENT is on whose behalf all this is."
   (heard-at 0 :type (unsigned-byte 62))
   (ticks-per-second 20 :type (real (0)))
   (dice nil :type (or null dice))
+  ;; What plans roll by CL:RANDOM, or NIL if that is what the thread rolls in which they react.
+  (lisps-dice nil :type (or null random-state))
   (trace nil :type (or null chronicle))
   (clock nil :type (or null function))
   (stepper nil :type (or null function))

@@ -36,7 +36,8 @@
                         (loop for (symbol . value) in (copier-environment copier)
                               collect (cons symbol (forked value copier)))
                         (simulation-variables copy)
-                        (mapcar #'car (copier-environment copier)))
+                        (mapcar #'car (copier-environment copier))
+                        (simulation-plans-dice-p copy) (simulation-plans-dice-p simulation))
                   copy))))
     (setf (timeline-run (simulation-timeline copy)) copy
           (timeline-fork-p (simulation-timeline copy)) t)
@@ -65,7 +66,7 @@ commands under way, DECISIONS, an alist, what the fork is to have for what canno
 
 (defun environment-of-fork (simulation)
   "Return a list (symbol . value) of what is copied for those who work in a fork of SIMULATION. Of
-a live run's there are no dice: each of its threads has its own."
+a live run's there are no dice: each of its threads has its own, and plans take theirs along."
   (let ((environment (environment-of simulation)))
     (if (assoc *lisps-dice* environment)
         environment

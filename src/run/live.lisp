@@ -21,7 +21,8 @@ SIMULATION. Signals MISUSE if it runs live already, WRONG-ARGUMENT for a rate th
 positive number nor :FREE."
   (check-not-over simulation 'start-clock)
   (check-parameters)
-  (setf (simulation-output simulation) (editors-output))
+  (setf (simulation-output simulation) (editors-output)
+        (simulation-plans-dice-p simulation) t)
   (asking (simulation)
     (give-threads (simulation-timeline simulation) real)
     (start-pacing (simulation-timeline simulation)

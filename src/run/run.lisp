@@ -20,6 +20,8 @@
    (left '() list "what they were when a thread at work in the simulation last said so")
    (dice nil (or null random-state)
          "what its programs roll by CL:RANDOM, if it comes from a file that says that, or NIL")
+   (plans-dice-p nil boolean "its plans roll dice of their own by CL:RANDOM: a run that is or was
+live has no dice that all its threads roll")
    (past nil t "what is kept of the past, or NIL")
    (line nil list "the simulation that goes on, in a list that all share of which one was rewound
 to the next, or NIL if there was no rewinding")
