@@ -210,8 +210,8 @@
         when (search "-TITLE" (symbol-name name)) collect top))
 
 (defun stay-when-a-display-shows-less (plan-p height designators)
-  "Check that titles in a window HEIGHT pixels high, with the plan open if PLAN-P, stay where they are
-when so many DESIGNATORS and a thing in a bin go."
+  "Check that titles in a window HEIGHT pixels high, with the plan open if PLAN-P, stay where they
+are when so many DESIGNATORS and a thing in a bin go."
   (in-window (window robot)
     (when plan-p (window::fold window 'window::plan nil))
     (lay-out window 1280 height)
