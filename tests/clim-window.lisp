@@ -137,7 +137,7 @@
       (robot:place-robot robot 7.5 6.5 0)
       (window::publish (window:window-watcher window) (time:current-simulation))
       (window:refresh window)
-      (is (equal '(window::world window::state window::cameras)
+      (is (equal '(window::world window::state)
                  (panes-changed before (painted-contents window)))))))
 
 ;;; Watching.

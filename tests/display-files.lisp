@@ -26,7 +26,7 @@
     (loop with box = (world:find-thing 'box)
           with all = '(:state :designators :cameras :hands :bins)
           for (change . displays)
-            in `((,(lambda () (robot:place-robot robot 5 5 0)) :state :cameras)
+            in `((,(lambda () (robot:place-robot robot 5 5 0)) :state)
                  (,(lambda () (robot:place-robot robot 5 5 1)) :state :cameras)
                  (,(lambda () (robot:add-designator robot :x 8 :y 6)) :designators)
                  (,(lambda () (world:move-thing box (robot:robot-hand robot 0))) :hands)
