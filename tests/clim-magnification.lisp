@@ -20,6 +20,12 @@
     (is (= 1 (magnification "Xft.dpi: 0")))
     (is (= 6 (magnification "Xft.dpi: 100000")))))
 
+(test magnification.leaves-room-on-the-screen-for-all
+  (is (= 2 (window::usual-magnification 192 1920 1080)))
+  (is (= 1 (window::usual-magnification 192 1280 900)))
+  (is (= 3 (window::usual-magnification 480 2560 1600)))
+  (is (= 1 (window::usual-magnification 480 320 200))))
+
 (test magnification.leaves-all-where-it-is
   "A screen twice as fine is divided as one of half as many pixels."
   (in-window (window robot)

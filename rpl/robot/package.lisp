@@ -36,7 +36,8 @@
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-cleaning #:form-text
                 #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-doomed
-                #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner #:print-tasks #:find-procedure
+                #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
+                #:print-tasks #:find-procedure
                 #:plan-trace #:write-trace #:valve #:make-valve #:note-command #:with-answer
                 #:*runner-in-use* #:*still* #:*step-plans* #:*plan-start-hooks* #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p

@@ -26,13 +26,12 @@
 
 (defun plans-dice (interface)
   "Return what plans of INTERFACE roll by CL:RANDOM: of a run that is or was live dice of their own,
-which its forks take along."
+which its forks take along; or NIL for what all programs of the run roll."
   (let ((simulation (interface-simulation interface)) (runner (interface-runner interface)))
-    (cond ((not (simulation-plans-dice-p simulation)) *random-state*)
-          ((runner-lisps-dice runner))
-          (t (setf (runner-lisps-dice runner)
-                   (seeded-lisps-dice (+ (simulation-seed simulation)
-                                         (place-of-robot interface))))))))
+    (when (simulation-plans-dice-p simulation)
+      (or (runner-lisps-dice runner)
+          (setf (runner-lisps-dice runner)
+                (seeded-lisps-dice (+ (simulation-seed simulation) (place-of-robot interface))))))))
 
 (defun react-fully (interface)
   "Let the plans of INTERFACE react to time and to all that was posted, until all of them wait or
@@ -41,14 +40,13 @@ nothing happens."
   (if (eq interface *reacting*)
       :idle
       (let ((runner (interface-runner interface))
-            (*random-state* (plans-dice interface))
             (*reacting* interface)
             ;; By then another run may be the current one.
             (*realm* (entity-realm (interface-valve interface)))
             (*goes-on-in-forks-p* t))
         (charge-as-told interface)
         (advance-timers runner (simulation-tick (interface-simulation interface)))
-        (let ((outcome (react-and-serve interface)))
+        (let ((outcome (rolling ((plans-dice interface)) (react-and-serve interface))))
           (cond ((interface-closing-p interface) (finish-closing interface) :idle)
                 (t outcome))))))
 

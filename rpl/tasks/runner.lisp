@@ -120,6 +120,7 @@ care of; or, if FAILURE is NIL, TASK is a part of a plan that somebody has just 
  runner-blocks "Return how many blocks of tasks of the plan runner there are."
  runner-serial "Return the number of the task of the plan runner that began last."
  runner-client "Return on whose behalf the plan runner runs plans, as MAKE-PLAN-RUNNER was told."
+ runner-lisps-dice "Return what plans of the runner roll by CL:RANDOM; NIL: what all programs do."
  runner-dice "Return the dice by which the plan runner's tasks choose, or NIL."
  runner-ticks-per-second "Return how many ticks are a second for the plan runner's tasks.")
 

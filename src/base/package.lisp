@@ -110,7 +110,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
   (:export #:dice #:make-dice #:copy-dice #:dice-state #:roll #:roll-between #:roll-within
            #:roll-index #:roll-element #:roll-gaussian #:chance #:call-with-lisps-dice
            #:*lisps-dice* #:seeded-lisps-dice #:reseed-lisps-dice #:call-with-own-lisps-dice
-           #:lisps-dice-numbers #:lisps-dice-numbers-p #:lisps-dice-of-numbers
+           #:rolling #:lisps-dice-numbers #:lisps-dice-numbers-p #:lisps-dice-of-numbers
            #:dice-rolled #:roll-back #:unheard-of-number #:tick-dice #:make-tick-dice
            #:begin-tick-dice #:*tick-dice*)
   ;; names

@@ -99,6 +99,10 @@
   "Call FUNCTION. CL:RANDOM has dice of its own in it, which no other thread rolls."
   (let ((*random-state* (make-random-state nil))) (funcall function)))
 
+(defmacro rolling ((state) &body body)
+  "Run BODY. CL:RANDOM rolls STATE in it or, if that is NIL, what it rolls here."
+  `(let ((*random-state* (or ,state *random-state*))) ,@body))
+
 (defun unheard-of-number ()
   "Return a number of 64 bits that no other process comes upon, if chance allows."
   (random (expt 2 64) (make-random-state t)))

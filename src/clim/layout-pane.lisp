@@ -26,10 +26,7 @@
 
 (defun screen-size (pane)
   "Return the width and height of the screen that PANE is to be shown on, or NIL and NIL."
-  (let ((graft (clim:graft pane)))
-    (if graft
-        (values (clim:graft-width graft) (clim:graft-height graft))
-        (values nil nil))))
+  (graft-size (clim:graft pane)))
 
 (defun first-size (pane)
   "Return how wide and high PANE should be at first, in pixels of the screen: no larger than that."

@@ -6,6 +6,10 @@
 ;;; and pointed at in pixels of its own, each of which is as many of the screen's across as the
 ;;; user wants: a whole number, so that letters keep the columns that they have.
 
+(define-constant +smallest-size+ '(640 480)
+  :test #'equal
+  :documentation "In how wide and high a window all is to be seen, in its pixels.")
+
 (define-constant +most-magnified+ 6
   :documentation "How many of the screen's pixels one of a window's can be across.")
 
@@ -52,19 +56,36 @@
 
 ;;; How many that is.
 
+(defun graft-size (graft)
+  "Return the width and height of the screen GRAFT, or NIL and NIL if that is NIL."
+  (if graft
+      (values (clim:graft-width graft) (clim:graft-height graft))
+      (values nil nil)))
+
 (defun window-magnification (window)
   "Return how many of the screen's pixels one of WINDOW's is across: as its user wants, or else as
 the screen asks for."
   (or (wishes-magnification (window-wishes window)) (window-usual-magnification window)))
 
-(defun usual-magnification (resolution)
-  "Return how many pixels of a screen one of a window's should be across, if the screen has
-RESOLUTION in dots per inch; NIL stands for a resolution that is not known."
-  (clamp (round (or resolution 96) 96) 1 +most-magnified+))
+(defun most-magnified (width height)
+  "Return how many pixels of a screen of WIDTH times HEIGHT, or NIL for what is not known, one of a
+window's can be across: so that the smallest window in which all is to be seen fits."
+  (destructuring-bind (least-width least-height) +smallest-size+
+    (clamp (min (if width (floor width least-width) +most-magnified+)
+                (if height (floor height least-height) +most-magnified+))
+           1 +most-magnified+)))
+
+(defun usual-magnification (resolution &optional width height)
+  "Return how many pixels of a screen of WIDTH times HEIGHT one of a window's should be across, if
+the screen has RESOLUTION in dots per inch; NIL stands for what is not known."
+  (clamp (round (or resolution 96) 96) 1 (most-magnified width height)))
 
 (defun magnify (window magnification)
-  "Let one pixel of WINDOW be MAGNIFICATION of the screen's across, if there may be so many."
-  (let ((magnification (clamp magnification 1 +most-magnified+)))
-    (unless (= magnification (window-magnification window))
-      (setf (wishes-magnification (window-wishes window)) magnification)
-      (rearrange window))))
+  "Let one pixel of WINDOW be MAGNIFICATION of the screen's across; or say that there is no room."
+  (cond ((< magnification 1) (hint window "Smaller than that nothing could be read."))
+        ((< (multiple-value-call #'most-magnified (screen-size (window-layout window)))
+            magnification)
+         (hint window "Larger than that not all of it would fit on this screen."))
+        ((/= magnification (window-magnification window))
+         (setf (wishes-magnification (window-wishes window)) magnification)
+         (rearrange window))))

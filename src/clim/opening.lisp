@@ -258,7 +258,9 @@ else, if its user has chosen another one of the same run, that that is shown."
     (start-watching watcher simulation)
     (setf window (make-robot-window
                   watcher :frame-manager (clim:find-frame-manager :port port)
-                          :usual-magnification (usual-magnification (screen-resolution port))))
+                          :usual-magnification (multiple-value-call #'usual-magnification
+                                                 (screen-resolution port)
+                                                 (graft-size (clim:find-graft :port port)))))
     (take-habits window)
     (with-lock (*windows-lock*) (push window *windows*))
     (setf (window-thread window)

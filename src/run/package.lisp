@@ -28,7 +28,8 @@ takes part in it. Manual 2.3 and appendix A.")
   ;; thinking
   (:export #:set-thinking)
   ;; past, keeping, rewinding
-  (:export #:simulation-past #:simulation-plans-dice-p #:note-doing #:let-fork-be-kept #:keep-forks #:*forks-to-keep*
+  (:export #:simulation-past #:simulation-plans-dice-p #:note-doing #:let-fork-be-kept
+           #:keep-forks #:*forks-to-keep*
            #:rewind #:earliest-tick #:*rewind-hooks* #:*rewound-end-hooks*)
   ;; journal
   (:export #:journal #:make-journal #:journal-p #:journal-header #:journal-entries
