@@ -159,3 +159,20 @@
       (is (> scale (window::pane-scale (pane window 'window::world)))))
     (is (null (rows-of-popup window)))
     (is (equal "" (keys-given window)))))
+
+(test menus.a-mouse-that-rests-does-not-point
+  "Where a menu drops under it, the key's choice stays."
+  (in-window (window robot)
+    (lay-out window 640 480)
+    (let ((popup (window::window-popup window)))
+      (flet ((pointed () (window::row-text (window::pane-pointed popup))))
+        (window::open-first-menu window)
+        (setf (window::window-mouse window)
+              (multiple-value-list
+               (clim:transform-position (clim:sheet-delta-transformation
+                                         popup (clim:frame-top-level-sheet window))
+                                        20 60)))
+        (move-mouse popup 20 60)
+        (is (equal "Pause" (pointed)))
+        (move-mouse popup 20 61)
+        (is (equal "Back" (pointed)))))))
