@@ -98,6 +98,17 @@
       (is (equal "The window of MOLE has closed: out of ink"
                  (window::words-for-closing window "out of ink"))))))
 
+;;; What was said before there was a window.
+
+(test going-on.a-new-window-tells-what-was-said-of-definitions
+  (in-window (window robot)
+    (let ((window::*habits* '()) (window::*said* '())
+          (cli::*first-messages* (let ((base:*message-queue* (base:make-message-queue)))
+                                   (base:warning-set "The poster is inside a wall.")
+                                   (base:take-messages))))
+      (window::take-habits window)
+      (is (mentions-p (said-in window) "The poster is inside a wall")))))
+
 ;;; When something ends the thread of a prompt.
 
 (defun join-prompt (window)
