@@ -251,6 +251,7 @@
                    (:file "ahead") (:file "handed-text")))
      (:module "prompt" :serial t
       :components ((:file "user-names") (:file "reporting") (:file "repetition") (:file "session")
+                   (:file "flooding")
                    (:file "company") (:file "listening") (:file "going-on")
                    (:file "line")
                    (:file "quantities") (:file "arguments") (:file "errands") (:file "reading")
@@ -259,6 +260,7 @@
                    (:file "carrying-out") (:file "guarding")
                    (:file "plans") (:file "loading") (:file "worlds") (:file "choices")
                    (:file "breakage") (:file "answering") (:file "debugger")
+                   (:file "answers")
                    (:file "window-system") (:file "completing")
                    (:file "prompt") (:file "sessions") (:file "visits")))
      (:module "lines" :serial t
@@ -384,7 +386,8 @@
                  (:file "ways-going") (:file "cli-plans") (:file "cli-colour")
                  (:file "cli-rewinding")
                  (:file "cli-robots") (:file "cli-hostile")
-                 (:file "cli-debugger") (:file "cli-sessions") (:file "cli-going-on")
+                 (:file "cli-debugger") (:file "cli-answers") (:file "cli-sessions")
+                 (:file "cli-going-on")
                  (:file "experiment-replay")
                  (:file "cli-trials") (:file "cli-newcomers") (:file "cli-files") (:file "cli-plan-tree")
                  (:file "experiment-shell") (:file "experiment-shell-code")

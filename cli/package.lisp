@@ -80,7 +80,8 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
   ;; session, prompt
   (:export #:session #:make-session #:session-robot #:session-errors #:session-input
            #:session-quiet-p
-           #:run-session #:prompt #:*prompt-robot* #:*whereabouts-hooks* #:*break-hooks*)
+           #:run-session #:prompt #:*prompt-robot* #:*whereabouts-hooks* #:*break-hooks*
+           #:tell-first-messages)
   ;; listening, going-on
   (:export #:listen-instead #:go-to-run #:run-after #:tell-of-run #:run-of-robot #:words-for-run
            #:away-p #:way-in #:pace-of)

@@ -109,6 +109,20 @@ so. Return nothing. Signals MISUSE where no editor is."
         for own = (and (find-package server) (find-symbol "*EMACS-CONNECTION*" server))
         thereis (and own (boundp own) (eq connection (symbol-value own)))))
 
+(defun editor-gone-p ()
+  "True if *DEBUGGER-HOOK* is that of a server to which no editor is connected."
+  (and *debugger-hook*
+       (not (editor-server))
+       (loop for server in '("SWANK" "SLYNK")
+             for name = (and (find-package server)
+                             (find-symbol (format nil "~A-DEBUGGER-HOOK" server) server))
+             thereis (and name
+                          (fboundp name)
+                          (member *debugger-hook* (list name (fdefinition name)))
+                          t))))
+
+(setf *editor-gone-p* 'editor-gone-p)
+
 (defun note-editor-gone (connection)
   "Let those threads go on otherwise that wait for an answer by CONNECTION, which is closed."
   (end-inquiries (lambda () (own-connection-p connection))))

@@ -341,17 +341,16 @@
           (error () (fail "The slip has left the debugger.")))))
     (is (equal '("Typed wrongly." "Typed wrongly." "Slipped.") seen))))
 
-(test debuggers.that-go-unanswered-let-programs-go-on
-  "An editor's connection is closed while its debugger asks: a warning says what was chosen."
+(defun check-gone (outer inner)
+  "Let what has broken be asked about by the debuggers' hooks OUTER, SBCL's, and INNER, Common
+Lisp's, functions of a semaphore to be signalled then; and hold what becomes of it when who has been
+asked goes."
   (let* ((asked (base:make-semaphore "asked")) (queue (base:make-message-queue))
          (thread (base:start-thread
                   (lambda ()
-                    (let ((base:*break-on-user-error* t) (base:*message-queue* queue))
-                      (base:with-debugger-hook ((lambda (condition hook)
-                                                  (declare (ignore condition hook))
-                                                  (base:signal-semaphore asked)
-                                                  (base:wait-on-semaphore
-                                                   (base:make-semaphore "never"))))
+                    (let ((base:*break-on-user-error* t) (base:*message-queue* queue)
+                          (*debugger-hook* (and inner (hook-that inner asked))))
+                      (base:with-debugger-hook ((hook-that outer asked))
                         (base:call-user-code (lambda () (error "Slipped.")) "a test"))))
                   "breaking")))
     (is-true (base:wait-on-semaphore asked 60))
@@ -363,6 +362,32 @@
       (is-true (find-if (lambda (text) (mentions-p text "has gone; abort was chosen")) texts)
                "~A" texts)
       (is-true (find-if (lambda (text) (mentions-p text "Error in a test: Slipped")) texts)))))
+
+(defun hook-that (function asked)
+  (lambda (condition hook)
+    (declare (ignore condition hook))
+    (funcall function asked)))
+
+(defun ask-for-ever (asked)
+  (base:signal-semaphore asked)
+  (base:wait-on-semaphore (base:make-semaphore "never")))
+
+(test debuggers.that-go-unanswered-let-programs-go-on
+  "An editor's connection is closed while its debugger asks: a warning says what was chosen."
+  (check-gone #'ask-for-ever nil))
+
+(test debuggers.may-leave-it-to-the-hook-of-common-lisp
+  "SWANK sets both; the function in SBCL's returns if there is another in Common Lisp's."
+  (check-gone #'identity #'ask-for-ever))
+
+(test debuggers.of-an-editor-that-has-gone-ask-nobody
+  "Its hooks stay: what breaks then is for the prompts that are at work, if there are any."
+  (let ((base:*editor-gone-p* (constantly t))
+        (base:*hook-instead* (constantly 'cli::enter-debugger)))
+    (base:with-debugger-hook ((constantly nil))
+      (is (eq 'cli::enter-debugger (base:debugger-hook))))
+    (base:with-debugger-hook ('cli::debugger-disabled-hook)
+      (is (base:disabled-p (base:debugger-hook))))))
 
 (test prompts.begin-in-the-package-of-who-opens-them
   (let ((*package* (find-package :ars-user)))

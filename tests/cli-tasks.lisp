@@ -26,6 +26,19 @@
                                               "stop-plan"))
                           "A trace of plans is kept." "Task 2, " "No trace of plans is kept."))))
 
+(test trace-plans.changes-nothing-where-plans-cannot-be-asked
+  (let ((ars-magna.rpl-robot:*trace-plans* nil))
+    (run:call-with-simulation
+     (lambda ()
+       (let ((task (ars-magna.rpl-robot:begin-plan 'ars-user::loiter 9)))
+         (run:run-ticks 2)
+         (setf (ars-magna.rpl-robot::interface-hog ars-magna.rpl-robot::*interface*) task
+               (ars-magna.rpl::task-state task) :running)
+         (is (search "keeps the plans' thread" (type-here "trace-plans on")))
+         (is (null ars-magna.rpl-robot:*trace-plans*))
+         (setf (ars-magna.rpl::task-state task) :waiting)))
+     '(ars-user::butler))))
+
 (test rewind-to.goes-to-a-tick
   (let ((shown (joined (type-batch "(keep-forks)" "step 9" "rewind-to 4" "(simulation-tick)"
                                    "rewind-to 90"))))

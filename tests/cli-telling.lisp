@@ -51,3 +51,19 @@
            (is (= 2 (shown "step 2" "(put-kicker fail-often (thing (find-thing \"POT#1\")))"
                            "step 2"))))))
      '(tester))))
+
+;;; What comes of plans' commands may be more than anybody reads.
+
+(test echo.is-pointed-to-once-where-plans-give-many-commands
+  (let ((session (cli:make-session :input (make-instance 'cli::typed-text :by-hand-p t
+                                                         :octets (make-string-input-stream ""))))
+        (messages (let ((base:*message-queue* (base:make-message-queue)) (base::*told-of* "a plan"))
+                    (loop repeat 30 do (base:message-set "Camera 0 turned"))
+                    (base:take-messages))))
+    (flet ((text () (cli::flood-text session messages)))
+      (is (null (text)))
+      (cli::count-others-anew session)
+      (is (null (text)) "a line was read between")
+      (is (search "ECHO OFF" (text)))
+      (cli::count-others-anew session)
+      (loop repeat 3 do (is (null (text)))))))

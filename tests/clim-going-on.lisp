@@ -70,6 +70,45 @@
         (setf (cli::session-forks session) 1)
         (is (null (window::window-for (robot:find-robot 'mole))))))))
 
+(test going-on.a-second-window-on-a-run-comes-back-to-its-robot
+  (in-shed
+    (eval '(robot:defrobot vole (woodshed (9 6) 0)))
+    (run:simulator 'mole :rate :free :display nil)
+    (with-window-of (first 'mole)
+      (with-window-of (second 'vole)
+        (let-others-type first)
+        (setf (window::conversation-thread (window::window-conversation second))
+              (base:current-thread))
+        (let* ((run time:*simulation*) (fork (run:fork-simulation)) (cli:*prompt-robot* 'vole))
+          (run:call-in-fork fork (lambda () (window::follow-prompt nil run fork)))
+          (is (equal (list 'vole fork) (shown-in second)))
+          (setf (window:watcher-robot (window:window-watcher second)) 'mole)
+          (window::follow-prompt nil fork run)
+          (is (equal (list 'vole run) (shown-in second)))
+          (window::agree-on-robot second)
+          (is (not (mentions-p (said-in second) "WOODSHED")))
+          (is (equal (list 'mole run) (shown-in first))))))))
+
+(test going-on.one-set-of-words-tells-of-windows-that-close
+  (in-shed
+    (with-window-of (window 'mole)
+      (is (mentions-p (window::words-for-closing window "out of ink")
+                      "MOLE has closed: out of ink. The run goes on; the line WINDOW"))
+      (run:end-simulation time:*simulation* "enough")
+      (is (equal "The window of MOLE has closed: out of ink"
+                 (window::words-for-closing window "out of ink"))))))
+
+;;; What was said before there was a window.
+
+(test going-on.a-new-window-tells-what-was-said-of-definitions
+  (in-window (window robot)
+    (let ((window::*habits* '()) (window::*said* '())
+          (cli::*first-messages* (let ((base:*message-queue* (base:make-message-queue)))
+                                   (base:warning-set "The poster is inside a wall.")
+                                   (base:take-messages))))
+      (window::take-habits window)
+      (is (mentions-p (said-in window) "The poster is inside a wall")))))
+
 ;;; When something ends the thread of a prompt.
 
 (defun join-prompt (window)

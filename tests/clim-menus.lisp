@@ -159,3 +159,17 @@
       (is (> scale (window::pane-scale (pane window 'window::world)))))
     (is (null (rows-of-popup window)))
     (is (equal "" (keys-given window)))))
+
+(test menus.a-mouse-that-rests-does-not-point
+  "Where a menu drops under it, the key's choice stays."
+  (in-window (window robot)
+    (lay-out window 640 480)
+    (let ((popup (window::window-popup window)))
+      (window::open-first-menu window)
+      (move-mouse popup 20 60)
+      (window::point-further popup 1)
+      (let ((row (window::pane-pointed popup)))
+        (move-mouse popup 20 60)
+        (is (eq row (window::pane-pointed popup)))
+        (move-mouse popup 20 160)
+        (is (not (eq row (window::pane-pointed popup))))))))

@@ -192,6 +192,15 @@ leads to both."
         (is (member "Go there   go-to 3.50 4.50" rows :test #'equal))
         (is (find "obj-desig 0 non-local ((:color red))" rows :test #'search))))))
 
+(test pointing.what-is-next-to-the-robot-is-looked-for-there
+  "A hand grasps only what a local designator denotes."
+  (in-window (window robot)
+    (robot:place-robot robot 3.1 4.5 0)
+    (window::publish (window:window-watcher window) (time:current-simulation))
+    (let ((rows (offered (painted-world window) 28 36)))
+      (is (find "obj-desig 0 local ((:color red))" rows :test #'search) "~A" rows)
+      (is (not (find "non-local" rows :test #'search))))))
+
 (test pointing.offers-the-same-when-a-tick-has-passed-since-the-picture
   "What was painted is an image of a moment that is over; the robot is still the one commanded."
   (in-window (window robot)

@@ -51,7 +51,8 @@ message."
     "Keep a trace of what plans do, those under way included, from now on: for WHY, PLAN-TIMELINE
 and the window's timeline. OFF keeps none, and forgets it; without ON or OFF, say which it is."
   (when switch
-    (if (setf *trace-plans* (switch-setting "TRACE-PLANS" switch))
-        (trace-from-now-on)
-        (trace-no-longer)))
+    (let ((on-p (switch-setting "TRACE-PLANS" switch)))
+      ;; A plan may keep the thread of all: then none is asked, and nothing changes.
+      (if on-p (trace-from-now-on) (trace-no-longer))
+      (setf *trace-plans* on-p)))
   (format t "~:[No trace of plans is kept~;A trace of plans is kept~].~%" *trace-plans*))

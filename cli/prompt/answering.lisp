@@ -16,6 +16,13 @@
         (*hooks-at-work* (first *hooks-at-work*))
         (t *hook-before*)))
 
+(defun hook-of-prompts ()
+  "Return the hook that prompts at work have all threads share, or NIL if there are none."
+  (and *hooks-at-work* (hook-to-share)))
+
+;; An editor that comes takes the place of the prompts, who ask again when it has gone.
+(setf *hook-instead* 'hook-of-prompts)
+
 (defun begin-sharing (hook)
   (with-lock (*sessions-lock*)
     (unless *hooks-at-work* (setf *hook-before* (common-debugger-hook)))

@@ -31,12 +31,12 @@ on. ORDER is what it is to do next, a function."
   "Return a number for RESTART, a lower one the more likely it is what the user wants."
   (let ((first-names (if (typep condition 'serious-condition)
                          '("ABORT" "RETRY" "STOP-SIMULATOR")
-                         '("CONTINUE"))))
+                         '("ANSWER" "CONTINUE"))))
     (or (position (restart-name restart) first-names :test #'string=) (length first-names))))
 
 (defparameter *asking-restarts*
   '("USE-VALUE" "STORE-VALUE" "RETURN-VALUE" "CALL-FORM" "REPLACE-FUNCTION" "SPECIFY-PACKAGE"
-    "USE-PACKAGE" "RENAME")
+    "USE-PACKAGE" "RENAME" "ANSWER")
   "The names of restarts that ask for what they need.")
 
 (defun asks-p (restart)

@@ -307,10 +307,10 @@ asked has gone."
   "Say, where prompts listen to the simulation, that ASKER asks how to go on after CONDITION."
   (unless (eq 'enter-debugger (common-debugger-hook))
     (dolist (session (remove-if-not #'terminal-p (sessions-hearing *simulation*)))
-      (say-in session (format nil "*BREAK* -> ~A~@[ (in ~A)~]. ~A waits for the answer.~%"
+      (say-in session (format nil "*BREAK* -> ~A~@[ (in ~A)~]. ~@(~A~) waits for the answer.~%"
                               (break-words condition)
                               (words-for-thread session (current-thread))
-                              (whole-sentence asker))))))
+                              asker)))))
 
 (pushnew 'tell-of-inquiry *inquiry-hooks*)
 

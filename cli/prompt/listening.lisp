@@ -15,6 +15,19 @@ the prompts again. One whose user is not there any more leaves them to others."
       (let ((*showing-p* t))
         (tell-hearers session (take-all-messages))))))
 
+;;; What is said of a world as its file is loaded is said before there is a run to listen to.
+
+(defvar *first-messages* '()
+  "The messages about the definitions of the program, that the prompt has shown before any run.")
+
+(defun show-first-messages (session)
+  "Show in SESSION what is said of what has been defined, and keep it for windows to come."
+  (tell-messages session (setf *first-messages* (take-all-messages))))
+
+(defun tell-first-messages (session)
+  "Show in SESSION, of a new window, what was said of the definitions before."
+  (when *first-messages* (tell-messages session *first-messages*)))
+
 ;;; Listening to a simulation.
 
 (defun show-after-changes (session simulation)

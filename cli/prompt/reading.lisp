@@ -51,7 +51,8 @@ that."
                (show-answer console (visible line)))
               (t (unless (or line (session-batch-p session)) (fresh-line console))
                  (answered console)))
-        (count-anew (session-told session)))
+        (count-anew (session-told session))
+        (count-others-anew session))
       (note-read (session-account session))
       line)))
 

@@ -31,6 +31,8 @@
   ;; The tallies of errors, by their text, as in repetition.lisp: any thread tells, so the lock
   ;; guards them.
   (told (make-hash-table :test 'equal) :type hash-table :read-only t)
+  ;; How many messages of others' commands it has shown since a line was read.
+  (others-told 0 :type fixnum)
   (lock (make-lock "session") :read-only t)
   ;; The simulation whose messages are shown as they arrive, and its observer if it is live.
   (simulation nil)
@@ -246,6 +248,8 @@ an error in a script, with the place of the line under way."
             (write-messages messages session))
         (loop for message in messages
               for text = (repetition-text message (session-told session))
-              when text do (write-fresh (fitted text console) console)))
+              when text do (write-fresh (fitted text console) console))
+        (let ((text (flood-text session messages)))
+          (when text (write-fresh (fitted text console) console))))
       (restore-prompt console)
       (finish-output console))))

@@ -79,10 +79,10 @@ LEAVE and END. A step that is left by another ends its plan, and so cannot be tr
            (current () (runner-current runner))
            (offer-failing (stream)
              (format stream "Let the task ~A fail." (task-label (current))))
-           (offer-ending (stream)
-             (format stream "End the plan ~A." (task-label (task-top (current)))))
+           (plan () (task-label (task-top (current))))
+           (offer-ending (stream) (format stream "End the plan ~A; a message says so." (plan)))
            (offer-leaving (stream)
-             (format stream "End the plan ~A without a word." (task-label (task-top (current))))))
+             (format stream "End the plan ~A; no message says so." (plan))))
     (declare (dynamic-extent #'in-step-p #'offer-failing #'offer-ending #'offer-leaving))
     (restart-bind ((fail-task fail :report-function #'offer-failing
                                    :test-function #'in-step-p)

@@ -16,9 +16,23 @@
   "The hook that CALL-ANSWERING-DEBUGGER has set last, consed to the one that somebody else had set
 before; or NIL.")
 
+;; What an editor's server has set stays when the editor has gone.
+(defvar *editor-gone-p* (constantly nil)
+  "A function: true if the hook that Common Lisp has for debuggers is that of an editor's server, to
+which no editor is connected.")
+
+(defvar *hook-instead* (constantly nil)
+  "A function that returns the debugger's hook, or NIL, for where an editor's has nobody to ask.")
+
+(defun stale-p (hook)
+  "True if HOOK is somebody else's, an editor's that has gone."
+  (and (functionp hook)
+       (not (eq hook (first *answerer*)))
+       (funcall *editor-gone-p*)))
+
 (defun foreign-hook ()
   "Return the debugger's hook, or, if that is ours, the one that somebody else had set before."
-  (let ((hook sb-ext:*invoke-debugger-hook*))
+  (let ((hook (debugger-hook)))
     (if (and hook (eq hook (first *answerer*)))
         (rest *answerer*)
         hook)))
@@ -26,7 +40,7 @@ before; or NIL.")
 (defun debugger-p (&optional (hook (foreign-hook)))
   "True if a debugger that is entered has somebody to talk to: a terminal, or the program, such as
 an editor, that has set HOOK or *DEBUGGER-HOOK*."
-  (cond (*debugger-hook* t)
+  (cond ((and *debugger-hook* (not (funcall *editor-gone-p*))) t)
         (hook (not (disabled-p hook)))
         (t (and (interactive-stream-p *standard-input*) (interactive-stream-p *debug-io*)))))
 
@@ -42,7 +56,8 @@ to leave it the terminal, do so, until it has left the debugger."
   "Return the function that is called instead of Lisp's debugger, with a condition and itself, in
 whatever thread that has not bound one; or NIL. Can be set. By the name DEBUGGER-DISABLED-HOOK one
 says that there is nobody to talk to."
-  sb-ext:*invoke-debugger-hook*)
+  (let ((hook sb-ext:*invoke-debugger-hook*))
+    (if (stale-p hook) (funcall *hook-instead*) hook)))
 
 (defun (setf debugger-hook) (function)
   (setf sb-ext:*invoke-debugger-hook* function))

@@ -31,7 +31,7 @@ it returns if it cannot.")
 
 (defun words-for-asker (hook)
   "Return who asks in the debugger of HOOK."
-  (if hook "the editor's debugger" "Lisp's own debugger"))
+  (if (or hook *debugger-hook*) "the editor's debugger" "Lisp's own debugger"))
 
 (defun debugger-asking (thread)
   "Return, in words, whose debugger asks how THREAD is to go on; NIL if none of others' does."
@@ -56,17 +56,24 @@ it returns if it cannot.")
   (handler-bind (((or error storage-condition) #'debug-inside))
     (funcall function)))
 
+(defun call-debugger-hook (condition)
+  "Call *DEBUGGER-HOOK* with CONDITION as INVOKE-DEBUGGER does."
+  (let ((hook *debugger-hook*) (*debugger-hook* nil))
+    (funcall hook condition hook)))
+
 (defun debug-inside (condition)
   "Let the debugger that is under way here look into CONDITION, in what was typed there."
   (unless (typep condition 'time-limit)
     (call-as-debugger (lambda () (invoke-debugger condition)))))
 
+;; SWANK sets both of SBCL's hooks, and the function in the first leaves it to the other.
 (defun enter-outer (condition hook)
-  "Let the debugger of HOOK, or Lisp's own, ask how to go on after CONDITION."
+  "Let the debugger of HOOK, or if that asks nobody the one of *DEBUGGER-HOOK*, or Lisp's own where
+there is no hook, ask how to go on after CONDITION. Return if nobody is asked."
   (call-as-debugger (lambda ()
-                      (if hook
-                          (funcall hook condition hook)
-                          (invoke-debugger condition)))))
+                      (when hook (funcall hook condition hook))
+                      (cond (*debugger-hook* (call-debugger-hook condition))
+                            ((null hook) (invoke-debugger condition))))))
 
 (defun go-on-unasked (condition)
   "Go on after CONDITION as most likely it should, as nobody is left who could say how, and warn."

@@ -95,6 +95,7 @@ bordeaux-threads, closer-mop and SBCL's own packages so that no other layer has 
            #:call-holding-interrupts #:call-open-to-interrupts
            #:regain-room #:debugger-p #:answering-debugger #:calls-under-way
            #:debugger-hook #:common-debugger-hook #:disabled-p
+           #:*editor-gone-p* #:*hook-instead*
            #:with-debugger-hook #:yield-foreground)
   ;; inquiries
   (:export #:debugger-asking #:end-inquiries #:*inquiry-hooks* #:*heir*

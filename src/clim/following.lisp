@@ -15,18 +15,25 @@
         (eq thread (current-thread))
         (eq old (watcher-simulation (window-watcher window))))))
 
-(defun shown-elsewhere-p (simulation window)
-  "True if another window than WINDOW shows SIMULATION."
-  (some (lambda (other)
-          (and (not (eq other window))
-               (eq simulation (watcher-simulation (window-watcher other)))))
-        (open-windows)))
+(defun robot-to-take-along (window new)
+  "Return the name of the robot of NEW that WINDOW, which goes along there, is to show: the one that
+its own prompt commands, or that it shows; else another. NIL if other windows show all of them."
+  (let ((names (mapcar #'robot-name (simulation-robots new)))
+        (own-p (eq window (own-window))))
+    (find-if (lambda (name)
+               (and (member name names) (not (shown-beside-p window name new))))
+             (append (and own-p (list ars-magna.cli:*prompt-robot*))
+                     (list (shown-robot window) ars-magna.cli:*prompt-robot*)
+                     names))))
 
 (defun take-along (window new)
-  "Let WINDOW show NEW from now on."
-  (watch-simulation (window-watcher window) new)
-  (retitle window)
-  (request-refresh window))
+  "Let WINDOW show NEW from now on, if there is a robot for it to show."
+  (let ((name (robot-to-take-along window new)))
+    (when name
+      (note-shown window name)
+      (watch-simulation (window-watcher window) new)
+      (retitle window)
+      (request-refresh window))))
 
 (defun follow-prompt (session old new)
   "Let the windows that go along with SESSION, which was in the run OLD, show NEW, in which it is."
@@ -36,8 +43,7 @@
       (let ((watcher (window-watcher window)))
         (cond ((eq new (watcher-simulation watcher))
                (unless (live-p new) (publish watcher new)))
-              ((and old (not (eq old new)) (goes-along-p window old)
-                    (not (shown-elsewhere-p new window)))
+              ((and old (not (eq old new)) (goes-along-p window old))
                (take-along window new)))))))
 
 (pushnew 'follow-prompt ars-magna.cli:*whereabouts-hooks*)

@@ -59,4 +59,7 @@ prompt did not tell of plans' commands."
         (setf (window-layers window) layers
               (window-color-p window) color-p
               (window-wishes window) (copy-wishes wishes))))
-    (when legacy (take-legacy window legacy))))
+    (if legacy
+        (take-legacy window legacy)
+        (ars-magna.cli:tell-first-messages
+         (conversation-session (window-conversation window))))))

@@ -53,9 +53,21 @@ connected, if there is one."
   (let ((color (assoc :color (thing-image-attributes image))))
     (if color (format nil "((:color ~(~A~)))" (second color)) "()")))
 
+(defun next-to-robot-p (image window)
+  "True if the thing of IMAGE lies where it is local to the robot of WINDOW, as what a hand grasps."
+  (let ((robot (find (shown-robot window) (simulation-robots (window-simulation window))
+                     :key #'robot-name)))
+    (and robot
+         (on-floor-p image window)
+         (within-reach-p robot (thing-image-x image) (thing-image-y image)))))
+
 (defun search-offers (image window)
-  (camera-offers window "Look for such a thing with camera ~D"
-                 (format nil "obj-desig ~~D non-local ~A" (looks-of image))))
+  "Return the offers to look for what looks as the thing of IMAGE does, from afar or next to it."
+  (if (next-to-robot-p image window)
+      (camera-offers window "Look next to the robot for such a thing with camera ~D"
+                     (format nil "obj-desig ~~D local ~A" (looks-of image)))
+      (camera-offers window "Look for such a thing with camera ~D"
+                     (format nil "obj-desig ~~D non-local ~A" (looks-of image)))))
 
 (defun cameras-tracking (numbers window)
   "Return the indices of the cameras that track one of the designators with NUMBERS."

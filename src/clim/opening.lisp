@@ -86,23 +86,33 @@ as nobody hears of a trial or fork any more, the one that goes on without."
             simulation)
         simulation)))
 
+(defun words-for-closing (window condition)
+  "Return what is said of WINDOW, which CONDITION, or a reason in words, has closed: that the run
+goes on, if it does, and how it is seen again."
+  (format nil "The window of ~A has closed: ~A~:[~;. The run goes on; the ~
+               line WINDOW opens it anew~]"
+          (shown-robot window)
+          (one-line (handler-case (princ-to-string condition)
+                      (error () (string (type-of condition)))))
+          (and (window-simulation window) (not (over-p window)))))
+
 (defun warn-of-closing (window condition)
   "Say, once, that CONDITION has closed WINDOW, and what that leaves undone."
   (when (forget-window window)
     (let* ((simulation (run-to-tell window))
            (*message-queue* (if simulation (simulation-messages simulation) *message-queue*)))
-      (warning-set (format nil "The display of ~A has closed: ~A~A"
-                           (watcher-robot (window-watcher window))
-                           (one-line (handler-case (princ-to-string condition)
-                                       (error () (string (type-of condition)))))
-                           (take-work-left window))))))
+      (warning-set (words-for-closing window condition) (take-work-left window)))))
 
 ;;; Which robot a window shows.
 
+(defun note-shown (window name)
+  "Let the robot called NAME be the one that WINDOW shows."
+  (setf (watcher-robot (window-watcher window)) name)
+  (pushnew name (window-robots-shown window)))
+
 (defun show-robot-called (window name simulation)
   "Let WINDOW show the robot called NAME of SIMULATION from now on."
-  (setf (watcher-robot (window-watcher window)) name)
-  (pushnew name (window-robots-shown window))
+  (note-shown window name)
   (unless (eq simulation (window-simulation window))
     (watch-simulation (window-watcher window) simulation)
     (setf (pane-fitting-p (pane-named window 'world)) t))
@@ -191,10 +201,7 @@ else, if its user has chosen another one of the same run, that that is shown."
   ;; None of them can answer for another.
   (dolist (window (windows-on port)) (ars-magna.cli:abandon-session (window-session window)))
   (dolist (window (windows-on port))
-    (warn-of-closing window (format nil "the X server has gone. The run goes on; the line ~
-                                         WINDOW, or (open-display ~A), opens it anew"
-                                    (let ((*print-case* :downcase))
-                                      (prin1-to-string (shown-robot window)))))
+    (warn-of-closing window "the X server has gone")
     (close-window window)))
 
 (defun x-server-gone-p (condition)

@@ -31,6 +31,26 @@ now."
   (setf (window-pointed window) nil
         (window-hint window) ""))
 
+(defun pane-at-mouse (window)
+  "Return the pane of WINDOW that the mouse is on, as far as is known, and where there; or NIL."
+  (destructuring-bind (&optional x y) (window-mouse window)
+    (when x
+      (dolist (pane (display-panes window))
+        (when (clim:sheet-enabled-p pane)
+          (multiple-value-bind (x y)
+              (clim:untransform-position
+               (clim:sheet-delta-transformation pane (clim:frame-top-level-sheet window)) x y)
+            (when (clim:region-contains-position-p (clim:sheet-region pane) x y)
+              (return (values pane
+                              (floor x (magnification pane))
+                              (floor y (magnification pane)))))))))))
+
+(defun point-at-mouse (window)
+  "Let the strip of WINDOW tell of what the mouse is on, which has not moved, as what was over it,
+or was being dragged, has gone."
+  (multiple-value-bind (pane x y) (pane-at-mouse window)
+    (when pane (hover pane x y))))
+
 (defun subject-text (subject)
   "Return in one line what is known of SUBJECT."
   (one-line (with-output-to-string (stream) (describe-subject subject stream))))
@@ -134,12 +154,28 @@ OPENER had opened.")
   (let ((drag (pane-drag pane)))
     (unless (member drag '(nil :scroll-bar))
       (multiple-value-call #'drop pane (event-place pane event)))
-    (setf (pane-drag pane) nil)))
+    (setf (pane-drag pane) nil)
+    (point-at-mouse (window-of pane))))
 
 ;; While something is dragged, the strip tells of that, wherever the mouse is.
 (defun dragging-pane (window)
   "Return the pane of WINDOW from which something is dragged, or NIL."
   (find-if #'pane-drag (display-panes window)))
+
+;; What comes up under the mouse, or goes from there, makes events of a mouse that rests.
+(defun note-mouse (pane event)
+  "Note where in the window of PANE the mouse is, by EVENT. True if it was elsewhere before."
+  (let* ((window (window-of pane))
+         (place (multiple-value-list
+                 (clim:transform-position
+                  (clim:sheet-delta-transformation pane (clim:frame-top-level-sheet window))
+                  (clim:pointer-event-x event) (clim:pointer-event-y event)))))
+    (not (equalp place (shiftf (window-mouse window) place)))))
+
+(defmethod clim:handle-event :around ((pane display-pane) (event clim:pointer-motion-event))
+  (let ((moved-p (note-mouse pane event)))
+    (when (or moved-p (not (typep pane 'popup-pane)))
+      (call-next-method))))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-motion-event))
   (multiple-value-bind (x y) (event-place pane event)

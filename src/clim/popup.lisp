@@ -115,6 +115,7 @@ so, a symbol, or the menu, or T."
     (when opener
       (setf (clim:sheet-enabled-p (window-popup window)) nil)
       (repaint-all window)
+      (point-at-mouse window)
       opener)))
 
 ;;; The mouse.

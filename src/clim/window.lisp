@@ -42,6 +42,8 @@
    (selection :initform nil :accessor window-selection)
    ;; Where the mouse rests, as (pane x y text): what was told of that; or NIL.
    (pointed :initform nil :accessor window-pointed)
+   ;; Where in the window the mouse was last, in pixels of the screen, as (x y); NIL at first.
+   (mouse :initform nil :accessor window-mouse)
    ;; The pane that has the keys whenever the window has them, or NIL before there is one.
    (focus :initform nil :accessor window-focus)
    ;; True if a line was begun by a key that came to a display.

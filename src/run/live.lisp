@@ -5,12 +5,16 @@
 (defvar *simulator-hooks* '()
   "Functions of a robot and the plist of SIMULATOR's options, called when it has started.")
 
+(defvar *program-input* #'identity
+  "A function of a stream: return the one that users' code in a run's threads reads instead.")
+
 (defun call-as-owner (simulation function)
   "Call FUNCTION with the bindings under which the thread of SIMULATION runs."
   (let ((*simulation* simulation)
         (*world* (simulation-world simulation))
         (*message-queue* (simulation-messages simulation))
-        (*standard-output* (or (simulation-output simulation) *standard-output*)))
+        (*standard-output* (or (simulation-output simulation) *standard-output*))
+        (*standard-input* (funcall *program-input* *standard-input*)))
     (call-with-parameters '() (lambda ()
                                 (call-with-lisps-dice function (simulation-seed simulation))))))
 

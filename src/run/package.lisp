@@ -47,6 +47,7 @@ takes part in it. Manual 2.3 and appendix A.")
            #:*simulation-variables* #:variables-among)
   ;; live
   (:export #:simulator #:stop-simulator #:start-clock #:stop-clock #:await-idle #:call-as-owner
+           #:*program-input*
            #:*simulator-hooks*)
   ;; state, replay
   (:export #:state-digest #:replay #:with-replay #:call-with-replay #:replaying #:journal-meant

@@ -1,0 +1,34 @@
+;;;; cli-answers.lisp -- programs that read what is typed, in the thread of a run or of plans.
+
+(in-package :ars-magna.tests)
+
+(in-suite cli-debugger)
+
+(test answers.are-asked-for-where-somebody-sits
+  "A prompt asks how what reads goes on: by ANSWER, with a line."
+  (let ((cli::*session* (cli:make-session :input (make-instance 'cli::typed-text
+                                                                :by-hand-p t
+                                                                :octets (make-string-input-stream
+                                                                         "")))))
+    (setf (cli::session-thread cli::*session*) (base:current-thread))
+    (flet ((answer (condition hook)
+             (declare (ignore hook))
+             (is (eq 'cli::answer
+                     (restart-name (first (cli::restarts-to-offer condition)))))
+             (invoke-restart 'cli::answer "(a b) 7")))
+      (base:with-debugger-hook (#'answer)
+        (let ((stream (cli::asking-instead (make-string-input-stream ""))))
+          (is (equal '(a b) (read stream)))
+          (is (equal 7 (read stream))))))))
+
+(test answers.are-read-from-elsewhere-where-nobody-sits
+  (let ((cli::*session* nil))
+    (is (equal '(a b) (read (cli::asking-instead (make-string-input-stream "(a b)")))))))
+
+(test answers.are-for-what-runs-in-other-threads
+  (let ((time:*simulation* nil))
+    (run:call-with-simulation
+     (lambda ()
+       (run:call-as-owner time:*simulation*
+                          (lambda () (is (typep *standard-input* 'cli::asking-text)))))
+     '(ars-user::butler))))
