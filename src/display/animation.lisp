@@ -16,13 +16,17 @@ how far that has come.")
 (defun call-with-frames (function journal every until &key part (watch #'identity))
   "Replay JOURNAL up to the tick UNTIL (NIL: its end); call FUNCTION with a snapshot of its
 beginning, of every EVERY ticks and of its end, of PART of its map or, if that is NIL, of all; and
-WATCH with the simulation at the beginning and after each tick."
-  (let ((last nil) (queue *message-queue*))
-    (labels ((show (simulation)
-               (setf last (take-snapshot (simulation-world simulation) last))
-               ;; What is wrong with drawing is to be told here, not in the run repeated.
+WATCH with the simulation at the beginning and after each tick. Signals what FUNCTION does."
+  (let ((last nil) (queue *message-queue*) (trouble nil))
+    (labels ((draw ()
+               ;; What is wrong with drawing is to be told here, not in the run repeated, in which
+               ;; an observer's errors are messages.
                (let ((*message-queue* queue))
-                 (funcall function (in-part last part 'save-animation)))
+                 (handler-case (funcall function (in-part last part 'save-animation))
+                   (error (condition) (setf trouble condition)))))
+             (show (simulation)
+               (setf last (take-snapshot (simulation-world simulation) last))
+               (unless trouble (draw))
                (funcall *frame-hook* (snapshot-tick last)))
              (look (simulation)
                (keep-history simulation)
@@ -31,7 +35,8 @@ WATCH with the simulation at the beginning and after each tick."
              (end ()
                (let ((simulation (current-simulation)))
                  (unless (= (snapshot-tick last) (simulation-tick simulation))
-                   (show simulation)))))
+                   (show simulation))
+                 (when trouble (error trouble)))))
       (call-with-replay #'end journal :until until :observer #'look :beginning #'look))))
 
 (defun frame-step (journal every until)
@@ -342,14 +347,30 @@ left alone: nobody said that they may go."
                            (shown-name (first older))
                            (and (rest older) (file-namestring (first (last older)))) count)))))
 
+(defun files-in-words (files)
+  "Return what FILES, one or more of a series, the last first, are called."
+  (format nil "~A~@[ to ~A~]" (shown-name (first (last files)))
+          (and (rest files) (file-namestring (first files)))))
+
+(defun call-for-series (function files)
+  "Call FUNCTION, which writes the next file of a series of which FILES, the last first, are there.
+Signals MISUSE, which says so, if it cannot."
+  (handler-case (funcall function)
+    (misuse (trouble)
+      (if files
+          (reject-use "~A. Of the series there ~:[is~;are~] so far ~A."
+                      (one-line-text trouble) (rest files) (files-in-words files))
+          (error trouble)))))
+
 (defun save-series (journal file &key every until display layers in-color scale title part)
   (let ((robot (first (getf (journal-header journal) :robots))) (files '()))
-    (call-with-frames (lambda (snapshot)
-                        (push (save-snapshot snapshot (snapshot-robot snapshot robot)
-                                             (numbered-file file (1+ (length files)))
-                                             :display display :layers layers
-                                             :in-color in-color :scale scale :title title)
-                              files))
-                      journal (frame-step journal every until) until :part part)
+    (flet ((save (snapshot)
+             (save-snapshot snapshot (snapshot-robot snapshot robot)
+                            (numbered-file file (1+ (length files)))
+                            :display display :layers layers
+                            :in-color in-color :scale scale :title title)))
+      (call-with-frames (lambda (snapshot)
+                          (push (call-for-series (lambda () (save snapshot)) files) files))
+                        journal (frame-step journal every until) until :part part))
     (warn-of-older-frames file (length files))
     (reverse files)))

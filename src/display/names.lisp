@@ -163,7 +163,7 @@ its image."
           (let ((end (first (last (robot-image-planned-way robot)))))
             (and end (member :planned-way layers)
                  (list (box-around (to-pixels (first end)) (to-pixels (second end))
-                                   (+ 2 +way-end+)))))))
+                                   (+ 2 +mark-radius+)))))))
 
 (defun spot-box (spot)
   (box-around (spot-x spot) (spot-y spot) (spot-half spot)))

@@ -18,8 +18,10 @@
                 #:snapshot-map #:snapshot-robots #:snapshot-things #:robot-image-name
                 #:robot-image-x #:robot-image-y #:thing-image-x #:thing-image-y
                 #:drawn-scale
-                #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:draw-way-line
-                #:draw-pieces #:jump-entry
+                #:draw-terrain #:draw-movers #:draw-framed #:draw-names #:make-way-line
+                #:draw-way-lines #:draw-way-sample #:draw-way-marks #:jumps-seen-p #:jumps-of
+                #:call-along
+                #:draw-jump-dots #:jump-entry
                 #:draw-start #:draw-ring #:robot-entry #:sample-of-name #:turn-ink
                 #:to-pixels #:box-around
                 #:inked #:around #:draw-circle #:half-width

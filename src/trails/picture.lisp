@@ -34,8 +34,11 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
 
 (defun draw-way (canvas way)
   (let ((look (look-of way)))
-    (draw-pieces canvas (pieces-in-pixels (way-pieces way)) (second look)
-                 (lambda (points) (draw-line-of-way canvas points look)))))
+    (dolist (points (pieces-in-pixels (way-pieces way)))
+      (when (cddr points) (draw-line-of-way canvas points look)))))
+
+(defun draw-jumps (canvas way)
+  (draw-jump-dots canvas (jumps-of (pieces-in-pixels (way-pieces way))) (second (look-of way))))
 
 (defun draw-marker-of (canvas look x y)
   (draw-marker canvas (first look) x y 4 (if in-color* (second look) black*)))
@@ -47,10 +50,13 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
         (draw-marker-of canvas (look-of way) (to-pixels x) (to-pixels y))))))
 
 (defun draw-ways (canvas ways)
-  "Draw WAYS so faint that many can be told apart."
-  (dolist (way ways)
-    (with-opacity (canvas (way-opacity (length (ways-of-outcome (way-outcome way) ways))))
-      (draw-way canvas way))))
+  "Draw WAYS so faint that many can be told apart, above the dots where robots were put elsewhere."
+  (flet ((draw (function way)
+           (with-opacity (canvas (way-opacity (length (ways-of-outcome (way-outcome way) ways))))
+             (funcall function canvas way))))
+    (dolist (way ways)
+      (when (rest (way-pieces way)) (draw #'draw-jumps way)))
+    (dolist (way ways) (draw #'draw-way way))))
 
 (defconstant +end-opacity+ 8/10 "How much the marker at the end of a way hides what is below.")
 
@@ -70,11 +76,16 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
           collect (bundle-entry look (way-opacity (length ended))
                                 (format nil "~A: ~D ~A~P" (first (last look)) count what count))))
 
-(defun bundle-entries (ways what)
-  "Return the entries of the legend for WAYS, each of a WHAT."
+(defun jump-entries-of (ways snapshot)
+  "Return the entries of the legend that say how jumps look, if one of WAYS, lists of pieces, is to
+be seen in what SNAPSHOT shows."
+  (and (jumps-seen-p (mapcar #'pieces-in-pixels ways) (pixels-of (shown-part snapshot)))
+       (list (jump-entry black*))))
+
+(defun bundle-entries (snapshot ways what)
+  "Return the entries of the legend for WAYS, each of a WHAT, over the world of SNAPSHOT."
   (append (outcome-entries ways what)
-          (and (some (lambda (way) (rest (way-pieces way))) ways)
-               (list (jump-entry black*)))))
+          (jump-entries-of (mapcar #'way-pieces ways) snapshot)))
 
 (defun map-opacity (color-p)
   "Return how much the map of a bundle hides what is below, in colours if COLOR-P."
@@ -94,7 +105,7 @@ and things where these end."
 
 (defun bundle-text (snapshot ways &key what title subtitle layers in-color scale)
   "Return an SVG document of SNAPSHOT and WAYS in it, each of a WHAT, under TITLE and SUBTITLE."
-  (let ((more (bundle-entries ways what)))
+  (let ((more (bundle-entries snapshot ways what)))
     (with-output-to-string (out)
       (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
         (draw-framed canvas snapshot layers

@@ -61,26 +61,21 @@ WRONG-ARGUMENT if these are of robots that are not there."
   (and (or (cddr way) (rest (second way))) t))
 
 (defun draw-robot-ways (canvas ways)
-  (loop for way in ways
-        for position from 0
-        for color = (turn-ink position)
-        when (moved-p way)
-          do (let ((pieces (pieces-in-pixels (rest way))))
-               (draw-pieces canvas pieces color
-                            (lambda (points) (draw-way-line canvas points color position)))
-               (draw-start canvas (first (first pieces)) (second (first pieces)) color))))
+  "Draw WAYS, lists of a robot's name and of pieces, of which each has its position among robots."
+  (let* ((moved (loop for way in ways for position from 0
+                      when (moved-p way)
+                        collect (cons position (pieces-in-pixels (rest way))))))
+    (draw-way-lines canvas (loop for (position . pieces) in moved
+                                 collect (make-way-line position pieces)))
+    (draw-way-marks canvas (loop for (position (x y)) in moved
+                                 collect (list 'draw-start x y (turn-ink position))))))
 
 (defconstant +tile+ 6 "How large the boxes are that hide a line, in pixels.")
 
 (defun tiles-of-line (x y next-x next-y tiles)
   "Enter into the hash table TILES conses (column . row) of the boxes that hide a line."
-  (let ((steps (max 1 (ceiling (max (abs (- next-x x)) (abs (- next-y y))) (/ +tile+ 2)))))
-    (loop for step from 0 to steps
-          for share = (/ step steps)
-          do (setf (gethash (cons (floor (+ x (* share (- next-x x))) +tile+)
-                                  (floor (+ y (* share (- next-y y))) +tile+))
-                            tiles)
-                   t))))
+  (call-along (lambda (x y) (setf (gethash (cons (floor x +tile+) (floor y +tile+)) tiles) t))
+              x y next-x next-y (/ +tile+ 2)))
 
 (defun boxes-along (points)
   "Return boxes that together hide the line through POINTS, x y ... in pixels."
@@ -98,7 +93,7 @@ WRONG-ARGUMENT if these are of robots that are not there."
   "Return an entry for the robot called NAME at POSITION among those of its world, and for its way."
   (sample-of-name (canvas x y) (name " and its way" 54)
     (draw-ring canvas (- x 18) y 6 0 position)
-    (draw-way-line canvas (list (- x 10) y (+ x 26) y) (turn-ink position) position)))
+    (draw-way-sample canvas (list (- x 10) y (+ x 26) y) (turn-ink position) position)))
 
 (defun robot-entries-with-ways (snapshot ways)
   "Return the entries of the legend for the robots that have WAYS or are to be seen in SNAPSHOT."
@@ -116,7 +111,7 @@ and SPOTS, has besides that of a map and things."
   (append (robot-entries-with-ways snapshot ways)
           (when (some #'moved-p ways)
             (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
-          (when (some #'cddr ways) (list (jump-entry black*)))
+          (jump-entries-of (mapcar #'rest ways) snapshot)
           (and spots (list (sample-of (canvas x y) "see below"
                              (draw-number canvas x y "1"))))))
 
